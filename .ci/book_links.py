@@ -1,6 +1,6 @@
-"""Checks the links and pictures of the guide: of its sources, and of the book if its folder is given too.
+"""Checks the links and pictures of the guide: of its sources, or of the book if its folder is given.
 
-Usage: book_links.py GUIDE [BOOK]. Ends with 1 if something is missing, after a line for each finding.
+Usage: book_links.py GUIDE [BOOK]. Prints a line for each problem; the exit status is 1 if there is any.
 """
 
 import re
@@ -23,13 +23,13 @@ def is_external(target):
 
 
 def anchors(text):
-    """The ids of headings, as rustdoc and mdBook make them."""
+    """Returns the ids of the headings of a text, as rustdoc and mdBook make them."""
     kept = (re.sub(r"[^\w\- ]", "", heading.lower()) for heading in HEADING.findall(text))
     return {heading.strip().replace(" ", "-") for heading in kept}
 
 
 def source_findings(guide):
-    """What is missing in the Markdown files: files, headings, definitions, texts of pictures, chapters."""
+    """Yields what the Markdown files lack: files, headings, definitions, descriptions of pictures, chapters."""
     texts = {page.name: FENCE.sub("", page.read_text()) for page in sorted(guide.glob("*.md"))}
     used = set()
     for name, text in texts.items():
@@ -65,7 +65,7 @@ def source_findings(guide):
 
 
 class Page(HTMLParser):
-    """The ids of a page, and what it refers to."""
+    """The ids of a page, and the targets of its links and pictures."""
 
     def __init__(self, text):
         super().__init__()
@@ -81,7 +81,7 @@ class Page(HTMLParser):
 
 
 def book_findings(book):
-    """Links and pictures of the HTML pages that lead nowhere."""
+    """Yields the broken links and missing pictures of the HTML pages."""
     pages = {page.resolve(): Page(page.read_text()) for page in sorted(book.glob("*.html"))}
     for path, page in pages.items():
         for target in page.targets:

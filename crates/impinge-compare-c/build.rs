@@ -1,4 +1,4 @@
-//! Sees to it that rivals run as their authors release them.
+//! Makes rivals run as their authors release them.
 //!
 //! The crates around Box2D and Box3D compile the C code without `NDEBUG`, with all assertions. The
 //! file `.cargo/config.toml` of `impinge-compare` sets the flags where nobody else does.
@@ -18,7 +18,7 @@ fn main() {
     coal();
 }
 
-/// Compiles the calls of Coal, which lies in the directories of COAL_PREFIX as wheels or packages install it.
+/// Compiles the calls of Coal, which is in the directories of COAL_PREFIX as wheels or packages install it.
 #[cfg(feature = "coal")]
 fn coal() {
     println!("cargo::rerun-if-env-changed=COAL_PREFIX");

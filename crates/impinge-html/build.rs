@@ -7,12 +7,12 @@ mod engine {
     use std::process::Command;
     use std::{env, fs};
 
-    /// The variable with the path of a module, which is taken instead of building one.
+    /// The variable with the path of a module, which is used instead of building one.
     const READY: &str = "IMPINGE_PAGE_MODULE";
 
     const TARGET: &str = "wasm32-unknown-unknown";
 
-    /// Writes `page.wasm.gz` into the folder of what is built.
+    /// Writes `page.wasm.gz` into the output folder of the build.
     pub(super) fn embed() -> Result<(), String> {
         println!("cargo::rerun-if-env-changed={READY}");
         let folder = variable("OUT_DIR")?;
@@ -36,7 +36,7 @@ mod engine {
         env::var_os(name).map(PathBuf::from).ok_or_else(|| format!("cargo does not set {name}"))
     }
 
-    /// Builds the engine in a folder of its own: the outer cargo holds the lock of the usual one.
+    /// Builds the engine in a separate folder: the outer cargo holds the lock of the usual one.
     fn build(folder: &Path) -> Result<PathBuf, String> {
         let crates = variable("CARGO_MANIFEST_DIR")?.join("..");
         for name in
@@ -48,7 +48,7 @@ mod engine {
         cargo.current_dir(&crates);
         cargo.args(["build", "--profile", "page", "-p", "impinge-page", "--lib"]);
         cargo.args(["--target", TARGET, "--target-dir"]).arg(folder);
-        // The flags and the linter of the outer build are not those of the engine.
+        // The flags and the linter of the outer build do not apply to the engine.
         for name in
             ["CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER", "CLIPPY_ARGS"]
         {

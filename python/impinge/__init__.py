@@ -1,4 +1,4 @@
-"""Collision detection in 2D and 3D: one shape or many, arrays of poses in, arrays of answers out.
+"""Collision detection in 2D and 3D: one shape or many, arrays of poses in, arrays of results out.
 
 >>> import impinge, numpy as np
 >>> poses = np.tile(np.eye(4), (1000, 1, 1))
@@ -7,9 +7,9 @@
 >>> distances.shape, float(distances[-1])
 ((1000,), 8.5)
 
-`pip install ./python` in the repository of impinge builds it from source. That takes Rust 1.95 or later with cargo
-(https://rustup.rs), a C compiler to link, and some minutes; maturin and NumPy are fetched by pip. The page of recordings is
-part of it where it is built as `python/README.md` tells. `impinge.__version__` says which version it is.
+`pip install ./python` in the repository of impinge builds it from source. The build needs Rust 1.95 or later with cargo
+(https://rustup.rs), a C compiler as linker, and some minutes; pip fetches maturin and NumPy. The page of recordings is an
+optional part, built as `python/README.md` describes. `impinge.__version__` is the version.
 """
 
 from impinge._checker import NO_BODY, Checker, Frame, NearestPairs

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge._native import NativeChecker
-from impinge._poses import matrices
+from impinge._poses import DTypeName, matrices
+from impinge._results import Floats, Indices
 
 if TYPE_CHECKING:
     from impinge._native import PosesLike, Progress, Shape
@@ -20,15 +21,15 @@ NO_BODY = 4294967295
 
 
 class Frame(NamedTuple):
-    """A frame on a joint: it stands at `parent @ origin @ motion`.
+    """A frame on a joint: its pose is `parent @ origin @ motion`.
 
     `parent` is the number of a frame, `None` for the world, and `origin` a matrix (D+1, D+1), `None` for the identity.
-    A revolute joint turns by radians about `axis` (D,), in 2D counter-clockwise without one; a prismatic joint shifts
-    along it. The value is that in `column` of the configuration times `factor`, plus `offset`.
+    A revolute joint rotates by radians about `axis` (D,), in 2D counter-clockwise without one; a prismatic joint translates
+    along it. The joint value is that in `column` of the configuration times `factor`, plus `offset`.
     """
 
     parent: int | None = None
-    origin: Any = None
+    origin: PosesLike = None
     joint: Literal["fixed", "revolute", "prismatic"] = "fixed"
     axis: ArrayLike | None = None
     column: int = 0
@@ -39,20 +40,20 @@ class Frame(NamedTuple):
 class NearestPairs(NamedTuple):
     """For each configuration the least distance (n,) and its pair (n, 2); infinite and `NO_BODY` beyond the limit."""
 
-    distance: NDArray[Any]
-    pair: NDArray[np.uint32]
+    distance: Floats
+    pair: Indices
 
 
 class Checker:
-    """Which of many configurations of a robot are free: of collisions with itself and with obstacles.
+    """Tests many configurations of a robot for collisions with itself and with obstacles.
 
-    frames: a sequence of `Frame`. columns: how many numbers a configuration has.
-    shapes: the bodies, a sequence of b `Shape`; on: the frame of each (b,); poses: where they are on these,
-    (b, D+1, D+1), or `None` for their origins. pairs (m, 2): the bodies that must not touch.
+    frames: a sequence of `Frame`. columns: the number of values of a configuration.
+    shapes: the bodies, a sequence of b `Shape`; on: the frame of each (b,); poses: their poses in these frames,
+    (b, D+1, D+1), or `None` for the identity. pairs (m, 2): the bodies that must not touch.
 
-    Configurations are arrays (n, columns), or (columns,) of one; their answers have a row for each. Pairs are numbers of
-    bodies, and of obstacles beginning with b; the lower one comes first, and of several pairs the first is given. What
-    is not finite is not free, has the distance NaN and no pair.
+    Configurations are arrays (n, columns), or a single one (columns,); results have a row for each. Pairs are numbers of
+    bodies, and of obstacles beginning with b; the lower one comes first, and among several pairs the first is returned. A
+    configuration that is not finite is not free, has the distance NaN and no pair.
 
     >>> import impinge, numpy as np
     >>> arm = [impinge.Frame(joint="revolute", axis=[0, 0, 1], column=0),
@@ -68,7 +69,7 @@ class Checker:
     >>> round(float(checker.nearest(configurations[0]).distance[0]), 6)
     0.25
 
-    It pickles, with its obstacles.
+    It can be pickled, with its obstacles.
     """
 
     def __init__(
@@ -82,7 +83,7 @@ class Checker:
     ) -> None:
         bodies = list(shapes)
         self.dim = bodies[0].dim if bodies else 3
-        self.dtype = bodies[0].dtype if bodies else "float64"
+        self.dtype: DTypeName = bodies[0].dtype if bodies else "float64"
         self.columns = columns
         frame_of = [int(frame) for frame in on]
         if len(frame_of) != len(bodies):
@@ -91,29 +92,29 @@ class Checker:
         placed, apart = self._poses(poses, len(bodies), "poses"), _pairs(pairs, "pairs")
         read = _columns(frames, self.dim, self.dtype)
         self._native = NativeChecker(self.dim, self.dtype, read, columns, (bodies, frame_of, placed), apart)
-        # Of its own, for pickles: whoever made it may change arrays later.
+        # A copy, for pickles: the caller may change its arrays later.
         own = [frame._replace(origin=origin.copy()) for frame, origin in zip(frames, read[1], strict=True)]
         self._made_of = (own, columns, bodies, frame_of, placed.copy(), apart.copy())
         self._obstacles: tuple[Any, ...] | None = None
 
     def set_obstacles(self, shapes: Sequence[Shape], poses: PosesLike = None, ignored: ArrayLike = ()) -> None:
-        """Replaces all obstacles by shapes (o,) at poses (o, D+1, D+1); `ignored` (m, 2) are bodies and obstacles, each
-        from zero, that may touch."""
+        """Replaces all obstacles by shapes (o,) at poses (o, D+1, D+1); `ignored` (m, 2) are pairs of a body and an obstacle,
+        each numbered from zero, that may touch."""
         obstacles = list(shapes)
         placed = self._poses(poses, len(obstacles), "poses")
         may_touch = _pairs(ignored, "ignored")
         self._native.set_obstacles(obstacles, placed, may_touch)
         self._obstacles = (obstacles, placed.copy(), may_touch.copy())
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickles what it was made of, and its obstacles."""
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickles its arguments and its obstacles."""
         return (_unpickled, (self._made_of, self._obstacles))
 
-    def frames(self, configurations: ArrayLike) -> NDArray[Any]:
+    def frames(self, configurations: ArrayLike) -> Floats:
         """The poses of all frames: (n, frames, D+1, D+1), or (frames, D+1, D+1)."""
         return self._placed(configurations, False)
 
-    def poses(self, configurations: ArrayLike) -> NDArray[Any]:
+    def poses(self, configurations: ArrayLike) -> Floats:
         """The poses of all bodies: (n, b, D+1, D+1), or (b, D+1, D+1)."""
         return self._placed(configurations, True)
 
@@ -125,7 +126,7 @@ class Checker:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> NDArray[np.bool_]:
-        """Whether all pairs are farther apart than the clearance, or do not touch: (n,)."""
+        """Whether all pairs are farther apart than the clearance; with clearance 0, whether none touch: (n,)."""
         free: NDArray[np.bool_] = self._ask("free", configurations, clearance, threads, progress)[0]
         return free
 
@@ -136,9 +137,9 @@ class Checker:
         *,
         threads: int | None = None,
         progress: Progress | None = None,
-    ) -> NDArray[np.uint32]:
-        """The first pair that is not farther apart than the clearance: (n, 2), `NO_BODY` twice where it is free."""
-        pair: NDArray[np.uint32] = self._ask("pair", configurations, clearance, threads, progress)[1].reshape(-1, 2)
+    ) -> Indices:
+        """The first pair whose distance is at most the clearance: (n, 2), `NO_BODY` twice for a free configuration."""
+        pair: Indices = self._ask("pair", configurations, clearance, threads, progress)[1].reshape(-1, 2)
         return pair
 
     def nearest(
@@ -164,25 +165,25 @@ class Checker:
         rows = np.atleast_2d(self._rows(configurations))
         return self._native.ask(question, rows.reshape(-1), limit, len(rows), threads, progress)
 
-    def _placed(self, configurations: ArrayLike, of_bodies: bool) -> NDArray[Any]:
+    def _placed(self, configurations: ArrayLike, of_bodies: bool) -> Floats:
         rows = self._rows(configurations)
         size = self.dim + 1
         count = self._counts[of_bodies]
         if self.columns:
             poses = self._native.place(rows.reshape(-1), of_bodies)
         else:
-            # One pose for each, whatever the configuration.
+            # One pose for each, for all configurations.
             poses = np.tile(self._native.place(rows.reshape(-1), of_bodies), (math.prod(rows.shape[:-1]), 1, 1))
         return poses.reshape(*rows.shape[:-1], count, size, size)
 
-    def _rows(self, configurations: ArrayLike) -> NDArray[Any]:
+    def _rows(self, configurations: ArrayLike) -> Floats:
         rows = np.require(configurations, dtype=self.dtype, requirements=["C", "A"])
         if rows.ndim not in (1, 2) or rows.shape[-1] != self.columns:
             need = f"({self.columns},) or (n, {self.columns})"
             raise ValueError(f"configurations has the shape {rows.shape}, where {need} is needed")
         return rows
 
-    def _poses(self, poses: PosesLike, count: int, name: str) -> NDArray[Any]:
+    def _poses(self, poses: PosesLike, count: int, name: str) -> Floats:
         size = self.dim + 1
         if poses is None:
             return np.tile(np.eye(size, dtype=self.dtype), (count, 1, 1))
@@ -193,14 +194,14 @@ class Checker:
 
 
 def _unpickled(made_of: tuple[Any, ...], obstacles: tuple[Any, ...] | None) -> Checker:
-    """The checker of `Checker.__reduce__`."""
+    """Restores the checker of `Checker.__reduce__`."""
     checker = Checker(*made_of)
     if obstacles is not None:
         checker.set_obstacles(*obstacles)
     return checker
 
 
-def _pairs(pairs: ArrayLike, name: str) -> NDArray[np.uint32]:
+def _pairs(pairs: ArrayLike, name: str) -> Indices:
     array = np.asarray(pairs)
     if array.size == 0:
         return np.zeros((0, 2), dtype=np.uint32)
@@ -212,7 +213,7 @@ def _pairs(pairs: ArrayLike, name: str) -> NDArray[np.uint32]:
 
 
 def _columns(frames: Sequence[Frame], dim: int, dtype: str) -> tuple[Any, ...]:
-    """The frames as the native class takes them."""
+    """Converts frames to the arguments of the native class."""
     count, size = len(frames), dim + 1
     origins = np.tile(np.eye(size, dtype=dtype), (count, 1, 1))
     generators, axes, factors = np.zeros((count, dim * dim)), np.zeros((count, dim)), np.zeros((count, 2))

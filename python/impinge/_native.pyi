@@ -1,16 +1,20 @@
 """The extension module: what `impinge` exports of it is documented there."""
 
 from collections.abc import Sequence
-from typing import Any, Literal, Protocol, TypeAlias, final, overload
+from typing import Any, Protocol, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from impinge._poses import Poses
+from impinge._pictures import View
+from impinge._poses import DTypeName, Poses
 from impinge._results import (
     ClosestPoints,
     Contact,
+    Flags,
+    Floats,
     Impact,
+    Indices,
     Manifolds,
     Nearest,
     Projection,
@@ -19,25 +23,27 @@ from impinge._results import (
 )
 from impinge._shapes import Picked
 from impinge._tiles import Tiles
+from impinge._world_arguments import Filter, Groups, Options, Query, Question
+from impinge._world_results import Handles
 
 __version__: str
 
 class Progress(Protocol):
-    def update(self, count: int, /) -> Any: ...
+    def update(self, count: int, /) -> object: ...
 
 @final
 class Shape:
-    def __new__(cls, *arguments: Any) -> Shape: ...
+    def __new__(cls, *arguments: object) -> Shape: ...
     @property
     def name(self) -> str: ...
     @property
     def dim(self) -> int: ...
     @property
-    def dtype(self) -> Literal["float32", "float64"]: ...
+    def dtype(self) -> DTypeName: ...
     @property
-    def vertices(self) -> NDArray[np.floating[Any]]: ...
+    def vertices(self) -> Floats: ...
     @property
-    def faces(self) -> NDArray[np.uint32]: ...
+    def faces(self) -> Indices: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
     def _repr_html_(self) -> str: ...
@@ -45,9 +51,19 @@ class Shape:
 Shapes: TypeAlias = Shape | Sequence[Shape] | Picked
 PosesLike: TypeAlias = ArrayLike | Poses | None
 
-Floats: TypeAlias = NDArray[np.floating[Any]]
-# One shape for each element: the answer is an array.
+# The answer is a scalar if the question has one `Shape` at one pose on each side and one point or vector, else an array.
+# The type of an argument tells one from many if it is `None`, a list of numbers, of rows or of shapes. A NumPy array or
+# `Poses` may be either, so the answer then has the type of either.
+OnePose: TypeAlias = Sequence[Sequence[float]] | None
+OneVector: TypeAlias = Sequence[float]
+Vectors: TypeAlias = Sequence[Sequence[float]]
 Several: TypeAlias = Sequence[Shape] | Picked
+Codes: TypeAlias = NDArray[np.uint8]
+
+Threads: TypeAlias = int | None
+ProgressLike: TypeAlias = Progress | None
+# Columns of several dtypes.
+Columns: TypeAlias = list[NDArray[Any]]
 
 @final
 class World:
@@ -55,39 +71,44 @@ class World:
     @property
     def dim(self) -> int: ...
     @property
-    def dtype(self) -> Literal["float32", "float64"]: ...
+    def dtype(self) -> DTypeName: ...
     @property
     def is_recorded(self) -> bool: ...
-    def add(self, shapes: Shapes, poses: PosesLike, options: Any) -> list[int]: ...
-    def remove(self, handles: Any) -> None: ...
-    def set_poses(self, handles: Any, poses: PosesLike) -> None: ...
-    def set_shapes(self, handles: Any, shapes: Shapes) -> None: ...
+    def add(self, shapes: Shapes, poses: PosesLike, options: Options) -> list[int]: ...
+    def remove(self, handles: Handles) -> None: ...
+    def set_poses(self, handles: Handles, poses: PosesLike) -> None: ...
+    def set_shapes(self, handles: Handles, shapes: Shapes) -> None: ...
     def set_vertices(self, handle: int, vertices: ArrayLike) -> None: ...
-    def set_groups(self, handles: Any, groups: Any) -> None: ...
-    def set_query_types(self, handles: Any, query: Any) -> None: ...
+    def set_groups(self, handles: Handles, groups: Groups) -> None: ...
+    def set_query_types(self, handles: Handles, query: Query) -> None: ...
     def update(self) -> None: ...
     def record(self) -> None: ...
     def stop_recording(self) -> bytes | None: ...
     def to_bytes(self) -> tuple[bytes, list[int]]: ...
     def fill(self, bytes: bytes, ages: list[int]) -> None: ...
-    def picture(self, view: Any) -> tuple[str, bytes]: ...
+    def picture(self, view: View) -> tuple[str, bytes]: ...
     def handles(self) -> list[int]: ...
-    def shapes(self, handles: Any) -> list[Shape]: ...
-    def poses(self, handles: Any) -> Floats: ...
-    def contact_events(self) -> list[Floats]: ...
-    def proximity_events(self) -> list[Floats]: ...
-    def contacts(self) -> list[Floats]: ...
-    def proximities(self) -> list[Floats]: ...
+    def shapes(self, handles: Handles) -> list[Shape]: ...
+    def poses(self, handles: Handles) -> Floats: ...
+    def contact_events(self) -> Columns: ...
+    def proximity_events(self) -> Columns: ...
+    def contacts(self) -> Columns: ...
+    def proximities(self) -> Columns: ...
     def ask(
-        self, question: Any, given: list[Any], filter: Any, threads: int | None, progress: Progress | None
-    ) -> list[Floats]: ...
+        self,
+        question: Question,
+        given: Sequence[object],
+        filter: Filter | None,
+        threads: Threads,
+        progress: ProgressLike,
+    ) -> Columns: ...
 
-def picture_of(shapes: Shapes, poses: PosesLike, view: Any) -> tuple[str, bytes]: ...
+def picture_of(shapes: Shapes, poses: PosesLike, view: View) -> tuple[str, bytes]: ...
 def recording_page(bytes: bytes, title: str) -> str | None: ...
 @final
 class NativeChecker:
-    def __new__(cls, *arguments: Any) -> NativeChecker: ...
-    def set_obstacles(self, shapes: list[Shape], poses: Floats, ignored: NDArray[np.uint32]) -> None: ...
+    def __new__(cls, *arguments: object) -> NativeChecker: ...
+    def set_obstacles(self, shapes: list[Shape], poses: Floats, ignored: Indices) -> None: ...
     def place(self, rows: Floats, of_bodies: bool) -> Floats: ...
     def ask(
         self,
@@ -95,9 +116,9 @@ class NativeChecker:
         rows: Floats,
         limit: float,
         count: int,
-        threads: int | None,
-        progress: Progress | None,
-    ) -> list[Floats]: ...
+        threads: Threads,
+        progress: ProgressLike,
+    ) -> Columns: ...
 
 @final
 class Manager:
@@ -118,121 +139,107 @@ class Manager:
     def nearest_other(self, other: Manager) -> tuple[int, int, float] | None: ...
 
 def scene_bytes(shapes: Shapes, poses: PosesLike) -> bytes: ...
-def scene_of_bytes(bytes: bytes) -> tuple[list[Shape], Floats, int, Literal["float32", "float64"]]: ...
+def scene_of_bytes(bytes: bytes) -> tuple[list[Shape], Floats, int, DTypeName]: ...
 def shape_of_bytes(bytes: bytes) -> Shape: ...
 @overload
 def distance(
-    shape1: Shape,
-    poses1: None,
-    shape2: Shape,
-    poses2: None,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape1: Shape, poses1: OnePose, shape2: Shape, poses2: OnePose,
+    *, threads: Threads = None, progress: ProgressLike = None,
 ) -> float: ...
 @overload
 def distance(
-    shape1: Several,
-    poses1: PosesLike,
-    shape2: Shapes,
-    poses2: PosesLike,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape1: Several, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    *, threads: Threads = None, progress: ProgressLike = None,
 ) -> Floats: ...
 @overload
 def distance(
-    shape1: Shapes,
-    poses1: PosesLike,
-    shape2: Several,
-    poses2: PosesLike,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape1: Shapes, poses1: PosesLike, shape2: Several, poses2: PosesLike,
+    *, threads: Threads = None, progress: ProgressLike = None,
 ) -> Floats: ...
 @overload
 def distance(
-    shape1: Shapes,
-    poses1: PosesLike,
-    shape2: Shapes,
-    poses2: PosesLike,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> Any: ...
+    shape1: Shapes, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    *, threads: Threads = None, progress: ProgressLike = None,
+) -> float | Floats: ...
+@overload
 def closest_points(
-    shape1: Shapes,
-    poses1: PosesLike,
-    shape2: Shapes,
-    poses2: PosesLike,
-    max_distance: float = ...,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape1: Shape, poses1: OnePose, shape2: Shape, poses2: OnePose,
+    max_distance: float = ..., *, threads: Threads = None, progress: ProgressLike = None,
+) -> ClosestPoints[float]: ...
+@overload
+def closest_points(
+    shape1: Several, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    max_distance: float = ..., *, threads: Threads = None, progress: ProgressLike = None,
+) -> ClosestPoints[Floats]: ...
+@overload
+def closest_points(
+    shape1: Shapes, poses1: PosesLike, shape2: Several, poses2: PosesLike,
+    max_distance: float = ..., *, threads: Threads = None, progress: ProgressLike = None,
+) -> ClosestPoints[Floats]: ...
+@overload
+def closest_points(
+    shape1: Shapes, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    max_distance: float = ..., *, threads: Threads = None, progress: ProgressLike = None,
 ) -> ClosestPoints: ...
+@overload
 def witness(
-    shape1: Shapes,
-    poses1: PosesLike,
-    shape2: Shapes,
-    poses2: PosesLike,
-    max_distance: float = ...,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape1: Shape, poses1: OnePose, shape2: Shape, poses2: OnePose,
+    max_distance: float = ..., *, threads: Threads = None, progress: ProgressLike = None,
+) -> Witness[float, int]: ...
+@overload
+def witness(
+    shape1: Several, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    max_distance: float = ..., *, threads: Threads = None, progress: ProgressLike = None,
+) -> Witness[Floats, Indices]: ...
+@overload
+def witness(
+    shape1: Shapes, poses1: PosesLike, shape2: Several, poses2: PosesLike,
+    max_distance: float = ..., *, threads: Threads = None, progress: ProgressLike = None,
+) -> Witness[Floats, Indices]: ...
+@overload
+def witness(
+    shape1: Shapes, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    max_distance: float = ..., *, threads: Threads = None, progress: ProgressLike = None,
 ) -> Witness: ...
 @overload
 def proximity(
-    shape1: Shape,
-    poses1: None,
-    shape2: Shape,
-    poses2: None,
-    margin: float = 0.0,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape1: Shape, poses1: OnePose, shape2: Shape, poses2: OnePose,
+    margin: float = 0.0, *, threads: Threads = None, progress: ProgressLike = None,
 ) -> int: ...
 @overload
 def proximity(
-    shape1: Several,
-    poses1: PosesLike,
-    shape2: Shapes,
-    poses2: PosesLike,
-    margin: float = 0.0,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> NDArray[np.uint8]: ...
+    shape1: Several, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    margin: float = 0.0, *, threads: Threads = None, progress: ProgressLike = None,
+) -> Codes: ...
 @overload
 def proximity(
-    shape1: Shapes,
-    poses1: PosesLike,
-    shape2: Several,
-    poses2: PosesLike,
-    margin: float = 0.0,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> NDArray[np.uint8]: ...
+    shape1: Shapes, poses1: PosesLike, shape2: Several, poses2: PosesLike,
+    margin: float = 0.0, *, threads: Threads = None, progress: ProgressLike = None,
+) -> Codes: ...
 @overload
 def proximity(
-    shape1: Shapes,
-    poses1: PosesLike,
-    shape2: Shapes,
-    poses2: PosesLike,
-    margin: float = 0.0,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> Any: ...
+    shape1: Shapes, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    margin: float = 0.0, *, threads: Threads = None, progress: ProgressLike = None,
+) -> int | Codes: ...
+@overload
 def contact(
-    shape1: Shapes,
-    poses1: PosesLike,
-    shape2: Shapes,
-    poses2: PosesLike,
-    prediction: float = 0.0,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape1: Shape, poses1: OnePose, shape2: Shape, poses2: OnePose,
+    prediction: float = 0.0, *, threads: Threads = None, progress: ProgressLike = None,
+) -> Contact[float]: ...
+@overload
+def contact(
+    shape1: Several, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    prediction: float = 0.0, *, threads: Threads = None, progress: ProgressLike = None,
+) -> Contact[Floats]: ...
+@overload
+def contact(
+    shape1: Shapes, poses1: PosesLike, shape2: Several, poses2: PosesLike,
+    prediction: float = 0.0, *, threads: Threads = None, progress: ProgressLike = None,
+) -> Contact[Floats]: ...
+@overload
+def contact(
+    shape1: Shapes, poses1: PosesLike, shape2: Shapes, poses2: PosesLike,
+    prediction: float = 0.0, *, threads: Threads = None, progress: ProgressLike = None,
 ) -> Contact: ...
 def contact_manifolds(
     shape1: Shapes,
@@ -242,8 +249,8 @@ def contact_manifolds(
     prediction: float = 0.0,
     max_points: int | None = None,
     *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    threads: Threads = None,
+    progress: ProgressLike = None,
 ) -> Manifolds: ...
 def nearest(
     shape1: Shapes,
@@ -252,23 +259,51 @@ def nearest(
     poses2: PosesLike,
     max_distance: float = ...,
     *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    threads: Threads = None,
+    progress: ProgressLike = None,
 ) -> Nearest: ...
+@overload
 def impact(
-    shape1: Shapes,
-    poses1: PosesLike,
-    velocity1: ArrayLike,
-    shape2: Shapes,
-    poses2: PosesLike,
-    velocity2: ArrayLike,
-    max_time: float = ...,
-    target_distance: float = 0.0,
-    *,
-    angular_velocity1: ArrayLike | None = None,
-    angular_velocity2: ArrayLike | None = None,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape1: Shape, poses1: OnePose, velocity1: OneVector, shape2: Shape, poses2: OnePose, velocity2: OneVector,
+    max_time: float = ..., target_distance: float = 0.0, *,
+    # In 2D a list of numbers is an angular velocity for each element, in 3D it is one.
+    angular_velocity1: float | None = None, angular_velocity2: float | None = None,
+    threads: Threads = None, progress: ProgressLike = None,
+) -> Impact[float, bool]: ...
+@overload
+def impact(
+    shape1: Several, poses1: PosesLike, velocity1: ArrayLike, shape2: Shapes, poses2: PosesLike, velocity2: ArrayLike,
+    max_time: float = ..., target_distance: float = 0.0, *,
+    angular_velocity1: ArrayLike | None = None, angular_velocity2: ArrayLike | None = None,
+    threads: Threads = None, progress: ProgressLike = None,
+) -> Impact[Floats, Flags]: ...
+@overload
+def impact(
+    shape1: Shapes, poses1: PosesLike, velocity1: ArrayLike, shape2: Several, poses2: PosesLike, velocity2: ArrayLike,
+    max_time: float = ..., target_distance: float = 0.0, *,
+    angular_velocity1: ArrayLike | None = None, angular_velocity2: ArrayLike | None = None,
+    threads: Threads = None, progress: ProgressLike = None,
+) -> Impact[Floats, Flags]: ...
+@overload
+def impact(
+    shape1: Shapes, poses1: PosesLike, velocity1: Vectors, shape2: Shapes, poses2: PosesLike, velocity2: ArrayLike,
+    max_time: float = ..., target_distance: float = 0.0, *,
+    angular_velocity1: ArrayLike | None = None, angular_velocity2: ArrayLike | None = None,
+    threads: Threads = None, progress: ProgressLike = None,
+) -> Impact[Floats, Flags]: ...
+@overload
+def impact(
+    shape1: Shapes, poses1: PosesLike, velocity1: ArrayLike, shape2: Shapes, poses2: PosesLike, velocity2: Vectors,
+    max_time: float = ..., target_distance: float = 0.0, *,
+    angular_velocity1: ArrayLike | None = None, angular_velocity2: ArrayLike | None = None,
+    threads: Threads = None, progress: ProgressLike = None,
+) -> Impact[Floats, Flags]: ...
+@overload
+def impact(
+    shape1: Shapes, poses1: PosesLike, velocity1: ArrayLike, shape2: Shapes, poses2: PosesLike, velocity2: ArrayLike,
+    max_time: float = ..., target_distance: float = 0.0, *,
+    angular_velocity1: ArrayLike | None = None, angular_velocity2: ArrayLike | None = None,
+    threads: Threads = None, progress: ProgressLike = None,
 ) -> Impact: ...
 def pairs_within(
     shape1: Shapes,
@@ -277,12 +312,10 @@ def pairs_within(
     poses2: PosesLike = None,
     *,
     distance: float = 0.0,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> NDArray[np.uint32]: ...
-def boxes(
-    shapes: Shapes, poses: PosesLike, *, threads: int | None = None, progress: Progress | None = None
-) -> Floats: ...
+    threads: Threads = None,
+    progress: ProgressLike = None,
+) -> Indices: ...
+def boxes(shapes: Shapes, poses: PosesLike, *, threads: Threads = None, progress: ProgressLike = None) -> Floats: ...
 def pairs_in_tile(
     shapes: Shapes,
     poses: PosesLike,
@@ -290,72 +323,95 @@ def pairs_in_tile(
     tiles: Tiles,
     tile: int,
     *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    threads: Threads = None,
+    progress: ProgressLike = None,
 ) -> NDArray[np.uint64]: ...
-def tile_cuts(
-    boxes: Floats, number: int, clearance: float, dim: int, dtype: str
-) -> tuple[NDArray[np.uint32], Floats]: ...
+def tile_cuts(boxes: Floats, number: int, clearance: float, dim: int, dtype: str) -> tuple[Indices, Floats]: ...
 def tile_bounds(tiles: Tiles) -> Floats: ...
-def tiles_meeting(tiles: Tiles, boxes: Floats) -> tuple[NDArray[np.int64], NDArray[np.uint32]]: ...
-def tile_owners(tiles: Tiles, points: ArrayLike) -> NDArray[np.uint32]: ...
+def tiles_meeting(tiles: Tiles, boxes: Floats) -> tuple[NDArray[np.int64], Indices]: ...
+def tile_owners(tiles: Tiles, points: ArrayLike) -> Indices: ...
+@overload
 def project_points(
-    shape: Shapes,
-    poses: PosesLike,
-    points: ArrayLike,
-    solid: bool = True,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape: Shape, poses: OnePose, points: OneVector,
+    solid: bool = True, *, threads: Threads = None, progress: ProgressLike = None,
+) -> Projection[bool, int]: ...
+@overload
+def project_points(
+    shape: Several, poses: PosesLike, points: ArrayLike,
+    solid: bool = True, *, threads: Threads = None, progress: ProgressLike = None,
+) -> Projection[Flags, Indices]: ...
+@overload
+def project_points(
+    shape: Shapes, poses: PosesLike, points: Vectors,
+    solid: bool = True, *, threads: Threads = None, progress: ProgressLike = None,
+) -> Projection[Flags, Indices]: ...
+@overload
+def project_points(
+    shape: Shapes, poses: PosesLike, points: ArrayLike,
+    solid: bool = True, *, threads: Threads = None, progress: ProgressLike = None,
 ) -> Projection: ...
 @overload
 def signed_distance(
-    shape: Several,
-    poses: PosesLike,
-    points: ArrayLike,
-    *,
-    surface: bool = False,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape: Shape, poses: OnePose, points: OneVector,
+    *, surface: bool = False, threads: Threads = None, progress: ProgressLike = None,
+) -> float: ...
+@overload
+def signed_distance(
+    shape: Several, poses: PosesLike, points: ArrayLike,
+    *, surface: bool = False, threads: Threads = None, progress: ProgressLike = None,
 ) -> Floats: ...
 @overload
 def signed_distance(
-    shape: Shapes,
-    poses: PosesLike,
-    points: ArrayLike,
-    *,
-    surface: bool = False,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> Any: ...
+    shape: Shapes, poses: PosesLike, points: Vectors,
+    *, surface: bool = False, threads: Threads = None, progress: ProgressLike = None,
+) -> Floats: ...
+@overload
+def signed_distance(
+    shape: Shapes, poses: PosesLike, points: ArrayLike,
+    *, surface: bool = False, threads: Threads = None, progress: ProgressLike = None,
+) -> float | Floats: ...
 @overload
 def contains(
-    shape: Several,
-    poses: PosesLike,
-    points: ArrayLike,
-    *,
-    surface: bool = False,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> NDArray[np.bool_]: ...
+    shape: Shape, poses: OnePose, points: OneVector,
+    *, surface: bool = False, threads: Threads = None, progress: ProgressLike = None,
+) -> bool: ...
 @overload
 def contains(
-    shape: Shapes,
-    poses: PosesLike,
-    points: ArrayLike,
-    *,
-    surface: bool = False,
-    threads: int | None = None,
-    progress: Progress | None = None,
-) -> Any: ...
+    shape: Several, poses: PosesLike, points: ArrayLike,
+    *, surface: bool = False, threads: Threads = None, progress: ProgressLike = None,
+) -> Flags: ...
+@overload
+def contains(
+    shape: Shapes, poses: PosesLike, points: Vectors,
+    *, surface: bool = False, threads: Threads = None, progress: ProgressLike = None,
+) -> Flags: ...
+@overload
+def contains(
+    shape: Shapes, poses: PosesLike, points: ArrayLike,
+    *, surface: bool = False, threads: Threads = None, progress: ProgressLike = None,
+) -> bool | Flags: ...
+@overload
 def cast_rays(
-    shape: Shapes,
-    poses: PosesLike,
-    origins: ArrayLike,
-    directions: ArrayLike,
-    max_time: float = ...,
-    solid: bool = True,
-    *,
-    threads: int | None = None,
-    progress: Progress | None = None,
+    shape: Shape, poses: OnePose, origins: OneVector, directions: OneVector,
+    max_time: float = ..., solid: bool = True, *, threads: Threads = None, progress: ProgressLike = None,
+) -> RayHit[float, int]: ...
+@overload
+def cast_rays(
+    shape: Several, poses: PosesLike, origins: ArrayLike, directions: ArrayLike,
+    max_time: float = ..., solid: bool = True, *, threads: Threads = None, progress: ProgressLike = None,
+) -> RayHit[Floats, Indices]: ...
+@overload
+def cast_rays(
+    shape: Shapes, poses: PosesLike, origins: Vectors, directions: ArrayLike,
+    max_time: float = ..., solid: bool = True, *, threads: Threads = None, progress: ProgressLike = None,
+) -> RayHit[Floats, Indices]: ...
+@overload
+def cast_rays(
+    shape: Shapes, poses: PosesLike, origins: ArrayLike, directions: Vectors,
+    max_time: float = ..., solid: bool = True, *, threads: Threads = None, progress: ProgressLike = None,
+) -> RayHit[Floats, Indices]: ...
+@overload
+def cast_rays(
+    shape: Shapes, poses: PosesLike, origins: ArrayLike, directions: ArrayLike,
+    max_time: float = ..., solid: bool = True, *, threads: Threads = None, progress: ProgressLike = None,
 ) -> RayHit: ...

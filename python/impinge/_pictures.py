@@ -1,4 +1,4 @@
-"""Small pictures of shapes, scenes and worlds: files, and what notebooks show."""
+"""Small pictures of shapes, scenes and worlds, for files and notebooks."""
 
 from __future__ import annotations
 
@@ -7,11 +7,17 @@ from collections.abc import Sequence
 from html import escape
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from impinge import _native
 
-# Of more objects a notebook shows no picture unless it is asked for.
+if TYPE_CHECKING:
+    from impinge._scene import Scene
+    from impinge._world import World
+
+    Drawable: TypeAlias = _native.Shape | Scene | World
+
+# For more objects than this a notebook shows no picture unless `picture` is called.
 MANY = 300
 
 
@@ -29,7 +35,7 @@ class Picture(NamedTuple):
     title: str
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes a file. ValueError if its name does not end in the format."""
+        """Writes a file. ValueError if its extension is not the format."""
         if Path(path).suffix != f".{self.format}":
             raise ValueError(f"path is {path}: the picture is {self.format}, in which the name of the file ends")
         Path(path).write_bytes(self.data)
@@ -44,7 +50,7 @@ class Picture(NamedTuple):
 
 
 class View(NamedTuple):
-    """How a picture is seen; the fields are those of `PictureView` in Rust."""
+    """The view of a picture; the fields are those of `PictureView` in Rust."""
 
     size: tuple[int, int]
     look: tuple[float, float, float]
@@ -53,7 +59,7 @@ class View(NamedTuple):
 
 
 def picture(
-    of: Any,
+    of: Drawable,
     *,
     size: Sequence[int] = (480, 360),
     look: Sequence[float] = (-0.7, -0.6, -1.0),
@@ -61,11 +67,11 @@ def picture(
 ) -> Picture:
     """A picture of a `Shape`, a `Scene` or a `World`, made without a display or a GPU.
 
-    In 2D it is SVG of the width `size[0]`, x to the right and y upwards; in 3D PNG of the size (width, height) in pixels,
-    seen along the direction `look` with `up` above, so that everything fits. A world is drawn with the contacts and
-    proximities of its last update. The same things give the same bytes.
+    In 2D it is SVG of the width `size[0]`, x to the right and y upwards. In 3D it is PNG of the size (width, height) in pixels;
+    the view is along the direction `look` with `up` upwards, and frames all objects. A world is drawn with the contacts and
+    proximities of its last update. Equal input gives equal bytes.
 
-    Errors: TypeError if `of` is something else, ValueError if `size` has other than two numbers from 1 to 8192 or `look` or
+    Errors: TypeError if `of` has another type, ValueError if `size` is not two numbers from 1 to 8192 or `look` or
     `up` are not three finite numbers.
 
     >>> import impinge
@@ -83,15 +89,15 @@ def picture(
     return Picture(format_, data, view.title)
 
 
-def html_of(of: Any) -> str:
-    """What a notebook shows: a picture and a line."""
+def html_of(of: Drawable) -> str:
+    """Returns the HTML of a notebook: a picture and a line of text."""
     caption = escape(_title(of))
-    if hasattr(of, "__len__") and len(of) > MANY:
+    if not isinstance(of, _native.Shape) and len(of) > MANY:
         return f"<p>{caption} (impinge.picture shows them)</p>"
     return f"<figure>{picture(of)._repr_html_()}<figcaption>{caption}</figcaption></figure>"
 
 
-def _title(of: Any) -> str:
+def _title(of: object) -> str:
     return repr(of).strip("<>")
 
 

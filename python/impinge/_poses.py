@@ -1,8 +1,9 @@
-"""Poses and vectors in the forms that people have them, as arrays that the library reads where they lie."""
+"""Converts poses and vectors of common forms to arrays that the library reads without a copy."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -10,24 +11,29 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation  # type: ignore[import-untyped, unused-ignore]
 
-Array = NDArray[Any]
+Array: TypeAlias = NDArray[np.float64]
 
-DType: TypeAlias = Literal["float32", "float64"] | type[np.float32] | type[np.float64] | type[float] | np.dtype[Any]
+DTypeName: TypeAlias = Literal["float32", "float64"]
+
+DType: TypeAlias = DTypeName | type[np.float32] | type[np.float64] | type[float] | np.dtype[Any]
 """The scalar of shapes and answers: its name, or the type of NumPy."""
 
 Order: TypeAlias = Literal["xyzw", "wxyz"]
 """The order of the numbers of quaternions."""
 
+Index: TypeAlias = SupportsIndex | slice | Sequence[int] | NDArray[np.integer[Any]] | NDArray[np.bool_]
+"""The type of an index of poses, as for the rows of a NumPy array."""
+
 
 class Poses:
     """Rotations and translations as matrices: `Poses.matrices` has the shape (n, D+1, D+1), or (D+1, D+1).
 
-    A pose x -> rotation x + translation takes the frame of a shape to the world. Any function that takes poses
-    also takes the matrices themselves, in C order and of the dtype of the shape without a copy.
+    A pose x -> rotation x + translation maps the local frame of a shape to the world frame. Any function that takes poses
+    also takes the matrices themselves; those in C order and of the dtype of the shape are not copied.
 
-    Errors: ValueError if a shape does not fit, a number is not finite or a quaternion is zero, with the row and the value.
+    Errors: ValueError if an array has a wrong shape, a number is not finite or a quaternion is zero, with the row and the value.
 
-    translations: (D,) or (n, D), in the length of the shapes. quaternions: (4,) or (n, 4), of any length but zero, in the
+    translations: (D,) or (n, D), in the unit of the shapes. quaternions: (4,) or (n, 4), of any length but zero, in the
     order "xyzw" (SciPy, ROS) or "wxyz" (MuJoCo, trimesh), in 3D. angles: a number or (n,) in radians, counter-clockwise, in 2D.
 
     >>> half_turn = Poses([1, 2, 3], quaternions=[0, 0, 1, 0], order="xyzw")
@@ -60,11 +66,11 @@ class Poses:
             rotations = _of_angles(_finite(_floats(angles, "angles"), "angles"))
         else:
             rotations = np.eye(places.shape[-1])
-        self.matrices = _joined(rotations, places)
+        self.matrices: Array = _joined(rotations, places)
 
     @classmethod
     def from_rotation(cls, rotation: Rotation, translations: ArrayLike) -> Poses:
-        """Of a `scipy.spatial.transform.Rotation`, one or many, and translations (3,) or (n, 3).
+        """Creates poses from a `scipy.spatial.transform.Rotation`, one or many, and translations (3,) or (n, 3).
 
         >>> from scipy.spatial.transform import Rotation
         >>> Poses.from_rotation(Rotation.from_euler("z", [[90], [180]], degrees=True), [1, 2, 3])
@@ -80,7 +86,7 @@ class Poses:
 
     @classmethod
     def from_matrices(cls, matrices: ArrayLike) -> Poses:
-        """Of matrices (D+1, D+1) or (n, D+1, D+1), of 2D or 3D. They are checked where they are used.
+        """Creates poses from matrices (D+1, D+1) or (n, D+1, D+1), in 2D or 3D. They are validated where they are used.
 
         >>> Poses.from_matrices(np.eye(3))
         <impinge.Poses (3, 3)>
@@ -94,10 +100,10 @@ class Poses:
 
     @classmethod
     def nearest_to(cls, matrices: ArrayLike, tolerance: float = 1e-3) -> Poses:
-        """Of matrices (D+1, D+1) or (n, D+1, D+1) whose digits were rounded: their rotations become the nearest ones.
+        """Creates poses from matrices (D+1, D+1) or (n, D+1, D+1) with rounded digits, by the nearest rotations.
 
-        ValueError names the first matrix that has a number farther than `tolerance` from its nearest pose, as scaled and mirrored
-        ones have.
+        ValueError names the first matrix with a number farther than `tolerance` from its nearest pose, for instance a scaled
+        or mirrored one.
 
         >>> rounded = [[0.866, -0.5, 0, 1], [0.5, 0.866, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
         >>> Poses.nearest_to(rounded).matrices[0].round(6).tolist()
@@ -106,7 +112,7 @@ class Poses:
         poses = cls.from_matrices(matrices)
         given = _finite(poses.matrices, "matrices")
         left, _, right = np.linalg.svd(given[..., :-1, :-1])
-        # Of a matrix that mirrors the nearest rotation is far, whichever is taken.
+        # For a matrix with a reflection every rotation is far.
         turned = left * np.where(np.linalg.det(left @ right) < 0, -1.0, 1.0)[..., None, None] @ right
         nearest = _joined(turned, given[..., :-1, -1])
         off = np.abs(nearest - given).max(axis=(-2, -1))
@@ -122,7 +128,7 @@ class Poses:
             raise TypeError("one pose has no length")
         return len(self.matrices)
 
-    def __getitem__(self, index: Any) -> Poses:
+    def __getitem__(self, index: Index) -> Poses:
         if self.matrices.ndim == 2:
             raise TypeError("one pose has no elements")
         return Poses.from_matrices(self.matrices[index])
@@ -131,8 +137,8 @@ class Poses:
         return f"<impinge.Poses {self.matrices.shape}>"
 
 
-def dtype_name(given: Any) -> Literal["float32", "float64"]:
-    """The name of a scalar. ValueError for what is none that the library works in."""
+def dtype_name(given: Any) -> DTypeName:
+    """Returns the name of a scalar. ValueError for one that the library does not support."""
     try:
         name = None if given is None else np.dtype(given).name
     except TypeError:
@@ -159,7 +165,7 @@ def _of_quaternions(quaternions: Array, order: Order) -> Array:
     _finite(quaternions, "quaternions")
     if quaternions.ndim not in (1, 2) or quaternions.shape[-1] != 4:
         raise ValueError(f"quaternions has the shape {quaternions.shape}, where (4,) or (n, 4) is needed")
-    # The largest component is brought to 1 first: squares of huge and tiny ones do not overflow or vanish.
+    # Scaled to a largest component of 1 first, so that squares do not overflow or underflow.
     largest = np.abs(quaternions).max(axis=-1, keepdims=True)
     if not (largest > 0).all():
         row = int(np.argmin(largest.ravel()))
@@ -185,7 +191,7 @@ def _of_angles(angles: Array) -> Array:
 
 
 def _joined(rotations: Array, translations: Array) -> Array:
-    """Homogeneous matrices; one rotation or translation stands for all."""
+    """Returns homogeneous matrices; a single rotation or translation is used for all."""
     many = {len(rotations)} if rotations.ndim == 3 else set()
     many |= {len(translations)} if translations.ndim == 2 else set()
     if len(many) > 1:
@@ -198,8 +204,9 @@ def _joined(rotations: Array, translations: Array) -> Array:
     return matrices
 
 
-def numbers(given: Any, dtype: DTypeLike, name: str, what: str) -> Array:
-    """An argument as an array of this type, aligned and in C order. TypeError for complex numbers, texts and ragged lists."""
+def numbers(given: object, dtype: DTypeLike, name: str, what: str) -> NDArray[Any]:
+    """Converts an argument to an array of this type, aligned and in C order. TypeError for complex numbers, texts and ragged
+    lists."""
     try:
         array = np.asarray(given)
         if array.dtype.kind in "biufO":
@@ -209,8 +216,8 @@ def numbers(given: Any, dtype: DTypeLike, name: str, what: str) -> Array:
     raise TypeError(f"{name} is no array of {what}: {array.dtype}")
 
 
-def matrices(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
-    """An argument as an array (dim+1, dim+1) or (n, dim+1, dim+1) in C order."""
+def matrices(given: object, dim: int, dtype: DTypeLike, name: str) -> NDArray[Any]:
+    """Converts an argument to an array (dim+1, dim+1) or (n, dim+1, dim+1) in C order."""
     if isinstance(given, Poses):
         given = given.matrices
     array = numbers(given, dtype, name, "matrices, Poses or None")
@@ -220,16 +227,16 @@ def matrices(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
     return array
 
 
-def vectors(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
-    """An argument as an array (dim,) or (n, dim) in C order."""
+def vectors(given: object, dim: int, dtype: DTypeLike, name: str) -> NDArray[Any]:
+    """Converts an argument to an array (dim,) or (n, dim) in C order."""
     array = numbers(given, dtype, name, "vectors")
     if array.ndim not in (1, 2) or array.shape[-1] != dim:
         raise ValueError(f"{name} has the shape {array.shape}, where ({dim},) or (n, {dim}) is needed in {dim}D")
     return array
 
 
-def angular_velocities(given: Any, dim: int, dtype: DTypeLike, name: str) -> tuple[Array, bool]:
-    """An argument as rows of one number in 2D, of three in 3D, and whether it was one row alone."""
+def angular_velocities(given: object, dim: int, dtype: DTypeLike, name: str) -> tuple[NDArray[Any], bool]:
+    """Converts an argument to rows of one number in 2D, of three in 3D; also returns whether it was a single row."""
     need = "a number or (n,)" if dim == 2 else "(3,) or (n, 3)"
     array = numbers(given, dtype, name, "angular velocities")
     is_lone = array.ndim == dim - 2

@@ -20,10 +20,10 @@ NO_PAGE = (
 
 
 class Recording:
-    """What a world does between `World.record` and `stop`: every change and update.
+    """A recording of every change and update of a world between `World.record` and `stop`.
 
     A `with` block stops it at its end. `save` writes one HTML file that replays the recording in any browser, without a
-    network, or the recording itself as `.implog`. In a notebook it is shown in place, `height` pixels high.
+    network, or the recording itself as `.implog`. A notebook shows it in place, `height` pixels high.
 
     >>> import impinge
     >>> world = impinge.World()
@@ -45,26 +45,26 @@ class Recording:
         self._bytes = b""
 
     def stop(self) -> None:
-        """Ends the recording; the world goes on without it. Once more does nothing."""
+        """Ends the recording; the world can still be used. A second call does nothing."""
         if self._world is not None:
             world, self._world = self._world, None
             self._bytes = world._stop()
 
     def to_bytes(self) -> bytes:
-        """The recording, as the command `impinge` and the crate `impinge-record` read it. ValueError before `stop`."""
+        """Returns the recording in the format of the command `impinge` and the crate `impinge-record`. ValueError before `stop`."""
         if self._world is not None:
             raise ValueError("the recording has not stopped: leave its `with` block, or call stop()")
         return self._bytes
 
     def to_html(self) -> str:
-        """One HTML page. RuntimeError if this build of the package lacks the page, ValueError before `stop`."""
+        """Returns an HTML page. RuntimeError if the package was built without the page, ValueError before `stop`."""
         page = _native.recording_page(self.to_bytes(), self.title)
         if page is None:
             raise RuntimeError(NO_PAGE)
         return page
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes a file, whose name ends in `.html` (see `to_html`) or `.implog` (see `to_bytes`)."""
+        """Writes a file with the extension `.html` (see `to_html`) or `.implog` (see `to_bytes`)."""
         target = Path(path)
         if target.suffix == ".html":
             target.write_text(self.to_html(), encoding="utf-8")

@@ -1,4 +1,7 @@
-"""What the functions return: columns of arrays, or scalars where the question was about one pair."""
+"""Results of the functions: columns of arrays, or scalars for a single pair.
+
+`_results.pyi` has the types for type checkers, with parameters that tell arrays from scalars.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
+Flags: TypeAlias = NDArray[np.bool_]
+Indices: TypeAlias = NDArray[np.uint32]
 
 
 class Proximity(IntEnum):
-    """How two shapes lie to each other: the numbers that `proximity` returns."""
+    """The proximity of two shapes: the numbers that `proximity` returns."""
 
     INTERSECTING = 0
     WITHIN_MARGIN = 1
@@ -20,45 +25,45 @@ class Proximity(IntEnum):
 
 
 class ClosestPoints(NamedTuple):
-    """The nearest points of two shapes, in the world frame; (n,) and (n, D), or a float and (D,)."""
+    """The closest points of two shapes, in the world frame; (n,) and (n, D), or a float and (D,)."""
 
-    distance: Any
-    point1: Any
-    point2: Any
+    distance: float | Floats
+    point1: Floats
+    point2: Floats
 
 
 class Witness(NamedTuple):
     """The nearest or deepest points of two shapes, and the parts of composites they lie on: (n,) and (n, D), or scalars."""
 
-    distance: Any
-    point1: Any
-    point2: Any
-    normal: Any
-    part1: Any
-    part2: Any
+    distance: float | Floats
+    point1: Floats
+    point2: Floats
+    normal: Floats
+    part1: int | Indices
+    part2: int | Indices
 
 
 class Contact(NamedTuple):
-    """Where two shapes touch: depth (n,), positive where they overlap, normal and points (n, D), or scalars."""
+    """The contact of two shapes: depth (n,), positive where they overlap, normal and points (n, D), or scalars."""
 
-    depth: Any
-    normal: Any
-    point1: Any
-    point2: Any
+    depth: float | Floats
+    normal: Floats
+    point1: Floats
+    point2: Floats
 
 
 class Impact(NamedTuple):
-    """When two moving shapes meet, and where: (n,) and (n, D), or scalars."""
+    """The impact of two moving shapes: time (n,), normal and points (n, D), or scalars."""
 
-    time: Any
-    normal: Any
-    point1: Any
-    point2: Any
-    is_reached: Any
+    time: float | Floats
+    normal: Floats
+    point1: Floats
+    point2: Floats
+    is_reached: bool | Flags
 
 
 class Nearest(NamedTuple):
-    """The nearest pair of a batch; -1 if none is near enough."""
+    """The nearest pair of a batch; -1 if none is within the limit."""
 
     pair: int
     distance: float
@@ -72,9 +77,9 @@ class Manifolds(NamedTuple):
     normal: Floats
     point1: Floats
     point2: Floats
-    manifold: NDArray[np.uint32]
-    part1: NDArray[np.uint32]
-    part2: NDArray[np.uint32]
+    manifold: Indices
+    part1: Indices
+    part2: Indices
 
     def of(self, pair: int) -> Manifolds:
         """The points of one pair.
@@ -102,16 +107,16 @@ class Manifolds(NamedTuple):
 
 
 class Projection(NamedTuple):
-    """The points of shapes that are nearest to given ones: (n, D), (n,) and (n,), or scalars."""
+    """The points of shapes nearest to given points: (n, D), (n,) and (n,), or scalars."""
 
-    point: Any
-    is_inside: Any
-    part: Any
+    point: Floats
+    is_inside: bool | Flags
+    part: int | Indices
 
 
 class RayHit(NamedTuple):
-    """Where rays meet shapes, (n,), (n, D) and (n,); the time is infinite without a hit."""
+    """The first hits of rays: (n,), (n, D) and (n,); the time is infinite without a hit."""
 
-    time: Any
-    normal: Any
-    part: Any
+    time: float | Floats
+    normal: Floats
+    part: int | Indices

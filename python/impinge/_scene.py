@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import hashlib
-from typing import TYPE_CHECKING, Any
-
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from impinge import _native
 from impinge._native import Shape
 from impinge._pictures import View, html_of
-from impinge._poses import DType, dtype_name
+from impinge._poses import DType, DTypeName, dtype_name
+from impinge._results import Floats
 
 if TYPE_CHECKING:
-    from impinge._native import Shapes
+    from impinge._native import PosesLike, Shapes
 
 
 class Scene:
-    """Shapes at poses that do not change: it compares, hashes and pickles by its bytes.
+    """Immutable shapes at poses, which compare, hash and pickle by their bytes.
 
-    shapes, poses: as of `impinge.distance`; at least one object. ValueError names the row of a pose that is none.
+    shapes, poses: as of `impinge.distance`; at least one object. ValueError names the row of an invalid pose.
 
-    The bytes are a recording of the calls that add the objects (the format of `impinge-record`): versioned, checksummed, the
-    same on every machine. Poses are kept as unit quaternions: `poses` has their matrices, which may differ in the last digits
-    from those given.
+    The bytes are a recording of the calls that add the objects (the format of `impinge-record`): versioned, with a checksum,
+    equal on every machine. Poses are stored as unit quaternions: `poses` has their matrices, which may differ in the last
+    digits from those given.
 
     >>> import impinge, pickle
     >>> scene = impinge.Scene([impinge.Ball(1), impinge.Cuboid([1, 2, 3])], impinge.Poses([[0, 0, 0], [5, 0, 0]]))
@@ -33,17 +32,18 @@ class Scene:
     [0.5, 0.5]
     """
 
-    def __init__(self, shapes: Shapes, poses: Any) -> None:
+    def __init__(self, shapes: Shapes, poses: PosesLike) -> None:
         self._take(_native.scene_bytes(shapes, poses))
 
     def _take(self, data: bytes) -> None:
-        self._shapes, self._poses, self.dim, self.dtype = _native.scene_of_bytes(data)
+        self._shapes, self._poses, self.dim, dtype = _native.scene_of_bytes(data)
+        self.dtype: DTypeName = dtype
         self._poses.flags.writeable = False
         self._bytes = data
 
     @classmethod
     def from_bytes(cls, data: bytes, *, dim: int | None = None, dtype: DType | None = None) -> Scene:
-        """The scene of `to_bytes`. ValueError names the offset of what is damaged, or another dim or dtype than is asked for.
+        """Restores the scene of `to_bytes`. ValueError names the offset of damage, or a dim or dtype other than the requested one.
 
         >>> import impinge
         >>> data = impinge.Scene(impinge.Ball(1, dim=2), None).to_bytes()
@@ -64,7 +64,7 @@ class Scene:
 
     @property
     def checksum(self) -> str:
-        """SHA-256 of the bytes, in hexadecimal digits: a name for caches."""
+        """SHA-256 of the bytes, in hexadecimal digits, for instance as a cache key."""
         return hashlib.sha256(self._bytes).hexdigest()
 
     @property
@@ -73,7 +73,7 @@ class Scene:
         return list(self._shapes)
 
     @property
-    def poses(self) -> NDArray[Any]:
+    def poses(self) -> Floats:
         """The pose of each object: (n, D+1, D+1), read-only."""
         return self._poses
 
@@ -88,7 +88,7 @@ class Scene:
     def __hash__(self) -> int:
         return hash(self._bytes)
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         return (Scene.from_bytes, (self._bytes,))
 
     def _picture(self, view: View) -> tuple[str, bytes]:

@@ -1,14 +1,15 @@
 """The shapes, made from numbers and arrays.
 
-All lie around the origin of their own frame; capsules, cylinders and cones along y. `dtype` is "float64" or "float32",
-or NumPy's type: the scalar in which the library works with the shape. Two shapes are equal, and hash alike, if they are of one
-kind and made of the same numbers. `vertices` and `faces` are read back. Refused arguments raise ValueError with the value.
+All are centred at the origin of their local frame; capsules, cylinders and cones are along y. `dtype` is "float64" or "float32",
+or NumPy's type: the scalar in which the library computes with the shape. Two shapes are equal, with equal hashes, if they have
+the same kind and were made of the same numbers. `vertices` and `faces` return their geometry. Invalid arguments raise ValueError
+with the value.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,9 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 from impinge._native import Shape
 from impinge._poses import DType, dtype_name, numbers
 
+if TYPE_CHECKING:
+    from impinge._native import PosesLike
+
 
 class Picked:
-    """Shapes for the elements of a batch by number: element i has `shapes[picks[i]]`.
+    """Shapes for the elements of a batch by index: element i has `shapes[picks[i]]`.
 
     >>> import impinge
     >>> kinds = impinge.Picked([impinge.Ball(1), impinge.Ball(2)], [0, 1, 1])
@@ -47,10 +51,10 @@ def _make(
     dim: int,
     dtype: DType,
     values: ArrayLike = (),
-    points: Any = None,
-    parts: Any = None,
+    points: NDArray[np.float64] | None = None,
+    parts: NDArray[np.uint32] | None = None,
     children: Sequence[Shape] = (),
-    poses: Any = None,
+    poses: PosesLike = None,
     one_sided: bool = False,
     keep_internal_edges: bool = False,
     solid: bool = False,
@@ -124,7 +128,7 @@ def Ball(radius: float, *, dim: int = 3, dtype: DType = "float64") -> Shape:
 
 
 def Cuboid(half_extents: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """A box, or a rectangle in 2D, of half the side lengths (D,), none of which is negative.
+    """A box, or a rectangle in 2D, with half extents (D,), none of which is negative.
 
     >>> Cuboid([1, 2]), Cuboid([1, 2, 3], dtype="float32")
     (<impinge.Cuboid 2D float64>, <impinge.Cuboid 3D float32>)
@@ -134,7 +138,7 @@ def Cuboid(half_extents: ArrayLike, *, dtype: DType = "float64") -> Shape:
 
 
 def Ellipsoid(half_axes: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """A stretched ball, or an ellipse in 2D, of half the lengths (D,) along its axes.
+    """An ellipsoid, or an ellipse in 2D, with half axes (D,).
 
     >>> Ellipsoid([3, 2, 1])
     <impinge.Ellipsoid 3D float64>
@@ -144,7 +148,7 @@ def Ellipsoid(half_axes: ArrayLike, *, dtype: DType = "float64") -> Shape:
 
 
 def HalfSpace(normal: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """All points behind a plane (a line in 2D) through the origin; the normal (D,) points out and is normalized.
+    """All points behind a plane (in 2D a line) through the origin; the normal (D,) points outwards and is normalized.
 
     >>> HalfSpace([0, 1, 0])
     <impinge.HalfSpace 3D float64>
@@ -154,7 +158,7 @@ def HalfSpace(normal: ArrayLike, *, dtype: DType = "float64") -> Shape:
     if not (np.isfinite(length) and length > 0):
         raise ValueError(f"normal is {direction.tolist()}, which has no direction")
     unit = (direction / length).astype(dtype)
-    # In the scalar of the shape it must be a unit vector again.
+    # It must be a unit vector after rounding to the scalar of the shape.
     unit = (unit / np.linalg.norm(unit)).astype(np.float64)
     return _make("HalfSpace", len(direction), dtype, unit)
 
@@ -184,7 +188,7 @@ def TaperedCapsule(
     dim: int = 3,
     dtype: DType = "float64",
 ) -> Shape:
-    """The hull of two balls with these radii (2,) around the lower and the upper end, or the two ends (2, D).
+    """The hull of two balls with radii (2,) around the lower and the upper end, or around two given ends (2, D).
 
     >>> TaperedCapsule(1.0, [0.5, 0.25])
     <impinge.TaperedCapsule 3D float64>
@@ -228,7 +232,7 @@ def Cone(half_height: float, radius: float, *, dtype: DType = "float64") -> Shap
 
 
 def Segment(ends: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """A straight line between two points (2, D).
+    """A segment between two points (2, D).
 
     >>> Segment([[0, 0], [1, 0]])
     <impinge.Segment 2D float64>
@@ -248,7 +252,7 @@ def Triangle(corners: ArrayLike, *, dtype: DType = "float64") -> Shape:
 
 
 def Tetrahedron(corners: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """A solid of four points (4, 3).
+    """The hull of four points (4, 3).
 
     >>> Tetrahedron([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
     <impinge.Tetrahedron 3D float64>
@@ -290,14 +294,14 @@ def TriMesh(
     keep_internal_edges: bool = False,
     dtype: DType = "float64",
 ) -> Shape:
-    """A surface of triangles, filled in 2D: vertices (n, D) and the numbers of their corners (m, 3).
+    """A surface of triangles, filled in 2D: vertices (n, D) and vertex indices of the triangles (m, 3).
 
-    The corners are counter-clockwise from outside. ValueError names the row of a triangle or vertex that is none.
+    The corners are counter-clockwise from outside. ValueError names the row of an invalid triangle or vertex.
 
-    one_sided: nothing touches it from behind. keep_internal_edges: contacts treat each triangle on its own.
+    one_sided: there are no contacts from behind. keep_internal_edges: contacts treat each triangle separately.
 
-    A point is inside of a closed mesh for `contains`, `signed_distance` and `World.containing`; everything else sees a surface,
-    unless it is solid: then what is inside of it is in contact, too, and is pushed out of it. ValueError, in 3D, names the edge
+    A closed mesh has an inside for `contains`, `signed_distance` and `World.containing`; all other queries treat it as a surface,
+    unless it is solid: then shapes inside it are in contact, too, and are pushed out. ValueError, in 3D, names the edge
     at which a solid is not closed, or a triangle whose front is inside.
 
     >>> import impinge
@@ -332,10 +336,10 @@ def Polyline(
     keep_internal_edges: bool = False,
     dtype: DType = "float64",
 ) -> Shape:
-    """A line of segments: vertices (n, D), and the numbers of the ends (m, 2); without, one vertex after the other.
+    """A chain of segments: vertices (n, D), and vertex indices of the segments (m, 2); without, consecutive vertices.
 
-    In 2D a point is inside of a closed line, as of a closed mesh in 3D; with solid, which asks for a line that is closed and
-    runs counter-clockwise, so is what else lies in it.
+    In 2D a closed polyline has an inside for points, as a closed mesh in 3D. With solid, which requires a polyline that is closed
+    and counter-clockwise, it has one in all queries.
 
     >>> Polyline([[0, 0], [1, 0], [1, 1]])
     <impinge.Polyline 2D float64>
@@ -368,9 +372,9 @@ def HeightField(
 ) -> Shape:
     """Heights along y over a grid around the origin: (rows, columns) in 3D, rows along z; (n,) in 2D.
 
-    scale: (D,), the sizes of the whole grid along x (and z), and the factor of heights along y. holes: bools for cells that
-    are missing, (n-1,) in 2D and (rows-1, columns-1) in 3D, or (rows-1, columns-1, 2) for the triangles of cells. backward: a
-    bool, or one for each cell in 3D, whose two triangles then meet at the other diagonal. one_sided: nothing touches it from
+    scale: (D,), the extents of the whole grid along x (and z), and the factor of heights along y. holes: bools for missing
+    cells, (n-1,) in 2D and (rows-1, columns-1) in 3D, or (rows-1, columns-1, 2) for the triangles of cells. backward: a
+    bool, or one for each cell in 3D, whether its two triangles share the other diagonal. one_sided: there are no contacts from
     below.
 
     >>> import impinge
@@ -398,7 +402,7 @@ def HeightField(
 
 
 def _marks(cells: tuple[int, ...], holes: ArrayLike | None, backward: ArrayLike) -> NDArray[np.uint32]:
-    """What is special about cells: bits 0 and 1 for missing triangles, bit 2 for the other diagonal."""
+    """Returns the flags of cells: bits 0 and 1 for missing triangles, bit 2 for the other diagonal."""
     marks = np.zeros(cells, dtype=np.uint32)
     if holes is not None:
         missing = _bools(holes, "holes")
@@ -422,10 +426,10 @@ def _bools(given: ArrayLike, name: str) -> NDArray[np.bool_]:
     return array
 
 
-def Compound(shapes: Sequence[Shape], poses: Any) -> Shape:
-    """Shapes that move as one, each at its pose in the frame of the compound: as many poses (n, D+1, D+1) as shapes.
+def Compound(shapes: Sequence[Shape], poses: PosesLike) -> Shape:
+    """A compound of shapes, each at its pose in the frame of the compound: as many poses (n, D+1, D+1) as shapes.
 
-    The shapes may be compounds and other composites. ValueError if there is none, or a half-space among them.
+    The shapes may be compounds and other composites. ValueError if there is no shape, or a half-space among them.
 
     >>> import impinge
     >>> Compound([Ball(1), Cuboid([1, 1, 1])], impinge.Poses([[0, 0, 0], [3, 0, 0]]))

@@ -1,4 +1,4 @@
-"""Tiles: space in parts with about as many objects in each, so that many processes share the pairs of a large scene."""
+"""Tiles: a division of space into parts with about equally many objects, so that processes share the pairs of a large scene."""
 
 from __future__ import annotations
 
@@ -8,21 +8,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge import _native
-from impinge._poses import DType, dtype_name
+from impinge._poses import DType, DTypeName, dtype_name
+from impinge._results import Floats, Indices
 
 
 class TileRows(NamedTuple):
     """Lists of tiles: those of object i are `starts[i]` to `starts[i + 1]`."""
 
     starts: NDArray[np.int64]
-    tile: NDArray[np.uint32]
+    tile: Indices
 
 
 class Tiles:
-    """A division of space into tiles, and the clearance up to which pairs are wanted: `tiles` makes it.
+    """A division of space into tiles, with the clearance of the pairs; `tiles` creates it.
 
-    It is made of plain numbers, from which an equal one is made elsewhere; it pickles. axes: (t - 1,) uint32, the axis that
-    each cut is across. cuts: (t - 1,), where. Each comes before the cuts of what it cuts, those below it first.
+    It consists of plain numbers, from which an equal one can be created elsewhere; it pickles. axes: (t - 1,) uint32, the axis
+    perpendicular to each cut. cuts: (t - 1,), its position. Each cut comes before the cuts of its parts, those of the lower
+    part first.
 
     >>> import impinge
     >>> tiles = impinge.Tiles([0, 1], [2.5, 0.0], dim=2)
@@ -33,24 +35,25 @@ class Tiles:
     def __init__(
         self, axes: ArrayLike, cuts: ArrayLike, *, clearance: float = 0.0, dim: int = 3, dtype: DType = "float64"
     ) -> None:
-        self.axes: NDArray[np.uint32] = _column(axes, np.uint32, "axes")
-        self.clearance, self.dim, self.dtype = float(clearance), dim, dtype_name(dtype)
-        self.cuts: NDArray[Any] = _column(cuts, self.dtype, "cuts")
-        # The library refuses what are no tiles.
+        self.axes: Indices = _column(axes, np.uint32, "axes")
+        self.clearance, self.dim = float(clearance), dim
+        self.dtype: DTypeName = dtype_name(dtype)
+        self.cuts: Floats = _column(cuts, self.dtype, "cuts")
+        # The library rejects invalid tiles.
         self._bounds = _native.tile_bounds(self)
 
     def __len__(self) -> int:
         return len(self._bounds)
 
     @property
-    def bounds(self) -> NDArray[Any]:
-        """The lower and the upper corner of each tile, infinite outwards: (t, 2, D)."""
+    def bounds(self) -> Floats:
+        """The lower and the upper corner of each tile, infinite at the outside: (t, 2, D)."""
         return self._bounds.copy()
 
     def meeting(self, boxes: ArrayLike) -> TileRows:
-        """The tiles to which each object must be given: those that its box, grown by half the clearance, meets.
+        """Returns the tiles of each object: those that its box, enlarged by half the clearance, overlaps.
 
-        boxes: (n, 2, D) of `impinge.boxes`. What has a box of NaN has no tile; a huge object may be in all of them.
+        boxes: (n, 2, D) of `impinge.boxes`. An object with a box of NaN has no tile; a huge object may be in all of them.
 
         >>> import impinge
         >>> impinge.Tiles([0], [2.5]).meeting(impinge.boxes(impinge.Ball(1), impinge.Poses([[0, 0, 0], [2, 0, 0]])))
@@ -58,8 +61,8 @@ class Tiles:
         """
         return TileRows(*_native.tiles_meeting(self, _boxes(boxes, self.dim, self.dtype)))
 
-    def owner(self, points: ArrayLike) -> NDArray[np.uint32]:
-        """The tile that each point (n, D) lies in; on a cut it is the one above."""
+    def owner(self, points: ArrayLike) -> Indices:
+        """Returns the tile that contains each point (n, D); on a cut the upper one."""
         return _native.tile_owners(self, points)
 
     def __eq__(self, other: object) -> bool:
@@ -74,8 +77,8 @@ class Tiles:
     def __hash__(self) -> int:
         return hash((self.dim, self.dtype, self.clearance, self.cuts.tobytes()))
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        # As plain numbers: arrays that a network brings need not be aligned in memory.
+    def __reduce__(self) -> tuple[object, ...]:
+        # As plain numbers: arrays from a network need not be aligned in memory.
         return (_read, (self.axes.tolist(), self.cuts.tolist(), self.clearance, self.dim, self.dtype))
 
     def __repr__(self) -> str:
@@ -87,11 +90,11 @@ def _read(axes: list[int], cuts: list[float], clearance: float, dim: int, dtype:
 
 
 def tiles(boxes: ArrayLike, number: int, *, clearance: float = 0.0) -> Tiles:
-    """Cuts space into so many tiles with about as many objects in each.
+    """Cuts space into tiles with about equally many objects in each.
 
     boxes: (n, 2, D) of `impinge.boxes`, of all objects or of a sample of some hundred for each tile; of float32 for shapes of
-    float32. clearance: pairs are wanted that are at most so far apart. The tiles follow from the arguments alone, and the
-    pairs do not depend on them: a poor sample costs time only. ValueError names a row that is no box.
+    float32. clearance: the largest distance of pairs. The tiles follow from the arguments alone, and the
+    pairs do not depend on them: a poor sample only costs time. ValueError names the row of an invalid box.
 
     >>> import impinge, numpy as np
     >>> poses = impinge.Poses(np.random.default_rng(1).normal(size=(1000, 3)) ** 3)
@@ -107,7 +110,7 @@ def tiles(boxes: ArrayLike, number: int, *, clearance: float = 0.0) -> Tiles:
     return Tiles(axes, cuts, clearance=clearance, dim=dim, dtype=dtype)
 
 
-def _boxes(given: ArrayLike, dim: int, dtype: DType) -> NDArray[Any]:
+def _boxes(given: ArrayLike, dim: int, dtype: DType) -> Floats:
     array = np.require(given, dtype=dtype, requirements=["C", "A"])
     if array.ndim != 3 or array.shape[1:] != (2, dim):
         raise ValueError(f"boxes has the shape {array.shape}, where (n, 2, {dim}) is needed in {dim}D")
@@ -122,7 +125,7 @@ def _column(given: ArrayLike, dtype: Any, name: str) -> NDArray[Any]:
 
 
 def ids(given: ArrayLike) -> NDArray[np.uint64]:
-    """An argument with numbers of objects, as an array (n,)."""
+    """Converts an argument with numbers of objects to an array (n,)."""
     array = np.asarray(given)
     if array.size and not np.issubdtype(array.dtype, np.integer):
         raise ValueError(f"ids is {array.dtype}, where integers are needed")

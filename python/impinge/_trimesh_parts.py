@@ -1,15 +1,14 @@
-"""What the collision manager of `impinge.trimesh` gives and keeps: contacts, distances, and meshes as shapes."""
+"""Parts of the collision manager of `impinge.trimesh`: contacts, distances, and meshes as shapes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge._native import Shape, contact_manifolds, project_points, witness
-from impinge._results import Witness
+from impinge._results import Floats, Witness
 from impinge._shapes import ConvexHull, TriMesh
 
 if TYPE_CHECKING:
@@ -17,20 +16,28 @@ if TYPE_CHECKING:
 
 Matrix = NDArray[np.float64]
 
-# Under this key a mesh of trimesh keeps its geometry, until its vertices or faces change.
+# The key under which a mesh of trimesh caches its geometry, until its vertices or faces change.
 KEY = "impinge_geometry"
 
-# Under this key it keeps it as a body.
+# The key under which it caches its geometry as a solid body.
 SOLID_KEY = "impinge_solid_geometry"
 
-# By so much a linear map may differ from a rotation that stands for it.
+# The largest difference of a linear map from the rotation that replaces it.
 ROUNDING = 1e-6
+
+
+class ContactRow(TypedDict):
+    """A contact point as the library returns it."""
+
+    normal: Floats
+    point: Floats
+    depth: float
 
 
 class ContactData:
     """A contact point of two meshes."""
 
-    def __init__(self, names: tuple[str, str], faces: tuple[int, int], row: Mapping[str, Any]) -> None:
+    def __init__(self, names: tuple[str, str], faces: tuple[int, int], row: ContactRow) -> None:
         self.names = set(names)
         self._faces = dict(zip(names, faces, strict=True))
         self._normal, self._point, self._depth = row["normal"], row["point"], row["depth"]
@@ -38,16 +45,16 @@ class ContactData:
     @property
     def normal(self) -> NDArray[np.float64]:
         """The unit normal, from the first mesh to the second."""
-        return np.asarray(self._normal)
+        return np.asarray(self._normal, np.float64)
 
     @property
     def point(self) -> NDArray[np.float64]:
-        """The point in the world, in the middle of the two surfaces."""
-        return np.asarray(self._point)
+        """The point in the world frame, in the middle between the two surfaces."""
+        return np.asarray(self._point, np.float64)
 
     @property
     def depth(self) -> float:
-        """How deep the meshes overlap there."""
+        """The penetration depth there."""
         return float(self._depth)
 
     def index(self, name: str) -> int:
@@ -56,7 +63,7 @@ class ContactData:
 
 
 class DistanceData:
-    """The nearest points of two meshes."""
+    """The closest points of two meshes."""
 
     def __init__(self, names: tuple[str, str], faces: tuple[int, int], found: Witness) -> None:
         self.names = set(names)
@@ -66,7 +73,7 @@ class DistanceData:
 
     @property
     def distance(self) -> float:
-        """How far the meshes are apart; negative where they overlap."""
+        """The distance of the meshes; negative where they overlap."""
         return self._distance
 
     def index(self, name: str) -> int:
@@ -74,14 +81,14 @@ class DistanceData:
         return self._faces[name]
 
     def point(self, name: str) -> NDArray[np.float64]:
-        """The point on this mesh, in the world."""
-        return np.asarray(self._points[name])
+        """The point on this mesh, in the world frame."""
+        return np.asarray(self._points[name], np.float64)
 
 
 class Geometry:
-    """A mesh as a shape: the solid of a convex one; the surface of others, or the body that it bounds.
+    """A mesh as a shape: a solid for a convex mesh; a surface for others, or the body that it bounds.
 
-    Flat meshes are convex and have no volume: they are surfaces. ValueError of a mesh that bounds no body, if that is wanted.
+    Flat meshes are convex and have no volume: they are surfaces. ValueError for a mesh that bounds no body, if one is required.
     """
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, is_convex: bool, is_body: bool = False) -> None:
@@ -96,7 +103,7 @@ class Geometry:
 
     @classmethod
     def of(cls, mesh: trimesh.Trimesh, is_body: bool = False) -> Geometry:
-        """Of a mesh, which keeps it: it is made once for each state of the mesh."""
+        """Returns the geometry of a mesh, which caches it: it is created once for each state of the mesh."""
         cache, key = getattr(mesh, "_cache", None), SOLID_KEY if is_body else KEY
         found = None if cache is None else cache[key]
         if isinstance(found, cls):
@@ -108,13 +115,13 @@ class Geometry:
 
     @property
     def surface(self) -> Shape:
-        """The triangles, which name faces."""
+        """The triangles, whose indices are those of faces."""
         if self._surface is None:
             self._surface = TriMesh(self.vertices, self.faces, solid=self.is_body and not self.is_solid)
         return self._surface
 
     def stretched(self, stretch: Matrix) -> Geometry:
-        """The same mesh after a linear map (3, 3). Triangles of one that mirrors are turned over, so that they face outwards."""
+        """Returns the mesh after a linear map (3, 3). A map with a reflection reverses triangles, so that they face outwards."""
         faces = self.faces if np.linalg.det(stretch) > 0 else self.faces[:, ::-1]
         return Geometry(self.vertices @ stretch.T, faces, self.is_solid, self.is_body)
 
@@ -126,8 +133,8 @@ class Placed(NamedTuple):
     geometry: Geometry
     transform: Matrix
 
-    def faces(self, parts: Any, points: Any) -> NDArray[np.int64]:
-        """The faces that hold points: parts of the surface, of a solid the triangles that are nearest."""
+    def faces(self, parts: ArrayLike, points: ArrayLike) -> NDArray[np.int64]:
+        """Returns the faces of points: parts of the surface, for a solid the nearest triangles."""
         if not self.geometry.is_solid:
             return np.asarray(parts, dtype=np.int64)
         found = project_points(self.geometry.surface, self.transform, points, False)
@@ -135,7 +142,7 @@ class Placed(NamedTuple):
 
 
 def matrix_of(transform: ArrayLike | None) -> Matrix:
-    """A copy of a transform."""
+    """Returns a copy of a transform."""
     matrix = np.eye(4) if transform is None else np.array(transform, dtype=np.float64, order="C")
     if matrix.shape != (4, 4):
         raise ValueError(f"transform has the shape {matrix.shape}, where (4, 4) is needed")
@@ -143,9 +150,9 @@ def matrix_of(transform: ArrayLike | None) -> Matrix:
 
 
 def rotation_and_stretch(transform: Matrix) -> tuple[Matrix, Matrix | None]:
-    """A transform without scale, and the linear map (3, 3) that is to be applied before; None if there is none.
+    """Returns a transform without scale, and the linear map (3, 3) to apply before it; None if there is none.
 
-    ValueError if it flattens, is not finite or has another last row than 0, 0, 0, 1.
+    ValueError if it is singular, not finite or has another last row than 0, 0, 0, 1.
     """
     linear = transform[:3, :3]
     if not np.isfinite(transform).all() or not np.array_equal(transform[3], [0, 0, 0, 1]):
@@ -155,7 +162,7 @@ def rotation_and_stretch(transform: Matrix) -> tuple[Matrix, Matrix | None]:
         raise ValueError(f"the transform flattens: its scales are {scales.tolist()}")
     if np.abs(scales - 1).max() <= ROUNDING and np.linalg.det(linear) > 0:
         return transform, None
-    # The polar decomposition; a map that mirrors does so before it turns.
+    # The polar decomposition; a reflection is applied before the rotation.
     rotation = left @ right
     if np.linalg.det(rotation) < 0:
         rotation = -rotation
@@ -165,7 +172,7 @@ def rotation_and_stretch(transform: Matrix) -> tuple[Matrix, Matrix | None]:
 
 
 def contacts(pairs: list[tuple[Placed, Placed]]) -> list[ContactData]:
-    """All contact points of pairs of meshes."""
+    """Returns all contact points of pairs of meshes."""
     if not pairs:
         return []
     ones, others = zip(*pairs, strict=True)
@@ -179,7 +186,7 @@ def contacts(pairs: list[tuple[Placed, Placed]]) -> list[ContactData]:
         faces = zip(one.faces(found.part1, found.point1), other.faces(found.part2, found.point2), strict=True)
         for index, (face1, face2) in enumerate(faces):
             middle = (found.point1[index] + found.point2[index]) / 2
-            row = {"normal": found.normal[index], "point": middle, "depth": found.depth[index]}
+            row: ContactRow = {"normal": found.normal[index], "point": middle, "depth": found.depth[index]}
             data.append(ContactData((one.name, other.name), (int(face1), int(face2)), row))
     return data
 
@@ -189,7 +196,7 @@ def _columns(placed: tuple[Placed, ...]) -> tuple[list[Shape], NDArray[np.float6
 
 
 def measured(one: Placed, other: Placed) -> DistanceData:
-    """The nearest or deepest points of two meshes."""
+    """Returns the nearest or deepest points of two meshes."""
     found = witness(one.geometry.shape, one.transform, other.geometry.shape, other.transform)
     faces = int(one.faces(found.part1, found.point1)), int(other.faces(found.part2, found.point2))
     return DistanceData((one.name, other.name), faces, found)

@@ -1,18 +1,19 @@
-"""Worlds: objects that stay, with a broad phase, contacts that are kept, events, and queries about all of them."""
+"""Worlds: persistent objects with a broad phase, cached contacts, events, and queries about all of them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge import _native
 from impinge._native import Shape
-from impinge._poses import DType, dtype_name
+from impinge._poses import DType, DTypeName, dtype_name
 from impinge._pictures import View, html_of
 from impinge._recording import Recording
+from impinge._results import Floats
 from impinge._world_arguments import Options, Query, groups_of, handles_of, structured
 from impinge._world_queries import WorldQueries
 from impinge._world_results import Handles
@@ -25,17 +26,18 @@ CONTACT = ["first", "second", "depth", "normal", "point1", "point2", "part1", "p
 
 
 class World(WorldQueries):
-    """Objects with shapes and poses; `update` finds who touches whom.
+    """Objects with shapes and poses; `update` computes their contacts.
 
-    margin: by how much boxes are fattened, in lengths. dim: 2 or 3. dtype: "float64" or "float32", that of shapes and answers.
-    Handles are uint64 arrays (n,); one never comes to mean another object of its world, and a stale one raises ValueError that
-    names its row. Calls that raise change nothing. Queries see changes at once, pairs and events at the next `update`.
+    margin: the length by which boxes of the broad phase are enlarged. dim: 2 or 3. dtype: "float64" or "float32", of shapes and
+    results. Handles are uint64 arrays (n,). A handle is never reused for another object of its world; a stale one raises
+    ValueError that names its row. Calls that raise change nothing. Queries use changes at once, pairs and events at the next
+    `update`.
 
-    A world pickles, and its copy has the same handles; events and contacts of the copy begin at its first `update`.
+    A world can be pickled, and its copy has the same handles; events and contacts of the copy begin at its first `update`.
 
-    Queries are asked about many elements at once, and one element may be given alone. They take `filter` (a `Filter`),
-    `threads` and `progress` (an object with `update(n)`, as tqdm's bars); other threads of Python run meanwhile, and Ctrl-C
-    ends them.
+    Queries take many elements, or a single one. They take `filter` (a `Filter`),
+    `threads` and `progress` (an object with `update(n)`, such as a bar of tqdm). Other Python threads run meanwhile, and Ctrl-C
+    interrupts them.
 
     >>> import impinge
     >>> world = impinge.World()
@@ -55,19 +57,19 @@ class World(WorldQueries):
         self._world = _native.World(self._margin, dim, dtype_name(dtype))
         self._recording: Recording | None = None
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickles objects, handles, groups and query types; pairs, contacts and events begin anew at the next `update`."""
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickles objects, handles, groups and query types; pairs, contacts and events start at the next `update`."""
         if self._recording is not None:
             raise TypeError(f"the world is recorded: the recording {self._recording.title!r} has not stopped")
         return (_unpickled, (self._margin, self.dim, self.dtype, *self._world.to_bytes()))
 
     @property
     def dim(self) -> int:
-        """2 or 3."""
+        """The number of dimensions: 2 or 3."""
         return self._world.dim
 
     @property
-    def dtype(self) -> Literal["float32", "float64"]:
+    def dtype(self) -> DTypeName:
         """ "float32" or "float64"."""
         return self._world.dtype
 
@@ -84,11 +86,11 @@ class World(WorldQueries):
     ) -> Handles:
         """Adds objects, as many as there are shapes or poses, and returns their handles (n,) in this order.
 
-        shapes, poses: as of `impinge.distance`. prediction: contacts exist up to the sum of those of both objects, a length.
-        margin: proximity up to this length instead of contacts. The lists are of groups 0 to 29: two objects are a pair if
-        each has a group of the other's whitelist and none of its blacklist.
+        shapes, poses: as of `impinge.distance`. prediction: contacts exist up to the sum of the predictions of both objects, a
+        length. margin: proximity up to this length instead of contacts. The lists are of groups 0 to 29: two objects are a pair
+        if each is in a group of the other's whitelist and in none of its blacklist.
 
-        Errors: ValueError names the row of a pose that is none; TypeError a shape of another dim or dtype. No object is added.
+        Errors: ValueError names the row of an invalid pose; TypeError a shape of another dim or dtype. No object is then added.
 
         >>> from impinge import *
         >>> World().add([Ball(1), Ball(2)], Poses([[0, 0, 0], [9, 0, 0]])).tolist()
@@ -98,7 +100,7 @@ class World(WorldQueries):
         return handles_of(self._world.add(shapes, poses, Options(Query(prediction, margin), groups)))
 
     def remove(self, handles: ArrayLike) -> None:
-        """Removes objects (n,), each of which occurs once.
+        """Removes objects (n,), without duplicates.
 
         >>> from impinge import *
         >>> world = World()
@@ -120,7 +122,7 @@ class World(WorldQueries):
         self._world.set_poses(handles_of(handles), poses)
 
     def set_shapes(self, handles: ArrayLike, shapes: Shapes) -> None:
-        """Gives objects (n,) other shapes: one for each, or one for all.
+        """Sets the shapes of objects (n,): one for each, or one for all.
 
         >>> from impinge import *
         >>> world = World()
@@ -131,9 +133,10 @@ class World(WorldQueries):
         self._world.set_shapes(handles_of(handles), shapes)
 
     def set_vertices(self, handle: int, vertices: ArrayLike) -> None:
-        """Bends the `TriMesh` or `Polyline` of one object: vertices (n, D), as many as it has, in the frame of the shape.
+        """Deforms the `TriMesh` or `Polyline` of one object: vertices (n, D), as many as it has, in the local frame.
 
-        Contacts on parts that stay keep their names. It costs less than a new shape: the triangles and the tree of boxes stay.
+        Contacts on parts that hardly move keep their ids. It costs less than a new shape: adjacency and the tree of boxes are
+        kept.
 
         >>> from impinge import *
         >>> world = World(dim=2)
@@ -155,7 +158,7 @@ class World(WorldQueries):
         whitelist: Sequence[int] | None = None,
         blacklist: Sequence[int] | None = None,
     ) -> None:
-        """Gives objects (n,) other groups; lists that are not given are those of new objects.
+        """Sets the groups of objects (n,); missing lists are those of new objects.
 
         >>> from impinge import *
         >>> world = World()
@@ -168,7 +171,7 @@ class World(WorldQueries):
         self._world.set_groups(handles_of(handles), groups_of(membership, whitelist, blacklist))
 
     def set_query_types(self, handles: ArrayLike, *, prediction: float = 0.0, margin: float | None = None) -> None:
-        """What is found of objects (n,): contacts with a prediction, or proximity with a margin; see `add`.
+        """Sets the query types of objects (n,): contacts with a prediction, or proximity with a margin; see `add`.
 
         >>> from impinge import *
         >>> world = World()
@@ -180,16 +183,16 @@ class World(WorldQueries):
         self._world.set_query_types(handles_of(handles), Query(prediction, margin))
 
     def update(self) -> None:
-        """Brings pairs, contacts and events up to date."""
+        """Updates pairs, contacts and events."""
         self._world.update()
         if self._recording is not None:
             self._recording.updates += 1
 
     def record(self, title: str = "impinge") -> Recording:
-        """Begins to record what happens, from the objects that there are; see `Recording`.
+        """Starts a recording, from the current objects on; see `Recording`.
 
-        It updates the world, which is the first of the updates. One recording at a time: ValueError if there is another
-        that has not stopped.
+        It updates the world, which is the first recorded update. There is one recording at a time: ValueError if another one
+        has not stopped.
         """
         if self._recording is not None:
             raise ValueError(f"the recording {self._recording.title!r} has not stopped")
@@ -211,26 +214,26 @@ class World(WorldQueries):
         return handles_of(self._world.handles())
 
     def shapes(self, handles: ArrayLike | None = None) -> list[Shape]:
-        """The shapes of objects, without handles of all."""
+        """The shapes of objects; without handles those of all."""
         return self._world.shapes(self.handles() if handles is None else handles_of(handles))
 
-    def poses(self, handles: ArrayLike | None = None) -> NDArray[np.floating[Any]]:
-        """The poses of objects, without handles of all: (n, D+1, D+1)."""
+    def poses(self, handles: ArrayLike | None = None) -> Floats:
+        """The poses of objects; without handles those of all: (n, D+1, D+1)."""
         return self._world.poses(self.handles() if handles is None else handles_of(handles))
 
     def contact_events(self) -> NDArray[np.void]:
-        """What changed at the last update: a structured array (m,) with `kind` (1 started, 0 stopped), `first`, `second`."""
+        """The contact events of the last update: a structured array (m,) with `kind` (1 started, 0 stopped), `first`, `second`."""
         return structured(EVENT, self._world.contact_events())
 
     def proximity_events(self) -> NDArray[np.void]:
-        """What changed at the last update: a structured array (m,) with `kind` (a `Proximity`), `first`, `second`."""
+        """The proximity events of the last update: a structured array (m,) with `kind` (a `Proximity`), `first`, `second`."""
         return structured(EVENT, self._world.proximity_events())
 
     def contacts(self) -> NDArray[np.void]:
         """All contact points as of the last update: a structured array (m,).
 
         Fields: `first`, `second` (handles), `depth` (a length, negative where they are apart), `normal` (D,) from the first to
-        the second, `point1`, `point2` (D,) in the world frame, `part1`, `part2` (numbers of triangles and the like).
+        the second, `point1`, `point2` (D,) in the world frame, `part1`, `part2` (numbers of parts, such as triangles).
         """
         return structured(CONTACT, self._world.contacts())
 
@@ -249,7 +252,7 @@ class World(WorldQueries):
 
 
 def _unpickled(margin: float, dim: int, dtype: DType, data: bytes, ages: list[int]) -> World:
-    """The world of `World.__reduce__`."""
+    """Restores the world of `World.__reduce__`."""
     world = World(margin, dim=dim, dtype=dtype)
     world._world.fill(data, ages)
     return world

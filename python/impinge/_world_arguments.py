@@ -1,4 +1,4 @@
-"""Arguments of worlds, checked: groups, filters, handles and questions."""
+"""Checks arguments of worlds: groups, filters, handles and queries."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ GROUPS = 30
 
 
 class Filter:
-    """Which objects a query of a `World` is about: all, but for what is left out here.
+    """The objects that a query of a `World` considers: all, except those that are excluded here.
 
-    membership, whitelist, blacklist: numbers of groups, 0 to 29, of the one who asks, as in `World.add`. exclude: handles of
-    objects to leave out, such as the one who asks.
+    membership, whitelist, blacklist: numbers of groups, 0 to 29, of the query, as in `World.add`. exclude: handles of excluded
+    objects, for instance the one that the query is made for.
 
     >>> import impinge
     >>> world = impinge.World()

@@ -1,7 +1,8 @@
-"""What worlds are asked about many elements: rays, moving shapes, shapes, points and boxes."""
+"""Queries of worlds about many elements: rays, moving shapes, shapes, points and boxes."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,10 +40,10 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> WorldHit:
-        """The first object that each ray meets.
+        """Returns the first object that each ray hits.
 
         origins, directions: (D,) or (n, D); times are in units of the length of a direction. solid: rays that begin inside an
-        object hit it at once; otherwise where they leave it.
+        object hit it at time zero; otherwise where they leave it.
 
         >>> from impinge import *
         >>> world = World()
@@ -65,7 +66,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> HitRows:
-        """All objects that each ray meets, each where it is met first; arguments as of `cast_rays`.
+        """Returns all objects that each ray hits, each with its first hit; arguments as of `cast_rays`.
 
         >>> from impinge import *
         >>> world = World()
@@ -88,7 +89,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> WorldImpact:
-        """The first object that each moving shape comes within `target_distance` of; it does not turn.
+        """Returns the first object that each moving shape comes within `target_distance` of; the shape does not rotate.
 
         velocities: (D,) or (n, D), lengths per unit of time; the rest as of `impinge.impact`.
 
@@ -115,7 +116,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> ImpactRows:
-        """All objects that each moving shape meets on its way; arguments as of `cast_shape`."""
+        """Returns all objects that each moving shape hits on its path; arguments as of `cast_shape`."""
         question = Question("casts", limit(max_time, "max_time"), limit(target_distance, "target_distance"))
         return ImpactRows(*self._ask(question, [shape, poses, velocities], filter, threads, progress))
 
@@ -130,7 +131,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> NearRows:
-        """For each placed shape the nearest objects, at most `count` of them and at most `max_distance` away.
+        """Returns for each placed shape the nearest objects, at most `count` of them, within `max_distance`.
 
         >>> from impinge import *
         >>> world = World()
@@ -151,7 +152,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> NearRows:
-        """For each placed shape all objects at most `distance` away, the nearest first."""
+        """Returns for each placed shape all objects within `distance`, the nearest first."""
         question = Question("near", limit(distance, "distance"))
         return NearRows(*self._ask(question, [shape, poses], filter, threads, progress))
 
@@ -164,7 +165,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Rows:
-        """For each placed shape the objects that it touches, in order of handles.
+        """Returns for each placed shape the objects that it touches, in order of handles.
 
         >>> from impinge import *
         >>> world = World()
@@ -183,7 +184,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> NDArray[np.bool_]:
-        """Whether each placed shape touches an object: bools (n,). Quicker than `overlapping`."""
+        """Whether each placed shape touches an object: bools (n,). Faster than `overlapping`."""
         found = self._ask(Question("overlaps_any"), [shape, poses], filter, threads, progress)
         return np.asarray(found[-1])
 
@@ -196,11 +197,11 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Rows:
-        """For each point (D,) or (n, D) the objects that hold it, in order of handles.
+        """Returns for each point (D,) or (n, D) the objects that contain it, in order of handles.
 
-        Closed meshes in 3D and closed lines in 2D are solids here. ValueError names an object that the question is about
-        whose mesh, line or height field is not closed, near or far: leave it out with `filter`, or have such objects asked as
-        surfaces, which hold the points on them, with `surface=True`.
+        Closed meshes in 3D and closed polylines in 2D are solids here. ValueError names an object whose mesh, polyline or height
+        field is not closed, near or far: exclude it by `filter`, or treat such objects as
+        surfaces, which contain the points on them, by `surface=True`.
 
         >>> from impinge import *
         >>> world = World(dim=2)
@@ -221,7 +222,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> WorldProjection:
-        """For each point (D,) or (n, D) the nearest point on an object; one inside is its own if `solid`.
+        """Returns for each point (D,) or (n, D) the nearest point on an object; a point inside is its own if `solid`.
 
         >>> from impinge import *
         >>> world = World()
@@ -243,7 +244,7 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> NearRows:
-        """For each point (D,) or (n, D) the nearest objects, at most `count` and at most `max_distance` away."""
+        """Returns for each point (D,) or (n, D) the nearest objects, at most `count`, within `max_distance`."""
         question = Question("nearest_to_points", limit(max_distance, "max_distance"), wanted=count_of(count))
         return NearRows(*self._ask(question, [points], filter, threads, progress))
 
@@ -256,20 +257,20 @@ class WorldQueries:
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Rows:
-        """For each axis-aligned box the objects whose boxes meet it: corners mins and maxs, (D,) or (n, D).
+        """Returns for each axis-aligned box the objects whose bounding boxes overlap it: corners mins and maxs, (D,) or (n, D).
 
-        ValueError names the row of a box whose least corner is above its greatest.
+        ValueError names the row of a box whose lower corner is above its upper one.
         """
         return Rows(*self._ask(Question("in_boxes"), [mins, maxs], filter, threads, progress))
 
     def _ask(
         self,
         question: Question,
-        given: list[Any],
+        given: Sequence[object],
         filter: Filter | None,
         threads: int | None,
         progress: Progress | None,
-    ) -> Any:
+    ) -> list[NDArray[Any]]:
         if filter is not None and not isinstance(filter, Filter):
             raise TypeError(f"filter is {type(filter).__name__}, where an impinge.Filter is needed")
         return self._world.ask(question, given, filter, threads, progress)

@@ -1,21 +1,22 @@
-"""What queries of worlds return: columns of arrays, or rows of lists."""
+"""Results of queries of worlds: columns of arrays, or rows of lists."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from impinge._results import Flags, Floats
+
 Handles: TypeAlias = NDArray[np.uint64]
-Floats: TypeAlias = NDArray[np.floating[Any]]
 
 NO_OBJECT = int(np.iinfo(np.uint64).max)
 """The handle of no object, where a query has no answer."""
 
 
 class WorldHit(NamedTuple):
-    """What rays hit first: time (n,), normal (n, D) and handle (n,); infinite, NaN and `NO_OBJECT` without a hit."""
+    """The first hits of rays: time (n,), normal (n, D) and handle (n,); infinite, NaN and `NO_OBJECT` without a hit."""
 
     time: Floats
     normal: Floats
@@ -23,7 +24,7 @@ class WorldHit(NamedTuple):
 
 
 class WorldImpact(NamedTuple):
-    """What moving shapes meet first: time (n,), normal (n, D) from the shape to the object, handle (n,), points (n, D)."""
+    """The first hits of moving shapes: time (n,), normal (n, D) from the shape to the object, handle (n,), points (n, D)."""
 
     time: Floats
     normal: Floats
@@ -36,19 +37,19 @@ class WorldProjection(NamedTuple):
     """The nearest points on objects: point (n, D), is_inside (n,), handle (n,); NaN and `NO_OBJECT` without one."""
 
     point: Floats
-    is_inside: NDArray[np.bool_]
+    is_inside: Flags
     handle: Handles
 
 
 class Rows(NamedTuple):
-    """Lists of objects: those of element i are `starts[i]` to `starts[i + 1]` of `handle`."""
+    """Lists of objects: the objects of element i are `starts[i]` to `starts[i + 1]` of `handle`."""
 
     starts: NDArray[np.int64]
     handle: Handles
 
 
 class HitRows(NamedTuple):
-    """Lists of objects that rays hit, in order of time."""
+    """Lists of objects that rays hit, sorted by time."""
 
     starts: NDArray[np.int64]
     handle: Handles
@@ -57,7 +58,7 @@ class HitRows(NamedTuple):
 
 
 class ImpactRows(NamedTuple):
-    """Lists of objects that moving shapes meet, in order of time."""
+    """Lists of objects that moving shapes hit, sorted by time."""
 
     starts: NDArray[np.int64]
     handle: Handles
@@ -68,7 +69,7 @@ class ImpactRows(NamedTuple):
 
 
 class NearRows(NamedTuple):
-    """Lists of objects with their distances, the nearest first, and the nearest points: NaN where they overlap."""
+    """Lists of objects with their distances, the nearest first, and the closest points: NaN where they overlap."""
 
     starts: NDArray[np.int64]
     handle: Handles

@@ -1,10 +1,10 @@
-"""Many processes or machines with Dask: questions about many poses and one scene, and the pairs of a scene too large for
+"""Many processes or machines with Dask: queries of many poses against one scene, and the pairs of a scene too large for
 one.
 
     from impinge.dask import ask_scene, self_join
 
-Two recipes over the functions of `impinge`; tasks are pure, so that Dask does again what a lost worker had done. They run on
-the current `distributed.Client`, else on Dask's own threads. `pip install 'impinge[dask]'` installs what they need.
+Two recipes on the functions of `impinge`. Tasks are pure, so that Dask can repeat the tasks of a lost worker. They run on
+the current `distributed.Client`, else on Dask's own threads. `pip install 'impinge[dask]'` installs the dependencies.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import uuid
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, overload
 
 import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
@@ -24,7 +24,7 @@ import pyarrow.dataset as ds  # type: ignore[import-untyped, unused-ignore]
 import pyarrow.parquet as pq  # type: ignore[import-untyped, unused-ignore]
 from dask.base import compute
 from dask.delayed import delayed
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from impinge._native import boxes, pairs_in_tile
 from impinge._poses import Poses
@@ -33,15 +33,28 @@ from impinge._shapes import Picked
 from impinge._tiles import Tiles, tiles as cut_tiles
 from impinge._world import World
 
-Question = Callable[[World, Any], NDArray[Any]]
+if TYPE_CHECKING:
+    from dask.array import Array
+    from dask.dataframe import DataFrame, Series
+
+    Source: TypeAlias = str | os.PathLike[str] | list[str]
+
+# The block is `Any`: rows of Dask do not say whether it is an array of which dtype or a DataFrame, but a question does.
+Question: TypeAlias = Callable[[World, Any], ArrayLike]
 
 
-def ask_scene(question: Question, scene: Scene, rows: Any, *, dtype: Any = "float64") -> Any:
-    """Asks a scene about many rows, such as poses or configurations of a robot, in blocks.
+@overload
+def ask_scene(question: Question, scene: Scene, rows: Array, *, dtype: DTypeLike = "float64") -> Array: ...
+@overload
+def ask_scene(question: Question, scene: Scene, rows: DataFrame | Source, *, dtype: DTypeLike = "float64") -> Series: ...
+def ask_scene(
+    question: Question, scene: Scene, rows: Array | DataFrame | Source, *, dtype: DTypeLike = "float64"
+) -> Array | Series:
+    """Runs a function for blocks of rows, such as poses or configurations of a robot, with the world of a scene.
 
     rows: a Dask Array (n, ...), a Dask DataFrame, or a path or paths of Parquet. question(world, block): gets the scene as a
-    `World`, which each process makes once and keeps by its bytes, and a NumPy array (m, ...) or a pandas DataFrame of m
-    rows; returns an array (m,) of this dtype. Other threads may be asking the same world: it is to be read only.
+    `World`, which each process builds once and caches by its bytes, and a NumPy array (m, ...) or a pandas DataFrame of m
+    rows; returns an array (m,) of this dtype. Other threads may use the same world: it must not be changed.
 
     Returns a Dask Array (n,), or a Dask Series with the index of the DataFrame, in the order of the rows and not yet computed.
 
@@ -54,17 +67,23 @@ def ask_scene(question: Question, scene: Scene, rows: Any, *, dtype: Any = "floa
     [1.5, 1.0, 2.5]
     """
     shared = delayed(scene)
-    if isinstance(rows, (str, os.PathLike, list)):
+    # The methods of Dask are not typed.
+    given: Any = rows
+    if isinstance(given, (str, os.PathLike, list)):
         import dask.dataframe
 
-        rows = dask.dataframe.read_parquet(rows)
-    if hasattr(rows, "map_partitions"):
-        return rows.map_partitions(_ask_frame, question, shared, meta=(None, dtype))
-    if not hasattr(rows, "map_blocks"):
-        raise TypeError(f"rows is no Dask Array, Dask DataFrame or path: {type(rows).__name__}")
-    whole = rows.rechunk({axis: -1 for axis in range(1, rows.ndim)})
-    inner = list(range(1, rows.ndim))
-    return whole.map_blocks(_ask, question=question, scene=shared, dtype=dtype, drop_axis=inner, meta=np.empty(0, dtype))
+        given = dask.dataframe.read_parquet(given)
+    if hasattr(given, "map_partitions"):
+        series: Series = given.map_partitions(_ask_frame, question, shared, meta=(None, dtype))
+        return series
+    if not hasattr(given, "map_blocks"):
+        raise TypeError(f"rows is no Dask Array, Dask DataFrame or path: {type(given).__name__}")
+    whole = given.rechunk({axis: -1 for axis in range(1, given.ndim)})
+    inner = list(range(1, given.ndim))
+    array: Array = whole.map_blocks(
+        _ask, question=question, scene=shared, dtype=dtype, drop_axis=inner, meta=np.empty(0, dtype)
+    )
+    return array
 
 
 def self_join(
@@ -76,28 +95,28 @@ def self_join(
     number_of_tiles: int = 64,
     sample: int = 200_000,
 ) -> int:
-    """Writes all pairs of objects that are at most `clearance` apart, out of core, and returns how many there are.
+    """Writes all pairs of objects whose distance is at most `clearance`, out of core, and returns their number.
 
-    source: Parquet, as file, files or folder, with the columns of `objects_table`: `id` (integers of 0 or more, no two
-    equal), `shape` (the number of an object of `shapes`, whose own poses do not count), `pose` ((D+1)**2 numbers, a matrix row
-    by row, or D+1 lists of D+1 numbers, as pandas writes a column of matrices). output: a folder that all workers reach, which is made; `part-*.parquet` there have the columns `id1` < `id2`
-    (uint64), ascending from part to part.
+    source: Parquet, as file, files or folder, with the columns of `objects_table`: `id` (integers of 0 or more, all
+    different), `shape` (the number of an object of `shapes`, whose own poses are ignored), `pose` ((D+1)**2 numbers, a matrix
+    row by row, or D+1 lists of D+1 numbers, as pandas writes a column of matrices). output: a folder that all workers can
+    access, which is created; `part-*.parquet` there have the columns `id1` < `id2` (uint64), ascending from part to part.
 
-    The bytes of the output follow from `source`, `shapes`, `clearance` and `sample`: any number of tiles and of workers, and
-    workers that die, give the same; `impinge.pairs_within` in one process finds the same pairs. About `sample` objects
-    decide the tiles. The rows are read twice, row group by row group; a worker holds one row group, or one tile with its
+    The bytes of the output depend on `source`, `shapes`, `clearance` and `sample` alone, not on the number of tiles and workers
+    or on workers that die; `impinge.pairs_within` in one process finds the same pairs. About `sample` objects
+    define the tiles. The rows are read twice, row group by row group; a worker holds one row group, or one tile with its
     pairs, or one part of the output. Intermediate files are in a folder beside the output with the suffix `.scratch`, which
     is removed at the end.
 
-    ValueError names a column that lacks, has nulls or is of another form, and a shape that there is not; FileExistsError if
-    there is an output.
+    ValueError names a column that is missing, has nulls or a wrong form, and a shape that does not exist; FileExistsError if
+    the output exists.
     """
     output = Path(output)
     if output.exists():
         raise FileExistsError(f"there is an output: {output}")
     units = _row_groups(source, shapes.dim)
     scratch = output.with_name(output.name + ".scratch")
-    # Of a process that died.
+    # Left by a process that died.
     shutil.rmtree(scratch, ignore_errors=True)
     try:
         return _join(units, shapes, scratch, output, _Options(clearance, number_of_tiles, sample))
@@ -127,8 +146,8 @@ def _join(units: list[Any], shapes: Scene, scratch: Path, output: Path, options:
     return int(sum(found))
 
 
-def objects_table(ids: ArrayLike, picks: ArrayLike, poses: Any) -> Any:
-    """Objects as a table of pyarrow, to be written as Parquet for `self_join`.
+def objects_table(ids: ArrayLike, picks: ArrayLike, poses: ArrayLike | Poses) -> pa.Table:
+    """Returns objects as a table of pyarrow, for writing as Parquet for `self_join`.
 
     ids: (n,) integers. picks: (n,) integers, the shape of each. poses: (n, D+1, D+1), or `Poses`.
 
@@ -145,7 +164,7 @@ def objects_table(ids: ArrayLike, picks: ArrayLike, poses: Any) -> Any:
 
 @lru_cache(maxsize=4)
 def _world(scene: Scene) -> World:
-    world = World(dim=scene.dim, dtype=scene.dtype)  # type: ignore[arg-type, unused-ignore]
+    world = World(dim=scene.dim, dtype=scene.dtype)
     world.add(scene.shapes, scene.poses)
     world.update()
     return world
@@ -153,7 +172,7 @@ def _world(scene: Scene) -> World:
 
 def _ask(block: Any, question: Question, scene: Scene) -> NDArray[Any]:
     if isinstance(block, np.ndarray):
-        # What came over a network need not be aligned in memory.
+        # Data from a network need not be aligned in memory.
         block = np.require(block, requirements=["C", "A"])
     found = np.asarray(question(_world(scene), block))
     if found.shape != (len(block),):
@@ -168,7 +187,7 @@ def _ask_frame(frame: Any, question: Question, scene: Scene) -> Any:
 
 
 def _run(task: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
-    """A task for each tuple of arguments, in any order and place; the results in order."""
+    """Runs a task for each tuple of arguments, in any order and on any worker; returns the results in order."""
     tasks = [delayed(task, pure=False)(*given) for given in arguments]
     results: tuple[Any, ...] = compute(*tasks)  # type: ignore[no-untyped-call, unused-ignore]
     return results
@@ -191,8 +210,8 @@ def _row_groups(source: Any, dim: int) -> list[Any]:
     return [group for fragment in dataset.get_fragments() for group in fragment.split_by_row_group()]
 
 
-def _read(table: Any, shapes: Scene) -> tuple[NDArray[np.uint64], Picked, NDArray[Any]]:
-    """The ids, shapes and poses of a table."""
+def _read(table: pa.Table, shapes: Scene) -> tuple[NDArray[np.uint64], Picked, NDArray[Any]]:
+    """Returns the ids, shapes and poses of a table."""
     for name in ("id", "shape", "pose"):
         if table[name].null_count:
             raise ValueError(f"the column {name!r} has nulls")
@@ -206,7 +225,7 @@ def _is_list(kind: Any) -> bool:
 
 
 def _matrices(column: Any, width: int) -> NDArray[Any]:
-    """The matrices (n, width, width) of a column of lists of all their numbers, or of lists of rows."""
+    """Returns the matrices (n, width, width) of a column of lists of all their numbers, or of lists of rows."""
     levels = []
     while _is_list(column.type):
         levels.append(pc.list_value_length(column).to_numpy())
@@ -225,15 +244,15 @@ def _matrices(column: Any, width: int) -> NDArray[Any]:
 
 
 def _sample(unit: Any, start: int, shapes: Scene, step: int) -> tuple[NDArray[np.uint64], NDArray[Any]]:
-    """The ids and boxes of one of so many rows; `start` is the number of the first row."""
+    """Returns the ids and boxes of a sample of the rows, one in `step`; `start` is the number of the first row."""
     table = unit.to_table(columns=["id", "shape", "pose"])
-    # Not every step-th one: rows of a grid come in a rhythm.
+    # Not every step-th row: rows of a grid are periodic.
     ids, picked, poses = _read(table.take(np.flatnonzero(_noise(start, len(table)) % step == 0)), shapes)
     return ids, boxes(picked, poses, threads=1)
 
 
 def _noise(start: int, count: int) -> NDArray[np.uint64]:
-    """Numbers without a pattern for so many rows, everywhere the same: SplitMix64 (Steele, Lea and Flood 2014)."""
+    """Returns pseudorandom numbers for rows, equal on every worker: SplitMix64 (Steele, Lea and Flood 2014)."""
     bits = np.arange(start + 1, start + count + 1, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
     bits = (bits ^ (bits >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     bits = (bits ^ (bits >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
@@ -241,7 +260,7 @@ def _noise(start: int, count: int) -> NDArray[np.uint64]:
 
 
 def _even_ranges(ids: list[NDArray[np.uint64]], parts: int) -> NDArray[np.uint64]:
-    """The first ids of the second to the last part of the output; they do not depend on the tiles."""
+    """Returns the first ids of the second to the last part of the output; they do not depend on the tiles."""
     every = np.sort(np.concatenate(ids or [np.empty(0, np.uint64)]))
     return every[np.arange(1, parts) * len(every) // parts] if len(every) else every
 
@@ -276,12 +295,12 @@ def _merge(number: int, scratch: Path, output: Path) -> None:
     _write(_pairs_table(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]), output / f"part-{number:05}.parquet")
 
 
-def _pairs_table(pairs: NDArray[np.uint64]) -> Any:
+def _pairs_table(pairs: NDArray[np.uint64]) -> pa.Table:
     return pa.table([pa.array(pairs[:, 0]), pa.array(pairs[:, 1])], ["id1", "id2"])
 
 
 def _write_parts(
-    take: Callable[[Any], Any], rows: NDArray[Any], counts: NDArray[Any], folder: Path, number: int
+    take: Callable[[NDArray[Any]], pa.Table], rows: NDArray[Any], counts: NDArray[Any], folder: Path, number: int
 ) -> None:
     """Writes `counts[k]` of the rows, one after the other, to the folder of each key k."""
     ends = np.cumsum(counts)
@@ -289,14 +308,14 @@ def _write_parts(
         _write(take(rows[ends[key] - counts[key] : ends[key]]), folder / f"key={key}" / f"part-{number:05}.parquet")
 
 
-def _read_parts(folder: Path, key: int) -> Any:
-    """What was written for a key, in the order of the parts; None for nothing."""
+def _read_parts(folder: Path, key: int) -> pa.Table | None:
+    """Returns the rows that were written for a key, in the order of the parts; None if there are none."""
     paths = sorted((folder / f"key={key}").glob("part-*.parquet"))
     return pa.concat_tables([pq.read_table(path, partitioning=None) for path in paths]) if paths else None
 
 
-def _write(table: Any, path: Path) -> None:
-    """The file is there whole or not at all, also if the process dies or does it twice."""
+def _write(table: pa.Table, path: Path) -> None:
+    """Writes a file atomically: it exists completely or not at all, also if the process dies or writes twice."""
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
     pq.write_table(table, unfinished, compression="lz4")

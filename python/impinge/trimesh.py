@@ -1,18 +1,19 @@
-"""The collision manager of trimesh, answered by impinge: the same interface, without FCL.
+"""The collision manager of trimesh on impinge: the same interface, without FCL.
 
     from impinge.trimesh import CollisionManager, scene_to_collision
 
-Convex meshes (`mesh.is_convex`) are solids and others are surfaces, as they are in trimesh: what is inside a surface without
-touching it does not collide. With `solid=True` all meshes are solids, and have to be closed. Where meshes overlap, distances are negative: minus the depth, of surfaces that of the triangles
-that are deepest in each other. Of several pairs that overlap one is given.
+Convex meshes (`mesh.is_convex`) are solids and others are surfaces, as in trimesh: a mesh inside a surface that does not
+touch it does not collide. With `solid=True` all meshes are solids, and must be closed. Where meshes overlap, distances are
+negative: minus the depth; for surfaces that of the two triangles with the deepest overlap. Among several overlapping pairs one
+is returned.
 
-A manager keeps what it found: a question costs what changed since the last one, not what there is.
+A manager caches its results: the cost of a query depends on the changes since the last one, not on the number of meshes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
+from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar, overload
 
 from numpy.typing import ArrayLike
 
@@ -33,19 +34,26 @@ if TYPE_CHECKING:
 
 __all__ = ["CollisionManager", "ContactData", "DistanceData", "scene_to_collision"]
 
-# What trimesh calls a mesh that was given with a query.
+# The name that trimesh uses for the mesh of a query.
 EXTERNAL = "__external"
 
 Contacts: TypeAlias = list[ContactData]
 Pairs: TypeAlias = set[tuple[str, str]]
+Nearest: TypeAlias = tuple[str, str]
 No: TypeAlias = Literal[False]
 Yes: TypeAlias = Literal[True]
 
+Found = TypeVar("Found")
+Names = TypeVar("Names")
+Data = TypeVar("Data")
+# An answer alone, or with what else was wanted: all forms, of which flags that are no literals choose one.
+Answer: TypeAlias = Found | tuple[Found, Names] | tuple[Found, Data] | tuple[Found, Names, Data]
+
 
 class CollisionManager:
-    """Meshes by name, each with a transform: who touches whom, and how far apart they are.
+    """Meshes by name, each with a transform, and queries of their contacts and distances.
 
-    solid: a mesh collides with what lies in it, though no faces touch. ValueError for a mesh that is not closed.
+    solid: a mesh collides with meshes inside it, even if no faces touch. ValueError for a mesh that is not closed.
 
     >>> import trimesh
     >>> manager = CollisionManager()
@@ -60,13 +68,13 @@ class CollisionManager:
     def __init__(self, solid: bool = False) -> None:
         self._engine = Manager()
         self._solid = solid
-        # The index of each name in the engine, which knows where they are; name and mesh of each index.
+        # The index of each name in the engine, which has the transforms; name and mesh of each index.
         self._indices: dict[str, int] = {}
         self._meshes: dict[int, tuple[str, Geometry]] = {}
 
     def add_object(self, name: str, mesh: trimesh.Trimesh, transform: ArrayLike | None = None) -> Shape:
         """Adds a mesh, or replaces the one of this name. ValueError for a transform that is no rotation and translation, and,
-        if meshes are to be solid, for one that is not closed or has its faces inside out."""
+        if meshes are solid, for a mesh that is not closed or is inside out."""
         return self._add(Placed(name, self._geometry(mesh, name), matrix_of(transform)))
 
     def remove_object(self, name: str) -> None:
@@ -87,7 +95,7 @@ class CollisionManager:
 
     @overload
     def in_collision_single(
-        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_names: No = ..., return_data: No = ...
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_names: No = ..., return_data: No = ...
     ) -> bool: ...
     @overload
     def in_collision_single(
@@ -95,7 +103,7 @@ class CollisionManager:
     ) -> tuple[bool, set[str]]: ...
     @overload
     def in_collision_single(
-        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_names: No = ..., return_data: Yes
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_names: No = ..., *, return_data: Yes
     ) -> tuple[bool, Contacts]: ...
     @overload
     def in_collision_single(
@@ -104,15 +112,15 @@ class CollisionManager:
     @overload
     def in_collision_single(
         self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_names: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[bool, set[str], Contacts]: ...
     def in_collision_single(
         self,
         mesh: trimesh.Trimesh,
         transform: ArrayLike | None = None,
         return_names: bool = False,
         return_data: bool = False,
-    ) -> Any:
-        """Whether a mesh touches one of the manager: `bool`, and if wanted the names and the contacts."""
+    ) -> Answer[bool, set[str], Contacts]:
+        """Whether a mesh touches one of the manager: `bool`, and optionally the names and the contacts."""
         external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         shape = external.geometry.shape
         if not (return_names or return_data):
@@ -122,16 +130,20 @@ class CollisionManager:
         return _answer(bool(met), {self._meshes[index][0] for index in met}, data, return_names, return_data)
 
     @overload
-    def in_collision_internal(self, *, return_names: No = ..., return_data: No = ...) -> bool: ...
+    def in_collision_internal(self, return_names: No = ..., return_data: No = ...) -> bool: ...
     @overload
-    def in_collision_internal(self, *, return_names: Yes, return_data: No = ...) -> tuple[bool, Pairs]: ...
+    def in_collision_internal(self, return_names: Yes, return_data: No = ...) -> tuple[bool, Pairs]: ...
     @overload
-    def in_collision_internal(self, *, return_names: No = ..., return_data: Yes) -> tuple[bool, Contacts]: ...
+    def in_collision_internal(self, return_names: No = ..., *, return_data: Yes) -> tuple[bool, Contacts]: ...
     @overload
-    def in_collision_internal(self, *, return_names: Yes, return_data: Yes) -> tuple[bool, Pairs, Contacts]: ...
+    def in_collision_internal(self, return_names: Yes, return_data: Yes) -> tuple[bool, Pairs, Contacts]: ...
     @overload
-    def in_collision_internal(self, return_names: bool = ..., return_data: bool = ...) -> Any: ...
-    def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
+    def in_collision_internal(
+        self, return_names: bool = ..., return_data: bool = ...
+    ) -> Answer[bool, Pairs, Contacts]: ...
+    def in_collision_internal(
+        self, return_names: bool = False, return_data: bool = False
+    ) -> Answer[bool, Pairs, Contacts]:
         """Whether any two meshes touch; the names are pairs in ascending order."""
         if not (return_names or return_data):
             return self._engine.is_touching()
@@ -142,28 +154,28 @@ class CollisionManager:
 
     @overload
     def in_collision_other(
-        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: No = ...
+        self, other_manager: CollisionManager, return_names: No = ..., return_data: No = ...
     ) -> bool: ...
     @overload
     def in_collision_other(
-        self, other_manager: CollisionManager, *, return_names: Yes, return_data: No = ...
+        self, other_manager: CollisionManager, return_names: Yes, return_data: No = ...
     ) -> tuple[bool, Pairs]: ...
     @overload
     def in_collision_other(
-        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: Yes
+        self, other_manager: CollisionManager, return_names: No = ..., *, return_data: Yes
     ) -> tuple[bool, Contacts]: ...
     @overload
     def in_collision_other(
-        self, other_manager: CollisionManager, *, return_names: Yes, return_data: Yes
+        self, other_manager: CollisionManager, return_names: Yes, return_data: Yes
     ) -> tuple[bool, Pairs, Contacts]: ...
     @overload
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[bool, Pairs, Contacts]: ...
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
-    ) -> Any:
-        """Whether a mesh touches one of another manager; the names are pairs, the own first."""
+    ) -> Answer[bool, Pairs, Contacts]:
+        """Whether a mesh touches one of another manager; the names are pairs, the name of this manager first."""
         other = self._beside(other_manager)
         if not (return_names or return_data):
             return self._engine.is_touching_other(other._engine)
@@ -174,7 +186,7 @@ class CollisionManager:
 
     @overload
     def min_distance_single(
-        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_name: No = ..., return_data: No = ...
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_name: No = ..., return_data: No = ...
     ) -> float: ...
     @overload
     def min_distance_single(
@@ -182,7 +194,7 @@ class CollisionManager:
     ) -> tuple[float, str]: ...
     @overload
     def min_distance_single(
-        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_name: No = ..., return_data: Yes
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_name: No = ..., *, return_data: Yes
     ) -> tuple[float, DistanceData | None]: ...
     @overload
     def min_distance_single(
@@ -191,15 +203,15 @@ class CollisionManager:
     @overload
     def min_distance_single(
         self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_name: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[float, str, DistanceData | None]: ...
     def min_distance_single(
         self,
         mesh: trimesh.Trimesh,
         transform: ArrayLike | None = None,
         return_name: bool = False,
         return_data: bool = False,
-    ) -> Any:
-        """How far a mesh is from the nearest one of the manager."""
+    ) -> Answer[float, str, DistanceData | None]:
+        """The distance of a mesh from the nearest one of the manager."""
         external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         found = self._engine.nearest_to(external.geometry.shape, external.transform)
         if found is None:
@@ -211,28 +223,28 @@ class CollisionManager:
 
     @overload
     def min_distance_internal(
-        self, name: str | None = ..., *, return_names: No = ..., return_data: No = ...
+        self, name: str | None = ..., return_names: No = ..., return_data: No = ...
     ) -> float: ...
     @overload
     def min_distance_internal(
         self, name: str | None = ..., *, return_names: Yes, return_data: No = ...
-    ) -> tuple[float, tuple[str, str]]: ...
+    ) -> tuple[float, Nearest]: ...
     @overload
     def min_distance_internal(
-        self, name: str | None = ..., *, return_names: No = ..., return_data: Yes
+        self, name: str | None = ..., return_names: No = ..., *, return_data: Yes
     ) -> tuple[float, DistanceData | None]: ...
     @overload
     def min_distance_internal(
         self, name: str | None = ..., *, return_names: Yes, return_data: Yes
-    ) -> tuple[float, tuple[str, str], DistanceData | None]: ...
+    ) -> tuple[float, Nearest, DistanceData | None]: ...
     @overload
     def min_distance_internal(
         self, name: str | None = ..., return_names: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[float, Nearest, DistanceData | None]: ...
     def min_distance_internal(
         self, name: str | None = None, return_names: bool = False, return_data: bool = False
-    ) -> Any:
-        """How far the nearest two meshes are apart; with a name, those of which one is this mesh."""
+    ) -> Answer[float, Nearest, DistanceData | None]:
+        """The distance of the nearest two meshes; with a name, of the pairs with this mesh."""
         engine = self._engine
         found = engine.nearest() if name is None else engine.nearest_beside(self._known(name))
         if found is None:
@@ -244,28 +256,28 @@ class CollisionManager:
 
     @overload
     def min_distance_other(
-        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: No = ...
+        self, other_manager: CollisionManager, return_names: No = ..., return_data: No = ...
     ) -> float: ...
     @overload
     def min_distance_other(
-        self, other_manager: CollisionManager, *, return_names: Yes, return_data: No = ...
-    ) -> tuple[float, tuple[str, str]]: ...
+        self, other_manager: CollisionManager, return_names: Yes, return_data: No = ...
+    ) -> tuple[float, Nearest]: ...
     @overload
     def min_distance_other(
-        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: Yes
+        self, other_manager: CollisionManager, return_names: No = ..., *, return_data: Yes
     ) -> tuple[float, DistanceData | None]: ...
     @overload
     def min_distance_other(
-        self, other_manager: CollisionManager, *, return_names: Yes, return_data: Yes
-    ) -> tuple[float, tuple[str, str], DistanceData | None]: ...
+        self, other_manager: CollisionManager, return_names: Yes, return_data: Yes
+    ) -> tuple[float, Nearest, DistanceData | None]: ...
     @overload
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[float, Nearest, DistanceData | None]: ...
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
-    ) -> Any:
-        """How far the nearest meshes of two managers are apart; the own name is the first."""
+    ) -> Answer[float, Nearest, DistanceData | None]:
+        """The distance of the nearest meshes of two managers; the name of this manager is the first."""
         manager = self._beside(other_manager)
         found = self._engine.nearest_other(manager._engine)
         if found is None:
@@ -297,25 +309,26 @@ class CollisionManager:
         return self._indices[name]
 
     def _placed(self, indices: list[int]) -> list[Placed]:
-        """Meshes where they are."""
+        """Returns meshes with their transforms."""
         transforms = self._engine.transforms(indices)
         return [Placed(*self._meshes[index], matrix) for index, matrix in zip(indices, transforms, strict=True)]
 
     def _pairs(self, rows: list[tuple[int, int]], other: CollisionManager) -> list[tuple[Placed, Placed]]:
-        """Pairs of an own mesh and one of a manager."""
+        """Returns pairs of a mesh of this manager and one of another manager."""
         ones, others = self._placed([one for one, _ in rows]), other._placed([index for _, index in rows])
         return list(zip(ones, others, strict=True))
 
     def _beside(self, other: CollisionManager) -> CollisionManager:
-        """Another manager, of itself a copy."""
+        """Returns the other manager; a copy if it is this one."""
         return other if other is not self else _manager(self._placed(list(self._meshes)), self._solid)
 
 
 def scene_to_collision(scene: trimesh.Scene, solid: bool = False) -> tuple[CollisionManager, dict[str, Shape]]:
-    """A manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes; solid as of the manager.
+    """Returns a manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes; solid as of the
+    manager.
 
-    What a node scales, shears or mirrors is applied to the vertices of its shape; `set_transform` then places the shape as
-    it is here, by a rotation and a translation. ValueError names a node whose transform is no such map.
+    Scale, shear and reflection of a node are applied to the vertices of its shape; `set_transform` then places this shape
+    by a rotation and a translation. ValueError names a node whose transform is singular or not affine.
     """
     placed, known = [], {}
     for node in scene.graph.nodes_geometry:
@@ -351,8 +364,10 @@ def _by_name(pair: tuple[Placed, Placed]) -> tuple[Placed, Placed]:
     return pair if one.name <= other.name else (other, one)
 
 
-def _answer(found: Any, names: Any, data: Any, with_names: bool, with_data: bool) -> Any:
-    """The forms of trimesh's answers: alone, or a tuple with what else was wanted."""
+def _answer(
+    found: Found, names: Names, data: Data, with_names: bool, with_data: bool
+) -> Answer[Found, Names, Data]:
+    """Returns a result in trimesh's form: alone, or a tuple with the requested extras."""
     if with_names and with_data:
         return found, names, data
     if with_names:

@@ -21,7 +21,9 @@ from impinge._shapes import Ball, ConvexHull, Cuboid, Cylinder, TriMesh
 if TYPE_CHECKING:
     import yourdfpy  # type: ignore[import-untyped, unused-ignore]
 
-# Turns z into y: URDF lays cylinders along z, impinge along y.
+    from impinge._native import PosesLike
+
+# Rotates z to y: cylinders are along z in URDF, along y in impinge.
 Z_TO_Y = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 Frames = NDArray[np.float64]
@@ -34,12 +36,12 @@ class Body:
     name: str
     link: int
     shape: Shape
-    # Of the shape in the frame of the link.
+    # The pose of the shape in the frame of the link.
     pose: Frames
 
 
 class NearestBodies(NamedTuple):
-    """For each configuration the least distance, and the numbers of the two bodies; the second is of the scene, if any."""
+    """For each configuration the least distance, and the numbers of the two bodies; the second may be a shape of the scene."""
 
     distance: NDArray[np.float64]
     body1: NDArray[np.int64]
@@ -49,16 +51,16 @@ class NearestBodies(NamedTuple):
 class Robot:
     """Links, joints and the bodies of the links.
 
-    `joints` has the names of the columns of a configuration, `limits` (joints, 2) their least and greatest values, infinite
-    for joints without. `pairs` (m, 2) are the bodies that must not touch: at first all of two links that share no joint.
+    `joints` has the names of the columns of a configuration, `limits` (joints, 2) their minima and maxima, infinite
+    for joints without limits. `pairs` (m, 2) are the bodies that must not touch: initially all of two links that share no joint.
     """
 
     def __init__(self, model: yourdfpy.URDF, meshes: Literal["hull", "surface"] = "hull") -> None:
         robot = model.robot
-        self.links = [link.name for link in robot.links]
+        self.links: list[str] = [link.name for link in robot.links]
         moving = [joint for joint in robot.joints if joint.type != "fixed" and joint.mimic is None]
-        self.joints = [joint.name for joint in moving]
-        self.limits = np.array([_limits(joint) for joint in moving]).reshape(-1, 2)
+        self.joints: list[str] = [joint.name for joint in moving]
+        self.limits: NDArray[np.float64] = np.array([_limits(joint) for joint in moving]).reshape(-1, 2)
         numbers = {name: number for number, name in enumerate(self.links)}
         self._frames = [Frame()] * len(self.links)
         for joint in robot.joints:
@@ -70,26 +72,26 @@ class Robot:
             for body in _bodies(model, numbers[link.name], f"{link.name}/{number}", collision, meshes)
         ]
         self.pairs = self._separate_pairs()
-        # The checker of pairs that were asked about, with these: it keeps hulls of its meshes.
+        # The checker of the last pairs, with these pairs: it caches hulls of its meshes.
         self._kept: tuple[NDArray[np.int64], Checker] | None = None
 
     @classmethod
     def load(cls, path: str | Path, meshes: Literal["hull", "surface"] = "hull") -> Robot:
-        """The robot of a file. Meshes become their convex hulls, or surfaces of triangles."""
+        """Reads the robot of a file. Meshes become their convex hulls, or surfaces of triangles."""
         import yourdfpy
 
         return cls(yourdfpy.URDF.load(str(path), load_meshes=False, build_scene_graph=False), meshes)
 
     def frames(self, configurations: ArrayLike) -> Frames:
         """The poses of all links: (n, links, 4, 4) of configurations (n, joints), (links, 4, 4) of one."""
-        return self._own().frames(self._checked(configurations))
+        return np.asarray(self._own().frames(self._checked(configurations)), np.float64)
 
     def poses(self, configurations: ArrayLike) -> Frames:
         """The poses of all bodies: (n, bodies, 4, 4), or (bodies, 4, 4)."""
-        return self._own().poses(self._checked(configurations))
+        return np.asarray(self._own().poses(self._checked(configurations)), np.float64)
 
     def checker(self, pairs: ArrayLike | None = None) -> Checker:
-        """A checker of the robot with these pairs of bodies that must not touch, or with `pairs`; without obstacles."""
+        """Returns a checker of the robot with these pairs of bodies that must not touch, or with `pairs`; without obstacles."""
         shapes, on = [body.shape for body in self.bodies], [body.link for body in self.bodies]
         local = np.array([body.pose for body in self.bodies]).reshape(-1, 4, 4)
         wanted = self.pairs if pairs is None else pairs
@@ -104,7 +106,7 @@ class Robot:
         self.pairs = self.pairs[[{self.bodies[one].link, self.bodies[two].link} != both for one, two in self.pairs]]
 
     def allow_touching_at(self, configurations: ArrayLike) -> None:
-        """Lets those bodies touch that do in one of these configurations, as setup assistants do."""
+        """Allows contacts of all bodies that touch in one of these configurations, as setup assistants do."""
         rows = np.atleast_2d(self._checked(configurations))
         touching = [not self.checker([pair]).is_free(rows).all() for pair in self.pairs]
         self.pairs = self.pairs[~np.array(touching, dtype=bool)]
@@ -114,36 +116,37 @@ class Robot:
         return ~self._own().is_free(np.atleast_2d(self._checked(configurations)))
 
     def self_distance(self, configurations: ArrayLike) -> NearestBodies:
-        """The nearest two bodies for each configuration (n, joints): zero if they touch; infinite and -1 without pairs."""
+        """The nearest pair of bodies for each configuration (n, joints): zero if they touch; infinite and -1 without pairs."""
         return self._nearest(self._own(), configurations, 0)
 
-    def collides(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: Any) -> NDArray[np.bool_]:
-        """Whether a body touches one of the shapes that stand at these poses (m, 4, 4)."""
+    def collides(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: PosesLike) -> NDArray[np.bool_]:
+        """Whether a body touches one of the shapes at these poses (m, 4, 4)."""
         return ~self._among(shapes, obstacles).is_free(np.atleast_2d(self._checked(configurations)))
 
-    def distance(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: Any) -> NearestBodies:
-        """The body and the shape that are nearest for each configuration: zero if they touch."""
+    def distance(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: PosesLike) -> NearestBodies:
+        """The nearest pair of a body and a shape for each configuration: zero if they touch."""
         return self._nearest(self._among(shapes, obstacles), configurations, len(self.bodies))
 
     def _own(self) -> Checker:
-        """The checker of the pairs, without obstacles, as long as these are the same."""
+        """The cached checker of the pairs, without obstacles, while the pairs are unchanged."""
         kept = self._kept
         if kept is None or not np.array_equal(kept[0], self.pairs):
             kept = self._kept = np.array(self.pairs), self.checker()
         return kept[1]
 
-    def _among(self, shapes: Sequence[Shape], obstacles: Any) -> Checker:
-        """A checker with obstacles, and without pairs of bodies."""
+    def _among(self, shapes: Sequence[Shape], obstacles: PosesLike) -> Checker:
+        """Returns a checker with obstacles, and without pairs of bodies."""
         checker = self.checker([])
         checker.set_obstacles(shapes, obstacles)
         return checker
 
     def _nearest(self, checker: Checker, configurations: ArrayLike, first: int) -> NearestBodies:
-        """The second numbers begin with the first."""
+        """Returns the nearest bodies; the second numbers start at 0 from `first`."""
         distance, pair = checker.nearest(np.atleast_2d(self._checked(configurations)))
         body1, body2 = pair.astype(np.int64).T
         is_none = np.isinf(distance)
-        return NearestBodies(distance, np.where(is_none, -1, body1), np.where(is_none, -1, body2 - first))
+        numbers = np.where(is_none, -1, body1), np.where(is_none, -1, body2 - first)
+        return NearestBodies(np.asarray(distance, np.float64), *numbers)
 
     def _checked(self, configurations: ArrayLike) -> NDArray[np.float64]:
         array = np.asarray(configurations, dtype=np.float64)
@@ -157,7 +160,7 @@ class Robot:
         return array
 
     def _separate_pairs(self) -> NDArray[np.int64]:
-        """The pairs of bodies of links that are neither one nor joined."""
+        """Returns the pairs of bodies of different links without a common joint."""
         joined = {frozenset((frame.parent, child)) for child, frame in enumerate(self._frames)}
 
         def is_separate(one: Body, two: Body) -> bool:
@@ -180,7 +183,7 @@ def _limits(joint: Any) -> tuple[float, float]:
 
 
 def _frame(joint: Any, links: dict[str, int], columns: list[str]) -> Frame:
-    """The frame of the child of a joint."""
+    """Returns the frame of the child of a joint."""
     if joint.type not in ("fixed", "revolute", "continuous", "prismatic"):
         raise ValueError(
             f"joint {joint.name} is {joint.type}: fixed, revolute, continuous and prismatic joints are known"
@@ -203,7 +206,7 @@ def _frame(joint: Any, links: dict[str, int], columns: list[str]) -> Frame:
 
 
 def _bodies(model: yourdfpy.URDF, link: int, name: str, collision: Any, meshes: str) -> list[Body]:
-    """The bodies of a collision element: one, or one for each part of a mesh file."""
+    """Returns the bodies of a collision element: one, or one for each part of a mesh file."""
     origin = np.eye(4) if collision.origin is None else np.asarray(collision.origin, dtype=np.float64)
     geometry = collision.geometry
     if geometry.box is not None:

@@ -1,4 +1,4 @@
-//! Answers as Python objects: columns become NumPy arrays, and the answer about a lone element scalars.
+//! Results as Python objects: columns become NumPy arrays, and the result for a single element becomes scalars.
 
 use core::ops::{Deref, DerefMut};
 
@@ -10,23 +10,22 @@ use pyo3::types::PyTuple;
 
 use crate::space::Numeric;
 
-/// How much is asked.
+/// The number of elements of a call.
 #[derive(Clone, Copy)]
 pub(crate) enum Extent {
-    /// One element alone, which is answered by scalars. What is quick takes hardly longer than to release the
-    /// interpreter.
+    /// A single element, whose result is scalars. A quick call takes hardly longer than releasing the interpreter.
     Lone { is_quick: bool },
-    /// So many elements, answered by arrays.
+    /// Several elements, whose result is arrays.
     Many(usize),
 }
 
 impl Extent {
-    /// Of arguments that have one element alone, or else `len`.
+    /// The extent of arguments with a single element, or else with `len` elements.
     pub(crate) const fn of(is_lone: bool, is_quick: bool, len: usize) -> Self {
         if is_lone { Self::Lone { is_quick } } else { Self::Many(len) }
     }
 
-    /// How many elements there are.
+    /// The number of elements.
     pub(crate) const fn len(self) -> usize {
         match self {
             Self::Lone { .. } => 1,
@@ -34,7 +33,7 @@ impl Extent {
         }
     }
 
-    /// One fact about each element, of a list with as many.
+    /// Wraps a list of one value for each element.
     pub(crate) fn of_list<T>(self, mut list: Vec<T>) -> Slots<T> {
         match self {
             Self::Lone { .. } if list.len() == 1 => Slots::One([list.remove(0)]),
@@ -42,7 +41,7 @@ impl Extent {
         }
     }
 
-    /// Room for one fact about each element.
+    /// Creates slots for one value for each element.
     pub(crate) fn slots<T: Clone>(self, empty: T) -> Slots<T> {
         match self {
             Self::Lone { .. } => Slots::One([empty]),
@@ -51,14 +50,14 @@ impl Extent {
     }
 }
 
-/// One fact about a lone element, without a list, or about each of many.
+/// One value for a single element, without a list, or one for each of many.
 pub(crate) enum Slots<T> {
     One([T; 1]),
     Many(Vec<T>),
 }
 
 impl<T> Slots<T> {
-    /// Another fact about each element.
+    /// Maps the value of each element.
     pub(crate) fn map<U>(self, other: impl FnMut(T) -> U) -> Slots<U> {
         match self {
             Self::One(slot) => Slots::One(slot.map(other)),
@@ -99,7 +98,7 @@ impl<T> FromIterator<T> for Slots<T> {
     }
 }
 
-/// One fact about each element of a batch.
+/// One column of the result of a batch.
 pub(crate) enum Column<N, const D: usize> {
     Numbers(Slots<N>),
     Vectors(Slots<[N; D]>),
@@ -110,7 +109,7 @@ pub(crate) enum Column<N, const D: usize> {
     Handles(Slots<u64>),
 }
 
-/// Of many elements it is an array with one row for each, of a lone one a scalar or an array of `D` numbers.
+/// For many elements an array with one row for each, for a single element a scalar or an array of `D` numbers.
 impl<'py, N: Numeric<D>, const D: usize> IntoPyObject<'py> for Column<N, D> {
     type Target = PyAny;
     type Output = Bound<'py, PyAny>;
@@ -134,7 +133,7 @@ impl<'py, N: Numeric<D>, const D: usize> IntoPyObject<'py> for Column<N, D> {
     }
 }
 
-/// What is no floating-point number.
+/// Converts values other than floating-point numbers.
 fn values<'py, T: Element + IntoPyObject<'py>>(
     py: Python<'py>,
     column: Slots<T>,
@@ -145,7 +144,7 @@ fn values<'py, T: Element + IntoPyObject<'py>>(
     }
 }
 
-/// Columns as one object: that of the first where there is no class, else a tuple of the class.
+/// Combines columns to one object: the first column if there is no class, else a tuple of the class.
 pub(crate) fn into_python<'py, N: Numeric<D>, const D: usize>(
     py: Python<'py>,
     class: Option<&Class>,
@@ -177,8 +176,8 @@ impl Class {
         Self { name, found: PyOnceLock::new() }
     }
 
-    /// A value of the class. These classes are tuples with names, so that the constructor of tuples makes values, which
-    /// takes half as long as their own.
+    /// Creates a value of the class. These classes are named tuples, so that the constructor of tuples creates values,
+    /// which takes half as long as their own.
     fn value<'py>(&self, fields: Bound<'py, PyTuple>) -> PyResult<Bound<'py, PyAny>> {
         static MAKE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
         let py = fields.py();

@@ -1,4 +1,4 @@
-//! The configuration checker as Python calls it: arrays of numbers in, columns out.
+//! The configuration checker for Python: arrays of numbers in, columns out.
 
 use std::any::Any;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -26,12 +26,12 @@ use crate::supervise::{Call, Threads, supervise};
 #[pyclass(frozen, module = "impinge")]
 pub(crate) struct NativeChecker {
     kind: Kind,
-    /// An `Arc<Checker>` of the kind, which is replaced with its obstacles.
+    /// An `Arc<Checker>` of the kind, which is replaced when its obstacles change.
     checker: RwLock<Arc<dyn Any + Send + Sync>>,
 }
 
-/// The frames as columns: parents (-1 for the world), columns (-1 for fixed joints), generators of what turns and axes
-/// of what slides (zeros else), factors and offsets.
+/// The frames as columns: parents (-1 for the world), columns (-1 for fixed joints), generators of rotations and axes
+/// of translations (otherwise zeros), factors and offsets.
 type FrameColumns<'py> = (
     Vec<i64>,
     Bound<'py, PyAny>,
@@ -41,10 +41,10 @@ type FrameColumns<'py> = (
     PyReadonlyArray2<'py, f64>,
 );
 
-/// Shapes, the frame of each, and their poses on these.
+/// Shapes, the frame of each, and their poses in these frames.
 type BodyColumns<'py> = (Vec<PyRef<'py, Shape>>, Vec<usize>, Bound<'py, PyAny>);
 
-/// What Python calls [`NativeChecker`] with: dimension, scalar, frames, number of columns, bodies, pairs.
+/// The arguments of [`NativeChecker`]: dimension, scalar, frames, number of columns, bodies, pairs.
 type Arguments<'py> =
     (u8, String, FrameColumns<'py>, usize, BodyColumns<'py>, PyReadonlyArray2<'py, u32>);
 
@@ -75,7 +75,7 @@ impl NativeChecker {
         Ok(())
     }
 
-    /// The poses of all frames, or of all bodies, for each row: (n * count, D+1, D+1).
+    /// Returns the poses of all frames, or of all bodies, for each row: (n * count, D+1, D+1).
     fn place<'py>(
         &self,
         py: Python<'py>,
@@ -85,7 +85,7 @@ impl NativeChecker {
         run_in(self.kind, Place { py, checker: self.current(), rows, of_bodies })
     }
 
-    /// Asks a question about each row: "free", "pair" or "nearest"; returns the columns of the answer.
+    /// Runs a query for each row: "free", "pair" or "nearest"; returns the columns of the result.
     #[pyo3(signature = (question, rows, limit, count, threads, progress))]
     #[expect(clippy::too_many_arguments, reason = "Python's arguments are named")]
     fn ask<'py>(
@@ -194,14 +194,14 @@ impl Task for Surround<'_, '_> {
             Ok(Obstacle { shape: shape.clone(), pose: poses.pose(index) })
         });
         let obstacles = obstacles.collect::<PyResult<Vec<_>>>()?;
-        // Whoever asks at this moment goes on with the obstacles that were.
+        // A concurrent call continues with the old obstacles.
         let replaced = Arc::make_mut(&mut checker);
         replaced.try_set_obstacles(obstacles, &self.ignored).map_err(refused)?;
         Ok(checker)
     }
 }
 
-/// Numbers of configurations, of the scalar of the checker.
+/// Converts the numbers of configurations to the scalar of the checker.
 fn numbers<'py, N: Numeric<D>, const D: usize>(
     rows: &Bound<'py, PyAny>,
 ) -> PyResult<PyReadonlyArray1<'py, N>> {

@@ -6,7 +6,7 @@ use impinge_record::RecordError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 
-/// An error of a batch, where `poses` names the argument with the matrices.
+/// Converts an error of a batch; `poses` is the name of the argument with the matrices.
 pub(crate) fn of_batch(error: &BatchError, poses: &str) -> PyErr {
     match error {
         BatchError::Cancelled { .. } => PyKeyboardInterrupt::new_err(error.to_string()),
@@ -17,22 +17,22 @@ pub(crate) fn of_batch(error: &BatchError, poses: &str) -> PyErr {
     }
 }
 
-/// An error of a world, recorded or not, about a row of an argument.
+/// Converts an error of a world, recorded or not, about a row of an argument.
 pub(crate) fn of_row(error: &RecordError, argument: &str, row: usize) -> PyErr {
     PyValueError::new_err(format!("{argument}[{row}]: {error}"))
 }
 
-/// An error of a world about a call as a whole.
+/// Converts an error of a world about a call as a whole.
 pub(crate) fn of_call(error: &RecordError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// A group that there is not.
+/// Converts the error of a group that does not exist.
 pub(crate) fn of_groups(error: &GroupError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// A limit must be a number, which may be infinite.
+/// Checks that a limit is not NaN; it may be infinite.
 pub(crate) fn not_nan(name: &str, value: f64) -> Result<(), PyErr> {
     if value.is_nan() {
         return Err(PyValueError::new_err(format!("{name} is nan")));

@@ -1,7 +1,8 @@
-//! The functions of batches as Python sees them, with their texts.
+//! The functions of batches for Python, with their docstrings.
 //!
 //! Common to all: a shape is a `Shape`, a sequence with one for each element, or `Picked`; poses are `None` (the
-//! identity), a matrix, an array of matrices, or `Poses`. One element stands against each of the other side.
+//! identity), a matrix, an array of matrices, or `Poses`. A single element is paired with each element of the other
+//! side.
 #![expect(clippy::too_many_arguments, reason = "Python's arguments are named")]
 
 use pyo3::prelude::*;
@@ -30,7 +31,7 @@ pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(cast_rays, module)?)
 }
 
-/// How many points a manifold may have: at least one.
+/// The largest number of points of a manifold: at least one.
 struct MaxPoints(usize);
 
 impl FromPyObject<'_, '_> for MaxPoints {
@@ -44,17 +45,17 @@ impl FromPyObject<'_, '_> for MaxPoints {
 type Object<'py> = Bound<'py, PyAny>;
 type Answer<'py> = PyResult<Object<'py>>;
 
-/// How far apart two solids are: zero if they touch or overlap.
+/// The distance of two solids: zero if they touch or overlap.
 ///
 /// shape1, shape2: a `Shape`, a sequence with one for each element, or `Picked`.
-/// poses1, poses2: `None`, a matrix (D+1, D+1), an array (n, D+1, D+1) or `Poses`. One stands for all.
-/// threads: how many; those of the machine without. progress: an object with `update(n)`, as tqdm's bars have it.
+/// poses1, poses2: `None`, a matrix (D+1, D+1), an array (n, D+1, D+1) or `Poses`. A single one is used for all.
+/// threads: their number; by default one for each core. progress: an object with `update(n)`, such as a bar of tqdm.
 ///
 /// Returns a float, or an array (n,) if an argument has many elements, a length in the unit of the shapes.
 ///
-/// Errors: `ValueError` names the argument and the row of a matrix that is no pose (not finite, not a rotation), an array of
-/// another shape, and lengths that differ; `TypeError` a thing of another kind, and a shape of another dim or dtype.
-/// `KeyboardInterrupt` on Ctrl-C, and what `progress` raises, end the work.
+/// Errors: `ValueError` names the argument and the row of a matrix that is no pose (not finite, not a rotation), an
+/// array of wrong shape, or arrays of different lengths; `TypeError` an argument of wrong type, or a shape of another
+/// dim or dtype. `KeyboardInterrupt` on Ctrl-C, and exceptions of `progress`, end the call.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 2, 5]
@@ -73,10 +74,11 @@ fn distance<'py>(
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask(Distances)
 }
 
-/// The nearest points of two solids that are at most `max_distance` apart.
+/// The closest points of two solids whose distance is at most `max_distance`.
 ///
-/// Arguments and errors as of `distance`. Returns `ClosestPoints(distance, point1, point2)`, (n,) and (n, D) in the world
-/// frame: the distance is zero and the points are NaN where the solids touch or overlap, infinite and NaN beyond the limit.
+/// Arguments and errors as of `distance`. Returns `ClosestPoints(distance, point1, point2)`, (n,) and (n, D) in the
+/// world frame. Where the solids touch or overlap, the distance is zero and the points are NaN; beyond the limit
+/// infinite and NaN.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[0, 3] = 4
@@ -146,9 +148,10 @@ fn proximity<'py>(
 
 /// The contact of two solids that overlap, touch, or are at most `prediction` apart.
 ///
-/// Arguments and errors as of `distance`. Returns `Contact(depth, normal, point1, point2)`, (n,) and (n, D) in the world
-/// frame: the depth is positive where they overlap and minus the distance where they are apart; `-inf` and NaN without a
-/// contact. The normal is from the first to the second. Composites: the deepest contact of their manifolds.
+/// Arguments and errors as of `distance`. Returns `Contact(depth, normal, point1, point2)`, (n,) and (n, D) in the
+/// world frame. The depth is positive where they overlap and minus the distance where they are apart; `-inf` and NaN
+/// without a contact. The normal is from the first to the second. For composites it is the deepest contact of their
+/// manifolds.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[1, 3] = 1.75
@@ -171,9 +174,9 @@ fn contact<'py>(
 
 /// All contact points of each pair that is at most `prediction` apart.
 ///
-/// Arguments and errors as of `distance`; `max_points` bounds the points of a manifold. Returns `Manifolds` with rows: the
-/// points of pair i are `starts[i]` to `starts[i + 1]` of `depth`, `normal`, `point1`, `point2`, `manifold` (its number
-/// within the pair), `part1`, `part2`.
+/// Arguments and errors as of `distance`; `max_points` limits the points of a manifold. Returns `Manifolds` with rows:
+/// the points of pair i are `starts[i]` to `starts[i + 1]` of `depth`, `normal`, `point1`, `point2`, `manifold` (its
+/// number within the pair), `part1`, `part2`.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[1, 3] = 1.9
@@ -198,8 +201,8 @@ fn contact_manifolds<'py>(
 
 /// The nearest pair of a batch: `Nearest(pair, distance)`, or -1 and an infinite distance beyond `max_distance`.
 ///
-/// Arguments and errors as of `distance`. Quicker than all distances, since the limit shrinks. Of equal ones the lowest
-/// index.
+/// Arguments and errors as of `distance`. Faster than all distances, since the limit shrinks. Among equal distances the
+/// lowest index is returned.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [7, 3, 5]
@@ -219,14 +222,14 @@ fn nearest<'py>(
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask(Nearest(max_distance))
 }
 
-/// When two moving solids first come within `target_distance`.
+/// The time at which two moving solids first come within `target_distance`.
 ///
 /// Arguments and errors as of `distance`; the velocities are (D,) or (n, D), in the world frame per unit of time.
-/// `angular_velocity1`, `angular_velocity2`: in 2D a number or (n,) in radians, counter-clockwise; in 3D (3,) or (n, 3), the
-/// axis in the world frame times radians. They turn about the origins of the shapes' frames; without both nothing turns.
-/// Returns `Impact(time, normal, point1, point2, is_reached)`, points and normal at that time; without an impact by
-/// `max_time` the time is infinite. `is_reached` is false where the search ended early: the solids do not meet before
-/// `time`.
+/// `angular_velocity1`, `angular_velocity2`: in 2D a number or (n,) in radians, counter-clockwise; in 3D (3,) or (n,
+/// 3), the axis in the world frame times radians. The solids rotate about the origins of their local frames; without
+/// both there is no rotation. Returns `Impact(time, normal, point1, point2, is_reached)`, points and normal at that
+/// time; without an impact by `max_time` the time is infinite. `is_reached` is false if the search ended early: the
+/// solids do not touch before `time`.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[0, 3] = 6
@@ -289,11 +292,12 @@ fn pairs_within<'py>(
     call(shape2.unwrap_or(shape1)).ask_within(shape2.is_some(), distance)
 }
 
-/// The points of shapes that are nearest to points of the world.
+/// The points of shapes nearest to points in the world frame.
 ///
-/// shape, poses: as of `distance`. points: (D,) or (n, D). Returns `Projection(point, is_inside, part)`, (n, D), (n,) and
-/// (n,). Errors as of `distance`; a point may be anything. A point inside is its own projection if `solid`, else it goes to
-/// the boundary. What is not finite has NaN and part 4294967295. Meshes and lines are surfaces here: no point is inside.
+/// shape, poses: as of `distance`. points: (D,) or (n, D). Returns `Projection(point, is_inside, part)`, (n, D), (n,)
+/// and (n,). Errors as of `distance`; points may have any values. A point inside is its own projection if `solid`, else
+/// it is projected to the boundary. Values that are not finite give NaN and part 4294967295. Meshes and polylines are
+/// surfaces here: no point is inside.
 ///
 /// >>> import impinge
 /// >>> impinge.project_points(impinge.Ball(1), None, [4, 0, 0]).point.tolist()
@@ -314,9 +318,10 @@ fn project_points<'py>(
 
 /// The distances of points from shapes, negative inside.
 ///
-/// Arguments and errors as of `project_points`. Returns a float or an array (n,), lengths; infinite for what is not finite.
-/// Closed meshes in 3D and closed lines in 2D are solids here, and in `contains`. `ValueError` names a mesh, line or height
-/// field that is not closed: it has no inside. With `surface=True` it is asked as a surface, from which no distance is negative.
+/// Arguments and errors as of `project_points`. Returns a float or an array (n,), lengths; infinite for values that are
+/// not finite. Closed meshes in 3D and closed polylines in 2D are solids here, and in `contains`. `ValueError` names a
+/// mesh, polyline or height field that is not closed: it has no inside. With `surface=True` it is a surface, from which
+/// no distance is negative.
 ///
 /// >>> import impinge
 /// >>> impinge.signed_distance(impinge.Ball(2), None, [[5, 0, 0], [0, 1, 0]]).tolist()
@@ -337,8 +342,8 @@ fn signed_distance<'py>(
 
 /// Whether points are inside shapes, or on them.
 ///
-/// Arguments and errors as of `signed_distance`. Returns a bool or an array (n,) of bools. With `surface=True` a mesh, line or
-/// height field that is not closed has the points on it.
+/// Arguments and errors as of `signed_distance`. Returns a bool or an array (n,) of bools. With `surface=True` a mesh,
+/// polyline or height field that is not closed contains the points on it.
 ///
 /// >>> import impinge
 /// >>> impinge.contains(impinge.Cuboid([1, 1]), None, [[0, 0], [1, 1], [1, 2]]).tolist()
@@ -357,7 +362,7 @@ fn contains<'py>(
     ask_points([shape, poses, points], question, Call::new(threads, progress))
 }
 
-/// Where rays meet shapes.
+/// The first hits of rays on shapes.
 ///
 /// shape, poses: as of `distance`. origins, directions: (D,) or (n, D); a direction need not be a unit vector, and times
 /// are in units of its length. Returns `RayHit(time, normal, part)`, (n,), (n, D) and (n,): the time is infinite without a

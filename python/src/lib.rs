@@ -1,12 +1,13 @@
 //! impinge for Python: the extension module `impinge._native`.
 //!
-//! Python gives shapes, arrays and limits; [`space`] chooses the scalar and the dimension, and everything behind it is
-//! generic. Arrays of the right type and layout are read where they lie. The interpreter is released while the library
-//! works ([`supervise`]), and columns come back as NumPy arrays without a copy ([`answer`]). A question about a lone element
-//! is a batch of one whose slots need no list; about convex solids it is over before the interpreter would be released.
+//! Python passes shapes, arrays and limits. [`space`] dispatches on the scalar and the dimension, and everything behind
+//! it is generic. Arrays of the right type and layout are read without a copy. The interpreter is released while the
+//! library computes ([`supervise`]), and columns become NumPy arrays without a copy ([`answer`]). A query about a
+//! single element is a batch of one whose slots need no list; for convex solids it takes less time than releasing the
+//! interpreter.
 //!
-//! What reads arguments of other forms (lists, rotations of SciPy, arrays of other types) is written in Python, in
-//! `impinge/_poses.py`; the way from a shape and a matrix to an answer is short.
+//! Arguments of other forms (lists, rotations of SciPy, arrays of other types) are converted in Python, in
+//! `impinge/_poses.py`; the path from a shape and a matrix to a result is short.
 #![forbid(unsafe_code)]
 
 mod answer;

@@ -1,4 +1,4 @@
-//! What Python says of objects and questions beside arrays: groups, query types and filters.
+//! Options of objects and queries besides arrays: groups, query types and filters.
 
 use impinge::math::Real;
 use impinge::math::na::convert;
@@ -6,7 +6,7 @@ use impinge::narrow_phase::GeometricQueryType;
 use impinge::world::{CollisionGroups, GroupError};
 use pyo3::prelude::*;
 
-/// Numbers of groups; without a list it is that of new objects.
+/// Numbers of groups; a missing list is that of new objects.
 #[derive(FromPyObject)]
 pub(crate) struct GroupLists {
     membership: Option<Vec<usize>>,
@@ -15,7 +15,7 @@ pub(crate) struct GroupLists {
 }
 
 impl GroupLists {
-    /// As the library has them.
+    /// Converts to groups of the library.
     pub(crate) fn groups(&self) -> Result<CollisionGroups, GroupError> {
         let mut groups = CollisionGroups::new();
         if let Some(membership) = &self.membership {
@@ -30,23 +30,23 @@ impl GroupLists {
         Ok(groups)
     }
 
-    /// No list is given.
+    /// Whether no list is given.
     pub(crate) const fn is_empty(&self) -> bool {
         self.membership.is_none() && self.whitelist.is_none() && self.blacklist.is_none()
     }
 }
 
-/// What is computed of the pairs of an object.
+/// The query type of the pairs of an object.
 #[derive(FromPyObject)]
 pub(crate) struct QueryOptions {
-    /// Contacts up to the sum of the predictions of both objects; used where there is no margin.
+    /// Contacts up to the sum of the predictions of both objects; used if there is no margin.
     prediction: f64,
     /// Proximity instead of contacts, with this margin.
     margin: Option<f64>,
 }
 
 impl QueryOptions {
-    /// As the library has it.
+    /// Converts to a query type of the library.
     pub(crate) fn query_type<N: Real>(&self) -> GeometricQueryType<N> {
         match self.margin {
             Some(margin) => GeometricQueryType::Proximity(convert(margin)),
@@ -55,14 +55,14 @@ impl QueryOptions {
     }
 }
 
-/// What a new object is to be, apart from shape and pose.
+/// The properties of a new object besides shape and pose.
 #[derive(FromPyObject)]
 pub(crate) struct ObjectOptions {
     pub(crate) query: QueryOptions,
     pub(crate) groups: GroupLists,
 }
 
-/// Which objects a question is about.
+/// The objects that a query considers.
 #[derive(FromPyObject)]
 pub(crate) struct FilterOptions {
     pub(crate) groups: GroupLists,

@@ -1,4 +1,4 @@
-//! Questions about pairs: one shape or many against one or many.
+//! Queries about pairs: one shape or many with one or many.
 
 use impinge::batch::{
     BatchError, ClosestColumns, ContactColumns, Control, ImpactColumns, ManifoldRows, PairBatch,
@@ -22,19 +22,19 @@ use crate::supervise::{Call, Threads, supervise};
 use crate::turning::AskTurning;
 use crate::vectors::Vectors;
 
-/// A question about every pair of a batch.
+/// A query about every pair of a batch.
 pub(crate) trait Question: Sync {
-    /// Answers as columns.
+    /// The columns of the result.
     type Columns<N: Numeric<D>, const D: usize>: IntoIterator<Item = Column<N, D>, IntoIter: ExactSizeIterator>
         + Send;
 
-    /// The class of the answers; without, the only column is the answer.
+    /// The class of the result; without, the only column is the result.
     fn class(&self) -> Option<&'static Class>;
 
-    /// What limits the answers, and its name in Python.
+    /// The limit of the result, and its name in Python.
     fn limit(&self) -> (&'static str, f64);
 
-    /// Asks about a batch of this extent.
+    /// Runs the query for a batch of this extent.
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
@@ -68,7 +68,7 @@ impl Question for Distances {
     }
 }
 
-/// Nearest points up to a distance.
+/// Closest points up to a distance.
 pub(crate) struct Closest(pub(crate) f64);
 
 impl Question for Closest {
@@ -278,7 +278,7 @@ impl Question for Manifolds {
     }
 }
 
-/// The two sides of a call, and how it is to be done.
+/// The two sides of a call, and its options.
 pub(crate) struct PairCall<'a, 'py> {
     pub(crate) py: Python<'py>,
     pub(crate) sides: [SideArgument<'a, 'py>; 2],
@@ -296,7 +296,7 @@ impl<'a, 'py> PairCall<'a, 'py> {
         Self { py: shape1.py(), sides: [side1, side2], call: Call::new(threads, progress) }
     }
 
-    /// Asks about the pairs.
+    /// Runs a query about the pairs.
     pub(crate) fn ask<Q: Question>(self, question: Q) -> PyResult<Bound<'py, PyAny>> {
         let (name, value) = question.limit();
         not_nan(name, value)?;
@@ -304,7 +304,7 @@ impl<'a, 'py> PairCall<'a, 'py> {
         run_in(kind, Ask { call: self, question, kind })
     }
 
-    /// Asks when the shapes of each pair meet.
+    /// Computes the impacts of each pair.
     pub(crate) fn ask_impacts(self, impacts: ImpactCall<'a, 'py>) -> PyResult<Bound<'py, PyAny>> {
         not_nan("max_time", impacts.max_time)?;
         not_nan("target_distance", impacts.target_distance)?;
@@ -315,7 +315,8 @@ impl<'a, 'py> PairCall<'a, 'py> {
         run_in(kind, AskImpacts { call: self, impacts, kind })
     }
 
-    /// Asks which elements are near each other; without `is_two_sided` those of the first side.
+    /// Computes which elements are near each other; without `is_two_sided` among those of the first
+    /// side.
     pub(crate) fn ask_within(
         self,
         is_two_sided: bool,
@@ -351,7 +352,7 @@ impl<'py, Q: Question> Task for Ask<'_, 'py, Q> {
     }
 }
 
-/// Impacts on straight ways.
+/// Impacts on straight paths.
 struct Impacts<'a, N: Numeric<D>, const D: usize> {
     velocities: [&'a [[N; D]]; 2],
     options: ImpactOptions<N>,
@@ -388,7 +389,7 @@ impl<N: Numeric<D>, const D: usize> Impacts<'_, N, D> {
     }
 }
 
-/// How the shapes of pairs move, and up to when.
+/// The motions of the shapes of pairs, and the limits.
 pub(crate) struct ImpactCall<'a, 'py> {
     pub(crate) velocities: [&'a Bound<'py, PyAny>; 2],
     pub(crate) angular_velocities: [Option<&'a Bound<'py, PyAny>>; 2],
@@ -396,7 +397,7 @@ pub(crate) struct ImpactCall<'a, 'py> {
     pub(crate) target_distance: f64,
 }
 
-/// Asks when the shapes of each pair meet on straight ways.
+/// Computes the impacts of each pair on straight paths.
 struct AskImpacts<'a, 'py> {
     call: PairCall<'a, 'py>,
     impacts: ImpactCall<'a, 'py>,
@@ -428,7 +429,7 @@ impl<'py> Task for AskImpacts<'_, 'py> {
     }
 }
 
-/// Asks which elements are near each other.
+/// Computes which elements are near each other.
 struct AskWithin<'a, 'py> {
     call: PairCall<'a, 'py>,
     is_two_sided: bool,

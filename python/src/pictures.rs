@@ -13,23 +13,23 @@ use crate::shapes::kind_of;
 use crate::side::SideArgument;
 use crate::space::{Kind, Numeric, Task, run_in};
 
-/// How things are seen.
+/// The view of a picture.
 #[derive(FromPyObject)]
 pub(crate) struct PictureView {
-    /// Width and height in pixels; the height of a picture in 2D follows from what is drawn.
+    /// Width and height in pixels; the height of a picture in 2D follows from the content.
     size: [u32; 2],
-    /// The direction of view in 3D, and what is above.
+    /// The direction of view in 3D, and the upward direction.
     look: [f64; 3],
     up: [f64; 3],
     title: String,
 }
 
-/// A scalar and a dimension in which there are pictures.
+/// A scalar and a dimension that support pictures.
 pub(crate) trait Pictured<const D: usize>: Space<D> {
-    /// The format of pictures, as the ends of files name it.
+    /// The format of pictures, as a file extension.
     const FORMAT: &'static str;
 
-    /// The bytes of a picture of what is drawn.
+    /// Returns the bytes of a picture of a drawing.
     fn bytes(view: &PictureView, draw: &mut dyn FnMut(&mut dyn DebugRender<Self, D>)) -> Vec<u8>;
 }
 
@@ -55,7 +55,8 @@ impl<N: Real> Pictured<3> for N {
     }
 }
 
-/// A picture of the objects of a world, with contacts and proximities of the last update: format and bytes.
+/// Returns a picture of the objects of a world, with contacts and proximities of the last update: format
+/// and bytes.
 pub(crate) fn picture<N: Numeric<D>, const D: usize>(
     world: &CollisionWorld<N, D, ()>,
     view: &PictureView,
@@ -65,7 +66,7 @@ pub(crate) fn picture<N: Numeric<D>, const D: usize>(
     (<N as Pictured<D>>::FORMAT, bytes)
 }
 
-/// A picture of shapes at poses.
+/// Returns a picture of shapes at poses.
 #[pyfunction]
 pub(crate) fn picture_of<'py>(
     shapes: &Bound<'py, PyAny>,
@@ -90,7 +91,7 @@ impl<'py> Task for Draw<'_, 'py> {
         let given = self.side.read::<N, D>(self.kind)?;
         let poses = given.poses()?;
         let mut world = CollisionWorld::<N, D, ()>::new(N::ZERO);
-        // Nothing touches: shapes alone are drawn, and no pair is looked at, for the world is not updated.
+        // The world is not updated: only shapes are drawn, and no pair is computed.
         let query = GeometricQueryType::Proximity(N::ZERO);
         for element in 0..given.side(&*poses)?.len() {
             let position = N::isometry(&poses.pose(if poses.len() == 1 { 0 } else { element }));

@@ -1,4 +1,4 @@
-//! Questions about points and rays beside placed shapes.
+//! Queries of points and rays against placed shapes.
 
 use impinge::batch::{HitColumns, PointBatch, ProjectionColumns, RayColumns};
 use impinge::math::Point;
@@ -14,19 +14,20 @@ use crate::space::{Kind, Numeric, Task, run_in};
 use crate::supervise::{Call, each, supervise};
 use crate::vectors::Vectors;
 
-/// What is asked of points.
+/// A query about points.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PointQuestion {
-    /// The nearest point; inside points are their own projection if `solid`.
+    /// The nearest point; points inside are their own projection if `solid`.
     Project { solid: bool },
-    /// Negative inside; open surfaces have no inside, and are refused unless `surface`.
+    /// Negative inside; open surfaces have no inside, and are an error unless `surface`.
     SignedDistance { surface: bool },
-    /// Likewise.
+    /// Whether it is inside; open surfaces are an error unless `surface`.
     Contains { surface: bool },
 }
 
 impl PointQuestion {
-    /// It is about what is inside, so that closed surfaces are solids; with `surface` of open ones.
+    /// Whether the query is about the inside, for which closed surfaces are solids; the value is
+    /// `surface`.
     const fn is_about_inside(self) -> Option<bool> {
         match self {
             Self::Project { .. } => None,
@@ -35,7 +36,7 @@ impl PointQuestion {
     }
 }
 
-/// Points beside a side.
+/// Points against a side.
 struct AskPoints<'a, 'py> {
     side: SideArgument<'a, 'py>,
     points: &'a Bound<'py, PyAny>,
@@ -44,7 +45,7 @@ struct AskPoints<'a, 'py> {
     kind: Kind,
 }
 
-/// Asks about points of the world.
+/// Runs a query about points in the world frame.
 pub(crate) fn ask_points<'py>(
     [shape, poses, points]: [&Bound<'py, PyAny>; 3],
     question: PointQuestion,
@@ -105,7 +106,7 @@ impl<'py> Task for AskPoints<'_, 'py> {
 }
 
 impl AskPoints<'_, '_> {
-    /// The answers where a shape is a surface: closed ones are solids.
+    /// Returns the results where a shape is a surface: closed ones are solids.
     fn of_solids<N: Numeric<D>, const D: usize>(
         &self,
         given: &GivenSide<'_, '_, N, D>,
@@ -135,7 +136,7 @@ impl AskPoints<'_, '_> {
     }
 }
 
-/// Rays beside a side.
+/// Rays against a side.
 struct CastRays<'a, 'py> {
     side: SideArgument<'a, 'py>,
     rays: [&'a Bound<'py, PyAny>; 2],

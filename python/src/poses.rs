@@ -13,14 +13,15 @@ use crate::vectors::Numbers;
 
 /// An argument with poses.
 pub(crate) struct Poses<'py, N: Numeric<D>, const D: usize> {
-    /// What Python calls it.
+    /// The name of the argument in Python.
     name: &'static str,
-    /// Of a matrix (D+1, D+1) or an array (n, D+1, D+1); without, it is the identity.
+    /// A matrix (D+1, D+1) or an array (n, D+1, D+1); without, the identity.
     given: Option<Numbers<'py, N>>,
 }
 
 impl<'py, N: Numeric<D>, const D: usize> Poses<'py, N, D> {
-    /// Takes an argument; what is no array of the right type and layout goes through `impinge._poses.matrices`.
+    /// Reads an argument; an argument other than an array of the right type and layout is converted by
+    /// `impinge._poses.matrices`.
     pub(crate) fn of(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
         if given.is_none() {
             return Ok(Self { name, given: None });
@@ -39,12 +40,12 @@ impl<'py, N: Numeric<D>, const D: usize> Poses<'py, N, D> {
         Ok(Self { name, given: Some(Numbers::of(array.cast::<PyArrayDyn<N>>()?, 2)?) })
     }
 
-    /// There is one pose, not an array of poses.
+    /// Whether there is one pose, not an array of poses.
     pub(crate) fn is_lone(&self) -> bool {
         self.given.as_ref().is_none_or(Numbers::is_lone)
     }
 
-    /// As the library reads them.
+    /// Returns the poses as a source for the library.
     pub(crate) fn source(&self) -> PyResult<Source<'_, N, D>> {
         let Some(numbers) = &self.given else {
             return Ok(Source::Identity(OnePose(Identity)));
@@ -54,7 +55,7 @@ impl<'py, N: Numeric<D>, const D: usize> Poses<'py, N, D> {
     }
 }
 
-/// The pose of no argument.
+/// The pose of a missing argument.
 pub(crate) struct Identity;
 
 impl<N: Numeric<D>, const D: usize> AsPose<N, D> for Identity {
@@ -80,12 +81,12 @@ impl<'a, N: Numeric<D>, const D: usize> Deref for Source<'a, N, D> {
     }
 }
 
-/// A matrix or an array of matrices.
+/// Whether it is the shape of a matrix or of an array of matrices.
 fn is_usable<const D: usize>(shape: &[usize]) -> bool {
     matches!(shape, [rows, columns] | [_, rows, columns] if [*rows, *columns] == [D + 1, D + 1])
 }
 
-/// Poses as an array of the shape (n, D+1, D+1).
+/// Converts poses to an array of the shape (n, D+1, D+1).
 pub(crate) fn into_array<N: Numeric<D>, const D: usize>(
     py: Python<'_>,
     poses: impl Iterator<Item = Pose<N, D>>,

@@ -12,12 +12,12 @@ use crate::answer::Column;
 use crate::shapes::Shape;
 use crate::space::{Numeric, Task, run_in};
 
-/// A scalar and a dimension with shapes of its own that have vertices.
+/// A scalar and a dimension with vertices of its own shapes.
 pub(crate) trait Cornered<const D: usize>: Space<D> {
-    /// The vertices of the convex shapes of this dimension alone.
+    /// Returns the vertices of the convex shapes that exist in this dimension only.
     fn own_corners(shape: &ShapeHandle<Self, D>) -> Option<Vec<Point<Self, D>>>;
 
-    /// It is a tetrahedron, not a hull.
+    /// Whether it is a tetrahedron, not a hull.
     fn is_tetrahedron(shape: &ShapeHandle<Self, D>) -> bool;
 }
 
@@ -44,18 +44,18 @@ impl<N: Real> Cornered<3> for N {
     }
 }
 
-/// The vertices of a shape, (n, D).
+/// Returns the vertices of a shape, (n, D).
 ///
 /// # Errors
-/// `AttributeError` if it has none.
+/// `AttributeError` if the shape has none.
 pub(crate) fn vertices<'py>(py: Python<'py>, shape: &Shape) -> PyResult<Bound<'py, PyAny>> {
     run_in(shape.kind, Vertices { py, shape })
 }
 
-/// The faces of a shape as numbers of vertices: (m, 3), of lines (m, 2).
+/// Returns the faces of a shape as numbers of vertices: (m, 3), for polylines (m, 2).
 ///
 /// # Errors
-/// `AttributeError` if it has none.
+/// `AttributeError` if the shape has none.
 pub(crate) fn faces<'py>(py: Python<'py>, shape: &Shape) -> PyResult<Bound<'py, PyAny>> {
     run_in(shape.kind, Faces { py, shape })
 }

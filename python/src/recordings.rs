@@ -1,11 +1,12 @@
-//! Recordings as pages, where the module carries the engine of the page (the feature `page`).
+//! Recordings as pages, if the module contains the engine of the page (the feature `page`).
 
 use pyo3::prelude::*;
 
-/// The recording as one HTML file that shows it; `None` where the module was built without the page.
+/// Returns the recording as one HTML file that shows it; `None` if the module was built without the
+/// page.
 ///
 /// # Errors
-/// `ValueError` if the bytes are no recording.
+/// `ValueError` if the bytes are not a recording.
 #[cfg(feature = "page")]
 #[pyfunction]
 pub(crate) fn recording_page(
@@ -17,7 +18,7 @@ pub(crate) fn recording_page(
     page.map(Some).map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))
 }
 
-/// The recording as one HTML file that shows it; `None` where the module was built without the page.
+/// Returns `None`: the module was built without the page.
 #[cfg(not(feature = "page"))]
 #[pyfunction]
 pub(crate) const fn recording_page(_bytes: &[u8], _title: &str) -> Option<String> {

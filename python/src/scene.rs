@@ -1,4 +1,4 @@
-//! Scenes as canonical bytes: a recording of the calls that add the objects, which has a checksum and a version.
+//! Scenes as canonical bytes: a recording of the calls that add the objects, with a checksum and a version.
 
 use std::collections::BTreeMap;
 
@@ -60,26 +60,26 @@ impl<'py> Task for Write<'_, 'py> {
     }
 }
 
-/// What is asked of the objects of scenes, which nobody asks.
+/// The query type of the objects of scenes, which has no effect.
 const fn contacts<N: Real>() -> GeometricQueryType<N> {
     GeometricQueryType::Contacts(N::ZERO, N::ZERO)
 }
 
-/// A recorder of a world without objects.
+/// Creates a recorder of a world without objects.
 fn recorder<N: Numeric<D>, const D: usize>() -> Result<Recorder<N, D, ()>, RecordError> {
     Recorder::new(N::ZERO, Registry::new())
 }
 
-/// Shapes that are equal, as one: a recording has a shape once for each handle, a scene once for each value.
+/// Shares equal shapes: a recording has a shape once for each handle, a scene once for each value.
 struct EqualShapes<N: Numeric<D>, const D: usize> {
     /// By the bytes of a recording of the shape alone.
     by_bytes: BTreeMap<Vec<u8>, ShapeHandle<N, D>>,
-    /// What was given last, and what stands for it: objects that share a shape mostly follow each other.
+    /// The last shape and its shared one: objects that share a shape are usually consecutive.
     last: Option<[ShapeHandle<N, D>; 2]>,
 }
 
 impl<N: Numeric<D>, const D: usize> EqualShapes<N, D> {
-    /// The handle that stands for all shapes equal to this.
+    /// Returns the shared handle of all shapes equal to this.
     fn shared(&mut self, shape: &ShapeHandle<N, D>) -> Result<ShapeHandle<N, D>, RecordError> {
         if let Some([_, shared]) = self.last.as_ref().filter(|[given, _]| given.is_same(shape)) {
             return Ok(shared.clone());
@@ -93,7 +93,7 @@ impl<N: Numeric<D>, const D: usize> EqualShapes<N, D> {
         Ok(shared)
     }
 
-    /// The same shape, made of shapes that stand for all equal to them. A recorder refuses what nests too deep.
+    /// Rebuilds the shape from shared shapes. A recorder rejects shapes that nest too deep.
     fn with_shared_children(
         &mut self,
         shape: &ShapeHandle<N, D>,
@@ -119,7 +119,7 @@ impl<N: Numeric<D>, const D: usize> EqualShapes<N, D> {
 /// Shapes, poses, dimension and scalar of a scene.
 type SceneParts<'py> = (Vec<Py<Shape>>, Bound<'py, PyAny>, u8, &'static str);
 
-/// The shapes of the objects, one for each, and their poses, of the bytes of a scene, and its dimension and scalar.
+/// Decodes a scene: the shapes of the objects, one for each, their poses, the dimension and the scalar.
 #[pyfunction]
 fn scene_of_bytes<'py>(py: Python<'py>, bytes: &[u8]) -> PyResult<SceneParts<'py>> {
     let kind = Kind::of_header(&Header::read(bytes).map_err(|error| refused(&error))?)?;
@@ -127,7 +127,7 @@ fn scene_of_bytes<'py>(py: Python<'py>, bytes: &[u8]) -> PyResult<SceneParts<'py
     Ok((shapes, poses, kind.dim(), kind.dtype()))
 }
 
-/// The only shape of the bytes of a scene.
+/// Returns the only shape of the bytes of a scene.
 #[pyfunction]
 fn shape_of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Py<Shape>> {
     let (mut shapes, ..) = scene_of_bytes(py, bytes)?;
@@ -156,7 +156,7 @@ impl<'py> Task for Read<'_, 'py> {
         let mut last: Option<&ShapeHandle<N, D>> = None;
         for object in objects() {
             let shape = object.shape();
-            // Objects that share a shape mostly follow each other.
+            // Objects that share a shape are usually consecutive.
             let shared = shapes.last().filter(|_| last.is_some_and(|last| last.is_same(shape)));
             let next = match shared {
                 Some(shape) => shape.clone_ref(self.py),

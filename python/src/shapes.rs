@@ -18,24 +18,24 @@ use crate::read_back;
 use crate::scene::scene_bytes;
 use crate::space::{Kind, Numeric, Task, run_in};
 
-/// A solid or a surface, in its own frame. It does not change; the functions of the package make it.
+/// A solid or a surface, in its local frame. It is immutable; the functions of the package create it.
 #[pyclass(frozen, module = "impinge")]
 pub(crate) struct Shape {
     pub(crate) kind: Kind,
     /// A `ShapeHandle` of the kind.
     handle: Arc<dyn Any + Send + Sync>,
-    /// The function of the package that makes shapes like it.
+    /// The function of the package that creates such shapes.
     name: String,
 }
 
 impl Shape {
-    /// A shape of the library as Python has it.
+    /// Wraps a shape of the library.
     pub(crate) fn of<N: Numeric<D>, const D: usize>(kind: Kind, shape: ShapeHandle<N, D>) -> Self {
         let name = public_name(&shape);
         Self { kind, handle: Arc::new(shape), name }
     }
 
-    /// The shape of the library.
+    /// Returns the shape of the library.
     ///
     /// # Errors
     /// `TypeError` if it is of another scalar or dimension.
@@ -49,7 +49,7 @@ impl Shape {
     }
 }
 
-/// The arguments of a constructor as arrays; which of them count depends on the kind of shape.
+/// The arguments of a constructor as arrays; the kind of shape determines which are used.
 struct Description<'a, 'py> {
     name: &'a str,
     numbers: &'a [f64],
@@ -63,7 +63,7 @@ struct Description<'a, 'py> {
     kind: Kind,
 }
 
-/// What Python calls [`Shape`] with: see [`Description`] for the last nine.
+/// The arguments of [`Shape`] in Python: see [`Description`] for the last nine.
 type Arguments<'py> = (
     String,
     u8,
@@ -102,13 +102,13 @@ impl Shape {
         run_in(kind, Make(&description))
     }
 
-    /// The function that makes shapes like it, such as `TriMesh`.
+    /// The function that creates such shapes, such as `TriMesh`.
     #[getter]
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    /// How many dimensions it has: 2 or 3.
+    /// The number of dimensions: 2 or 3.
     #[getter]
     fn dim(&self) -> u8 {
         self.kind.dim()
@@ -120,21 +120,21 @@ impl Shape {
         self.kind.dtype()
     }
 
-    /// The vertices (n, D) of a mesh, a line, a hull, a triangle or a segment, in the frame of the shape; `AttributeError`
-    /// of other shapes. A hull has those that its surface has.
+    /// The vertices (n, D) of a mesh, a polyline, a hull, a triangle or a segment, in the local frame; `AttributeError`
+    /// for other shapes. For a hull these are the vertices of its surface.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         read_back::vertices(py, self)
     }
 
-    /// The numbers of the vertices of each triangle of a mesh (m, 3), or of each segment of a line (m, 2);
-    /// `AttributeError` of other shapes.
+    /// The numbers of the vertices of each triangle of a mesh (m, 3), or of each segment of a polyline (m, 2);
+    /// `AttributeError` for other shapes.
     #[getter]
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         read_back::faces(py, self)
     }
 
-    /// Shapes are equal if they are of one kind, dim and dtype, and made of the same numbers.
+    /// Shapes are equal if they have the same kind, dim and dtype, and were made of the same numbers.
     fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
         let py = slf.py();
         let Ok(other) = other.cast::<Self>() else { return Ok(py.NotImplemented()) };
@@ -169,12 +169,12 @@ impl Shape {
     }
 }
 
-/// The bytes of a scene of this shape alone, which equal shapes share.
+/// Returns the bytes of a scene of this shape alone, which are equal for equal shapes.
 fn bytes_of<'py>(shape: &Bound<'py, Shape>) -> PyResult<Bound<'py, PyBytes>> {
     scene_bytes(shape.as_any(), &shape.py().None().into_bound(shape.py()))
 }
 
-/// The name of the function that makes such shapes; what else is there is called as the library calls it.
+/// Returns the name of the function that creates such shapes; for other shapes the name in the library.
 fn public_name<N: Numeric<D>, const D: usize>(shape: &ShapeHandle<N, D>) -> String {
     match shape.geometry().kind() {
         ShapeKind::Plane => "HalfSpace".to_owned(),
@@ -217,7 +217,7 @@ fn refused(problem: &Problem) -> PyErr {
 }
 
 impl Description<'_, '_> {
-    /// The constructor's arguments with their scalar and dimension.
+    /// Returns the constructor's arguments with their scalar and dimension.
     fn data<N: Numeric<D>, const D: usize>(&self) -> PyResult<ShapeData<N, D>> {
         let data = match self.name {
             "Ball" => ShapeData::Ball(self.number(0)?),
@@ -240,7 +240,7 @@ impl Description<'_, '_> {
         Ok(data)
     }
 
-    /// The same of hulls and of what has parts.
+    /// Returns the arguments of hulls and composites.
     fn composite<N: Numeric<D>, const D: usize>(&self) -> PyResult<ShapeData<N, D>> {
         Ok(match self.name {
             "ConvexHull" => ShapeData::Hull { points: self.vertices()?, faces: Vec::new() },
@@ -258,7 +258,7 @@ impl Description<'_, '_> {
         self.numbers.get(index).map(|number| convert(*number)).ok_or_else(missing)
     }
 
-    /// The first numbers as a vector.
+    /// Returns the first numbers as a vector.
     fn vector<N: Numeric<D>, const D: usize>(&self) -> PyResult<Vector<N, D>> {
         if self.numbers.len() != D {
             let given = self.numbers.len();
@@ -270,7 +270,7 @@ impl Description<'_, '_> {
         Ok(Vector::from_fn(|axis, _| convert(self.numbers[axis])))
     }
 
-    /// All points.
+    /// Returns all points.
     fn vertices<N: Numeric<D>, const D: usize>(&self) -> PyResult<Vec<Point<N, D>>> {
         let Some(points) = &self.points else {
             return Err(PyValueError::new_err(format!("{} lacks points", self.name)));
@@ -282,7 +282,7 @@ impl Description<'_, '_> {
             .collect())
     }
 
-    /// As many points as the shape has.
+    /// Returns `COUNT` points, which must be all.
     fn points<N: Numeric<D>, const D: usize, const COUNT: usize>(
         &self,
     ) -> PyResult<[Point<N, D>; COUNT]> {
@@ -355,7 +355,7 @@ pub(crate) enum ShapesArgument<'a, 'py, N: Numeric<D>, const D: usize> {
     Picked { shapes: Vec<ShapeHandle<N, D>>, picks: PyReadonlyArray1<'py, u32> },
 }
 
-/// The shapes of an argument, and what picks among them.
+/// The shapes of an argument, and the indices into them.
 type Given<'py> = (Vec<PyRef<'py, Shape>>, Option<PyReadonlyArray1<'py, u32>>);
 
 fn given<'py>(argument: &Bound<'py, PyAny>, name: &str) -> PyResult<Given<'py>> {
@@ -375,7 +375,7 @@ fn given<'py>(argument: &Bound<'py, PyAny>, name: &str) -> PyResult<Given<'py>> 
     }
 }
 
-/// The scalar and dimension of the shapes of an argument: those of the first.
+/// Returns the scalar and dimension of the shapes of an argument: those of the first.
 pub(crate) fn kind_of(argument: &Bound<'_, PyAny>, name: &str) -> PyResult<Kind> {
     if let Ok(shape) = argument.cast::<Shape>() {
         return Ok(shape.get().kind);
@@ -403,7 +403,7 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         })
     }
 
-    /// The only shape, where there is one, not a sequence.
+    /// Returns the shape if there is a single one, not a sequence.
     pub(crate) const fn lone(&self) -> Option<&'a ShapeHandle<N, D>> {
         match self {
             Self::One(shape) => Some(shape),
@@ -411,7 +411,7 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         }
     }
 
-    /// The shapes that are given.
+    /// Returns the given shapes.
     pub(crate) fn distinct(&self) -> &[ShapeHandle<N, D>] {
         match self {
             Self::One(shape) => core::slice::from_ref(*shape),
@@ -419,7 +419,7 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         }
     }
 
-    /// The shape of an element; a single one is for all.
+    /// Returns the shape of an element; a single one is for all.
     pub(crate) fn at(&self, element: usize) -> &ShapeHandle<N, D> {
         let index = |len| if len == 1 { 0 } else { element };
         match self {
@@ -432,7 +432,7 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         }
     }
 
-    /// As the library reads them.
+    /// Returns the shapes in the form of the library.
     pub(crate) fn shapes(&self) -> PyResult<Shapes<'_, N, D>> {
         Ok(match self {
             Self::One(shape) => Shapes::One(&***shape),

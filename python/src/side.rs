@@ -1,4 +1,4 @@
-//! One side of a batch as Python gives it: shapes and poses.
+//! One side of a batch in Python: shapes and poses.
 
 use impinge::batch::{BatchError, PoseSource, Side};
 use impinge::math::Pose;
@@ -12,7 +12,7 @@ use crate::shapes::ShapesArgument;
 use crate::solid;
 use crate::space::{Kind, Numeric};
 
-/// The arguments of a side, and what Python calls them.
+/// The arguments of a side, and their names in Python.
 #[derive(Clone, Copy)]
 pub(crate) struct SideArgument<'a, 'py> {
     pub(crate) shapes: &'a Bound<'py, PyAny>,
@@ -21,7 +21,7 @@ pub(crate) struct SideArgument<'a, 'py> {
 }
 
 impl<'a, 'py> SideArgument<'a, 'py> {
-    /// Reads both, which must be of this kind.
+    /// Reads shapes and poses, which must be of this kind.
     pub(crate) fn read<N: Numeric<D>, const D: usize>(
         &self,
         kind: Kind,
@@ -43,23 +43,23 @@ pub(crate) struct GivenSide<'a, 'py, N: Numeric<D>, const D: usize> {
 }
 
 impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
-    /// One shape at one pose: the answer is no array.
+    /// Whether there is one shape at one pose: the result is then not an array.
     pub(crate) fn is_lone(&self) -> bool {
         self.shapes.lone().is_some() && self.poses.is_lone()
     }
 
-    /// One convex shape at one pose, about which a question takes hardly a microsecond.
+    /// Whether there is one convex shape at one pose, for which a query takes about a microsecond.
     pub(crate) fn is_quick(&self) -> bool {
         let shape = self.shapes.lone().map(|shape| shape.geometry().kind());
         shape.is_some_and(|kind| kind != ShapeKind::Composite) && self.poses.is_lone()
     }
 
-    /// The shape of an element.
+    /// Returns the shape of an element.
     pub(crate) fn shape(&self, element: usize) -> &ShapeHandle<N, D> {
         self.shapes.at(element)
     }
 
-    /// A shape is a surface or a line.
+    /// Whether a shape is a surface or a polyline.
     ///
     /// # Errors
     /// `ValueError` for one that is not closed, with its row; not if `surface`.
@@ -78,7 +78,7 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
         Ok(has_surface)
     }
 
-    /// The shapes and poses of all elements; one if there is one for all.
+    /// Returns the shapes and poses of all elements; one if there is one for all.
     pub(crate) fn placed(&self) -> PyResult<Vec<(&ShapeHandle<N, D>, Pose<N, D>)>> {
         let poses = self.poses()?;
         let len = self.side(&*poses)?.len();
@@ -86,12 +86,12 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
         Ok((0..len).map(|element| (self.shape(element), pose(element))).collect())
     }
 
-    /// The poses as the library reads them.
+    /// Returns the poses in the form of the library.
     pub(crate) fn poses(&self) -> PyResult<Source<'_, N, D>> {
         self.poses.source()
     }
 
-    /// As the library reads it.
+    /// Returns the side in the form of the library.
     pub(crate) fn side<'a>(&'a self, poses: &'a dyn PoseSource<N, D>) -> PyResult<Side<'a, N, D>> {
         let [_, name] = self.names;
         Side::try_new(self.shapes.shapes()?, poses).map_err(|error| match error {
@@ -102,7 +102,7 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
         })
     }
 
-    /// Each element's shape and position, of one that stands for all too.
+    /// Returns each element's shape and position, also if a single one is used for all.
     pub(crate) fn elements(&self) -> PyResult<Elements<'_, N, D>> {
         let poses = self.poses()?;
         let len = self.side(&*poses)?.len();
@@ -120,7 +120,7 @@ pub(crate) struct Elements<'a, N: Numeric<D>, const D: usize> {
     pub(crate) positions: Vec<N::Isometry>,
 }
 
-/// How many elements arguments have together, where one stands for all.
+/// Returns the common number of elements of arguments, where a single one is used for all.
 pub(crate) fn common(lengths: &[(&str, usize)]) -> PyResult<usize> {
     let len = lengths.iter().map(|(_, len)| *len).find(|len| *len != 1).unwrap_or(1);
     match lengths.iter().find(|(_, given)| *given != 1 && *given != len) {

@@ -1,9 +1,9 @@
-//! Closed surfaces and lines as what they bound, in questions about points.
+//! Closed surfaces and polylines as solids, in queries about points.
 //!
-//! The library sees a mesh that was not made solid as a surface, in which no point lies, and answers beside that what a
-//! closed one encloses (`TriMesh::signed_distance`). Here a closed mesh in 3D and a closed line in 2D are solids. Other meshes,
-//! lines and height fields are *open*: they bound nothing, and a question about what is inside needs the word of the caller
-//! (`surface=True`) that they are surfaces. A compound is the union of its children.
+//! In the library a mesh that was not made solid is a surface without an interior, and `TriMesh::signed_distance`
+//! returns its distance with the sign of the enclosed volume. Here a closed mesh in 3D and a closed polyline in 2D are
+//! solids. Other meshes, polylines and height fields are *open*: they bound nothing, and a query about their inside is
+//! an error unless the caller declares them surfaces (`surface=True`). A compound is the union of its children.
 
 use impinge::math::{Point, Pose, Real, Space};
 use impinge::query::PointQuery;
@@ -13,25 +13,25 @@ use pyo3::prelude::*;
 
 use crate::space::Numeric;
 
-/// A scalar and a dimension in which surfaces may bound something.
+/// A scalar and a dimension in which surfaces may bound a solid.
 pub(crate) trait Bounding<const D: usize>: Space<D> {
-    /// The signed distance of a point of its frame from a mesh or line, negative in what it bounds; `None` if the shape
-    /// bounds nothing, and of solids.
+    /// Returns the signed distance of a point in the local frame from a mesh or polyline, negative inside; `None` if
+    /// the shape bounds nothing, and for solids.
     fn signed_distance(shape: &ShapeHandle<Self, D>, point: &Point<Self, D>) -> Option<Self>;
 
-    /// Whether a point of its frame lies in what a mesh or line bounds, or on it; `None` as above.
+    /// Returns whether a point in the local frame lies inside a mesh or polyline, or on it; `None` as above.
     fn encloses(shape: &ShapeHandle<Self, D>, point: &Point<Self, D>) -> Option<bool>;
 
-    /// What the shape is if it is a surface or a line.
+    /// Returns the kind of a surface or polyline; `None` for other shapes.
     fn standing(shape: &ShapeHandle<Self, D>) -> Option<Standing>;
 }
 
-/// What a shape with a surface but no inside of its own is.
+/// The kind of a shape with a surface but no interior of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Standing {
     /// It bounds a solid.
     Closed,
-    /// It bounds nothing; with the name of its kind.
+    /// It bounds nothing; with the name of its kind of shape.
     Open(&'static str),
 }
 
@@ -68,7 +68,7 @@ impl<N: Real> Bounding<3> for N {
             let is_closed = mesh.is_volume();
             return Some(if is_closed { Standing::Closed } else { Standing::Open("TriMesh") });
         }
-        // A line bounds nothing in space.
+        // A polyline bounds nothing in 3D.
         if shape.as_shape::<Polyline<N, 3>>().is_some() {
             return Some(Standing::Open("Polyline"));
         }
@@ -76,7 +76,8 @@ impl<N: Real> Bounding<3> for N {
     }
 }
 
-/// What the shape is: of a compound open if a child is, else closed if one is; `None` of solids.
+/// Returns the kind of the shape: for a compound open if a child is open, else closed if one is closed; `None` for
+/// solids.
 pub(crate) fn standing<N: Numeric<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
 ) -> Option<Standing> {
@@ -90,10 +91,10 @@ pub(crate) fn standing<N: Numeric<D>, const D: usize>(
     N::standing(shape)
 }
 
-/// Refuses an open surface.
+/// Returns an error for an open surface.
 ///
 /// # Errors
-/// `ValueError`, with what names the shape.
+/// `ValueError`, with the name of the shape.
 pub(crate) fn refuse_open(standing: Option<Standing>, name: &str) -> PyResult<()> {
     let Some(Standing::Open(kind)) = standing else { return Ok(()) };
     Err(PyValueError::new_err(format!(
@@ -115,7 +116,8 @@ pub(crate) fn contains<N: Numeric<D>, const D: usize>(
     N::encloses(shape, &local).unwrap_or_else(|| shape.contains_local_point(&local))
 }
 
-/// How far a point of the outer frame is from the placed shape, negative inside; of a compound the least of its children.
+/// Returns the distance of a point of the outer frame from the placed shape, negative inside; for a compound the least
+/// of its children.
 pub(crate) fn signed_distance<N: Numeric<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     pose: &Pose<N, D>,

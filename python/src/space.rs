@@ -1,4 +1,4 @@
-//! The scalar and the dimension of a call: the one place where they are chosen.
+//! Dispatches on the scalar and the dimension of a call: the only place of this choice.
 
 use impinge_record::{Header, Recordable};
 use numpy::Element;
@@ -14,14 +14,14 @@ use crate::turning::Turning;
 /// A scalar and a dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Kind {
-    /// Numbers have 64 bits, else 32.
+    /// Whether numbers have 64 bits, else 32.
     pub(crate) is_double: bool,
-    /// In 3D, else in 2D.
+    /// Whether it is 3D, else 2D.
     pub(crate) is_spatial: bool,
 }
 
 impl Kind {
-    /// Of the number of dimensions and the name of NumPy's type.
+    /// Parses the number of dimensions and the name of NumPy's type.
     pub(crate) fn parse(dim: u8, dtype: &str) -> PyResult<Self> {
         let is_spatial = match dim {
             2 => false,
@@ -39,7 +39,7 @@ impl Kind {
         Ok(Self { is_double, is_spatial })
     }
 
-    /// Of the header of a recording.
+    /// Returns the kind of the header of a recording.
     pub(crate) fn of_header(header: &Header) -> PyResult<Self> {
         let dtype = if header.scalar_bytes == 8 { "float64" } else { "float32" };
         Self::parse(header.dimension, dtype)
@@ -55,7 +55,7 @@ impl Kind {
         if self.is_double { "float64" } else { "float32" }
     }
 
-    /// An argument of another kind is refused.
+    /// Returns an error for an argument of another kind.
     pub(crate) fn expect(self, argument: &str, given: Self) -> PyResult<()> {
         if self == given {
             return Ok(());
@@ -69,7 +69,7 @@ impl Kind {
     }
 }
 
-/// A scalar and a dimension in which Python works.
+/// A scalar and a dimension that Python supports.
 pub(crate) trait Numeric<const D: usize>:
     Recordable<D> + Element + Pictured<D> + Turning<D> + Bounding<D> + Cornered<D>
 {
@@ -85,7 +85,7 @@ pub(crate) trait Task {
     /// Its result.
     type Answer;
 
-    /// Computes it.
+    /// Runs the computation.
     fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer>;
 }
 

@@ -1,7 +1,7 @@
-//! Long work beside the interpreter: it is released, hears of progress, and may interrupt.
+//! Long computations: the interpreter is released, gets progress, and may interrupt.
 //!
-//! Signals and progress bars belong to the thread that called. It sleeps while another one works, wakes every
-//! [`TICK`], and stops the work by the callback of the batch.
+//! Signals and progress bars belong to the calling thread. It sleeps while another thread computes, wakes every
+//! [`TICK`], and stops the computation by the callback of the batch.
 
 use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -17,29 +17,29 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use crate::answer::Extent;
 use crate::threads::Crew;
 
-/// Batches of at most so many elements are done by the calling thread: the library does not share them out either.
+/// The calling thread computes batches of at most this many elements: the library does not divide them either.
 const SMALL: usize = 64;
 
-/// How often signals are looked for, and progress is shown.
+/// The interval of checks for signals and of updates of progress.
 const TICK: Duration = Duration::from_millis(50);
 
-/// How a call is to be done.
+/// The options of a call.
 #[derive(Debug, Default)]
 pub(crate) struct Call {
-    /// How many threads; those of the machine without.
+    /// The number of threads; by default one for each core.
     threads: Option<usize>,
-    /// An object with the method `update(n)`, as tqdm's bars have it.
+    /// An object with the method `update(n)`, such as a bar of tqdm.
     progress: Option<Py<PyAny>>,
 }
 
 impl Call {
-    /// Of the arguments of Python.
+    /// Creates a call from the arguments of Python.
     pub(crate) fn new(threads: Option<Threads>, progress: Option<Py<PyAny>>) -> Self {
         Self { threads: threads.map(|threads| threads.0), progress }
     }
 }
 
-/// How many threads a call may use: at least one.
+/// The number of threads that a call may use: at least one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Threads(usize);
 
@@ -51,7 +51,7 @@ impl FromPyObject<'_, '_> for Threads {
     }
 }
 
-/// The argument of this name as a number that is at least one.
+/// Reads the argument of this name as a number that is at least one.
 pub(crate) fn count(given: Borrowed<'_, '_, PyAny>, name: &str) -> PyResult<usize> {
     match given.extract::<usize>() {
         Ok(number) if number > 0 => Ok(number),
@@ -66,13 +66,13 @@ pub(crate) fn count(given: Borrowed<'_, '_, PyAny>, name: &str) -> PyResult<usiz
     }
 }
 
-/// Hears how many elements are done, and may stop the work.
+/// A callback that gets the number of finished elements, and may stop the work.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Does `work` about so many elements, with the interpreter released unless it is quick.
+/// Runs `work` for `len` elements, with the interpreter released unless it is quick.
 ///
 /// # Errors
-/// What the work and the progress bar raise, and `KeyboardInterrupt`; the work has stopped then.
+/// Exceptions of the work and the progress bar, and `KeyboardInterrupt`; the work has then stopped.
 #[inline]
 pub(crate) fn supervise<T: Send>(
     py: Python<'_>,
@@ -89,11 +89,11 @@ pub(crate) fn supervise<T: Send>(
     })
 }
 
-/// The answers of `ask` about each of so many elements, in order, with the interpreter released. The threads share
+/// Returns the results of `ask` for each element, in order, with the interpreter released. The threads share
 /// chunks of elements.
 ///
 /// # Errors
-/// What the progress bar raises, and `KeyboardInterrupt`.
+/// Exceptions of the progress bar, and `KeyboardInterrupt`.
 pub(crate) fn each<T: Send>(
     py: Python<'_>,
     len: usize,
@@ -106,7 +106,7 @@ pub(crate) fn each<T: Send>(
     })
 }
 
-/// Does `work` without the interpreter: at once where it is short, else beside this thread, with a report.
+/// Runs `work` without the interpreter: directly if it is short, else in another thread, with a report.
 fn released<T: Send>(
     py: Python<'_>,
     len: usize,
@@ -120,7 +120,7 @@ fn released<T: Send>(
     py.detach(|| beside(call, &crew, &work))
 }
 
-/// Asks about chunks of elements; after a stop the rest is not asked.
+/// Computes chunks of elements; after a stop the rest is skipped.
 fn in_chunks<T: Send>(
     len: usize,
     report: Report<'_>,
@@ -143,7 +143,7 @@ fn in_chunks<T: Send>(
     chunks.into_iter().flatten().collect()
 }
 
-/// Works in another thread and looks after it in this one, which has released the interpreter.
+/// Works in another thread and supervises it in this one, which has released the interpreter.
 fn beside<T: Send>(
     call: &Call,
     crew: &Crew,
@@ -165,7 +165,7 @@ fn beside<T: Send>(
     })
 }
 
-/// What the two threads tell each other.
+/// The shared state of the two threads.
 #[derive(Debug, Default)]
 struct Watch {
     done: AtomicUsize,
@@ -174,7 +174,7 @@ struct Watch {
 }
 
 impl Watch {
-    /// The worker has done so many elements.
+    /// Reports that the worker has finished `done` elements.
     fn report(&self, done: usize) -> ControlFlow<()> {
         self.done.fetch_max(done, Ordering::Relaxed);
         if self.is_stopped.load(Ordering::Relaxed) {

@@ -1,8 +1,8 @@
-//! Pools of threads, each in the process that made it.
+//! Pools of threads, each used in the process that made it.
 //!
-//! After `fork` the child has the memory of its parent's pools and none of their threads: what is given to such a pool never
-//! begins. Rayon's global pool is that of the process that loaded this module ([`note_process`]). Any other process is a
-//! child of it, and makes pools of its own when they are first needed.
+//! After `fork` the child has the memory of its parent's pools but none of their threads: work for such a pool never
+//! starts. Rayon's global pool belongs to the process that loaded this module ([`note_process`]). Any other process is
+//! a child of it, and makes pools of its own when they are first needed.
 //!
 //! ```text
 //!                    | first process          | a child
@@ -12,9 +12,9 @@
 //!   other work       | rayon's global pool    | the calling thread alone ([`settle`])
 //! ```
 //!
-//! Pools belong to a process id, which each call that may share out work compares. Other work asks a flag that Python sets in
-//! a child ([`note_fork`]). The list of pools is locked by threads that hold the interpreter alone. Python forks while it
-//! holds the interpreter, so a child never finds the list locked.
+//! Pools belong to a process id, which each call that may divide work compares. Other work checks a flag that Python
+//! sets in a child ([`note_fork`]). Only threads that hold the interpreter lock the list of pools. Python forks while
+//! it holds the interpreter, so a child never finds the list locked.
 
 use core::cell::Cell;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -26,41 +26,41 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
-/// The process whose threads rayon's global pool has.
+/// The process that owns the threads of rayon's global pool.
 static FIRST: OnceLock<u32> = OnceLock::new();
 
-/// This process is a child of the first one.
+/// Whether this process is a child of the first one.
 static IS_CHILD: AtomicBool = AtomicBool::new(false);
 
-/// The pools of the current process that are kept.
+/// The cached pools of the current process.
 static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, all: None, one: None });
 
 thread_local! {
-    /// The child process in which this thread is a pool of one thread; 0 if it is none.
+    /// The child process in which this thread is a pool of one thread; 0 if there is none.
     static SETTLED: Cell<u32> = const { Cell::new(0) };
 }
 
-/// Pools that are asked for often.
+/// Pools that are used often.
 struct Pools {
-    /// Whose they are.
+    /// The process that owns them.
     process: u32,
-    /// A thread for each core.
+    /// A pool with a thread for each core.
     all: Option<Arc<ThreadPool>>,
     one: Option<Arc<ThreadPool>>,
 }
 
 /// The threads of one call.
 pub(crate) enum Crew {
-    /// Those of rayon's global pool.
+    /// Rayon's global pool.
     Global,
     Pool(Arc<ThreadPool>),
 }
 
 impl Crew {
-    /// As many threads as are asked for; one for each core if that is `None`.
+    /// Returns `threads` threads; one for each core if that is `None`.
     ///
     /// # Errors
-    /// `RuntimeError` if the system refuses threads.
+    /// `RuntimeError` if the system cannot start threads.
     pub(crate) fn of(_attached: Python<'_>, threads: Option<usize>) -> PyResult<Self> {
         let process = process::id();
         let pool = match threads {
@@ -82,7 +82,7 @@ impl Crew {
     }
 }
 
-/// Notes that this process is the one that loaded the module, and has Python call [`note_fork`] in its children.
+/// Records that this process loaded the module, and makes Python call [`note_fork`] in its children.
 pub(crate) fn note_process(module: &Bound<'_, PyModule>) -> PyResult<()> {
     FIRST.get_or_init(process::id);
     let py = module.py();
@@ -95,17 +95,17 @@ pub(crate) fn note_process(module: &Bound<'_, PyModule>) -> PyResult<()> {
     Ok(())
 }
 
-/// Notes that this process is a child.
+/// Records that this process is a child.
 #[pyfunction]
 fn note_fork() {
     IS_CHILD.store(true, Ordering::Relaxed);
 }
 
-/// Keeps work that is done in the calling thread, outside of a [`Crew`], from being shared with threads that a child does not
+/// Prevents work in the calling thread, outside of a [`Crew`], from being divided among threads that a child does not
 /// have: there the calling thread becomes a pool of itself alone, once. That costs a few kilobytes for each thread.
 ///
 /// # Errors
-/// `RuntimeError` if the system refuses a pool.
+/// `RuntimeError` if the system cannot create a pool.
 pub(crate) fn settle() -> PyResult<()> {
     if !IS_CHILD.load(Ordering::Relaxed) {
         return Ok(());
@@ -127,7 +127,7 @@ fn is_first(process: u32) -> bool {
     *FIRST.get_or_init(|| process) == process
 }
 
-/// The pool of this process in a place of the list, made where it lacks.
+/// Returns the pool of this process in a slot of the list, which is created if it is missing.
 fn kept(
     process: u32,
     count: usize,
@@ -136,12 +136,12 @@ fn kept(
     let mut pools = match POOLS.try_lock() {
         Ok(pools) => pools,
         Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
-        // A fork past Python left it locked for ever.
+        // A fork that bypassed Python left it locked for ever.
         Err(TryLockError::WouldBlock) => return make(count),
     };
     if pools.process != process {
         let stale = core::mem::replace(&mut *pools, Pools { process, all: None, one: None });
-        // To drop a pool is to wait for its threads, which are the parent's.
+        // Dropping a pool waits for its threads, which are the parent's.
         core::mem::forget(stale);
     }
     let place = place(&mut pools);
@@ -151,7 +151,7 @@ fn kept(
     Ok(place.insert(make(count)?).clone())
 }
 
-/// A new pool of `count` threads; with 0, one for each core.
+/// Creates a pool of `count` threads; with 0, one for each core.
 fn make(count: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
     ThreadPoolBuilder::new().num_threads(count).build().map(Arc::new)
 }

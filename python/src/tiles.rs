@@ -1,4 +1,4 @@
-//! Tiles of large scenes: plain numbers on Python's side, the library's value while it works.
+//! Tiles of large scenes: plain numbers in Python, a value of the library during a call.
 
 use impinge::batch::{TileCut, Tiles, boxes as boxes_of, pairs_in_tile as pairs_of, tiles};
 use impinge::bounding_volume::Aabb;
@@ -28,10 +28,10 @@ pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
 
 type Object<'py> = Bound<'py, PyAny>;
 
-/// The box of each object, grown by the rounding errors of pairs: what `tiles` and `Tiles.meeting` take.
+/// The bounding box of each object, enlarged by the rounding errors of pairs: the input of `tiles` and `Tiles.meeting`.
 ///
-/// shapes, poses: as of `distance`. Returns (n, 2, D), the lower and the upper corner in the world frame, of the dtype of
-/// the shapes; NaN where an object is nowhere (a composite without parts), infinite where it has no end.
+/// shapes, poses: as of `distance`. Returns (n, 2, D), the lower and the upper corner in the world frame, of the dtype
+/// of the shapes; NaN for an object without extent (a composite without parts), infinite where it is unbounded.
 ///
 /// >>> import impinge
 /// >>> impinge.boxes(impinge.Ball(1), impinge.Poses([[0, 0, 0], [5, 0, 0]])).round(6).tolist()[1]
@@ -49,13 +49,13 @@ fn boxes<'py>(
     run_in(kind, AskBoxes { side, kind, call: Call::new(threads, progress) })
 }
 
-/// The pairs of a tile that are at most the clearance of the tiles apart, as an ascending array (m, 2) of uint64.
+/// The pairs of a tile whose distance is at most the clearance of the tiles, as an ascending array (m, 2) of uint64.
 ///
-/// shapes, poses: as of `distance`, of the objects of which `Tiles.meeting` names the tile, in any order. ids: (n,) integers
-/// of 0 or more, one for each object, no two equal. tiles: a `Tiles`. tile: its number.
+/// shapes, poses: as of `distance`, of the objects that `Tiles.meeting` assigns to the tile, in any order. ids: (n,)
+/// integers of 0 or more, one for each object, all different. tiles: a `Tiles`. tile: its number.
 ///
-/// Each row has the lower id first. All tiles together have each pair once, those that `pairs_within` finds among all
-/// objects, whatever the tiles. `ValueError` and `TypeError` name the argument, the row and the value.
+/// Each row has the lower id first. All tiles together have each pair once, and the same pairs as `pairs_within` for
+/// all objects, whatever the tiles. `ValueError` and `TypeError` name the argument, the row and the value.
 ///
 /// >>> import impinge
 /// >>> ball, poses = impinge.Ball(1), impinge.Poses([[0, 0, 0], [2.5, 0, 0], [6, 0, 0], [8.5, 0, 0]])
@@ -79,7 +79,7 @@ fn pairs_in_tile<'py>(
     run_in(kind, AskTile { side, ids, tiles, tile, call: Call::new(threads, progress), kind })
 }
 
-/// The axes and places of the cuts of so many tiles; `boxes` is an array (n, 2, D) of the kind in C order.
+/// Returns the axes and positions of the cuts of `number` tiles; `boxes` is an array (n, 2, D) of the kind in C order.
 #[pyfunction]
 fn tile_cuts<'py>(
     boxes: &Object<'py>,
@@ -91,13 +91,13 @@ fn tile_cuts<'py>(
     run_in(Kind::parse(dim, dtype)?, CutTiles { boxes, number, clearance })
 }
 
-/// The bounds of each tile: (n, 2, D).
+/// Returns the bounds of each tile: (n, 2, D).
 #[pyfunction]
 fn tile_bounds<'py>(py: Python<'py>, tiles: GivenTiles<'py>) -> PyResult<Object<'py>> {
     run_in(tiles.kind()?, Bounds { py, tiles })
 }
 
-/// Where the tiles of each box begin, and the tiles; `boxes` as of `tile_cuts`.
+/// Returns the starts of the tiles of each box, and the tiles; `boxes` as of `tile_cuts`.
 #[pyfunction]
 fn tiles_meeting<'py>(
     tiles: GivenTiles<'py>,
@@ -106,7 +106,7 @@ fn tiles_meeting<'py>(
     run_in(tiles.kind()?, Meeting { tiles, boxes })
 }
 
-/// The tile of each point.
+/// Returns the tile of each point.
 #[pyfunction]
 fn tile_owners<'py>(tiles: GivenTiles<'py>, points: &Object<'py>) -> PyResult<Object<'py>> {
     run_in(tiles.kind()?, Owners { tiles, points })
@@ -140,7 +140,7 @@ impl GivenTiles<'_> {
     }
 }
 
-/// Boxes as the library has them: a row of NaN is none.
+/// Converts boxes to the form of the library: a row of NaN is no box.
 fn read_boxes<N: Numeric<D>, const D: usize>(
     given: &Bound<'_, PyAny>,
 ) -> PyResult<Vec<Option<Aabb<N, D>>>> {
@@ -157,7 +157,7 @@ fn read_boxes<N: Numeric<D>, const D: usize>(
     corners.as_chunks().0.iter().enumerate().map(read).collect()
 }
 
-/// Boxes as an array (n, 2, D).
+/// Converts boxes to an array (n, 2, D).
 fn boxes_array<N: Numeric<D>, const D: usize>(
     py: Python<'_>,
     boxes: impl ExactSizeIterator<Item = Option<Aabb<N, D>>>,
@@ -173,7 +173,7 @@ fn boxes_array<N: Numeric<D>, const D: usize>(
     Ok(array.into_any())
 }
 
-/// Asks for boxes.
+/// Computes boxes.
 struct AskBoxes<'a, 'py> {
     side: SideArgument<'a, 'py>,
     kind: Kind,
@@ -195,7 +195,7 @@ impl<'py> Task for AskBoxes<'_, 'py> {
     }
 }
 
-/// Asks for the pairs of a tile.
+/// Computes the pairs of a tile.
 struct AskTile<'a, 'py> {
     side: SideArgument<'a, 'py>,
     ids: &'a Bound<'py, PyAny>,
@@ -247,7 +247,7 @@ impl<'py> Task for CutTiles<'_, 'py> {
     }
 }
 
-/// The bounds of tiles.
+/// Computes the bounds of tiles.
 struct Bounds<'py> {
     py: Python<'py>,
     tiles: GivenTiles<'py>,
@@ -261,7 +261,7 @@ impl<'py> Task for Bounds<'py> {
     }
 }
 
-/// The tiles that boxes meet.
+/// Computes the tiles that boxes overlap.
 struct Meeting<'a, 'py> {
     tiles: GivenTiles<'py>,
     boxes: &'a Bound<'py, PyAny>,
@@ -280,7 +280,7 @@ impl<'py> Task for Meeting<'_, 'py> {
     }
 }
 
-/// The tiles that points lie in.
+/// Computes the tiles that contain points.
 struct Owners<'a, 'py> {
     tiles: GivenTiles<'py>,
     points: &'a Bound<'py, PyAny>,

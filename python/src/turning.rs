@@ -1,4 +1,4 @@
-//! Impacts of solids that move and turn.
+//! Impacts of moving and rotating solids.
 
 use impinge::math::na::convert;
 use impinge::math::{Real, Space, Vector};
@@ -15,12 +15,12 @@ use crate::space::{Kind, Numeric, Task};
 use crate::supervise::each;
 use crate::vectors::Vectors;
 
-/// A scalar and a dimension in which bodies turn.
+/// A scalar and a dimension that support rotating bodies.
 pub(crate) trait Turning<const D: usize>: Space<D> {
-    /// How many numbers an angular velocity has.
+    /// The number of components of an angular velocity.
     const ANGULAR: usize;
 
-    /// Constant velocities, the angular one of [`Self::ANGULAR`] numbers.
+    /// Returns constant velocities; the angular one has [`Self::ANGULAR`] components.
     fn motion(
         position: Self::Isometry,
         linear: Vector<Self, D>,
@@ -53,7 +53,7 @@ impl<N: Real> Turning<3> for N {
     }
 }
 
-/// Angular velocities as an argument: (n, 1) in 2D, (n, 3) in 3D; none is zero.
+/// Angular velocities as an argument: (n, 1) in 2D, (n, 3) in 3D; a missing one is zero.
 struct Angular<'py, N: Numeric<D>, const D: usize> {
     rows: Option<PyReadonlyArrayDyn<'py, N>>,
     is_lone: bool,
@@ -69,7 +69,7 @@ impl<'py, N: Numeric<D>, const D: usize> Angular<'py, N, D> {
         Ok(Self { rows: Some(rows.cast::<PyArrayDyn<N>>()?.try_readonly()?), is_lone })
     }
 
-    /// All numbers, row by row.
+    /// Returns all numbers, row by row.
     fn numbers(&self) -> PyResult<Vec<N>> {
         Ok(match &self.rows {
             None => vec![N::ZERO; <N as Turning<D>>::ANGULAR],
@@ -87,7 +87,7 @@ struct Bodies<'a, N: Numeric<D>, const D: usize> {
 }
 
 impl<N: Numeric<D>, const D: usize> Bodies<'_, N, D> {
-    /// Names and lengths of what may have one element for all.
+    /// Returns the names and lengths of arguments that may have one element for all.
     fn lengths(&self, [poses, linear, angular]: [&'static str; 3]) -> [(&'static str, usize); 3] {
         let turns = self.angular.len() / <N as Turning<D>>::ANGULAR;
         [(poses, self.positions.len()), (linear, self.linear.len()), (angular, turns)]
@@ -107,7 +107,7 @@ impl<N: Numeric<D>, const D: usize> Bodies<'_, N, D> {
     }
 }
 
-/// Asks when bodies that move and turn meet.
+/// Computes the impacts of moving and rotating bodies.
 pub(crate) struct AskTurning<'a, 'py> {
     pub(crate) call: PairCall<'a, 'py>,
     pub(crate) impacts: ImpactCall<'a, 'py>,
@@ -157,7 +157,7 @@ impl<'py> Task for AskTurning<'_, 'py> {
     }
 }
 
-/// Time, normal, points and whether the time is that of an impact.
+/// Returns time, normal, points and whether the time is that of an impact.
 fn columns<N: Numeric<D>, const D: usize>(
     found: &[Option<Impact<N, D>>],
     extent: Extent,
@@ -179,7 +179,7 @@ fn columns<N: Numeric<D>, const D: usize>(
 }
 
 impl ImpactCall<'_, '_> {
-    /// The limits as the library has them.
+    /// Returns the limits in the form of the library.
     pub(crate) fn options<N: Real>(&self) -> ImpactOptions<N> {
         ImpactOptions::new()
             .with_max_time(convert(self.max_time))

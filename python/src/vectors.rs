@@ -7,14 +7,14 @@ use crate::space::Numeric;
 
 /// The numbers of an array in C order.
 pub(crate) enum Numbers<'py, N: Element> {
-    /// Those of a vector or a matrix alone. A copy is sooner made than a lock on the array.
+    /// The numbers of a single vector or matrix. A copy is faster than a lock on the array.
     One(Vec<N>),
-    /// Those of many, read where they lie.
+    /// The numbers of many, read without a copy.
     Many(PyReadonlyArrayDyn<'py, N>),
 }
 
 impl<'py, N: Element> Numbers<'py, N> {
-    /// Of an array, which is one vector or matrix if it has `axes`.
+    /// Reads an array, which is one vector or matrix if it has `axes` axes.
     pub(crate) fn of(array: &Bound<'py, PyArrayDyn<N>>, axes: usize) -> PyResult<Self> {
         Ok(if array.ndim() == axes {
             Self::One(array.to_vec()?)
@@ -23,12 +23,12 @@ impl<'py, N: Element> Numbers<'py, N> {
         })
     }
 
-    /// There is one vector or matrix, not an array of them.
+    /// Whether there is one vector or matrix, not an array of them.
     pub(crate) const fn is_lone(&self) -> bool {
         matches!(self, Self::One(_))
     }
 
-    /// All of them.
+    /// Returns all numbers.
     pub(crate) fn as_slice(&self) -> PyResult<&[N]> {
         Ok(match self {
             Self::One(numbers) => numbers,
@@ -41,7 +41,8 @@ impl<'py, N: Element> Numbers<'py, N> {
 pub(crate) struct Vectors<'py, N: Numeric<D>, const D: usize>(Numbers<'py, N>);
 
 impl<'py, N: Numeric<D>, const D: usize> Vectors<'py, N, D> {
-    /// Takes an argument; what is no array of the right type and layout goes through `impinge._poses.vectors`.
+    /// Reads an argument; an argument other than an array of the right type and layout is converted by
+    /// `impinge._poses.vectors`.
     pub(crate) fn of(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
         if let Ok(array) = given.cast::<PyArrayDyn<N>>()
             && matches!(array.shape(), [width] | [_, width] if *width == D)
@@ -56,12 +57,12 @@ impl<'py, N: Numeric<D>, const D: usize> Vectors<'py, N, D> {
         Ok(Self(Numbers::of(array.cast::<PyArrayDyn<N>>()?, 1)?))
     }
 
-    /// There is one vector, not an array of vectors.
+    /// Whether there is one vector, not an array of vectors.
     pub(crate) const fn is_lone(&self) -> bool {
         self.0.is_lone()
     }
 
-    /// As the library reads them.
+    /// Returns the vectors in the form of the library.
     pub(crate) fn rows(&self) -> PyResult<&[[N; D]]> {
         Ok(self.0.as_slice()?.as_chunks().0)
     }

@@ -1,4 +1,4 @@
-//! Numbers of the command line in the scalar and dimension of a scene.
+//! Converts numbers of the command line to the scalar and dimension of a scene.
 
 use impinge::math::{Real, Vector};
 
@@ -6,7 +6,7 @@ use crate::args::Numbers;
 use crate::error::CliError;
 use crate::number::significant;
 
-/// A number of an argument; an error if the scalar has no finite number so large.
+/// Converts a number of an argument; an error if it is not finite in the scalar.
 pub(crate) fn scalar<N: Real>(name: &'static str, value: f64) -> Result<N, CliError> {
     let converted = N::lit(value);
     if converted.is_finite_number() {
@@ -15,7 +15,7 @@ pub(crate) fn scalar<N: Real>(name: &'static str, value: f64) -> Result<N, CliEr
     Err(CliError::argument(name, significant(value), "is beyond the numbers of the scene"))
 }
 
-/// A vector of an argument; an error unless it has a number for each dimension.
+/// Converts a vector of an argument; an error unless it has a number for each dimension.
 pub(crate) fn vector<N: Real, const D: usize>(
     name: &'static str,
     numbers: &Numbers,
@@ -31,7 +31,7 @@ pub(crate) fn vector<N: Real, const D: usize>(
     Ok(vector)
 }
 
-/// A vector of an argument that must not be zero. Its length is free.
+/// Converts a vector of an argument that must not be zero. Its length is arbitrary.
 pub(crate) fn direction<N: Real, const D: usize>(
     name: &'static str,
     numbers: &Numbers,

@@ -1,4 +1,4 @@
-//! What keeps the command from an answer.
+//! Errors of the command.
 
 use core::fmt;
 use std::io;
@@ -9,10 +9,10 @@ use impinge_html::HtmlError;
 use impinge_record::{ReadError, RecordError};
 use impinge_samples::SampleError;
 
-/// Bad input: the exit code is 2. Each error names the file and the value.
+/// Invalid input: the exit code is 2. Each error names the file and the value.
 #[derive(Debug)]
 pub(crate) enum CliError {
-    /// A scene or mesh is wrong.
+    /// A scene or mesh is invalid.
     File(impinge_files::FileError),
     /// A file cannot be read.
     Read { path: PathBuf, error: io::Error },
@@ -22,13 +22,13 @@ pub(crate) enum CliError {
     Output(io::Error),
     /// A recording cannot be replayed.
     Recording { path: PathBuf, error: ReadError },
-    /// A recording of worlds that the library does not have.
+    /// The recording has a scalar or dimension that the library does not support.
     ForeignRecording { path: PathBuf, scalar_bytes: u8, dimension: u8 },
     /// A call cannot be recorded.
     Record(RecordError),
     /// A page cannot be made or served.
     Page(HtmlError),
-    /// The command has no page of its own, and none was named.
+    /// The command was built without the page, and no folder was given.
     NoPage,
     /// A sample cannot run.
     Sample { name: &'static str, error: SampleError },
@@ -36,23 +36,23 @@ pub(crate) enum CliError {
     NoStep { path: PathBuf, step: usize, last: usize },
     /// The objects of a scene cannot be compared with each other.
     Objects(String),
-    /// More pairs of objects are near each other than are kept.
+    /// More pairs of objects are near each other than the limit.
     TooManyPairs { limit: usize },
-    /// Standard input has more bytes than are read.
+    /// Standard input has more bytes than the limit.
     TooLong { limit: usize },
-    /// A scene has no object of this name; perhaps one of a similar one.
+    /// A scene has no object of this name; `similar` is the most similar name, if there is one.
     NoObject { path: PathBuf, name: String, similar: Option<String> },
-    /// An argument does not suit the scene.
+    /// An argument is invalid for the scene.
     Argument { name: &'static str, value: String, reason: String },
 }
 
 impl CliError {
-    /// A file cannot be read.
+    /// Returns a function that makes the error of reading a file.
     pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |error| Self::Read { path: path.to_owned(), error }
     }
 
-    /// An argument does not suit the scene.
+    /// Returns the error of an argument that is invalid for the scene.
     pub(crate) fn argument(
         name: &'static str,
         value: impl fmt::Display,

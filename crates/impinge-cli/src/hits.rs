@@ -1,4 +1,4 @@
-//! What rays and moving shapes hit: the fields of `ray` and `cast`.
+//! Hits of rays and moving shapes: the fields of `ray` and `cast`.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::number::{Number, tuple};
 use crate::output::{CLEAR, FAINT, NAME, Outcome, Report, Subject, TOUCHES};
 
-/// The objects that are hit, in order of time.
+/// The hit objects, sorted by time.
 #[derive(Debug, Serialize)]
 pub(crate) struct Hits<H> {
     #[serde(flatten)]
@@ -16,36 +16,36 @@ pub(crate) struct Hits<H> {
     pub(crate) hits: Vec<H>,
 }
 
-/// Where a ray meets an object.
+/// The hit of a ray.
 #[derive(Debug, Serialize)]
 pub(crate) struct RayHit {
     pub(crate) object: String,
     /// In units of the direction.
     pub(crate) time: Number,
-    /// From the start to the point, in units of the world.
+    /// The distance from the start to the point, in units of the world.
     pub(crate) length: Number,
     pub(crate) point: Vec<Number>,
-    /// Out of the object; zero if the ray starts inside.
+    /// The outward normal; zero if the ray starts inside.
     pub(crate) normal: Vec<Number>,
-    /// The part of the object that is hit; 0 of a convex shape.
+    /// The part that is hit; 0 for a convex shape.
     pub(crate) part: u32,
 }
 
-/// Where a moving shape meets an object.
+/// The hit of a moving shape.
 #[derive(Debug, Serialize)]
 pub(crate) struct CastHit {
     pub(crate) object: String,
     /// 0 at the start and 1 at the end.
     pub(crate) time: Number,
-    /// The length of the path so far, in units of the world.
+    /// The travelled distance, in units of the world.
     pub(crate) moved: Number,
-    /// Of the moving shape, at that time.
+    /// The position of the moving shape at that time.
     pub(crate) position: Vec<Number>,
-    /// On the moving shape.
+    /// The point on the moving shape.
     pub(crate) point: Vec<Number>,
-    /// From the moving shape to the object.
+    /// The normal from the moving shape to the object.
     pub(crate) normal: Vec<Number>,
-    /// The part of the object that is hit; 0 of a convex shape.
+    /// The part that is hit; 0 for a convex shape.
     pub(crate) part: u32,
 }
 

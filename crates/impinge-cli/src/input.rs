@@ -1,4 +1,4 @@
-//! What the command reads: files or standard input, which are scenes or recordings.
+//! Input of the command: files or standard input, with scenes or recordings.
 
 use std::fs::{self, File};
 use std::io::{self, Read as _};
@@ -20,17 +20,18 @@ pub(crate) enum Input {
     Recording(Box<Log>),
 }
 
-/// The bytes in which the header of a recording begins: enough to know it by.
+/// The number of bytes at the start of a file that identify the header of a recording.
 const HEAD: u64 = 64;
 
 impl Input {
-    /// Reads a file as what its first bytes say.
+    /// Reads a file as the kind that its first bytes indicate.
     ///
-    /// Of a scene they are read twice, since its reader takes a path: that of a mesh leads to other files.
+    /// The first bytes of a scene are read twice, since its reader takes a path: a mesh may name other
+    /// files beside it.
     pub(crate) fn open(args: &SceneArgs) -> Result<Self, CliError> {
         let path = &args.scene;
         if is_stdin(path) {
-            // A stream is read once.
+            // A stream can be read only once.
             let bytes = stdin(args.reading.limits.of_files().bytes)?;
             return if is_recording(&bytes) {
                 Ok(Self::Recording(Box::new(Log::of_bytes(path, bytes)?)))
@@ -46,13 +47,14 @@ impl Input {
     }
 }
 
-/// The bytes begin as a recording does, be it cut off or of an unknown version: errors are then those of a
+/// Whether the bytes begin like a recording, even if it is truncated or of an unknown version: errors are
+/// then those of a recording, not of JSON.
 /// recording, not of JSON.
 fn is_recording(head: &[u8]) -> bool {
     !Header::read(head).is_err_and(|error| error.problem == Problem::NotARecording)
 }
 
-/// The first bytes of a file.
+/// Returns the first bytes of a file.
 fn head(path: &Path) -> Result<Vec<u8>, CliError> {
     let mut head = Vec::new();
     let read = regular(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
@@ -60,7 +62,7 @@ fn head(path: &Path) -> Result<Vec<u8>, CliError> {
     Ok(head)
 }
 
-/// The bytes of a recording, or of standard input for `-`.
+/// Returns the bytes of a recording, or of standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, CliError> {
     if is_stdin(path) {
         return stdin(usize::MAX);
@@ -71,7 +73,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, CliError> {
     Ok(bytes)
 }
 
-/// Opens a regular file: to open a pipe would wait for its writer.
+/// Opens a regular file: opening a pipe would wait for its writer.
 fn regular(path: &Path) -> io::Result<File> {
     if fs::metadata(path)?.is_file() {
         return File::open(path);
@@ -79,7 +81,7 @@ fn regular(path: &Path) -> io::Result<File> {
     Err(io::Error::other("it is no regular file; `-` reads standard input"))
 }
 
-/// All bytes of standard input, of which there may be so many.
+/// Returns all bytes of standard input, at most `limit`.
 pub(crate) fn stdin(limit: usize) -> Result<Vec<u8>, CliError> {
     let mut bytes = Vec::new();
     let read = io::stdin().lock().take((limit as u64).saturating_add(1)).read_to_end(&mut bytes);

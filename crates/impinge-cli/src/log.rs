@@ -1,4 +1,4 @@
-//! Recordings as the command reads them: of any scalar, dimension and data.
+//! Recordings of any scalar, dimension and data.
 
 use std::path::{Path, PathBuf};
 
@@ -12,10 +12,10 @@ use crate::input;
 use crate::output::{Subject, note};
 use crate::space::{Kind, Stage, Task, run_in};
 
-/// The data of a recorded object: any bytes, which are its name if they are text.
+/// The data of a recorded object: any bytes; they are its name if they are text.
 pub(crate) type Label = Vec<u8>;
 
-/// The bytes of a recording, and what its header says.
+/// The bytes of a recording, and the content of its header.
 #[derive(Debug)]
 pub(crate) struct Log {
     pub(crate) path: PathBuf,
@@ -25,12 +25,12 @@ pub(crate) struct Log {
 }
 
 impl Log {
-    /// Reads a recording from a file or from standard input; of its bytes only the header is decoded.
+    /// Reads a recording from a file or from standard input; decodes only the header.
     pub(crate) fn read(path: &Path) -> Result<Self, CliError> {
         Self::of_bytes(path, input::read(path)?)
     }
 
-    /// A recording of which the bytes have been read.
+    /// Creates a log from the bytes of a recording.
     pub(crate) fn of_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, CliError> {
         let header = Header::read(&bytes).map_err(in_file(path))?;
         let kind = kind_of(&header).ok_or_else(|| CliError::ForeignRecording {
@@ -41,20 +41,21 @@ impl Log {
         Ok(Self { path: path.to_owned(), bytes, header, kind })
     }
 
-    /// The file, as reports name it.
+    /// The name of the file in reports.
     pub(crate) fn name(&self) -> String {
         self.path.display().to_string()
     }
 
-    /// With what a report on the recording begins.
+    /// The first fields of a report on the recording.
     pub(crate) fn subject(&self) -> Subject {
         Subject { file: self.name(), kind: self.kind }
     }
 
-    /// The recording at step 0.
+    /// Opens the recording at step 0.
     ///
-    /// Of one that lacks its end, because the program that wrote it died, or whose end is damaged, the records
-    /// before; a note says how many steps these are. Other errors, such as an unknown shape, are errors here too.
+    /// If its end is missing, because the program that wrote it crashed, or damaged, the earlier records are
+    /// replayed; a note gives the number of their steps. Other errors, such as an unknown shape, are errors here
+    /// too.
     pub(crate) fn replay<N: Stage<D>, const D: usize>(
         &self,
     ) -> Result<Replay<N, D, Label>, CliError> {
@@ -72,7 +73,7 @@ impl Log {
         Ok(replay)
     }
 
-    /// The recording at a step, or at its last one.
+    /// Opens the recording at a step, or at its last one.
     pub(crate) fn replay_to<N: Stage<D>, const D: usize>(
         &self,
         step: Option<usize>,
@@ -88,10 +89,10 @@ impl Log {
         Ok(replay)
     }
 
-    /// The bytes for a page, which takes a recording without its end, but none with half a record.
+    /// Returns the bytes for a page, which accepts a recording without its end, but no incomplete record.
     ///
-    /// The page has stand-ins for shapes that a registry would have to name; they are nothing that a replay of
-    /// the command could read.
+    /// The page has stand-ins for shapes that a registry would have to name, while a replay of the command could
+    /// not read them.
     pub(crate) fn into_page_bytes(self) -> Result<Vec<u8>, CliError> {
         match run_in(self.kind, WholeRecords(&self)) {
             Err(CliError::Recording { error, .. })
@@ -104,7 +105,7 @@ impl Log {
     }
 }
 
-/// Reads a recording for its bytes, without what a replay leaves out.
+/// Reads a recording for its bytes, without the dropped end.
 struct WholeRecords<'a>(&'a Log);
 
 impl Task for WholeRecords<'_> {
@@ -115,19 +116,19 @@ impl Task for WholeRecords<'_> {
     }
 }
 
-/// The bytes are not those that were written, or not all of them. A file system that lost its power may leave zeros
-/// for the last bytes, in which the checksum is wrong.
+/// Whether the bytes differ from the written ones, or are incomplete. After a power failure a file system may
+/// return zeros for the last bytes, whose checksum is then wrong.
 const fn is_damage(error: &ReadError) -> bool {
     matches!(error.problem, Problem::Truncated | Problem::Checksum)
 }
 
-/// A problem of a recording as one of a file.
+/// Returns a function that converts an error of a recording to an error of its file.
 pub(crate) fn in_file(path: &Path) -> impl Fn(ReadError) -> CliError {
     let path = path.to_owned();
     move |error| CliError::Recording { path: path.clone(), error }
 }
 
-/// The scalar and dimension of a recording, if the library has them.
+/// Returns the scalar and dimension of a recording, if the library supports them.
 const fn kind_of(header: &Header) -> Option<Kind> {
     let scalar = match header.scalar_bytes {
         4 => ScalarFile::F32,
@@ -142,7 +143,7 @@ const fn kind_of(header: &Header) -> Option<Kind> {
     Some(Kind { dimension, scalar })
 }
 
-/// The name of a recorded object: its data, if that is text that can be printed; else the index of its handle.
+/// Returns the name of a recorded object: its data, if that is printable text; else the index of its handle.
 pub(crate) fn name_of<N: Space<D>, const D: usize>(
     object: &CollisionObject<N, D, Label>,
 ) -> String {

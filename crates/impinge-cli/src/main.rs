@@ -1,9 +1,9 @@
 //! The command `impinge`: collision checks, queries, pictures and recordings of scene files.
 //!
 //! A verb reads a file, computes in the scalar and dimension that the file names, and prints a report as text or
-//! as JSON. Its exit code is 0 if nothing touches, 1 if something does, 2 if the input is wrong.
+//! as JSON. Its exit code is 0 if nothing touches, 1 if something touches, 2 if the input is invalid.
 //!
-//! `args` is the command line, `verbs` has a file for each verb; what several verbs need is beside them.
+//! `args` is the command line, `verbs` has a file for each verb; code that several verbs share is beside them.
 #![forbid(unsafe_code)]
 
 mod args;

@@ -1,4 +1,4 @@
-//! Scenes whose objects move, recorded.
+//! Records scenes with moving objects.
 
 use crate::args::{KeyFrames, Stepping};
 use crate::error::CliError;
@@ -9,15 +9,15 @@ use crate::summary::touches;
 
 /// A recorded scene.
 pub(crate) struct Recorded {
-    /// How many bytes the recording has, unpacked.
+    /// The number of bytes of the recording, unpacked.
     pub(crate) bytes: usize,
     pub(crate) objects: usize,
-    /// After how many steps something touched.
+    /// The number of steps after which something touched.
     pub(crate) touched: usize,
 }
 
-/// Moves the objects of a scene and records every update. The bytes are handed over as they are made, the first ones
-/// once the first step is.
+/// Moves the objects of a scene and records every update. The bytes are passed on as they are made, the first ones
+/// after the first step.
 pub(crate) fn record(
     loaded: &Loaded,
     stepping: Stepping,

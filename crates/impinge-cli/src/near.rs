@@ -1,4 +1,4 @@
-//! Which objects of a world may be near each other, one pair after the other: none are kept.
+//! Finds the pairs of objects of a world that may be near each other, without storing them.
 
 use core::cell::Cell;
 use core::cmp::Ordering;
@@ -11,19 +11,19 @@ use impinge::world::{CollisionObject, CollisionWorld};
 use crate::error::CliError;
 use crate::space::Stage;
 
-/// The pairs of a world are computed within the distance by so many rounding errors of it.
+/// The margin of error for the distance of pairs of a world, in rounding errors of the distance.
 const ROUNDING_ERRORS: f64 = 1024.0;
 
 /// The objects of a world and the boxes around them.
 pub(crate) struct Boxed<'a, N: Stage<D>, const D: usize, T> {
     objects: Vec<&'a CollisionObject<N, D, T>>,
     tree: BoxTree<N, D>,
-    /// The object of each box of the tree: what is nowhere has none.
+    /// The object of each box of the tree; objects without a finite box are not in the tree.
     owners: Vec<usize>,
 }
 
 impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
-    /// The boxes of all objects. O(n log n).
+    /// Computes the boxes of all objects. O(n log n).
     pub(crate) fn new(world: &'a CollisionWorld<N, D, T>) -> Result<Self, CliError> {
         let objects: Vec<_> = world.collision_objects().collect();
         let shapes: Vec<_> = objects.iter().map(|object| object.shape().clone()).collect();
@@ -38,19 +38,19 @@ impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
         Ok(Self { objects, tree, owners })
     }
 
-    /// An object by its number.
+    /// Returns an object by its number.
     pub(crate) fn object(&self, index: u32) -> &'a CollisionObject<N, D, T> {
         self.objects[index as usize]
     }
 
-    /// How many objects there are.
+    /// The number of objects.
     pub(crate) fn len(&self) -> usize {
         self.objects.len()
     }
 
-    /// Calls `visit` with the numbers of each two objects, the first lower, that may interact by their groups and whose
-    /// boxes are at most a distance apart; `reach` gives the distance for an object, and an object that is tested
-    /// against itself is a pair too. `goes_on` is asked before each object.
+    /// Calls `visit` with the numbers of each two objects, the lower first, that may interact by their groups and whose
+    /// boxes are at most a distance apart. `reach` returns the distance for an object. An object that is tested against
+    /// itself is a pair too. `goes_on` is called before each object and may end the loop.
     pub(crate) fn each(
         &self,
         reach: impl Fn(&CollisionObject<N, D, T>) -> N,
@@ -79,21 +79,21 @@ impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
     }
 }
 
-/// The number of an object. A tree numbers its boxes by 32 bits.
+/// Converts the index of an object. A tree numbers its boxes by 32 bits.
 fn number(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }
 
-/// A box, grown on all sides.
+/// Returns a box enlarged on all sides.
 fn grown<N: Stage<D>, const D: usize>(aabb: &Aabb<N, D>, reach: N) -> Aabb<N, D> {
     let reach = reach * (N::ONE + N::EPSILON * N::lit(ROUNDING_ERRORS));
     aabb.loosened(reach)
 }
 
-/// Refuses a world whose next update would keep more than `limit` pairs, if its boxes are fattened by `margin`.
+/// Returns an error if the next update of a world would keep more than `limit` pairs, with boxes enlarged by `margin`.
 ///
-/// Costs nothing where there are so few objects that all pairs are within the limit, and O(n log n) and the pairs up to
-/// the limit otherwise.
+/// Costs nothing if there are so few objects that all pairs are within the limit; otherwise O(n log n) and the pairs up
+/// to the limit.
 pub(crate) fn check_pairs<N: Stage<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     margin: f64,

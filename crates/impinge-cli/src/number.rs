@@ -1,4 +1,4 @@
-//! Numbers of either scalar, to be printed.
+//! Numbers of either scalar, for output.
 
 use core::fmt;
 
@@ -6,7 +6,7 @@ use impinge::math::{Point, Real, Vector};
 use impinge_record::Scalar;
 use serde::{Serialize, Serializer};
 
-/// A number with the scalar that it was computed with.
+/// A number with the scalar of its computation.
 ///
 /// JSON has the shortest decimal that reads back as the same number of that scalar, and null for NaN and
 /// infinities. `Display` has six significant digits.
@@ -54,7 +54,7 @@ impl fmt::Display for Number {
     }
 }
 
-/// Six significant digits, without trailing zeros and without the sign of zero.
+/// Formats six significant digits, without trailing zeros and without the sign of zero.
 pub(crate) fn significant(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
     let size = rounded.abs();
@@ -67,7 +67,7 @@ pub(crate) fn significant(value: f64) -> String {
     }
 }
 
-/// Coordinates between parentheses.
+/// Formats coordinates in parentheses.
 pub(crate) fn tuple(numbers: &[Number]) -> String {
     let words: Vec<_> = numbers.iter().map(Number::to_string).collect();
     format!("({})", words.join(", "))

@@ -1,4 +1,4 @@
-//! What the command writes: reports as text or JSON, notes and errors, files.
+//! Output of the command: reports as text or JSON, notes and errors, files.
 
 use core::fmt;
 use std::fs;
@@ -14,24 +14,24 @@ use crate::args::Format;
 use crate::error::CliError;
 use crate::space::Kind;
 
-/// What touches, is hit or differs.
+/// The style of contacts, hits and differences.
 pub(crate) const TOUCHES: Style = AnsiColor::Red.on_default().bold();
-/// What is near.
+/// The style of near pairs.
 pub(crate) const NEAR: Style = AnsiColor::Yellow.on_default();
-/// What is as it should be.
+/// The style of results without findings.
 pub(crate) const CLEAR: Style = AnsiColor::Green.on_default();
-/// What matters less.
+/// The style of secondary text.
 pub(crate) const FAINT: Style = Style::new().dimmed();
 /// Names of objects and files.
 pub(crate) const NAME: Style = Style::new().bold();
 
-/// A message has at most so many words.
+/// The largest number of words of a message.
 const MAX_WORDS: usize = 400;
 
-/// Whether something touches, is hit or differs: the exit code.
+/// Whether something touches, is hit or differs, which is the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// Nothing, or there is no such answer: 0.
+    /// Nothing, or the verb has no such result: 0.
     Clear,
     /// Something: 1.
     Found,
@@ -52,7 +52,7 @@ impl From<Outcome> for ExitCode {
     }
 }
 
-/// An answer of the command: as text by `Display`, with escape codes for colours, and as JSON by `Serialize`, with
+/// A result of the command: as text by `Display`, with escape codes for colours, and as JSON by `Serialize`, with
 /// the fields that `--help` documents.
 pub(crate) trait Report: Serialize + fmt::Display {
     /// The exit code.
@@ -61,7 +61,7 @@ pub(crate) trait Report: Serialize + fmt::Display {
     }
 }
 
-/// With what a report begins: its file, and the dimension and scalar of the computation.
+/// The first fields of a report: its file, and the dimension and scalar of the computation.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Subject {
     pub(crate) file: String,
@@ -93,9 +93,9 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
     written(|out| out.write_all(text.as_bytes()))
 }
 
-/// Writes to standard output piece by piece, so that a long report is never in memory.
+/// Writes to standard output in pieces, so that a long report is never in memory as a whole.
 ///
-/// A reader that is gone, as of `impinge … | head`, is no error.
+/// A closed reader, as in `impinge … | head`, is no error.
 fn written(write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>) -> Result<(), CliError> {
     let mut out = io::BufWriter::new(anstream::stdout().lock());
     match write(&mut out).and_then(|()| out.flush()) {
@@ -104,7 +104,7 @@ fn written(write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>) -> Result<(
     }
 }
 
-/// Writes a note to standard error: the answer is there, but not of all that was asked for.
+/// Writes a note to standard error: the result is valid, but not complete.
 pub(crate) fn note(text: impl fmt::Display) {
     message(NEAR, "note", &text);
 }
@@ -114,12 +114,12 @@ pub(crate) fn complain(error: &CliError) {
     message(TOUCHES, "error", error);
 }
 
-/// Whoever made the text has cut what is long; what a terminal would obey is escaped here, wherever it is from.
+/// Texts are shortened where they are made; control characters are escaped here, wherever they come from.
 fn message(style: Style, kind: &str, text: &dyn fmt::Display) {
     let text = text.to_string();
     let words = text.split_inclusive(' ').take(MAX_WORDS);
     let text: String = words.map(|word| Printable(word).to_string()).collect();
-    // Nobody is left to hear that standard error is closed.
+    // An error of a closed standard error is ignored.
     let _ = writeln!(anstream::stderr(), "{style}{kind}{style:#}: {text}");
 }
 
@@ -128,8 +128,8 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     fs::write(path, bytes).map_err(|error| CliError::Write { path: path.to_owned(), error })
 }
 
-/// A file that is written piece by piece. It is made with the first one: what stands there before is not lost to an
-/// error that comes earlier.
+/// A file that is written in pieces. It is created with the first piece, so that an earlier error does not destroy
+/// an existing file.
 #[derive(Debug)]
 pub(crate) struct Growing<'a> {
     path: &'a Path,
@@ -151,7 +151,7 @@ impl<'a> Growing<'a> {
         file.map_or(Ok(()), |file| file.write_all(bytes)).map_err(wrong)
     }
 
-    /// All pieces are in the file.
+    /// Finishes the file after all pieces.
     pub(crate) fn finish(mut self) -> Result<(), CliError> {
         let flushed = self.file.as_mut().map_or(Ok(()), io::Write::flush);
         flushed.map_err(|error| CliError::Write { path: self.path.to_owned(), error })

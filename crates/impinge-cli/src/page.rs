@@ -5,7 +5,7 @@ use impinge_html::Assets;
 use crate::args::PageArgs;
 use crate::error::CliError;
 
-/// The parts in a folder that the user names, or else those that the command was built with.
+/// Returns the parts in a folder that the user names, or else the embedded ones.
 pub(crate) fn assets(args: &PageArgs) -> Result<Assets, CliError> {
     match &args.folder {
         Some(folder) => Ok(Assets::from_folder(folder)?),

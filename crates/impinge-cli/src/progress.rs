@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Work that takes less long has no bar.
+/// Shorter work has no progress bar.
 const DELAY: Duration = Duration::from_secs(1);
 
-/// A bar that appears after a second, on a terminal alone, and is gone at the end.
+/// A progress bar that appears after a second, on a terminal only, and disappears at the end.
 #[derive(Debug)]
 pub(crate) struct Progress {
     bar: ProgressBar,
@@ -16,7 +16,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// A bar of so many steps of some work.
+    /// Creates a bar of `steps` steps.
     pub(crate) fn new(steps: usize, work: &'static str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
         let style = ProgressStyle::with_template("{msg} {wide_bar:.cyan} {pos}/{len} {eta}");
@@ -25,11 +25,11 @@ impl Progress {
         Self { bar, begun: Instant::now(), is_shown: false }
     }
 
-    /// One step is done.
+    /// Counts a finished step.
     pub(crate) fn step(&mut self) {
         if !self.is_shown && self.begun.elapsed() > DELAY {
             self.is_shown = true;
-            // Draws nothing where standard error is not a terminal.
+            // Draws nothing if standard error is not a terminal.
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         self.bar.inc(1);

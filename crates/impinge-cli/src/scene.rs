@@ -1,4 +1,4 @@
-//! Scenes as the command reads them: scene files, meshes, robots.
+//! Input scenes: scene files, meshes, robots.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use crate::near::check_pairs;
 use crate::output::Subject;
 use crate::space::{Kind, Stage};
 
-/// A scene, and the scalar and dimension in which the command computes with it.
+/// A scene, and the scalar and dimension of the computation.
 #[derive(Debug)]
 pub(crate) struct Loaded {
     path: PathBuf,
@@ -26,7 +26,7 @@ pub(crate) struct Loaded {
 /// The name of a scene from standard input.
 const STDIN: &str = "stdin";
 
-/// A name is similar to one with at most a third as many edits as it has characters.
+/// A name is similar to another if the edit distance is at most the number of its characters divided by this.
 const SIMILAR: usize = 3;
 
 /// Longer names are not compared: the time is the product of their lengths.
@@ -43,14 +43,14 @@ impl Loaded {
         Ok(Self::new(path.clone(), scene, reading))
     }
 
-    /// The scene that standard input has.
+    /// Reads a scene from the bytes of standard input.
     pub(crate) fn of_stdin(bytes: Vec<u8>, reading: &Reading) -> Result<Self, CliError> {
         let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
         let text = String::from_utf8(bytes).map_err(invalid);
         Self::of_text(STDIN, &text.map_err(CliError::reading(Path::new(STDIN)))?, reading)
     }
 
-    /// A scene in JSON that is no file.
+    /// Parses a scene in JSON that is not in a file.
     pub(crate) fn of_text(name: &str, text: &str, reading: &Reading) -> Result<Self, CliError> {
         let scene = Scene::from_json_with(name, text, &reading.options())?;
         Ok(Self::new(name.into(), scene, reading))
@@ -62,12 +62,12 @@ impl Loaded {
         Self { path, scene, kind, max_pairs: reading.limits.max_pairs }
     }
 
-    /// The file, as reports name it.
+    /// The name of the file in reports.
     pub(crate) fn name(&self) -> String {
         self.path.display().to_string()
     }
 
-    /// With what a report on the scene begins.
+    /// The first fields of a report on the scene.
     pub(crate) fn subject(&self) -> Subject {
         Subject { file: self.name(), kind: self.kind }
     }
@@ -77,14 +77,14 @@ impl Loaded {
         &self.scene
     }
 
-    /// A world with the objects, not updated yet.
+    /// Makes a world with the objects, not updated yet.
     pub(crate) fn world<N: Stage<D>, const D: usize>(
         &self,
     ) -> Result<CollisionWorld<N, D, String>, CliError> {
         Ok(self.scene.collision_world()?)
     }
 
-    /// A world that is asked about its objects, but not for pairs of them: none are computed.
+    /// Makes a world for queries about its objects, without pairs between them.
     pub(crate) fn world_without_pairs<N: Stage<D>, const D: usize>(
         &self,
     ) -> Result<CollisionWorld<N, D, String>, CliError> {
@@ -95,13 +95,13 @@ impl Loaded {
             let fixed = world.try_set_fixed(handle, true);
             fixed.map_err(|error| CliError::Objects(error.to_string()))?;
         }
-        // Boxes that overlap are noted all the same.
+        // Overlapping boxes are stored all the same.
         self.check_pairs(&world)?;
         world.update();
         Ok(world)
     }
 
-    /// An update of a world of this scene may keep its pairs.
+    /// Checks the number of pairs of the next update of a world of this scene.
     pub(crate) fn check_pairs<N: Stage<D>, const D: usize>(
         &self,
         world: &CollisionWorld<N, D, String>,
@@ -121,12 +121,12 @@ impl Loaded {
         Ok(())
     }
 
-    /// How many pairs are kept at most.
+    /// The largest number of pairs.
     pub(crate) const fn max_pairs(&self) -> usize {
         self.max_pairs
     }
 
-    /// A world whose objects move and are recorded, with these key frames.
+    /// Makes a recorded world with moving objects, with these key frames.
     pub(crate) fn moving<N: Stage<D>, const D: usize>(
         &self,
         key_frames: KeyFrames,
@@ -138,7 +138,7 @@ impl Loaded {
         })
     }
 
-    /// The direction that points up in pictures.
+    /// The upward direction of pictures.
     pub(crate) fn up(&self) -> Vector<f64> {
         match self.scene.up() {
             UpAxis::X => Vector::x(),
@@ -147,7 +147,7 @@ impl Loaded {
         }
     }
 
-    /// The object of a name; the error has the most similar name, if one is similar.
+    /// Returns the object of a name; the error has the most similar name, if one is similar.
     pub(crate) fn object<'a, N: Stage<D>, const D: usize>(
         &self,
         world: &'a CollisionWorld<N, D, String>,
@@ -164,12 +164,12 @@ impl Loaded {
     }
 }
 
-/// The edit distance: how many characters have to be added, removed or changed (Levenshtein, "Binary codes capable
-/// of correcting deletions, insertions, and reversals", 1966).
+/// Returns the edit distance: the number of characters to add, remove or change (Levenshtein, "Binary codes
+/// capable of correcting deletions, insertions, and reversals", 1966).
 fn edits(one: &str, other: &str) -> usize {
     let other: Vec<char> = other.chars().collect();
     // The distances of the first `row` characters of `one` to every prefix of `other`: a row of the usual table,
-    // overwritten from left to right, with what stood above and to the left in `diagonal`.
+    // overwritten from left to right; `diagonal` is the value above and to the left.
     let mut distances: Vec<usize> = (0..=other.len()).collect();
     for (row, letter) in one.chars().enumerate() {
         let mut diagonal = distances[0];

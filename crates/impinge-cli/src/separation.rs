@@ -1,4 +1,4 @@
-//! How far apart or how deep two objects are: the fields of `check` and `distance`.
+//! The distance or depth of two objects: the fields of `check` and `distance`.
 
 use core::fmt;
 
@@ -10,8 +10,8 @@ use crate::number::{Number, tuple};
 use crate::output::FAINT;
 use crate::state::State;
 
-/// Two objects and the points where they are nearest or deepest. What is null has no bound: half-spaces
-/// that overlap for ever.
+/// Two objects and the points where they are nearest or deepest. Null stands for unbounded values:
+/// half-spaces with an unbounded overlap.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Separation {
     pub(crate) first: String,
@@ -19,22 +19,22 @@ pub(crate) struct Separation {
     pub(crate) state: State,
     /// Zero if they touch.
     pub(crate) distance: Option<Number>,
-    /// Zero unless they overlap: the length of the shortest translation that parts them.
+    /// Zero unless they overlap: the length of the shortest translation that separates them.
     pub(crate) depth: Option<Number>,
-    /// On the first object, in the world.
+    /// The point on the first object, in the world frame.
     pub(crate) point1: Option<Vec<Number>>,
-    /// On the second.
+    /// The point on the second object.
     pub(crate) point2: Option<Vec<Number>>,
-    /// From the first to the second, of length 1.
+    /// The unit normal from the first to the second.
     pub(crate) normal: Option<Vec<Number>>,
-    /// The part of the first that has the point; 0 of a convex shape.
+    /// The part of the first object with the point; 0 for a convex shape.
     pub(crate) part1: Option<u32>,
-    /// The same of the second.
+    /// The part of the second object.
     pub(crate) part2: Option<u32>,
 }
 
 impl Separation {
-    /// Of two objects with a witness; near if they are within a margin.
+    /// Converts a witness; the state is near if they are within a margin.
     pub(crate) fn of_witness<N: Recordable<D>, const D: usize>(
         [first, second]: [String; 2],
         found: &Witness<N, D>,
@@ -64,8 +64,8 @@ impl Separation {
         }
     }
 
-    /// Of two objects without nearest points: half-spaces that overlap without bound, or something infinitely
-    /// far away.
+    /// Returns the fields of two objects without nearest points: half-spaces with an unbounded overlap, or
+    /// objects infinitely far away.
     pub(crate) fn unbounded([first, second]: [String; 2], state: State) -> Self {
         let (distance, depth, point1, point2) = (None, None, None, None);
         let (normal, part1, part2) = (None, None, None);
@@ -73,7 +73,7 @@ impl Separation {
     }
 }
 
-/// A line with the state, the names and the length, and one with the points and the normal.
+/// Writes a line with the state, the names and the length, and one with the points and the normal.
 impl fmt::Display for Separation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.state.headline(f, &self.first, &self.second)?;

@@ -1,4 +1,4 @@
-//! From the scalar and dimension that a file names to types: the one place where they are chosen.
+//! Dispatches from the scalar and dimension of a file to types: the only place of this choice.
 
 use core::fmt;
 
@@ -30,10 +30,10 @@ impl fmt::Display for Kind {
 
 /// A scalar and a dimension in which the command works.
 pub(crate) trait Stage<const D: usize>: SceneSpace<D> {
-    /// The camera of a picture: in 3D this one, in 2D that of the plane.
+    /// Returns the camera of a picture: in 3D the given one, in 2D an orthographic one.
     fn camera(spatial: Camera) -> Camera;
 
-    /// A picture of lines of this width in pixels.
+    /// Creates a picture of lines of this width in pixels.
     fn lines(camera: Camera, width: u32) -> SvgPicture;
 
     /// Whether two objects touch, or are at most a margin apart; see [`proximity`].
@@ -43,7 +43,7 @@ pub(crate) trait Stage<const D: usize>: SceneSpace<D> {
         margin: Self,
     ) -> Proximity;
 
-    /// The nearest points of two objects that are at most `limit` apart; see [`witness`].
+    /// Returns the nearest points of two objects whose distance is at most `limit`; see [`witness`].
     fn witness<T>(
         object1: &CollisionObject<Self, D, T>,
         object2: &CollisionObject<Self, D, T>,
@@ -107,13 +107,13 @@ impl<N: Scalar> Stage<3> for N {
     }
 }
 
-/// A computation that is generic over the scalar and the dimension, which are known when the program runs. It is a
-/// type, because a closure cannot be generic.
+/// A computation that is generic over scalar and dimension, which are known at run time. It is a type, because a
+/// closure cannot be generic.
 pub(crate) trait Task {
     /// Its result.
     type Answer;
 
-    /// Computes it.
+    /// Runs the computation.
     fn run<N: Stage<D>, const D: usize>(self) -> Result<Self::Answer, CliError>;
 }
 

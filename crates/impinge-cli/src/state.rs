@@ -1,4 +1,4 @@
-//! Whether two objects touch.
+//! The state of a pair: touching, near or apart.
 
 use core::fmt;
 
@@ -21,7 +21,7 @@ pub(crate) enum State {
 }
 
 impl State {
-    /// With what a line about a pair begins: the state and the names.
+    /// Writes the beginning of a line about a pair: the state and the names.
     pub(crate) fn headline(
         self,
         f: &mut fmt::Formatter<'_>,
@@ -34,7 +34,7 @@ impl State {
             Self::Apart => ("apart", CLEAR),
         };
         let [first, second] = [first, second].map(Printable);
-        // As wide as the longest word, so that names of several lines line up.
+        // As wide as the longest word, so that names of several lines are aligned.
         write!(f, "{style}{word:5}{style:#} {NAME}{first}{NAME:#} {NAME}{second}{NAME:#}")
     }
 }

@@ -1,4 +1,4 @@
-//! The pairs of a world after an update, and their numbers.
+//! The pairs of a world after an update, and their counts.
 
 use core::fmt;
 
@@ -12,7 +12,7 @@ use crate::log::{Label, name_of};
 use crate::number::Number;
 use crate::state::State;
 
-/// The numbers of a step.
+/// The counts of a step.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct StepSummary {
     /// The number of updates so far.
@@ -24,7 +24,7 @@ pub(crate) struct StepSummary {
     pub(crate) near: usize,
     /// Contact points of all pairs.
     pub(crate) contacts: usize,
-    /// Events by which a pair came to touch.
+    /// Events of pairs that started touching.
     pub(crate) started: usize,
     pub(crate) stopped: usize,
 }
@@ -38,17 +38,18 @@ pub(crate) struct PairSummary {
     pub(crate) numbers: PairNumbers,
 }
 
-/// The numbers of a pair.
+/// The contacts of a pair.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct PairNumbers {
     pub(crate) state: State,
-    /// The number of contact points; 0 for pairs of which proximity alone is wanted.
+    /// The number of contact points; 0 for pairs with proximity only.
     pub(crate) contacts: usize,
-    /// Of the deepest contact; negative if it is a predicted one.
+    /// The depth of the deepest contact; negative for a predicted one.
     pub(crate) depth: Option<Number>,
 }
 
-/// The pairs of a world that touch or are near: those with contacts first, each in order of the handles.
+/// Returns the pairs of a world that touch or are near: those with contacts first, each in order of the
+/// handles.
 fn near_pairs<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> impl Iterator<Item = ([&CollisionObject<N, D, T>; 2], PairNumbers)> {
@@ -70,7 +71,7 @@ fn near_pairs<N: Recordable<D>, const D: usize, T>(
     contacts.chain(proximities)
 }
 
-/// The pairs of a recorded world that touch or are near, with names.
+/// Returns the pairs of a recorded world that touch or are near, with names.
 pub(crate) fn pairs<N: Recordable<D>, const D: usize>(
     world: &CollisionWorld<N, D, Label>,
 ) -> Vec<PairSummary> {
@@ -88,7 +89,7 @@ pub(crate) fn touches<N: Recordable<D>, const D: usize, T>(
     near_pairs(world).any(|(_, pair)| pair.state == State::Touch)
 }
 
-/// The numbers of a world after so many updates.
+/// Returns the counts of a world after `step` updates.
 pub(crate) fn summary<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     step: usize,
@@ -97,7 +98,7 @@ pub(crate) fn summary<N: Recordable<D>, const D: usize, T>(
     let count = |state| pairs.iter().filter(|pair| pair.state == state).count();
     let events = world.contact_events().iter();
     let started = events.filter(|event| matches!(event, ContactEvent::Started(..))).count();
-    // A change from near to apart neither starts nor stops anything.
+    // A change from near to apart is neither a start nor a stop.
     let changes = world.proximity_events().iter();
     let enters = |event: &&ProximityEvent| event.new_status == Proximity::Intersecting;
     let leaves = |event: &&ProximityEvent| event.prev_status == Proximity::Intersecting;

@@ -9,7 +9,7 @@ use impinge_scenes::{Placement, Scene, SceneShape};
 use crate::contacts::{ContactName, Contacts};
 use crate::{Digest, Recycling, sorted};
 
-/// Box2D keeps its worlds in a table of the process.
+/// Box2D stores its worlds in a table of the process.
 static TABLE: Mutex<()> = Mutex::new(());
 
 fn table() -> MutexGuard<'static, ()> {
@@ -18,11 +18,12 @@ fn table() -> MutexGuard<'static, ()> {
 
 /// A world of Box2D.
 ///
-/// Its bodies are dynamic, as two others never touch, without sleep; the ground is a static chain. A
-/// step sets the transforms of what has moved, makes a step of time 0, which finds pairs and updates
-/// contacts but solves and integrates nothing, and keeps the list of touching contacts by the events.
+/// Its bodies are dynamic, since two others never touch, without sleep; the ground is a static chain.
+/// A step sets the transforms of moved objects, makes a step of time 0, which finds pairs and updates
+/// contacts but solves and integrates nothing, and updates the list of touching contacts by the
+/// events.
 ///
-/// Its prediction is 0.02 and its boxes are loosened by up to 0.07: they are constants of it.
+/// Its prediction is 0.02 and its boxes are enlarged by up to 0.07: these are constants of Box2D.
 #[derive(Debug)]
 pub struct Box2d {
     world: ffi::b2WorldId,
@@ -44,7 +45,7 @@ impl ContactName for ffi::b2ContactId {
 }
 
 impl Box2d {
-    /// A world with the objects of a scene as they are at step 0; none if Box2D lacks a shape of it.
+    /// Creates a world with the objects of a scene at step 0; `None` if Box2D lacks a shape of it.
     #[must_use]
     pub fn new(scene: &Scene<2>, recycling: Recycling) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {
@@ -95,7 +96,7 @@ impl Box2d {
         }));
     }
 
-    /// Hands over the new poses and updates.
+    /// Sets the new poses and updates.
     pub fn step(&mut self) {
         // SAFETY: the world and its bodies live; the events are read before the world changes again,
         // and a count of 0 goes with any pointer.
@@ -129,7 +130,7 @@ impl Box2d {
         digest
     }
 
-    /// The pairs with a point not farther apart than a distance, smaller index first, sorted.
+    /// Returns the pairs with a point within a distance, smaller index first, sorted.
     #[must_use]
     pub fn touching(&self, distance: f32) -> Vec<(usize, usize)> {
         let pairs = self.contacts.iter().filter_map(|contact| {
@@ -154,7 +155,7 @@ impl Drop for Box2d {
     }
 }
 
-/// Whether Box2D has the shape: hulls have 8 corners at most; there are no half-spaces.
+/// Whether Box2D has the shape: hulls have at most 8 corners; there are no half-spaces.
 fn has(shape: &SceneShape<2>) -> bool {
     match shape {
         SceneShape::Convex { points } => points.len() <= 8,
@@ -224,7 +225,7 @@ unsafe fn add_polygon(body: ffi::b2BodyId, def: *const ffi::b2ShapeDef, points: 
     }
 }
 
-/// Where the vertices of a height field are.
+/// Returns the vertices of a height field.
 fn line(heights: &[f64], extents: &[f64; 2]) -> Vec<[f64; 2]> {
     let last = (heights.len() - 1) as f64;
     let vertex =
@@ -232,8 +233,8 @@ fn line(heights: &[f64], extents: &[f64; 2]) -> Vec<[f64; 2]> {
     heights.iter().enumerate().map(vertex).collect()
 }
 
-/// Chains are touched from the right of their direction alone, here from above, and their first and
-/// last segments not at all: no object is near those.
+/// Chains have contacts on the right side of their direction only, here from above, and none on their
+/// first and last segments: no object is near those.
 fn add_chain(body: ffi::b2BodyId, index: usize, vertices: &[[f64; 2]]) {
     let points: Vec<_> = vertices.iter().rev().map(vector).collect();
     // SAFETY: the body lives; the count is that of the points, which the engine copies.

@@ -1,4 +1,4 @@
-//! Box3D, driven without dynamics; the twin of `box2d` with other shapes.
+//! Box3D, driven without dynamics, like `box2d` with other shapes.
 
 use std::marker::PhantomData;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -9,29 +9,31 @@ use impinge_scenes::{Placement, Scene, SceneShape};
 use crate::contacts::{ContactName, Contacts};
 use crate::{Digest, Recycling, sorted};
 
-/// Box3D keeps its worlds in a table of the process.
+/// Box3D stores its worlds in a table of the process.
 static TABLE: Mutex<()> = Mutex::new(());
 
 fn table() -> MutexGuard<'static, ()> {
     TABLE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// By how much Box3D says that points on a ground are deeper than they are.
+/// The amount by which Box3D increases the depth of points on a ground.
 const REST_OFFSET: f32 = 0.005;
 
 /// A world of Box3D.
 ///
-/// Its bodies are dynamic, as two others never touch, without sleep; the ground is static. A step sets
-/// the transforms of what has moved, makes a step of time 0, which finds pairs and updates contacts
-/// but solves and integrates nothing, and keeps the list of touching contacts by the events.
+/// Its bodies are dynamic, since two others never touch, without sleep; the ground is static. A step
+/// sets the transforms of moved objects, makes a step of time 0, which finds pairs and updates
+/// contacts but solves and integrates nothing, and updates the list of touching contacts by the
+/// events.
 ///
-/// Its prediction is 0.02 and its boxes are loosened by up to 0.07: they are constants of it. Depths
-/// on a ground are greater by 0.005, another one. The heights of its height field have 16 bits.
+/// Its prediction is 0.02 and its boxes are enlarged by up to 0.07: these are constants of Box3D.
+/// Depths on a ground are greater by 0.005, another constant. The heights of its height field have 16
+/// bits.
 #[derive(Debug)]
 pub struct Box3d {
     world: ffi::b3WorldId,
     bodies: Vec<ffi::b3BodyId>,
-    /// Of each object, what to add to the separation of its points.
+    /// For each object, the offset of the separation of its points.
     offsets: Vec<f32>,
     moved: Vec<(ffi::b3BodyId, ffi::b3Vec3, ffi::b3Quat)>,
     contacts: Contacts<ffi::b3ContactId>,
@@ -52,7 +54,7 @@ impl ContactName for ffi::b3ContactId {
 }
 
 impl Box3d {
-    /// A world with the objects of a scene as they are at step 0; none if Box3D lacks a shape of it.
+    /// Creates a world with the objects of a scene at step 0; `None` if Box3D lacks a shape of it.
     #[must_use]
     pub fn new(scene: &Scene<3>, recycling: Recycling) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {
@@ -84,10 +86,10 @@ impl Box3d {
         let shape = &scene.objects[index].shape;
         let (mut position, mut rotation) = pose(&scene.placement(index, 0));
         if let SceneShape::HeightField { extents, .. } = shape {
-            // A quarter of a turn about y, which has the diagonals of its cells run as in the scene.
+            // A quarter turn about y, which aligns the diagonals of its cells with those of the scene.
             let half = 0.5_f64.sqrt();
             rotation = ffi::b3Quat { v: vector(&[0.0, half, 0.0]), s: half as f32 };
-            // Its first height is at its origin; that of the scene is centred.
+            // Its first height is at its origin; the height field of the scene is centred.
             position.x -= 0.5 * extents[0] as f32;
             position.z += 0.5 * extents[2] as f32;
         }
@@ -114,7 +116,7 @@ impl Box3d {
         }));
     }
 
-    /// Hands over the new poses and updates.
+    /// Sets the new poses and updates.
     pub fn step(&mut self) {
         // SAFETY: the world and its bodies live; the events are read before the world changes again,
         // and a count of 0 goes with any pointer.
@@ -148,7 +150,7 @@ impl Box3d {
         digest
     }
 
-    /// The pairs with a point not farther apart than a distance, smaller index first, sorted.
+    /// Returns the pairs with a point within a distance, smaller index first, sorted.
     #[must_use]
     pub fn touching(&self, distance: f32) -> Vec<(usize, usize)> {
         let pairs = self.contacts.iter().filter_map(|contact| {
@@ -183,7 +185,8 @@ impl Box3d {
                 SceneShape::Cuboid { half_extents } => {
                     let [x, y, z] = half_extents.map(|x| x as f32);
                     let hull = ffi::b3MakeBoxHull(x, y, z);
-                    // The numbers of the hull follow its base: the pointer is to all of them.
+                    // The data of the hull follow its base in memory: the pointer must cover all of
+                    // them.
                     ffi::b3CreateHullShape(body, def, (&raw const hull).cast());
                 }
                 SceneShape::Capsule { half_height, radius } => {
@@ -216,7 +219,7 @@ impl Box3d {
     }
 }
 
-/// A contact of a world and its manifolds, which live until the world changes.
+/// Returns a contact of a world and its manifolds, which live until the world changes.
 fn manifolds(_: &Box3d, contact: ffi::b3ContactId) -> (ffi::b3ContactData, &[ffi::b3Manifold]) {
     // SAFETY: the contact has begun and not ended; without manifolds their pointer may be null.
     unsafe {
@@ -240,7 +243,7 @@ impl Drop for Box3d {
     }
 }
 
-/// Whether Box3D has the shape; its cylinders and cones are hulls of some number of sides.
+/// Whether Box3D has the shape; its cylinders and cones are hulls with a number of sides.
 const fn has(shape: &SceneShape<3>) -> bool {
     use SceneShape::{Ball, Capsule, Convex, Cuboid};
     matches!(shape, Ball { .. } | Cuboid { .. } | Capsule { .. } | Convex { .. })
@@ -284,7 +287,8 @@ unsafe fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> *mut ffi::b3Mes
     mesh
 }
 
-/// The field turned back by a quarter about y: its x axis is −z of the scene, its z axis is x.
+/// Returns the field rotated back by a quarter turn about y: its x axis is −z of the scene, its z axis
+/// is x.
 ///
 /// # Safety
 /// There are as many heights as the counts say.

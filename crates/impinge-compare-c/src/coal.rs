@@ -1,4 +1,4 @@
-//! Coal, asked for many pairs in one call.
+//! Coal, for many pairs in one call.
 
 use std::ffi::c_void;
 use std::marker::PhantomData;
@@ -6,7 +6,7 @@ use std::ptr::NonNull;
 
 type Handle = *mut c_void;
 
-// They take what `coal.cpp` says; lists of numbers are as long as the counts beside them.
+// The arguments are described in `coal.cpp`; lists of numbers are as long as the counts beside them.
 unsafe extern "C" {
     fn impinge_coal_ball(radius: f64) -> Handle;
     fn impinge_coal_box(half: *const f64, radius: f64) -> Handle;
@@ -28,7 +28,7 @@ unsafe extern "C" {
     fn impinge_coal_deepest(pairs: Handle, answers: *mut f32);
 }
 
-/// A solid around the origin, in `f64`; axes go along the second coordinate.
+/// A solid around the origin, in `f64`; axes are along the second coordinate.
 #[derive(Debug)]
 pub struct CoalSolid(NonNull<c_void>);
 
@@ -37,59 +37,59 @@ impl CoalSolid {
         Self(NonNull::new(handle).expect("it is made by `new`"))
     }
 
-    /// A ball.
+    /// Creates a ball.
     #[must_use]
     pub fn ball(radius: f64) -> Self {
         // SAFETY: plain numbers; this owns what is made, as below.
         Self::owned(unsafe { impinge_coal_ball(radius) })
     }
 
-    /// A box, rounded outwards by a radius.
+    /// Creates a box, inflated by a radius.
     #[must_use]
     pub fn cuboid(half_extents: &[f64; 3], radius: f64) -> Self {
         // SAFETY: three numbers are read.
         Self::owned(unsafe { impinge_coal_box(half_extents.as_ptr(), radius) })
     }
 
-    /// A capsule.
+    /// Creates a capsule.
     #[must_use]
     pub fn capsule(half_height: f64, radius: f64) -> Self {
         // SAFETY: plain numbers.
         Self::owned(unsafe { impinge_coal_capsule(half_height, radius) })
     }
 
-    /// A cylinder.
+    /// Creates a cylinder.
     #[must_use]
     pub fn cylinder(half_height: f64, radius: f64) -> Self {
         // SAFETY: plain numbers.
         Self::owned(unsafe { impinge_coal_cylinder(half_height, radius) })
     }
 
-    /// A cone, its apex above.
+    /// Creates a cone with its apex above.
     #[must_use]
     pub fn cone(half_height: f64, radius: f64) -> Self {
         // SAFETY: plain numbers.
         Self::owned(unsafe { impinge_coal_cone(half_height, radius) })
     }
 
-    /// The hull of points that span space.
+    /// Creates the hull of points that span a volume.
     #[must_use]
     pub fn hull(points: &[[f64; 3]]) -> Self {
         // SAFETY: three numbers are read for each point.
         Self::owned(unsafe { impinge_coal_hull(points.as_flattened().as_ptr(), points.len()) })
     }
 
-    /// All below a plane through the origin, by its outward normal.
+    /// Creates the half-space below a plane through the origin, by its outward normal.
     #[must_use]
     pub fn half_space(normal: &[f64; 3]) -> Self {
         // SAFETY: three numbers are read.
         Self::owned(unsafe { impinge_coal_half_space(normal.as_ptr()) })
     }
 
-    /// Triangles, with a tree over them.
+    /// Creates a mesh of triangles, with a tree over them.
     ///
     /// # Panics
-    /// Where a triangle names a vertex that is not there.
+    /// If a triangle names a vertex that does not exist.
     #[must_use]
     pub fn mesh(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Self {
         let named = triangles.as_flattened();
@@ -122,11 +122,11 @@ pub struct CoalPairs {
 }
 
 impl CoalPairs {
-    /// Placements of the first solid, and sets of as many placements of the second; none where Coal has
-    /// no algorithm for the two.
+    /// Stores placements of the first solid, and sets of as many placements of the second; `None` if
+    /// Coal has no algorithm for the two.
     ///
     /// # Panics
-    /// Where a set has another length.
+    /// If a set has another length.
     #[must_use]
     pub fn new(
         solids: &[CoalSolid; 2],
@@ -147,35 +147,35 @@ impl CoalPairs {
         Some(pairs)
     }
 
-    /// Forgets what was kept of earlier questions. Contacts are wanted up to a margin; with `is_warm` a
-    /// search for contacts begins with the direction that the last one ended with.
+    /// Drops the state of earlier queries. Contacts are computed up to a margin; with `is_warm` a
+    /// search for contacts begins with the direction at which the last one ended.
     pub fn reset(&mut self, margin: f64, is_warm: bool) {
         // SAFETY: the pairs are owned, as below.
         unsafe { impinge_coal_reset(self.handle.as_ptr(), margin, is_warm) }
     }
 
-    /// The distance of every pair in a set, 0 where they overlap.
+    /// Computes the distance of every pair in a set, 0 where they overlap.
     pub fn distances(&mut self, set: usize, answers: &mut Vec<f32>) {
         let handle = self.begin(set, answers);
         // SAFETY: the set is there, and the answers are as many as the pairs.
         unsafe { impinge_coal_distances(handle, set, answers.as_mut_ptr()) }
     }
 
-    /// The signed distance of the deepest contact of every pair, infinite for none.
+    /// Computes the signed distance of the deepest contact of every pair, infinite for none.
     pub fn contacts(&mut self, set: usize, answers: &mut Vec<f32>) {
         let handle = self.begin(set, answers);
         // SAFETY: as before.
         unsafe { impinge_coal_contacts(handle, set, answers.as_mut_ptr()) }
     }
 
-    /// Contacts, and the polygons in which surfaces touch; they are kept.
+    /// Computes and stores contacts, and the polygons in which surfaces touch.
     pub fn patches(&mut self, set: usize) {
         assert!(set < self.sets, "there are {} sets", self.sets);
         // SAFETY: the set is there.
         unsafe { impinge_coal_patches(self.handle.as_ptr(), set) }
     }
 
-    /// The signed distance of the deepest contact that was kept, of every pair.
+    /// Returns the signed distance of the deepest stored contact of every pair.
     pub fn deepest(&self, answers: &mut Vec<f32>) {
         answers.resize(self.count, 0.0);
         // SAFETY: the answers are as many as the pairs.

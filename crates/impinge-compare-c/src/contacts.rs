@@ -1,20 +1,19 @@
-//! The touching contacts of a world of Box2D or Box3D, kept by its events.
+//! The touching contacts of a world of Box2D or Box3D, tracked by its events.
 
 /// The name of a contact.
 pub(crate) trait ContactName: Copy {
-    /// A small number, given to another contact after this one has ended.
+    /// The index, which is reused for another contact after this one has ended.
     fn index(self) -> usize;
 
-    /// What tells the contacts of one index apart.
+    /// Distinguishes the contacts of one index.
     fn generation(self) -> u32;
 }
 
-/// The contacts between the event of their beginning and that of their end: neither engine has a list
-/// of all for its user.
+/// The contacts between their begin event and their end event: neither engine returns a list of all.
 #[derive(Debug)]
 pub(crate) struct Contacts<Name> {
     names: Vec<Name>,
-    /// By index: the place among the names, or [`NOWHERE`].
+    /// For each index its position among the names, or [`NOWHERE`].
     places: Vec<usize>,
 }
 
@@ -29,7 +28,7 @@ impl<Name: ContactName> Contacts<Name> {
         self.names.iter().copied()
     }
 
-    /// The ends of a step come before its beginnings: an index can be in both.
+    /// The end events of a step come before its begin events: an index can be in both.
     pub(crate) fn end(&mut self, name: Name) {
         let place = self.places.get(name.index()).copied().unwrap_or(NOWHERE);
         let is_it = |kept: &Name| kept.generation() == name.generation();

@@ -17,13 +17,13 @@ const LAYERS: u32 = 1;
 
 /// A world of Jolt.
 ///
-/// Its bodies are kinematic, which it lets collide with one another if asked to, without velocity and
-/// never asleep; the ground is static. A step sets the poses of what has moved and makes a step with
-/// the job system that runs on the calling thread. Pairs between which neither is dynamic are given to
-/// the listener of contacts but not to the solver. What remains of the dynamics is a pass over the
-/// bodies, which moves none, and one that brings their boxes up to date.
+/// Its bodies are kinematic, which may collide with each other if enabled, without velocity and never
+/// asleep; the ground is static. A step sets the poses of moved objects and makes a step with the job
+/// system that runs on the calling thread. Pairs without a dynamic body are passed to the contact
+/// listener but not to the solver. The remaining dynamics are a pass over the bodies, which moves none,
+/// and one that updates their boxes.
 ///
-/// Contacts can be read in the listener alone, so it keeps each point, its depth, and the pair.
+/// Contacts can be read in the listener only, so it stores each point, its depth, and the pair.
 #[derive(Debug)]
 pub struct Jolt {
     system: *mut JPH_PhysicsSystem,
@@ -33,7 +33,8 @@ pub struct Jolt {
     memory: *mut JPH_TempAllocator,
     bodies: Vec<JPH_BodyID>,
     moved: Vec<(JPH_BodyID, JPH_Vec3, JPH_Quat)>,
-    /// What the listener writes to; it has the pointer too, so there is never a reference while it runs.
+    /// The buffer of the listener, which has the pointer too, so there is never a reference while it
+    /// runs.
     heard: *mut Heard,
     /// Worlds stay on their thread.
     thread: PhantomData<*const ()>,
@@ -44,11 +45,11 @@ pub struct Jolt {
 struct Heard {
     /// For each manifold, the pair and the end of its points.
     pairs: Vec<([u64; 2], usize)>,
-    /// Where a point is on the first body, and its depth.
+    /// The position of a point on the first body, and its depth.
     points: Vec<(JPH_Vec3, f32)>,
 }
 
-/// What is the same for all worlds, once per process.
+/// Initializes the engine, once per process.
 fn engine() {
     static ENGINE: OnceLock<()> = OnceLock::new();
     static PROCS: JPH_ContactListener_Procs = JPH_ContactListener_Procs {
@@ -66,7 +67,7 @@ fn engine() {
     });
 }
 
-/// The listener.
+/// The contact listener.
 ///
 /// # Safety
 /// Called by the engine while `Jolt::step` runs, with what `Jolt::new` gave it.
@@ -96,14 +97,14 @@ unsafe extern "C" fn hear(
 }
 
 impl Jolt {
-    /// What Jolt rounds edges by if it is not told otherwise.
+    /// The default rounding radius of Jolt.
     pub const CONVEX_RADIUS: f32 = 0.05;
 
-    /// A world with the objects of a scene as they are at step 0, whose contacts are predicted up to a
-    /// distance; none if Jolt lacks a shape of it.
+    /// Creates a world with the objects of a scene at step 0, whose contacts are predicted up to a
+    /// distance; `None` if Jolt lacks a shape of it.
     ///
     /// The edges of boxes and hulls are rounded by a radius, by default [`Self::CONVEX_RADIUS`]: within
-    /// it a search for the closest points will do. With 0 they are those of the scene.
+    /// it a search for the closest points suffices. With 0 they are those of the scene.
     #[must_use]
     pub fn new(scene: &Scene<3>, prediction: f32, convex_radius: f32) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {
@@ -173,7 +174,7 @@ impl Jolt {
         }));
     }
 
-    /// Hands over the new poses and updates; the listener reads.
+    /// Sets the new poses and updates; the listener reads.
     pub fn step(&mut self) {
         // SAFETY: the world and its bodies live, the reference ends before the engine runs, and only
         // then the listener writes.
@@ -200,7 +201,7 @@ impl Jolt {
         unsafe { &*self.heard }
     }
 
-    /// Reads every contact point that the listener has kept.
+    /// Reads every contact point that the listener has stored.
     #[must_use]
     pub fn read(&self) -> Digest {
         let points = &self.heard().points;
@@ -208,7 +209,7 @@ impl Jolt {
         Digest { points: points.len(), depth }
     }
 
-    /// The pairs with a point not farther apart than a distance, smaller index first, sorted.
+    /// Returns the pairs with a point within a distance, smaller index first, sorted.
     #[must_use]
     pub fn touching(&self, distance: f32) -> Vec<(usize, usize)> {
         let Heard { pairs, points } = self.heard();
@@ -270,8 +271,8 @@ unsafe fn system(objects: usize, prediction: f32) -> *mut JPH_PhysicsSystem {
 
 static NO_GRAVITY: JPH_Vec3 = JPH_Vec3 { x: 0.0, y: 0.0, z: 0.0 };
 
-/// Whether Jolt has the shape; its half-spaces have borders, its segments a radius, and its cylinders
-/// and cones run in no scene without these.
+/// Whether Jolt has the shape; its half-spaces are bounded, its segments have a radius, and its
+/// cylinders and cones occur only in scenes with these.
 const fn has(shape: &SceneShape<3>) -> bool {
     use SceneShape::{Ball, Capsule, Convex, Cuboid};
     matches!(shape, Ball { .. } | Cuboid { .. } | Capsule { .. } | Convex { .. })

@@ -1,7 +1,7 @@
 //! Rivals in C and C++ behind safe types, for `impinge-compare`.
 //!
-//! Coal answers questions about two shapes. The others are engines with dynamics, driven so that as little of it runs as can be; what each does
-//! between two readings is said there. All run on the calling thread alone.
+//! Coal runs queries about two shapes. The others are engines with dynamics, used so that as little of these runs as
+//! possible; the documentation of each describes its work between two readings. All run on the calling thread only.
 
 #[cfg(feature = "box2d")]
 mod box2d;
@@ -26,24 +26,24 @@ pub use jolt::Jolt;
 /// A digest of all contact points.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Digest {
-    /// How many points there are.
+    /// The number of points.
     pub points: usize,
     /// The sum of their depths.
     pub depth: f64,
 }
 
-/// Whether contacts are computed anew at every step, or as the engine does by default.
+/// Whether contacts are recomputed at every step, or recycled as the engine does by default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recycling {
-    /// A contact is computed anew wherever the pair has moved.
+    /// A contact is recomputed whenever the pair has moved.
     Off,
-    /// As by default: until a pair has moved by 0.05 against one another, the points stay where they
-    /// were on each object, and only their depths follow.
+    /// The default: until the objects of a pair have moved by 0.05 relative to each other, the points stay fixed on
+    /// each object, and only their depths change.
     On,
 }
 
 #[cfg(any(feature = "box2d", feature = "box3d", feature = "jolt"))]
-/// The pairs in order, each once.
+/// Returns the pairs in order, each once.
 fn sorted(mut pairs: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
     for pair in &mut pairs {
         *pair = (pair.0.min(pair.1), pair.0.max(pair.1));

@@ -5,7 +5,7 @@
 use impinge_compare_c::Digest;
 use impinge_scenes::{Placement, Scene, pile};
 
-/// What the engines have in common.
+/// The common interface of the engines.
 struct Engine<'a, E, const D: usize> {
     engine: E,
     prepare: fn(&mut E, &[(usize, Placement<D>)]),

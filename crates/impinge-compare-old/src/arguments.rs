@@ -1,25 +1,25 @@
-//! What the command line asks for.
+//! The command line.
 
-/// Which scenes to run and how much of them.
+/// The scenes to run and their sizes.
 #[derive(Clone, Debug)]
 pub struct Arguments {
-    /// What the words of a case have to contain, such as `pile`, or `3D`.
+    /// A text that the case must contain, such as `pile`, or `3D`.
     pub case: String,
-    /// Whether the name of a case has to be that text, instead of to contain it.
+    /// Whether the name of a case must equal the text.
     pub is_exact: bool,
-    /// How many objects there are in a scene of usual objects; those of large ones have a twentieth or a
-    /// hundredth, those in which most rest ten times as many.
+    /// The number of objects in a scene; scenes of large objects have a twentieth or a hundredth, scenes
+    /// in which most objects rest ten times as many.
     pub objects: usize,
-    /// How many steps make a run.
+    /// The number of steps of a run.
     pub steps: u32,
-    /// How many runs; the time of a step is its minimum over the runs.
+    /// The number of runs; the time of a step is its minimum over the runs.
     pub runs: usize,
     /// Whether pairs keep their contacts until they have moved by half of the prediction.
     pub is_reusing: bool,
 }
 
 impl Arguments {
-    /// Reads the words of the command line; ends the program if they are not understood.
+    /// Parses the command line; ends the program on an error.
     pub fn of_command_line() -> Self {
         let mut arguments = Self {
             case: String::new(),
@@ -55,7 +55,7 @@ fn number<T: std::str::FromStr>(word: &str) -> T {
     word.parse().unwrap_or_else(|_| usage(word))
 }
 
-/// Says what is understood, and ends the program.
+/// Prints the usage, and ends the program.
 fn usage(word: &str) -> ! {
     eprintln!("{word} is not understood");
     eprintln!(

@@ -1,16 +1,16 @@
-//! The working tree beside an old commit of itself: the scenes of the suite `world` of `impinge-compare`,
-//! the two stepped alternately in one process on one thread, on `f32`.
+//! Compares the working tree with an old commit of itself: the scenes of the suite `world` of
+//! `impinge-compare`, the two stepped alternately in one process on one thread, in `f32`.
 //!
 //! `impinge-compare-old [--case TEXT] [--exact NAME] [--objects N] [--steps N] [--runs N] [--reusing]`
 //! prints a line for each scene: the median and the worst step of both in microseconds of processor time,
-//! and ratios old / new, above 1 where the working tree is quicker. A step sets all new positions,
-//! updates, and reads every contact point; the first, in which everything is new, is left out.
+//! and ratios old / new, above 1 where the working tree is faster. A step sets all new positions, updates,
+//! and reads every contact point; the first, in which everything is new, is omitted.
 //!
-//! `--case` leaves the scenes whose name contains a text, `--exact` the one of a name. `--runs` repeats each
-//! scene and keeps the minimum of each step, which takes most of the noise of a busy machine away. With
+//! `--case` selects the scenes whose name contains a text, `--exact` the one of a name. `--runs` repeats
+//! each scene and keeps the minimum of each step, which removes most of the noise of a busy machine. With
 //! `--reusing` pairs of both versions keep their contacts while they hardly move.
 //!
-//! `CONTRIBUTING.md` says where the old commit has to lie.
+//! `CONTRIBUTING.md` describes where the old commit must be.
 
 mod arguments;
 #[path = "../../impinge-compare/src/world/contender.rs"]
@@ -33,7 +33,7 @@ use measure::Times;
 use stages::{Stage, plane_stages, space_stages, stages};
 use table::Row;
 
-/// Makes a world with the objects of a scene as they are at step 0.
+/// Makes a world with the objects of a scene at step 0.
 type Maker<const D: usize> = fn(&Scene<D>) -> Box<dyn Contender<D>>;
 
 /// The new version and the old one.
@@ -42,7 +42,7 @@ const PLANE: [Maker<2>; 2] =
 const SPACE: [Maker<3>; 2] =
     [|scene| Box::new(new::space(scene)), |scene| Box::new(old::space(scene))];
 
-/// Both, where pairs keep their contacts until they have moved by half of the prediction.
+/// Both, with pairs that keep their contacts until they have moved by half of the prediction.
 const PLANE_REUSING: [Maker<2>; 2] =
     [|scene| Box::new(new::plane(scene).reusing()), |scene| Box::new(old::plane(scene).reusing())];
 const SPACE_REUSING: [Maker<3>; 2] =
@@ -87,7 +87,7 @@ fn run_stages<const D: usize>(makers: [Maker<D>; 2], stages: &[Stage<D>], argume
     }
 }
 
-/// The row of the new version and that of the old one, for each kind of time.
+/// Returns the row of the new version and that of the old one, for each kind of time.
 fn rows<const D: usize>(
     makers: [Maker<D>; 2],
     scene: &Scene<D>,
@@ -114,7 +114,7 @@ fn keep_minima(times: &mut Times, again: &Times) {
     times.0.iter_mut().zip(&again.0).for_each(|(time, again)| *time = time.min(*again));
 }
 
-/// The rows are those of the whole step, of the update and of reading, each of the new version first.
+/// Prints the rows of the whole step, of the update and of reading, each of the new version first.
 fn print(name: &str, count: usize, rows: &[Row]) {
     let [median, worst] = [50, 100].map(|percent| {
         [1, 0].map(|n: usize| format!("{:.1}", rows[n].times.quantile(percent) * 1e3))
@@ -134,10 +134,10 @@ fn print(name: &str, count: usize, rows: &[Row]) {
     );
 }
 
-/// The median over pairs of steps of the ratio of the two times; NaN of a single step. Both were measured
-/// within milliseconds of one another, so that load of the machine which comes and goes is in both.
+/// Returns the median over pairs of steps of the ratio of the two times; NaN for a single step. Both were
+/// measured within milliseconds of each other, so that changing load of the machine affects both.
 ///
-/// Consecutive steps are summed in pairs, because who goes first, with colder caches, alternates.
+/// Consecutive steps are summed in pairs, because the order, with colder caches for the first, alternates.
 fn ratio(old: &Times, new: &Times) -> f64 {
     let pairs = old.0.chunks_exact(2).zip(new.0.chunks_exact(2));
     let sum = |times: &[f64]| times.iter().sum::<f64>();

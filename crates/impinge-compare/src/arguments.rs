@@ -1,30 +1,30 @@
-//! What the command line asks for.
+//! The command line.
 
-/// The suites to run and how much of them.
+/// The suites to run and their sizes.
 #[derive(Clone, Debug)]
 pub struct Arguments {
-    /// How many objects there are in scenes whose size is not part of the case, and at most where it
-    /// is.
+    /// The number of objects in scenes whose size is not part of the case, and its upper bound in
+    /// other scenes.
     pub objects: usize,
-    /// Cases of fewer objects are left out, where the size is part of the case.
+    /// The lower bound of the number of objects, where the size is part of the case.
     pub least: usize,
-    /// How many steps or rounds make a run.
+    /// The number of steps or rounds of a run.
     pub steps: u32,
-    /// In the suite `world`, the sum over a pair of the angular predictions in radians; impinge alone
-    /// has one.
+    /// In the suite `world`, the sum over a pair of the angular predictions in radians; only impinge
+    /// supports them.
     pub angular: f64,
     /// The folder below `bench/`.
     pub machine: String,
-    /// What the words of a case have to contain.
+    /// A text that the case must contain.
     pub case: String,
-    /// What the name of a contender has to contain.
+    /// A text that the name of a contender must contain.
     pub only: String,
-    /// The suites asked for.
+    /// The requested suites.
     pub suites: Vec<String>,
 }
 
 impl Arguments {
-    /// From the words of the command line; ends the program if they are not understood.
+    /// Parses the command line; ends the program on an error.
     pub fn of_command_line(known: &[&str]) -> Self {
         let mut arguments = Self::default();
         let mut words = std::env::args().skip(1);
@@ -63,17 +63,17 @@ impl Arguments {
         case.contains(&self.case)
     }
 
-    /// Whether a case of so many objects is among those asked for.
+    /// Whether a case of this number of objects is to run.
     pub fn includes(&self, objects: usize) -> bool {
         (self.least..=self.objects).contains(&objects)
     }
 
-    /// Whether impinge is to run without rivals.
+    /// Whether impinge runs without rivals.
     pub fn is_alone(&self) -> bool {
         self.only == "impinge"
     }
 
-    /// Whether all contenders run in all cases, with the usual prediction.
+    /// Whether all contenders run in all cases, with the default prediction.
     pub fn is_whole(&self) -> bool {
         self.only.is_empty() && self.case.is_empty() && self.least == 0 && self.angular == 0.0
     }
@@ -94,12 +94,12 @@ impl Default for Arguments {
     }
 }
 
-/// What a word says; ends the program if it is not understood.
+/// Parses a word; ends the program on an error.
 fn parsed<T: std::str::FromStr>(word: &str, known: &[&str]) -> T {
     word.parse().unwrap_or_else(|_| usage(word, known))
 }
 
-/// Says what is understood, and ends the program.
+/// Prints the usage, and ends the program.
 pub fn usage(word: &str, suites: &[&str]) -> ! {
     eprintln!("{word} is not understood");
     eprintln!("usage: impinge-compare SUITE... [--objects N] [--from N] [--steps N]");

@@ -1,17 +1,17 @@
-//! Rivals side by side: the same scenes, the same questions, alternately in one process on one
+//! Benchmarks against other libraries: the same scenes, the same queries, alternately in one process on one
 //! thread.
 //!
-//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]` prints the tables of the
-//! suites named, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`. Before
-//! it prints a time it compares the answers: each row says by how many they differ from ours. Times
-//! are those of the thread's processor, median, minimum and the ninetieth percentile.
+//! `impinge-compare SUITE... [--objects N] [--steps N] [--machine NAME]` prints the tables of the named
+//! suites, or of all of them for `all`, and writes each to `bench/<machine>/<suite>.csv`. Before it prints
+//! a time it compares the results: each row has the number that differ from ours. Times are processor times
+//! of the thread: median, minimum and the ninetieth percentile.
 //!
-//! `--only` leaves the contenders whose name contains a text, so that one can be profiled alone,
-//! `--case` the cases whose words do, `--from` those of so many objects at least. `--angular` has the
-//! scenes of the suite `world` ask for contacts with an angular prediction, in radians. Such tables are not
-//! whole, or not the usual ones, and are not written.
+//! `--only` selects the contenders whose name contains a text, so that one can be profiled alone, `--case`
+//! the cases that contain a text, `--from` those of at least as many objects. `--angular` gives the scenes
+//! of the suite `world` an angular prediction, in radians. Such tables are incomplete or have other
+//! settings, and are not written.
 //!
-//! To be run twice, for the processor that Rust assumes and for the one that is there:
+//! Run it twice, for the default processor of Rust and for the actual one:
 //!
 //! ```text
 //! cargo run --release --features c -- all --machine NAME
@@ -20,8 +20,8 @@
 //!
 //! The feature `c` adds the rivals in C and C++, see [`world`]; `bytes` counts memory, see [`build`];
 //! `parallel` adds the runs on two threads, see [`scale`]. `impinge-compare accuracy [samples]` measures
-//! errors instead of times, see [`accuracy`]; `impinge-compare kernels` is for instruction counters,
-//! see [`pairs`].
+//! errors instead of times, see [`accuracy`]; `impinge-compare kernels` is for instruction counters, see
+//! [`pairs`].
 
 mod accuracy;
 mod arguments;

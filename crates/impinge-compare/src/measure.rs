@@ -1,4 +1,4 @@
-//! Clocks and quantiles: the processor time of the calling thread, contenders in turn.
+//! Clocks and quantiles: the processor time of the calling thread, and contenders in turn.
 
 use cpu_time::ThreadTime;
 
@@ -7,12 +7,12 @@ use cpu_time::ThreadTime;
 pub struct Times(pub Vec<f64>);
 
 impl Times {
-    /// Keeps one more.
+    /// Adds a time.
     pub fn push(&mut self, time: f64) {
         self.0.push(time);
     }
 
-    /// The time that a percentage of them do not exceed; NaN of none.
+    /// The quantile at a percentage; NaN without times.
     pub fn quantile(&self, percent: usize) -> f64 {
         let mut times = self.0.clone();
         times.sort_unstable_by(f64::total_cmp);
@@ -26,16 +26,16 @@ impl Times {
     }
 }
 
-/// The processor time that some work takes this thread, in nanoseconds, and what came of it.
+/// Returns the processor time of some work on this thread, in nanoseconds, and its result.
 pub fn timed<R>(work: impl FnOnce() -> R) -> (f64, R) {
     let start = ThreadTime::now();
     let result = work();
     (start.elapsed().as_secs_f64() * 1e9, result)
 }
 
-/// Runs the contenders in turn, so many rounds; each round begins with the next of them, so that none
-/// always finds the caches as the same other left them. The first round is not kept. The times are
-/// nanoseconds divided by `operations`, the number of operations of one call.
+/// Runs the contenders in turn for `rounds` rounds. Each round begins with the next contender, so
+/// that none always finds the caches as the same other one left them. The first round is not kept.
+/// The times are nanoseconds divided by `operations`, the number of operations of one call.
 pub fn in_turn(
     rounds: usize,
     operations: usize,

@@ -1,4 +1,4 @@
-//! The tables: on the screen for people, below `bench/` for programs.
+//! Tables: on the screen for readers, below `bench/` for programs.
 
 use std::fs;
 use std::io;
@@ -9,15 +9,15 @@ use crate::measure::Times;
 /// One contender in one case of a suite.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// What was done, such as `boxes, 10000, 1 % moving`; the same words for all contenders.
+    /// The case, such as `boxes, 10000, 1 % moving`; equal for all contenders.
     pub case: String,
-    /// Who did it.
+    /// The name of the contender.
     pub contender: String,
-    /// How many answers it found: pairs, hits, points.
+    /// The number of results: pairs, hits, points.
     pub answers: usize,
-    /// How many of them are not those of the first contender of the case.
+    /// The number of results that differ from those of the first contender of the case.
     pub differ: usize,
-    /// How long it took, each time.
+    /// The time of each run.
     pub times: Times,
 }
 
@@ -30,7 +30,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// An empty table, whose head is printed; all of its times have the same unit.
+    /// Creates an empty table and prints its head; all of its times have the same unit.
     pub fn new(suite: &'static str, unit: &'static str) -> Self {
         println!("\n{suite}, {unit}; the ratio is to impinge");
         println!(
@@ -40,7 +40,7 @@ impl Table {
         Self { suite, unit, rows: Vec::new() }
     }
 
-    /// Adds and prints rows; the first row of each case is the measure of the others.
+    /// Adds and prints rows; ratios are relative to the first row of each case.
     pub fn add(&mut self, rows: Vec<Row>) {
         for row in &rows {
             let first = rows.iter().find(|first| first.case == row.case);

@@ -1,4 +1,4 @@
-//! Why a file cannot be used, and where in it.
+//! Errors of files: the problem and its position in the file.
 
 use core::fmt;
 use std::io;
@@ -9,7 +9,7 @@ use impinge_record::{LibraryError, RecordError};
 use crate::text::{self, Printable, Quoted};
 use crate::{Dimension, Limit};
 
-/// Why a file cannot be used: the file, the place in it as far as it is known, and what is wrong there.
+/// An error of a file: the file, the position as far as it is known, and the problem.
 ///
 /// ```
 /// use impinge_files::{Problem, Scene};
@@ -32,7 +32,7 @@ use crate::{Dimension, Limit};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileError {
-    /// The file, as it was named.
+    /// The path of the file, as the caller named it.
     pub file: PathBuf,
     /// The line, counted from 1; `None` for binary formats, and where it is not known.
     pub line: Option<usize>,
@@ -40,13 +40,13 @@ pub struct FileError {
     pub column: Option<usize>,
     /// The path in the document, such as `objects[3].shape.ball.radius`; empty for the whole file.
     pub path: String,
-    /// The text that stands there, in one line and shortened.
+    /// The text at that position, in one line and shortened.
     pub value: Option<String>,
-    /// What is wrong; boxed, so that results stay small.
+    /// The problem; boxed, so that `Result`s stay small.
     pub problem: Box<Problem>,
 }
 
-/// What is wrong with a file.
+/// A problem of a file.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Problem {
@@ -54,112 +54,112 @@ pub enum Problem {
     Io {
         /// The kind of the error.
         kind: io::ErrorKind,
-        /// The error of the system in words.
+        /// The message of the operating system.
         message: String,
     },
     /// It is a device, a pipe or a folder: only regular files are read.
     NotAFile,
-    /// A file names one outside of the folder from which files are read;
-    /// [`ReadOptions::with_root`](crate::ReadOptions::with_root) allows another folder.
+    /// A file names another file outside of the root folder. [`ReadOptions::with_root`](crate::ReadOptions::with_root)
+    /// selects another root.
     Outside {
-        /// The file that is named.
+        /// The path of the named file.
         path: PathBuf,
-        /// The folder from which files are read.
+        /// The root folder.
         root: PathBuf,
     },
-    /// More than one of the [`Limits`](crate::Limits) allows.
+    /// The input exceeds one of the [`Limits`](crate::Limits).
     Limit {
-        /// Which one.
+        /// The exceeded limit.
         limit: Limit,
-        /// How many there may be.
+        /// The value of the limit.
         allowed: usize,
     },
-    /// The ending of the file's name is of no format that can be read.
+    /// The extension of the file is that of no supported format.
     UnknownFormat {
-        /// The ending without its dot; empty if there is none.
+        /// The extension without its dot; empty if there is none.
         extension: String,
     },
-    /// The file is not of its format, in the words of the parser.
+    /// The file does not follow its format; the message of the parser.
     Syntax(String),
-    /// The library refuses the numbers of a shape, mesh or group, or the world an object.
+    /// The library rejects the values of a shape, mesh or group, or the world rejects an object.
     Library(LibraryError),
-    /// The recorder refuses an object.
+    /// The recorder rejects an object.
     Record(RecordError),
-    /// A point or vector has another number of coordinates.
+    /// A point or vector has a wrong number of coordinates.
     WrongLength {
-        /// How many it takes.
+        /// The required number of coordinates.
         needed: usize,
-        /// How many were given.
+        /// The given number of coordinates.
         given: usize,
     },
-    /// Something of one dimension in a scene of the other.
+    /// An element of one dimension in a scene of the other.
     WrongDimension {
-        /// What it is.
+        /// The kind of element.
         what: &'static str,
         /// The dimension of the scene.
         dimension: Dimension,
     },
-    /// A world of another dimension than the scene's is asked for.
+    /// The requested world has another dimension than the scene.
     OtherWorld {
         /// The dimension of the scene.
         scene: Dimension,
-        /// The dimension that is asked for.
+        /// The requested dimension.
         asked: usize,
     },
-    /// A number that cannot be used.
+    /// An invalid number.
     BadValue {
-        /// What it is, and what it must be.
+        /// The kind of number, and the values that are allowed.
         what: &'static str,
         /// The number.
         value: f64,
     },
-    /// Members that exclude each other, or of which one is needed.
+    /// Members that exclude each other, or of which exactly one is required.
     Members(&'static str),
     /// No shape has this name.
     UnknownShape(String),
-    /// A shape holds itself, by way of these names.
+    /// A shape contains itself, through these names.
     ShapeCycle(Vec<String>),
     /// Two objects have this name.
     DuplicateName(String),
     /// The mesh file has no part of this name.
     UnknownPart(String),
-    /// Nothing of a mesh file can be used: no triangle is left.
+    /// The mesh file has no valid triangle.
     EmptyMesh,
-    /// A mesh that should be solid is not.
+    /// A mesh with the kind `solid` is not the boundary of a volume.
     NotSolid {
-        /// How many edges have one triangle.
+        /// The number of edges with one triangle.
         boundary_edges: usize,
-        /// How many edges have triangles that disagree about the outside.
+        /// The number of edges whose triangles disagree about the outside.
         inconsistent_edges: usize,
-        /// How many edges have more than two triangles.
+        /// The number of edges with more than two triangles.
         non_manifold_edges: usize,
     },
-    /// More than can be held.
+    /// A count exceeds the capacity of a representation.
     TooMany {
-        /// Of what.
+        /// The kind of item that is counted.
         what: &'static str,
-        /// How many there would be.
+        /// The requested count.
         given: usize,
-        /// How many there may be.
+        /// The largest allowed count.
         limit: usize,
     },
     /// The robot has no joint of this name, or none that moves.
     UnknownJoint(String),
     /// The robot has no link of this name.
     UnknownLink(String),
-    /// The joints of a robot are no tree.
+    /// The joints of a robot do not form a tree.
     NotATree {
-        /// A link that has two parents, or of which none leads to the root.
+        /// A link that has two parents, or that is not connected to the root.
         link: String,
     },
-    /// A joint mimics itself, by way of others.
+    /// A joint mimics itself, through other joints.
     MimicCycle(String),
-    /// None of the folders holds this package.
+    /// No folder contains this package.
     UnknownPackage(String),
 }
 
 impl FileError {
-    /// An error of a whole file.
+    /// Returns an error of a whole file.
     pub(crate) fn whole(file: impl Into<PathBuf>, problem: Problem) -> Self {
         let (file, path, problem) = (file.into(), String::new(), Box::new(problem));
         Self { file, line: None, column: None, path, value: None, problem }
@@ -178,7 +178,7 @@ impl fmt::Display for FileError {
         }
         let problem = self.problem.to_string();
         write!(f, "{problem}")?;
-        // The words of a problem often hold the value already.
+        // The message of a problem often contains the value already.
         match &self.value {
             Some(value) if !problem.contains(value.trim_matches('"')) => {
                 write!(f, " (here: {})", Printable(value))
@@ -231,7 +231,7 @@ impl fmt::Display for Problem {
 }
 
 impl Problem {
-    /// The problems that are about a name.
+    /// Writes the problems about a name.
     fn fmt_names(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::UnknownFormat { extension } if extension.is_empty() => {
@@ -271,17 +271,17 @@ impl Problem {
         }
     }
 
-    /// An error in the words of a parser, which may quote the file.
+    /// Returns an error with the message of a parser, which may quote the file.
     pub(crate) fn syntax(words: impl fmt::Display) -> Self {
         Self::Syntax(text::message(&words.to_string()))
     }
 
-    /// The error of reading a file.
+    /// Returns the error of a failed read.
     pub(crate) fn io(error: &io::Error) -> Self {
         Self::Io { kind: error.kind(), message: error.to_string() }
     }
 
-    /// The error of a recorder. What its world refuses is the same as without a recorder.
+    /// Returns the error of a recorder. Errors of its world become the same error as without a recorder.
     pub(crate) fn recorded(error: RecordError) -> Self {
         match error {
             RecordError::World(error) => error.into(),
@@ -298,23 +298,23 @@ impl<E: Into<LibraryError>> From<E> for Problem {
 
 /// A problem at a path of a document, before the file and the line are known.
 ///
-/// It begins with an empty path where the problem is found. Each caller that went down by a member puts this in front.
+/// The path is empty where the problem is found. Each caller that descended by a member prepends it.
 #[derive(Clone, Debug)]
 pub(crate) struct Fault {
     pub(crate) path: String,
-    /// The path begins at the document: a shape that is used by its name.
+    /// The path already begins at the document, as for a shape that is used by its name.
     pub(crate) is_absolute: bool,
     pub(crate) problem: Problem,
 }
 
 impl Fault {
-    /// The same, with a path that counts from the document.
+    /// Marks the path as counted from the document.
     pub(crate) const fn absolute(mut self) -> Self {
         self.is_absolute = true;
         self
     }
 
-    /// The fault seen from a value that holds the one it is in, by this member or index.
+    /// Prepends the member or index by which a containing value holds this one.
     pub(crate) fn within(mut self, step: &str) -> Self {
         if self.is_absolute {
             return self;
@@ -331,9 +331,9 @@ impl<P: Into<Problem>> From<P> for Fault {
     }
 }
 
-/// Where a result belongs.
+/// Adds a step of the path to the error of a result.
 pub(crate) trait Within<T> {
-    /// The result of reading a member.
+    /// Prepends a member to the path of the error.
     fn within(self, step: &str) -> Result<T, Fault>;
 }
 

@@ -1,4 +1,4 @@
-//! Files as bytes: from the folders of a scene, regular ones alone, within its limits.
+//! Reads files as bytes: regular files from the folders of a scene, within its limits.
 
 use std::fs::{self, File};
 use std::io::Read as _;
@@ -9,32 +9,33 @@ use crate::{FileError, Limit, Limits, Problem, ReadOptions};
 /// The file that marks the folder of a ROS package.
 const MANIFEST: &str = "package.xml";
 
-/// Reads the files of one scene, and counts what is made of them.
+/// Reads the files of one scene, and counts the bytes and elements that they add up to.
 #[derive(Clone, Debug)]
 pub(crate) struct Files {
     roots: Vec<Root>,
-    /// The file that the user names, which may lie anywhere: absolute.
+    /// The absolute path of the file that the user names; it may lie anywhere.
     first: Option<PathBuf>,
     pub(crate) packages: Vec<PathBuf>,
     pub(crate) limits: Limits,
-    /// Read so far.
+    /// Bytes read so far.
     bytes: usize,
-    /// Made so far.
+    /// Vertices and triangle corners made so far.
     elements: usize,
 }
 
 /// A folder from which files are read.
 #[derive(Clone, Debug)]
 struct Root {
-    /// Absolute, as it was named.
+    /// The absolute path, as it was named.
     named: PathBuf,
-    /// Without symbolic links; as it was named, if there is no such folder.
+    /// The path without symbolic links; the named path if there is no such folder.
     real: PathBuf,
 }
 
 impl Files {
-    /// Reads the file that the user names, and others from its folder, or from that of the options. For a robot in a ROS package the folder of the
-    /// package takes the place of its own: the URDF files of packages name meshes in folders beside theirs.
+    /// Creates a reader for the file that the user names, and for others from its folder or from the root of the
+    /// options. For a robot in a ROS package the root is the folder of the package: the URDF files of packages name
+    /// meshes in folders beside theirs.
     pub(crate) fn beside(path: &Path, options: &ReadOptions) -> Self {
         let own = path.parent().unwrap_or_else(|| Path::new(""));
         let package = || if extension(path) == "urdf" { package_of(own) } else { None };
@@ -43,7 +44,7 @@ impl Files {
         Self { first, ..Self::within(given.as_deref().unwrap_or(own), options) }
     }
 
-    /// Reads from a folder, unless the options name another one.
+    /// Creates a reader for a folder, unless the options name another root.
     pub(crate) fn within(folder: &Path, options: &ReadOptions) -> Self {
         let folder = options.root.as_deref().unwrap_or(folder);
         let packages = options.packages.clone();
@@ -52,19 +53,20 @@ impl Files {
         Self { roots, first: None, packages, limits: options.limits, bytes: 0, elements: 0 }
     }
 
-    /// The bytes of a file.
+    /// Returns the bytes of a file.
     pub(crate) fn read(&mut self, path: &Path) -> Result<Vec<u8>, Problem> {
         self.take(&self.locate(path)?)
     }
 
-    /// As [`Self::read`], with the path in the error.
+    /// Like [`Self::read`], with the path in the error.
     pub(crate) fn read_named(&mut self, path: &Path) -> Result<Vec<u8>, FileError> {
         self.read(path).map_err(|problem| FileError::whole(path, problem))
     }
 
-    /// The path without symbolic links, if it lies in one of the folders.
+    /// Returns the path without symbolic links, if it lies in one of the folders.
     ///
-    /// A path that leads outside is refused before the disk is asked, so that errors do not reveal which files exist.
+    /// A path that leads outside is rejected before the disk is accessed, so that errors do not reveal which files
+    /// exist.
     pub(crate) fn locate(&self, path: &Path) -> Result<PathBuf, Problem> {
         if !self.holds(path) {
             return Err(self.outside(path));
@@ -78,7 +80,7 @@ impl Files {
         }
     }
 
-    /// The path lies in one of the folders as it is written.
+    /// Whether the path, as it is written, lies in one of the folders.
     pub(crate) fn holds(&self, path: &Path) -> bool {
         let plain = absolute(path);
         let has = |root: &Root| plain.starts_with(&root.named) || plain.starts_with(&root.real);
@@ -94,7 +96,7 @@ impl Files {
         Problem::Outside { path: path.to_owned(), root }
     }
 
-    /// Reads a regular file. Devices and pipes have no end.
+    /// Reads a regular file. Devices and pipes are rejected, since they may have no end.
     fn take(&mut self, path: &Path) -> Result<Vec<u8>, Problem> {
         let wrong = |error| Problem::io(&error);
         if !fs::metadata(path).map_err(wrong)?.is_file() {
@@ -104,12 +106,12 @@ impl Files {
         let length = file.metadata().map_err(wrong)?.len();
         self.count_bytes(usize::try_from(length).unwrap_or(usize::MAX))?;
         let mut bytes = Vec::new();
-        // A file may grow meanwhile.
+        // The file may grow while it is read.
         file.take(length).read_to_end(&mut bytes).map_err(wrong)?;
         Ok(bytes)
     }
 
-    /// Counts bytes of a file.
+    /// Adds to the count of bytes, and checks the limit.
     pub(crate) fn count_bytes(&mut self, count: usize) -> Result<(), Problem> {
         let total = self.bytes.saturating_add(count);
         check(Limit::Bytes, total, self.limits.bytes)?;
@@ -117,7 +119,7 @@ impl Files {
         Ok(())
     }
 
-    /// Counts vertices and corners of triangles before they are made.
+    /// Adds to the count of vertices and triangle corners, before they are made, and checks the limit.
     pub(crate) fn count_elements(&mut self, count: usize) -> Result<(), Problem> {
         let total = self.elements.saturating_add(count);
         check(Limit::Elements, total, self.allowed(self.limits.elements))?;
@@ -125,13 +127,13 @@ impl Files {
         Ok(())
     }
 
-    /// The larger of a limit and the bytes that were read.
+    /// Returns the larger of a limit and the number of bytes read.
     pub(crate) fn allowed(&self, limit: usize) -> usize {
         limit.max(self.bytes)
     }
 }
 
-/// There are at most so many.
+/// Returns an error if `given` exceeds `allowed`.
 pub(crate) fn check(limit: Limit, given: usize, allowed: usize) -> Result<(), Problem> {
     if given > allowed { Err(Problem::Limit { limit, allowed }) } else { Ok(()) }
 }
@@ -144,9 +146,9 @@ impl Root {
     }
 }
 
-/// An absolute path without `.` and `..`.
+/// Returns an absolute path without `.` and `..`.
 fn absolute(path: &Path) -> PathBuf {
-    // An empty path has no absolute one: it is the current folder.
+    // An empty path stands for the current folder, but has no absolute form.
     let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let mut plain = PathBuf::new();
@@ -162,14 +164,14 @@ fn absolute(path: &Path) -> PathBuf {
     plain
 }
 
-/// The nearest folder from this one upwards that is a ROS package.
+/// Returns the nearest ROS package among this folder and its ancestors.
 fn package_of(folder: &Path) -> Option<PathBuf> {
     let folder = absolute(folder);
     let found = folder.ancestors().find(|folder| folder.join(MANIFEST).is_file());
     found.map(Path::to_owned)
 }
 
-/// The ending of a name in lower case, without its dot; empty if there is none.
+/// Returns the extension of a name in lower case, without its dot; empty if there is none.
 pub(crate) fn extension(path: &Path) -> String {
     let extension = path.extension().and_then(|extension| extension.to_str());
     extension.unwrap_or_default().to_ascii_lowercase()

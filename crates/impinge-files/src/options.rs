@@ -1,9 +1,9 @@
-//! From where files are read, and how much of them.
+//! Options for reading files: root folders and limits.
 
 use core::fmt;
 use std::path::{Path, PathBuf};
 
-/// How a scene and the files that it names are read.
+/// Options for reading a scene and the files that it names.
 ///
 /// ```
 /// use impinge_files::{Limits, ReadOptions, load_with};
@@ -21,47 +21,47 @@ pub struct ReadOptions {
 }
 
 impl ReadOptions {
-    /// The folder of the file that is read first, no packages elsewhere, the default limits.
+    /// Returns the default options: the root is the folder of the first file, no other packages, the default limits.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Files that other files name may lie anywhere in this folder, instead of in the folder of the file that is
-    /// read first. Symbolic links are followed before they are compared with it.
+    /// Allows named files anywhere in this folder, instead of in the folder of the file that is read first. Paths
+    /// are compared after symbolic links are resolved.
     #[must_use]
     pub fn with_root(self, folder: impl Into<PathBuf>) -> Self {
         Self { root: Some(folder.into()), ..self }
     }
 
-    /// Adds a folder in which `package://` paths are looked for, and from which files may be read.
+    /// Adds a folder in which `package://` paths are searched, and from which files may be read.
     #[must_use]
     pub fn with_packages(mut self, folder: impl AsRef<Path>) -> Self {
         self.packages.push(folder.as_ref().to_owned());
         self
     }
 
-    /// Bounds what is read.
+    /// Sets the limits.
     #[must_use]
     pub fn with_limits(self, limits: Limits) -> Self {
         Self { limits, ..self }
     }
 }
 
-/// What a scene may take, so that small files do not ask for much memory. Beyond a limit reading fails with
-/// [`Problem::Limit`](crate::Problem::Limit).
+/// Limits of a scene, so that small files cannot request much memory. Reading fails with
+/// [`Problem::Limit`](crate::Problem::Limit) beyond a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// The bytes of all files together.
     pub bytes: usize,
-    /// Vertices, and corners of triangles, of all meshes: those of a mesh that several nodes of a glTF file have,
-    /// or several shapes, count for each. Files with more bytes than this may have as many as they have bytes.
+    /// Vertices, and corners of triangles, of all meshes. A mesh that several nodes of a glTF file or several shapes
+    /// use counts for each use. Files with more bytes than this may have as many elements as bytes.
     pub elements: usize,
-    /// The corners of a polygon of a mesh file: cutting it into triangles takes a time that grows with their square.
+    /// The corners of a polygon of a mesh file: triangulation takes time proportional to the square of their number.
     pub corners: usize,
     /// The objects of a scene.
     pub objects: usize,
-    /// The bytes of the names of all objects. Files with more bytes than this may have as many.
+    /// The bytes of the names of all objects. Files with more bytes than this may have as many bytes of names.
     pub names: usize,
 }
 
@@ -89,7 +89,7 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// The name of its member of [`Limits`].
+    /// The name of this member of [`Limits`].
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -102,7 +102,7 @@ impl Limit {
     }
 }
 
-/// What the limit counts.
+/// Writes the kind of item that the limit counts.
 impl fmt::Display for Limit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

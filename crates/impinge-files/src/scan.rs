@@ -1,6 +1,7 @@
-//! Where values stand in a JSON text, by going through its characters: no tree of the document is made.
+//! Finds the position of values in a JSON text by scanning its characters, without a tree of the
+//! document.
 
-/// A place in a text that is JSON.
+/// A position in a text that is valid JSON.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scanner<'a> {
     text: &'a str,
@@ -15,14 +16,14 @@ pub(crate) enum Step<'a> {
 }
 
 impl<'a> Scanner<'a> {
-    /// At the value of the whole document.
+    /// Returns the position of the value of the whole document.
     pub(crate) fn new(text: &'a str) -> Self {
         let mut scanner = Self { text, at: 0 };
         scanner.blank();
         scanner
     }
 
-    /// At a member or element of the value here, if it has that.
+    /// Moves to a member or element of the current value; `None` if it does not exist.
     pub(crate) fn entered(mut self, step: Step<'_>) -> Option<Self> {
         let (open, mut index) = match step {
             Step::Name(_) => (b'{', 0),
@@ -31,7 +32,7 @@ impl<'a> Scanner<'a> {
         if self.peek() != Some(open) {
             return None;
         }
-        // Ends: each round goes on by a member, and the last one has no comma behind it.
+        // Terminates: each iteration consumes a member, and the last member has no comma behind it.
         loop {
             self.next();
             if matches!(self.peek(), Some(b']' | b'}') | None) {
@@ -53,7 +54,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// The byte at which the value here begins, and its text.
+    /// Returns the offset of the current value in bytes, and its text.
     pub(crate) fn value(mut self) -> (usize, &'a str) {
         let start = self.at;
         self.skip();
@@ -64,7 +65,7 @@ impl<'a> Scanner<'a> {
         self.text.as_bytes().get(self.at).copied()
     }
 
-    /// Over a character and the blanks behind it.
+    /// Skips a character and the white space behind it.
     fn next(&mut self) {
         self.at += 1;
         self.blank();
@@ -76,7 +77,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// The key of a member, to whose value this goes.
+    /// Returns the key of a member, and moves to its value.
     fn key(&mut self) -> String {
         let (_, key) = self.value();
         self.skip();
@@ -85,7 +86,7 @@ impl<'a> Scanner<'a> {
         serde_json::from_str(key).unwrap_or_default()
     }
 
-    /// To the end of a value.
+    /// Skips a value.
     fn skip(&mut self) {
         let mut depth = 0_usize;
         while let Some(byte) = self.peek() {
@@ -104,7 +105,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// To the quotation mark that ends a string.
+    /// Skips to the quotation mark that ends a string.
     fn string(&mut self) {
         self.at += 1;
         while let Some(byte) = self.peek().filter(|byte| *byte != b'"') {
@@ -112,7 +113,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// To the end of a number or word.
+    /// Skips a number or word.
     fn scalar(&mut self) {
         let ends = |byte: u8| byte.is_ascii_whitespace() || b",]}".contains(&byte);
         while self.peek().is_some_and(|byte| !ends(byte)) {

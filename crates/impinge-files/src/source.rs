@@ -6,41 +6,41 @@ use crate::error::Fault;
 use crate::scan::{Scanner, Step};
 use crate::{FileError, Problem, SceneFile};
 
-/// So many characters of a value are given in errors.
+/// The largest number of characters of a value in an error.
 const MAX_VALUE: usize = 60;
 
-/// A document and the file that it is from.
+/// A document and the file that contains it.
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
     pub(crate) file: PathBuf,
-    /// `None` for scenes that are made and not read: their errors have paths only.
+    /// `None` for scenes that are built in memory: their errors have paths only.
     text: Option<String>,
 }
 
 impl Source {
-    /// The document as it was read.
+    /// Creates a source from the text of a file.
     pub(crate) const fn new(file: PathBuf, text: String) -> Self {
         Self { file, text: Some(text) }
     }
 
-    /// A scene that no document describes.
+    /// Creates a source for a scene without a text.
     pub(crate) const fn without_text(file: PathBuf) -> Self {
         Self { file, text: None }
     }
 
-    /// The folder that paths in the document are relative to.
+    /// The folder to which paths in the document are relative.
     pub(crate) fn folder(&self) -> &Path {
         self.file.parent().unwrap_or_else(|| Path::new(""))
     }
 
-    /// The members of the document.
+    /// Parses the document.
     pub(crate) fn parse(&self) -> Result<SceneFile, FileError> {
         let text = self.text.as_deref().unwrap_or_default();
         let mut reader = serde_json::Deserializer::from_str(text);
         let scene = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
             let path = error.path().to_string();
-            // A value that is no JSON has the path of the one around it: its own step is "?", and "." alone is the
-            // whole document.
+            // For a value that is not valid JSON, the path is that of the enclosing value: the step of the value
+            // itself is "?", and "." alone is the whole document.
             let path = path.trim_end_matches('?').trim_end_matches('.').to_owned();
             self.syntax_error(path, error.inner())
         })?;
@@ -51,27 +51,27 @@ impl Source {
     fn syntax_error(&self, path: String, error: &serde_json::Error) -> FileError {
         let (line, column) = (error.line(), error.column());
         let message = error.to_string();
-        // The place is given apart from the words.
+        // The position is reported apart from the message.
         let place = format!(" at line {line} column {column}");
         let message = message.strip_suffix(&place).unwrap_or(&message).to_owned();
         let (line, column) = (line > 0).then_some((line, column.max(1))).unzip();
         FileError { line, column, path, ..FileError::whole(&self.file, Problem::syntax(message)) }
     }
 
-    /// The error with its line, column and value. Of a path whose end the document does not have, since a member
-    /// has its default, the part counts that it has.
+    /// Adds the line, column and value to an error. If the document does not contain the end of the path, because
+    /// a member has its default, the longest existing part of the path is used.
     pub(crate) fn error(&self, fault: Fault) -> FileError {
         let Fault { path, problem, .. } = fault;
         let error = FileError::whole(&self.file, problem);
         let Some(text) = &self.text else { return FileError { path, ..error } };
         let Found { path, place: (line, column), value } = find(text, &path);
-        // The whole document is no value to quote.
+        // The whole document is not quoted.
         let value = Some(value).filter(|_| !path.is_empty());
         FileError { line: Some(line), column: Some(column), path, value, ..error }
     }
 }
 
-/// The value at a path, or the one around it that the document has. The document was accepted by `parse`.
+/// Finds the value at a path, or the nearest enclosing value in the document. `parse` has accepted the document.
 fn find(text: &str, path: &str) -> Found {
     let mut scanner = Scanner::new(text);
     let mut taken = String::new();
@@ -88,7 +88,7 @@ fn find(text: &str, path: &str) -> Found {
     Found { path: taken, place: place(text, start), value: shortened(value) }
 }
 
-/// The line and the column of a byte, counted from 1.
+/// Returns the line and the column of a byte, counted from 1.
 fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = &text[..byte];
     let line = before.matches('\n').count() + 1;
@@ -96,7 +96,7 @@ fn place(text: &str, byte: usize) -> (usize, usize) {
     (line, before[start..].chars().count() + 1)
 }
 
-/// The beginning of the text of a value, in one line.
+/// Returns the beginning of the text of a value, in one line.
 fn shortened(text: &str) -> String {
     let mut line = String::new();
     let mut count = 0;
@@ -116,15 +116,15 @@ fn shortened(text: &str) -> String {
 
 /// A value of a document.
 struct Found {
-    /// The part of the path that the document has.
+    /// The part of the path that exists in the document.
     path: String,
     /// Line and column.
     place: (usize, usize),
     value: String,
 }
 
-/// The steps of a path such as `objects[3].shape`. A name with a dot or bracket in it, of a shape, is not found:
-/// then the error has the place of the value around it.
+/// Returns the steps of a path such as `objects[3].shape`. A shape name with a dot or bracket is not found; the
+/// error then has the position of the enclosing value.
 fn steps(path: &str) -> impl Iterator<Item = Step<'_>> {
     let parts = path.split(['.', '[']).filter(|part| !part.is_empty());
     parts.map(|part| {

@@ -1,16 +1,16 @@
-//! Texts of files in messages: without characters that a terminal obeys, and not longer than a line or two.
+//! Texts of files in messages: escaped for terminals, and shortened to a line or two.
 
 use core::fmt::{self, Write as _};
 use std::borrow::Cow;
 
-/// A text has at most so many characters in a message.
+/// The largest number of characters of a text in a message.
 const MAX_TEXT: usize = 160;
 
-/// A text of a file, to be printed for people.
+/// A text of a file, formatted for a terminal.
 ///
 /// Control characters, line breaks, and the invisible characters that reorder text are written as escape sequences,
-/// so that a file cannot move the cursor of a terminal, colour it, or forge a line. Of a text of more than 160
-/// characters the middle is left out.
+/// so that a file cannot move the cursor of a terminal, colour it, or forge a line. The middle of a text of more
+/// than 160 characters is omitted.
 ///
 /// ```
 /// use impinge_files::Printable;
@@ -39,7 +39,7 @@ impl fmt::Display for Printable<'_> {
     }
 }
 
-/// A name of a file between quotation marks, to be printed for people.
+/// A name of a file in quotation marks, formatted for a terminal.
 pub(crate) struct Quoted<'a>(pub(crate) &'a str);
 
 impl fmt::Display for Quoted<'_> {
@@ -48,10 +48,10 @@ impl fmt::Display for Quoted<'_> {
     }
 }
 
-/// A message of a parser, which may quote a file: in one line, and cut.
+/// Returns a message of a parser, which may quote a file, in one line and shortened.
 pub(crate) fn message(text: &str) -> String {
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    // Of a long text the words in the middle are not looked at.
+    // Words in the middle of a long text are not processed.
     let text = match text.char_indices().nth(8 * MAX_TEXT) {
         Some((end, _)) => format!("{} {}", words(&text[..end]), words(tail(text, MAX_TEXT))),
         None => words(text),
@@ -59,7 +59,7 @@ pub(crate) fn message(text: &str) -> String {
     Printable(&text).to_string()
 }
 
-/// The text, without its middle if it is long.
+/// Returns the text, without its middle if it is long.
 fn cut(text: &str) -> Cow<'_, str> {
     if text.len() <= MAX_TEXT || text.chars().nth(MAX_TEXT).is_none() {
         return Cow::Borrowed(text);
@@ -68,12 +68,12 @@ fn cut(text: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{head}…{}", tail(text, MAX_TEXT / 3)))
 }
 
-/// The last characters of a text.
+/// Returns the last `count` characters of a text.
 fn tail(text: &str, count: usize) -> &str {
     text.char_indices().rev().take(count).last().map_or("", |(start, _)| &text[start..])
 }
 
-/// The character is an order to a terminal, or is not seen and moves others.
+/// Whether a terminal interprets the character, or it is invisible and reorders others.
 fn is_obeyed(character: char) -> bool {
     character.is_control()
         || matches!(

@@ -1,37 +1,38 @@
-//! Numbers from the fuzzer's bytes.
+//! Values from the bytes of the fuzzer.
 
 use impinge::math::{Point, Real, Vector};
 
-/// What is left of the input; zeros when it is used up, so that every input means something.
+/// The rest of the input; zeros when it is used up, so that every input is valid.
 #[derive(Debug)]
 pub(crate) struct Bytes<'a> {
     rest: &'a [u8],
-    /// Numbers may be tiny, huge or none at all; otherwise they are moderate, and so must answers be.
+    /// Whether numbers may be tiny, huge, infinite or NaN; otherwise they are moderate, and so must
+    /// results be.
     is_wild: bool,
 }
 
 impl<'a> Bytes<'a> {
-    /// All of the input.
+    /// Creates a reader of the whole input.
     pub(crate) const fn new(rest: &'a [u8]) -> Self {
         Self { rest, is_wild: false }
     }
 
-    /// The same with numbers of any size.
+    /// Allows numbers of any size.
     pub(crate) const fn go_wild(&mut self) {
         self.is_wild = true;
     }
 
-    /// All numbers are moderate: at most 32, and a multiple of 1/1024.
+    /// Whether all numbers are moderate: at most 32, and a multiple of 1/1024.
     pub(crate) const fn is_moderate(&self) -> bool {
         !self.is_wild
     }
 
-    /// The input is used up.
+    /// Whether the input is used up.
     pub(crate) const fn is_empty(&self) -> bool {
         self.rest.is_empty()
     }
 
-    /// The next byte.
+    /// Returns the next byte.
     pub(crate) fn byte(&mut self) -> u8 {
         let Some((&first, rest)) = self.rest.split_first() else { return 0 };
         self.rest = rest;
@@ -42,17 +43,18 @@ impl<'a> Bytes<'a> {
         std::array::from_fn(|_| self.byte())
     }
 
-    /// One of `count` choices, 256 at most.
+    /// Returns one of `count` choices, at most 256.
     pub(crate) fn choice(&mut self, count: usize) -> usize {
         usize::from(self.byte()) % count
     }
 
-    /// Heads or tails.
+    /// Returns a boolean.
     pub(crate) fn coin(&mut self) -> bool {
         self.byte() % 2 == 1
     }
 
-    /// A number: small and round ones, which make solids touch exactly, more often than others.
+    /// Returns a number: small and round ones, for which solids touch exactly, more often than
+    /// others.
     pub(crate) fn number<N: Real>(&mut self) -> N {
         let kinds = if self.is_wild { 16 } else { 11 };
         N::lit(match self.choice(kinds) {
@@ -66,39 +68,39 @@ impl<'a> Bytes<'a> {
         })
     }
 
-    /// A finite number.
+    /// Returns a finite number.
     pub(crate) fn finite<N: Real>(&mut self) -> N {
         let number = self.number::<N>();
         if number.is_finite_number() { number } else { N::ONE }
     }
 
-    /// A finite number, zero or more.
+    /// Returns a finite number, zero or more.
     pub(crate) fn size<N: Real>(&mut self) -> N {
         self.finite::<N>().abs()
     }
 
-    /// A vector of any numbers.
+    /// Returns a vector of any numbers.
     pub(crate) fn vector<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
         Vector::<N, D>::from_fn(|_, _| self.number())
     }
 
-    /// A vector of sizes.
+    /// Returns a vector of sizes.
     pub(crate) fn sizes<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
         Vector::<N, D>::from_fn(|_, _| self.size())
     }
 
-    /// A point of finite numbers.
+    /// Returns a point of finite numbers.
     pub(crate) fn point<N: Real, const D: usize>(&mut self) -> Point<N, D> {
         Point::from(Vector::<N, D>::from_fn(|_, _| self.finite()))
     }
 
-    /// Up to 15 points.
+    /// Returns up to 15 points.
     pub(crate) fn points<N: Real, const D: usize>(&mut self) -> Vec<Point<N, D>> {
         let count = self.choice(16);
         (0..count).map(|_| self.point()).collect()
     }
 
-    /// Up to 12 tuples of indices, of `count` vertices or (seldom) one more than there are.
+    /// Returns up to 12 tuples of indices, below `count` or (seldom) equal to it.
     pub(crate) fn indices<const ENDS: usize>(&mut self, count: usize) -> Vec<[u32; ENDS]> {
         let parts = self.choice(13);
         let mut index = || self.choice(count.max(1)) as u32;

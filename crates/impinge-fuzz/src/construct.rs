@@ -1,4 +1,4 @@
-//! Making shapes, and what they are asked on their own.
+//! Constructors of shapes, and queries about single shapes without arguments.
 
 use impinge::bounding_volume::{Aabb, BoundingSphere, Ray};
 use impinge::math::{Point, Pose, Real, Space};
@@ -34,7 +34,7 @@ impl Task for Construct {
     }
 }
 
-/// Makes a shape, scales it, deforms it, asks for its boxes and parts; hulls, surfaces, and trees.
+/// Makes a shape, scales it, deforms it, computes its boxes and parts; hulls, surfaces, and trees.
 pub fn construct(data: &[u8]) {
     dispatch(Construct, data);
 }
@@ -55,7 +55,7 @@ fn check<N: Real, const D: usize>(shape: &dyn Shape<N, D>) {
     }
 }
 
-/// The shape with other vertices or heights, if its kind has any.
+/// Returns the shape with other vertices or heights, if its kind has any.
 pub(crate) fn deformed<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     bytes: &mut Bytes<'_>,
@@ -74,7 +74,7 @@ pub(crate) fn deformed<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     M::dig(shape, bytes)
 }
 
-/// The vertices, each of which may be another.
+/// Returns the vertices, each possibly changed.
 pub(crate) fn moved<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     bytes: &mut Bytes<'_>,
@@ -83,13 +83,13 @@ pub(crate) fn moved<N: Real, const D: usize>(
     vertices.iter().map(other).collect()
 }
 
-/// A box of any numbers that make one.
+/// Returns a box of any numbers; `None` if they are invalid.
 pub(crate) fn any_box<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Option<Aabb<N, D>> {
     let low = bytes.point::<N, D>();
     Aabb::try_new(low, low + bytes.sizes::<N, D>()).ok()
 }
 
-/// Boxes and balls of any numbers, and a tree of boxes held against all of them.
+/// Tests boxes and balls of any numbers, and compares a tree of boxes with a loop over all of them.
 fn boxes<N: Space<D>, const D: usize>(bytes: &mut Bytes<'_>) {
     let count = bytes.choice(20);
     let boxes: Vec<Aabb<N, D>> = (0..count).filter_map(|_| any_box(bytes)).collect();

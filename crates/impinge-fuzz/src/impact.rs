@@ -1,4 +1,4 @@
-//! Two shapes that move.
+//! Two moving shapes.
 
 use impinge::math::{Isometry, Pose, Real, Space, Vector, max};
 use impinge::query::{self, Impact, ImpactOptions, ImpactStatus, Moving};
@@ -66,7 +66,7 @@ impl Task for Turning {
     }
 }
 
-/// `told_apart` says that the motions do, where shapes and places do not.
+/// Checks an impact, and that of the swapped arguments; `_told_apart` is not used.
 fn check<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     options: &ImpactOptions<N>,
@@ -89,7 +89,7 @@ fn check<N: Space<D>, R, const D: usize>(
     }
 }
 
-/// At the time found the solids are no farther apart than the target distance.
+/// Checks that the distance at the time of impact is at most the target distance.
 fn check_meeting<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     found: &Impact<N, D>,

@@ -1,5 +1,5 @@
-//! Shapes, poses and questions made from the fuzzer's bytes: whatever the bytes, no call may panic
-//! or hang, and answers must not contradict each other.
+//! Shapes, poses and queries made from the bytes of the fuzzer: for any bytes no call may panic or
+//! hang, and results must be consistent.
 #![forbid(unsafe_code)]
 #![allow(
     clippy::missing_assert_message,
@@ -34,7 +34,7 @@ pub use world::world;
 use impinge::math::Space;
 use place::{Dimension, Plane, Room};
 
-/// What is run on an input; it panics on a finding.
+/// A function of an input; it panics on a finding.
 pub type Target = fn(&[u8]);
 
 /// The targets with their names.
@@ -55,13 +55,13 @@ pub const TARGETS: [(&str, Target); 14] = [
     ("recording", recording),
 ];
 
-/// Something to do with bytes, in any dimension and scalar.
+/// A task with bytes, in any dimension and scalar.
 trait Task {
-    /// Does it.
+    /// Runs the task.
     fn run<N: Space<D>, M: Dimension<N, D>, const D: usize>(self, bytes: &mut Bytes<'_>);
 }
 
-/// Does a task in the dimension, with the scalar and with numbers as wild as the first byte says.
+/// Runs a task in the dimension, scalar and range of numbers that the first byte selects.
 fn dispatch(task: impl Task, data: &[u8]) {
     let bytes = &mut Bytes::new(data);
     let choice = bytes.choice(8);

@@ -1,9 +1,9 @@
-//! Feeds random bytes to the targets, without `cargo fuzz`.
+//! Runs the targets with random bytes, without `cargo fuzz`.
 //!
 //! `impinge-fuzz 10` runs each target for ten seconds and `impinge-fuzz 10 world ray` these two, after the
 //! inputs of `regressions.txt`. The seed is new on each run and printed; `SEED=7` sets it. An input that
-//! panics is reduced and printed. `impinge-fuzz replay world 00ff` runs one input, of hexadecimal digits or
-//! the name of a file, and `impinge-fuzz reduce world 00ff` reduces it before.
+//! panics is reduced and printed. `impinge-fuzz replay world 00ff` runs one input, given as hexadecimal
+//! digits or the name of a file, and `impinge-fuzz reduce world 00ff` reduces it first.
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, reason = "findings are printed")]
 
@@ -83,7 +83,7 @@ fn run(name: &str, target: Target, time: Duration, seed: u64) -> bool {
     true
 }
 
-/// Prints an input that panics, reduced, and what it panics with.
+/// Prints an input that panics, reduced, and the message of the panic.
 fn report(name: &str, target: Target, data: Vec<u8>) {
     println!("{name}: panics on {}", digits(&data));
     let data = without_messages(|| reduced(target, data));
@@ -100,7 +100,7 @@ fn regressions(name: &str) -> Vec<Vec<u8>> {
     lines.filter_map(input).collect()
 }
 
-/// `SEED`, or one that no run before had.
+/// Returns `SEED`, or a new one.
 fn seed() -> u64 {
     let given = std::env::var("SEED").ok().and_then(|text| text.parse().ok());
     let now = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_micros());
@@ -118,18 +118,18 @@ impl Random {
         mixed ^ (mixed >> 31)
     }
 
-    /// A number below `bound`.
+    /// Returns a number below `bound`.
     fn below(&mut self, bound: usize) -> usize {
         usize::try_from(self.next() % bound as u64).unwrap_or_default()
     }
 
-    /// A quarter of small bytes, which make simple shapes and poses.
+    /// Returns a byte; a quarter of them are small, which make simple shapes and poses.
     const fn byte(&mut self) -> u8 {
         let [first, second, ..] = self.next().to_le_bytes();
         if first < 64 { second & 31 } else { second }
     }
 
-    /// Random bytes; once in eight times those of a regression with some bytes changed.
+    /// Returns random bytes; in one of eight cases those of a regression with some bytes changed.
     fn input(&mut self, known: &[Vec<u8>]) -> Vec<u8> {
         if known.is_empty() || self.below(8) > 0 {
             return self.bytes();
@@ -145,7 +145,7 @@ impl Random {
         data
     }
 
-    /// Bytes of a length that is short more often than long.
+    /// Returns bytes of a random length; short lengths are more frequent.
     fn bytes(&mut self) -> Vec<u8> {
         let length = self.next() % (self.next() % MAX_BYTES + 1) + 8;
         (0..length).map(|_| self.byte()).collect()
@@ -156,7 +156,7 @@ fn panics(target: Target, data: &[u8]) -> bool {
     catch_unwind(AssertUnwindSafe(|| target(data))).is_err()
 }
 
-/// Calls `act` while panics print nothing.
+/// Calls `act` with the messages of panics suppressed.
 fn without_messages<A>(act: impl FnOnce() -> A) -> A {
     let hook = take_hook();
     set_hook(Box::new(|_| {}));
@@ -165,7 +165,7 @@ fn without_messages<A>(act: impl FnOnce() -> A) -> A {
     answer
 }
 
-/// A shorter or simpler input that panics too: with bytes removed or set to zero.
+/// Returns a shorter or simpler input that panics too: with bytes removed or set to zero.
 fn reduced(target: Target, mut data: Vec<u8>) -> Vec<u8> {
     for _ in 0..4 {
         let before = data.clone();
@@ -179,7 +179,7 @@ fn reduced(target: Target, mut data: Vec<u8>) -> Vec<u8> {
     data
 }
 
-/// Removes or zeroes runs of `length` bytes where the input still panics.
+/// Removes or zeroes runs of `length` bytes if the input still panics.
 fn reduce_by(length: usize, target: Target, data: &mut Vec<u8>) {
     let mut start = 0;
     while start < data.len() {

@@ -53,7 +53,7 @@ fn nudged<N: Real, R: Copy, const D: usize>(
     moved
 }
 
-/// A generator and the names that it gave.
+/// A generator and the ids that it assigned.
 struct Kept<N: Real, const D: usize> {
     generator: PairManifoldGenerator<N, D>,
     ids: IdAllocator,
@@ -73,7 +73,7 @@ impl<N: Space<D>, const D: usize> Kept<N, D> {
         }
     }
 
-    /// The contacts after an update; names are given once, and those that are gone do not return.
+    /// Checks the contacts after an update: ids are unique, and old ones do not return.
     fn update<M: Dimension<N, D>>(
         &mut self,
         pair: &Pair<N, M::Turn, D>,
@@ -102,8 +102,8 @@ impl<N: Space<D>, const D: usize> Kept<N, D> {
     }
 }
 
-/// The contacts of the swapped pair are those of the pair, flipped, in any order; unless the two have
-/// been the same thing at one place, which leaves contacts with one age but other names.
+/// Checks that the contacts of the swapped pair are those of the pair, flipped, in any order. If both were
+/// the same shape at one pose, contacts have the same age but other ids.
 fn check_order<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     contacts: &[TrackedContact<N, D>],
@@ -123,7 +123,8 @@ fn check_order<N: Space<D>, R, const D: usize>(
     }
 }
 
-/// There is a manifold if there is a contact, and the deepest of a convex pair is as deep but for rounding.
+/// Checks that there is a manifold if there is a contact, and that the depth of a convex pair is equal up
+/// to rounding.
 fn check_deepest<N: Space<D>, R, const D: usize>(
     pair: &Pair<N, R, D>,
     contacts: &[TrackedContact<N, D>],

@@ -37,7 +37,7 @@ impl Task for Masses {
         let inverse = body.inverse_mass();
         assert!(body.mass() >= N::ZERO && inverse >= N::ZERO, "{}", context());
         assert!(inverse.is_finite_number() && body.mass().is_finite_number(), "{}", context());
-        // The centre of a mesh that winds around itself both ways may be anywhere.
+        // The centre of a mesh with winding numbers of both signs may be anywhere.
         if bytes.is_moderate() && parts_of(&*shape).is_none() {
             let (aabb, noise) = (shape.local_aabb(), reach(&*shape) * N::EPSILON * N::lit(64.0));
             let around = Vector::<N, D>::repeat(noise);
@@ -48,7 +48,7 @@ impl Task for Masses {
         }
         let placed = Compound::try_new(vec![(M::stored(position), shape.clone())]);
         let Ok(placed) = placed.map(|compound| mass_properties(&compound, density)) else { return };
-        // The solid may be too far away for its centre to be a number.
+        // The solid may be too far away for a finite centre.
         let Ok(placed) = placed else { return };
         assert_eq!(placed.mass(), body.mass(), "{}", context());
     }

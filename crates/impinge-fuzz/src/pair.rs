@@ -1,4 +1,4 @@
-//! Questions about two shapes, in both orders.
+//! Queries about two shapes, in both orders.
 
 use std::fmt::Debug;
 
@@ -16,14 +16,14 @@ pub(crate) struct Pair<N: Space<D>, R, const D: usize> {
     pub(crate) g1: ShapeHandle<N, D>,
     pub(crate) m2: Isometry<N, R, D>,
     pub(crate) g2: ShapeHandle<N, D>,
-    /// All numbers are moderate, so answers must be finite.
+    /// Whether all numbers are moderate, so that results must be finite.
     pub(crate) is_moderate: bool,
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D> {
     pub(crate) fn from_bytes<M: Dimension<N, D, Turn = R>>(bytes: &mut Bytes<'_>) -> Self {
         let (g1, m1) = (shape::<N, M, D>(bytes), M::position(bytes));
-        // The same shape and place more often than chance has it.
+        // Equal shapes are more frequent than by chance.
         let g2 = if bytes.choice(8) == 0 { g1.clone() } else { shape::<N, M, D>(bytes) };
         let m2 = if bytes.choice(8) == 0 { m1 } else { M::position(bytes) };
         Self { m1, g1, m2, g2, is_moderate: bytes.is_moderate() }
@@ -39,7 +39,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         }
     }
 
-    /// The two are the same thing at the same place: then their order says nothing. A ball has no rotation.
+    /// Whether the two are the same shape at the same pose: their order is then arbitrary. A ball has no
+    /// rotation.
     pub(crate) fn are_same(&self) -> bool {
         let is_ball = self.g1.geometry().kind() == ShapeKind::Ball;
         let place = |m| if is_ball { Pose::unturned(m) } else { Pose::from_isometry(m) };
@@ -47,12 +48,12 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         places[0] == places[1] && anatomy(&*self.g1) == anatomy(&*self.g2)
     }
 
-    /// Both poses are finite.
+    /// Whether both poses are finite.
     pub(crate) fn is_placed(&self) -> bool {
         [&self.m1, &self.m2].iter().all(|m| Pose::from_isometry(*m).is_finite())
     }
 
-    /// Swapped arguments give the flipped answer, to the bit.
+    /// Checks that swapped arguments give the flipped result, to the bit.
     pub(crate) fn check_flip<A: PartialEq + Debug>(
         &self,
         own: &A,
@@ -65,7 +66,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         panic!("\n{own:?}\nis not\n{other:?}\nswapped, of\n{self:?}");
     }
 
-    /// What rounding may make of a length.
+    /// The tolerance for the rounding of a length.
     pub(crate) fn tolerance(&self) -> N {
         let places = [&self.m1, &self.m2]
             .iter()
@@ -83,7 +84,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Debug for Pair<N, R
     }
 }
 
-/// Equal, or not told apart when written.
+/// Whether both are equal, or equal when printed.
 pub(crate) fn same<A: PartialEq + Debug>(one: &A, other: &A) -> bool {
     one == other || format!("{one:?}") == format!("{other:?}")
 }
@@ -140,8 +141,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         [&*self.g1, &*self.g2]
     }
 
-    /// Both reach to infinity: where half-spaces overlap without bound there is no contact, or only
-    /// that of other parts.
+    /// Whether both are unbounded: if half-spaces have an unbounded overlap there is no contact, or only
+    /// one of other parts.
     fn may_be_endless(&self) -> bool {
         self.shapes().into_iter().all(is_unbounded)
     }
@@ -197,7 +198,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         }
         let limit = max(limit, N::ZERO);
         let is_near = distance <= limit && self.is_placed();
-        // Without parts there is no point, however far it may be.
+        // Without parts there is no point at any distance.
         let is_nothing = distance == N::INFINITY && limit == N::INFINITY;
         let found = points != ClosestPoints::Disjoint;
         assert!(found == is_near || is_nothing, "{points:?} at {distance}, {limit}:\n{self:?}");

@@ -1,4 +1,4 @@
-//! What the dimensions do not share: rotations, and the shapes of one dimension only.
+//! Parts that differ by dimension: rotations, and the shapes of one dimension only.
 
 use std::fmt::Debug;
 
@@ -12,43 +12,43 @@ use impinge::{dim2, dim3};
 use crate::Bytes;
 use crate::shapes::made;
 
-/// One dimension's ways to make things from bytes.
+/// The constructors of one dimension.
 pub(crate) trait Dimension<N: Space<D>, const D: usize> {
-    /// How many kinds of shape the dimension has to itself.
+    /// The number of kinds of shapes that exist in this dimension only.
     const OWN_KINDS: usize;
 
     /// Rotations.
     type Turn: AbstractRotation<N, D> + Copy + Debug;
 
-    /// A position, of any numbers.
+    /// Returns a position of any numbers.
     fn position(bytes: &mut Bytes<'_>) -> Isometry<N, Self::Turn, D>;
-    /// The same as worlds want it.
+    /// Converts a position to that of worlds.
     fn stored(position: Isometry<N, Self::Turn, D>) -> N::Isometry;
-    /// And back.
+    /// Converts back.
     fn loose(position: N::Isometry) -> Isometry<N, Self::Turn, D>;
-    /// A shape that only this dimension has; `None` if a constructor refuses the numbers.
+    /// Returns a shape of this dimension only; `None` if a constructor rejects the numbers.
     fn own_shape(kind: usize, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
-    /// A tetrahedron, whose kind is another if it is flat, which other factors may make of it.
+    /// Whether it is a tetrahedron, whose kind changes if scaling makes it flat.
     fn is_tetrahedron(shape: &ShapeHandle<N, D>) -> bool;
-    /// A body that moves and turns at constant rates.
+    /// Returns a body that moves and rotates at constant rates.
     fn motion(
         position: Isometry<N, Self::Turn, D>,
         bytes: &mut Bytes<'_>,
     ) -> Box<dyn RigidMotion<N, D>>;
-    /// Gives a height field other heights or holes, if the shape is one.
+    /// Changes heights or holes of a height field; `None` for other shapes.
     fn dig(shape: &ShapeHandle<N, D>, bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, D>>;
-    /// Lets only objects meet that [`may_meet`].
+    /// Registers a filter that accepts only pairs that [`may_meet`].
     fn filter(world: &mut CollisionWorld<N, D, u8>);
-    /// Hulls and surfaces of points and of shapes.
+    /// Computes hulls and surfaces of points and of shapes.
     fn transform(shape: &ShapeHandle<N, D>, bytes: &mut Bytes<'_>);
 }
 
-/// Whether objects with these data may meet: unless the data differ in the lowest bit.
+/// Whether objects with these data may have a pair: unless the data differ in the lowest bit.
 pub(crate) const fn may_meet(one: u8, two: u8) -> bool {
     (one ^ two) & 1 == 0
 }
 
-/// The plane.
+/// 2D.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane;
 
@@ -146,7 +146,7 @@ impl<N: Real> Dimension<N, 2> for Plane {
     }
 }
 
-/// Space.
+/// 3D.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Room;
 
@@ -253,7 +253,7 @@ fn field3<N: Real>(bytes: &mut Bytes<'_>) -> Option<ShapeHandle<N, 3>> {
     Some(ShapeHandle::new(field.with_diagonals(diagonals)))
 }
 
-/// No point of a surface is NaN.
+/// Checks that no point of a surface is NaN.
 fn check_finite<N: Real, const D: usize>(points: &[Point<N, D>]) {
     let mut numbers = points.iter().flat_map(|point| point.iter());
     assert!(numbers.all(|x| !x.as_f64().is_nan()), "{points:?}");

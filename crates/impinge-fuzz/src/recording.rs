@@ -1,4 +1,4 @@
-//! Recordings with bytes changed behind their checksums, which are written anew.
+//! Recordings with changed bytes and recomputed checksums.
 
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::world::CollisionGroups;
@@ -10,7 +10,7 @@ use crate::Bytes;
 use crate::place::{Dimension, Plane, Room};
 use crate::shapes::shape;
 
-/// Records a few objects, changes bytes of the recording, and reads and plays what it has become: as a whole, in pieces,
+/// Records a few objects, changes bytes of the recording, then reads and plays the result: as a whole, in pieces,
 /// salvaged, and packed.
 pub fn recording(data: &[u8]) {
     let bytes = &mut Bytes::new(data);
@@ -33,7 +33,7 @@ fn record<N: Recordable<D>, M: Dimension<N, D>, const D: usize>(bytes: &mut Byte
         let (at, shape) = (M::stored(M::position(bytes)), shape::<N, M, D>(bytes));
         let (groups, query) =
             (CollisionGroups::new(), GeometricQueryType::Contacts(bytes.size(), N::ZERO));
-        // What the world or the format refuses is not in the recording.
+        // Calls that the world or the format rejects are not in the recording.
         let _ = recorder.add(at, shape, groups, query, id);
         recorder.update();
     }
@@ -52,7 +52,7 @@ fn record<N: Recordable<D>, M: Dimension<N, D>, const D: usize>(bytes: &mut Byte
     repack(&changed, bytes);
 }
 
-/// Plays a recording forwards and backwards; the error, if there is one.
+/// Plays a recording forwards and backwards; returns the error, if there is one.
 fn play<N: Recordable<D>, const D: usize>(
     changed: &[u8],
     registry: &Registry<N, D, u32>,
@@ -66,7 +66,7 @@ fn play<N: Recordable<D>, const D: usize>(
     back.err()
 }
 
-/// In pieces a recording is what it is as a whole, and salvaging keeps what came before the first error.
+/// Checks that a recording in pieces equals the whole, and that salvaging keeps the records before the first error.
 fn grow<N: Recordable<D>, const D: usize>(
     changed: &[u8],
     registry: &Registry<N, D, u32>,
@@ -87,7 +87,7 @@ fn grow<N: Recordable<D>, const D: usize>(
     assert_eq!(salvaged.loss().is_none(), growing.is_complete() && error.is_none());
 }
 
-/// What can be packed comes back but for hashes, and packed bytes may be changed.
+/// Checks that a packed recording unpacks to itself without hashes, and that changed packed bytes do not panic.
 fn repack(changed: &[u8], bytes: &mut Bytes<'_>) {
     let Ok(mut packed) = pack(changed) else { return };
     let unpacked = unpack(&packed).expect("it was just packed");

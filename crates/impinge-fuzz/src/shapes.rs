@@ -10,20 +10,20 @@ use impinge::shape::{
 use crate::Bytes;
 use crate::place::Dimension;
 
-/// How many kinds both dimensions have.
+/// The number of kinds that exist in both dimensions.
 const COMMON_KINDS: usize = 13;
 
-/// Compounds are nested so deep at most.
+/// The largest depth of nested compounds.
 const MAX_NESTED: usize = 3;
 
-/// A shape of the kind that the next byte says; a ball where a constructor refuses the numbers.
+/// Returns a shape of the kind that the next byte selects; a ball if a constructor rejects the numbers.
 pub(crate) fn shape<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     bytes: &mut Bytes<'_>,
 ) -> ShapeHandle<N, D> {
     nested::<N, M, D>(bytes, 0).unwrap_or_else(|| ShapeHandle::new(Ball::new(N::ONE)))
 }
 
-/// The shape, if the constructor took the numbers.
+/// Returns the shape, if the constructor accepted the numbers.
 pub(crate) fn made<N: Real, S: Shape<N, D>, E: std::error::Error, const D: usize>(
     shape: Result<S, E>,
 ) -> Option<ShapeHandle<N, D>> {
@@ -83,7 +83,7 @@ fn polyline<N: Space<D>, const D: usize>(bytes: &mut Bytes<'_>) -> Option<ShapeH
     }
 }
 
-/// Up to seven children, which may be compounds.
+/// Returns a compound of up to seven children, which may be compounds.
 fn compound<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     bytes: &mut Bytes<'_>,
     depth: usize,
@@ -102,7 +102,7 @@ fn compound<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     made(Compound::try_new(children))
 }
 
-/// A unit vector; along an axis half of the time.
+/// Returns a unit vector; along an axis half of the time.
 fn normal<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Unit<Vector<N, D>> {
     let mut axis = Vector::<N, D>::zeros();
     axis[bytes.choice(D)] = if bytes.coin() { N::ONE } else { -N::ONE };
@@ -114,7 +114,7 @@ fn normal<N: Real, const D: usize>(bytes: &mut Bytes<'_>) -> Unit<Vector<N, D>> 
     Unit::new_normalize(if is_usable { any } else { axis })
 }
 
-/// A support map of the user's own: the hull of points, inflated.
+/// A user-defined support map: the hull of points, inflated.
 #[derive(Clone, Debug)]
 pub(crate) struct Cloud<N: Real, const D: usize> {
     points: Vec<Point<N, D>>,
@@ -154,25 +154,25 @@ impl<N: Real, const D: usize> Shape<N, D> for Cloud<N, D> {
     }
 }
 
-/// What the library sees of a shape, as text: of a composite its parts.
+/// Returns the geometry of a shape as text; for a composite that of its parts.
 pub(crate) fn anatomy<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> String {
     let Some(parts) = shape.geometry().as_composite() else { return format!("{shape:?}") };
     (0..parts.num_parts()).map(|part| format!("{:?}\n", parts.part(part))).collect()
 }
 
-/// The shape or a part of it reaches to infinity.
+/// Whether the shape or a part of it is unbounded.
 pub(crate) fn is_unbounded<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> bool {
     let aabb = shape.local_aabb();
     !(0..D).all(|axis| aabb.mins()[axis].is_finite_number() && aabb.maxs()[axis].is_finite_number())
 }
 
-/// How many parts the shape has; `None` if it is convex.
+/// The number of parts of the shape; `None` if it is convex.
 pub(crate) fn parts_of<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<u32> {
     shape.geometry().as_composite().map(CompositeShape::num_parts)
 }
 
-/// About how far the shape reaches from its own origin, the places of its parts included: what rounding
-/// is in proportion to. What is unbounded adds nothing.
+/// Returns the approximate distance of the shape's farthest point from its origin, with the positions
+/// of its parts: rounding errors are proportional to it. Unbounded parts are ignored.
 pub(crate) fn reach<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> N {
     if let Some(parts) = shape.geometry().as_composite() {
         let one = |part| {

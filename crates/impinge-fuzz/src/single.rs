@@ -1,4 +1,4 @@
-//! Questions about one shape: rays and points.
+//! Queries about one shape: rays and points.
 
 use impinge::math::{Point, Pose, Real, Space};
 use impinge::query::{PointQuery, Ray, RayCast};

@@ -1,4 +1,4 @@
-//! Random operations on a world, held against a model.
+//! Random operations on a world, compared with a model.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,10 +17,10 @@ use crate::place::{Dimension, may_meet};
 use crate::shapes::shape;
 use crate::{Bytes, Task, dispatch};
 
-/// No more operations on one world.
+/// The largest number of operations on one world.
 const MAX_OPERATIONS: usize = 48;
 
-/// No more objects in one world.
+/// The largest number of objects in one world.
 const MAX_OBJECTS: usize = 10;
 
 struct Operations;
@@ -49,19 +49,19 @@ pub fn world(data: &[u8]) {
 
 type Handles = (CollisionObjectHandle, CollisionObjectHandle);
 
-/// A world and what its events have told so far.
+/// A world and the state that follows from its events.
 struct Stage<N: Space<D>, const D: usize> {
     world: CollisionWorld<N, D, u8>,
-    /// All that ever were.
+    /// The handles of all current and removed objects.
     handles: Vec<CollisionObjectHandle>,
-    /// Shapes to be shared.
+    /// Shapes for several objects.
     shapes: Vec<ShapeHandle<N, D>>,
     touching: BTreeSet<Handles>,
     near: BTreeMap<Handles, Proximity>,
     is_filtered: bool,
-    /// The next update keeps the events of the last one.
+    /// Whether the next update keeps the events of the last one.
     keeps_events: bool,
-    /// All numbers are: then the world must agree with the model, else only with itself.
+    /// Whether all numbers are moderate: then the world must agree with the model, else only with itself.
     is_moderate: bool,
 }
 
@@ -82,7 +82,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// One of the handles, which may be stale.
+    /// Returns one of the handles, which may be stale.
     fn handle(&self, bytes: &mut Bytes<'_>) -> Option<CollisionObjectHandle> {
         let choice = bytes.choice(self.handles.len().max(1));
         self.handles.get(choice).copied()
@@ -170,7 +170,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Other phases or filters.
+    /// Replaces phases or filters.
     fn exchange<M: Dimension<N, D>>(&mut self, bytes: &mut Bytes<'_>) {
         match bytes.choice(4) {
             0 => {
@@ -191,7 +191,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// The calls of a solver.
+    /// Makes the calls of a solver.
     fn operate_as_engine<M: Dimension<N, D>>(
         &mut self,
         handle: CollisionObjectHandle,
@@ -226,7 +226,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         assert_eq!(done == Err(WorldError::StaleHandle(handle)), !is_known, "{done:?} {handle:?}");
     }
 
-    /// Updates; events, pairs and the model agree afterwards.
+    /// Updates; then compares events, pairs and the model.
     fn update<M: Dimension<N, D>>(&mut self) {
         let counts = (self.world.contact_events().len(), self.world.proximity_events().len());
         let kept = if std::mem::take(&mut self.keeps_events) { counts } else { (0, 0) };
@@ -239,7 +239,8 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// Behind the events that were kept: each start has one stop, each change begins where the last one ended.
+    /// Applies the events after the kept ones: each start has one stop, each change begins with the status of
+    /// the last one.
     fn hear(&mut self, kept: (usize, usize)) {
         for event in &self.world.contact_events()[kept.0..] {
             let (handles, changed) = match *event {
@@ -259,7 +260,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// The pairs are what the events say.
+    /// Checks that the pairs are those of the events.
     fn check_pairs(&self) {
         let mut ids = BTreeSet::new();
         let mut touching = BTreeSet::new();
@@ -284,7 +285,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         assert_eq!(near, self.near);
     }
 
-    /// Every two objects are in the state that the queries tell.
+    /// Checks that every two objects are in the state that queries return.
     fn check_model<M: Dimension<N, D>>(&self) {
         let objects: Vec<_> = self.world.collision_objects().collect();
         for (index, one) in objects.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Questions about all objects of a world, held against each of them.
+//! Queries about all objects of a world, compared with a loop over the objects.
 
 use std::cmp::Ordering;
 use std::fmt::Debug;
@@ -18,7 +18,7 @@ use crate::shapes::shape;
 type World<N, const D: usize> = CollisionWorld<N, D, u8>;
 type Object<N, const D: usize> = CollisionObject<N, D, u8>;
 
-/// Asks one kind of question.
+/// Runs one kind of query.
 pub(crate) fn ask<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     world: &World<N, D>,
     bytes: &mut Bytes<'_>,
@@ -34,7 +34,7 @@ pub(crate) fn ask<N: Space<D>, M: Dimension<N, D>, const D: usize>(
 
 type Keyed<N, A> = (N, CollisionObjectHandle, A);
 
-/// What each object answers, sorted by key and handle.
+/// Returns the result of each object, sorted by key and handle.
 fn ranked<N: Space<D>, A, const D: usize>(
     world: &World<N, D>,
     ask: impl Fn(&Object<N, D>) -> Option<(N, A)>,
@@ -46,7 +46,7 @@ fn ranked<N: Space<D>, A, const D: usize>(
     all
 }
 
-/// The answers are those expected.
+/// Checks that the results are the expected ones.
 fn check<A: Debug + PartialEq, N: Space<D>, const D: usize>(
     world: &World<N, D>,
     found: &A,
@@ -102,7 +102,7 @@ fn boxes<N: Space<D>, const D: usize>(world: &World<N, D>, bytes: &mut Bytes<'_>
     assert!(found.is_sorted(), "{found:?}");
 }
 
-/// A shape at a place.
+/// Returns a shape at a position.
 fn probe<N: Space<D>, M: Dimension<N, D>, const D: usize>(
     world: &World<N, D>,
     bytes: &mut Bytes<'_>,

@@ -1,5 +1,5 @@
-//! Balls that circle, shown in a browser while they move: `cargo run -p impinge-html --features page --example live`.
-//! With a number of seconds as the argument it ends after these.
+//! Circling balls, shown in a browser while they move: `cargo run -p impinge-html --features page --example live`.
+//! With a number of seconds as the argument it ends after that time.
 
 use std::thread::sleep;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use impinge::dim3::world::{CollisionGroups, GeometricQueryType};
 use impinge_html::{Assets, Live};
 use impinge_record::{Recorder, Registry};
 
-/// A place on a circle at a time; each ball has its own speed.
+/// Returns a position on a circle at a time; each ball has its own speed.
 fn place(ball: u8, time: f32) -> Isometry<f32> {
     let angle = time * (0.5 + f32::from(ball) / 10.0);
     Isometry::translation(3.0 * angle.cos(), 3.0 * angle.sin(), 0.0)

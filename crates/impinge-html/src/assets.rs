@@ -1,11 +1,11 @@
-//! What a page consists of.
+//! The parts of a page.
 
 use std::fs;
 use std::path::Path;
 
 use crate::error::HtmlError;
 
-/// The parts of a page, but for the recording.
+/// The parts of a page, except the recording.
 #[derive(Clone, Debug)]
 pub struct Assets {
     /// The HTML with the placeholders `{{TITLE}}`, `{{STYLE}}`, `{{SCENE}}`, `{{RECORDING}}`, `{{WASM}}` and
@@ -38,7 +38,7 @@ impl Assets {
         })
     }
 
-    /// The parts that this program was built with.
+    /// Returns the parts that are embedded in this program.
     #[cfg(feature = "page")]
     #[must_use]
     pub fn embedded() -> Self {

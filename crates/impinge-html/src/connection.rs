@@ -1,4 +1,4 @@
-//! Connections that end at a deadline.
+//! Connections with a deadline.
 
 use std::io::{self, Read, Write};
 use std::net::TcpStream;
@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 /// A connection of a client.
 ///
-/// A time limit of the system counts from each read and write anew, so that a client which sends a byte now and then
-/// would never reach it. Here all reads and writes until the deadline share what is left.
+/// A time limit of the operating system restarts with each read and write, so that a client that sends single bytes
+/// would never reach it. Here all reads and writes until the deadline share the remaining time.
 #[derive(Debug)]
 pub(crate) struct Connection {
     stream: TcpStream,
@@ -15,20 +15,21 @@ pub(crate) struct Connection {
 }
 
 impl Connection {
-    /// A connection that has this long.
+    /// Creates a connection with a deadline after `time`.
     pub(crate) fn new(stream: TcpStream, time: Duration) -> io::Result<Self> {
         stream.set_nodelay(true)?;
         Ok(Self { stream, deadline: Instant::now() + time })
     }
 
-    /// From now on it has this long.
+    /// Sets the deadline to `time` from now.
     pub(crate) fn allow(&mut self, time: Duration) {
         self.deadline = Instant::now() + time;
     }
 
-    /// The client has closed the connection, or sends more than it is asked for.
+    /// Whether the client has closed the connection, or sends unexpected bytes.
     ///
-    /// Clients of this server say all in their first request; one that ends its side waits for no answer.
+    /// Clients of this server send everything in their first request; one that closes its side waits for no
+    /// response.
     pub(crate) fn is_gone(&mut self) -> bool {
         let mut byte = [0];
         let read = self.stream.set_nonblocking(true).and_then(|()| self.stream.read(&mut byte));
@@ -36,7 +37,7 @@ impl Connection {
         !is_waiting || self.stream.set_nonblocking(false).is_err()
     }
 
-    /// What is left of the time.
+    /// Returns the remaining time.
     fn left(&self) -> io::Result<Duration> {
         let left = self.deadline.saturating_duration_since(Instant::now());
         if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
@@ -95,7 +96,7 @@ mod tests {
         let (mut waiting, client) = pair();
         assert!(!waiting.is_gone() && !waiting.is_gone(), "it waits");
         drop(client);
-        // Ends: the system hands the end over at once, but promises no more than soon.
+        // Terminates: the operating system delivers the end soon.
         while !waiting.is_gone() {}
         let (mut server, mut talker) = pair();
         talker.write_all(b"more").expect("it is open");

@@ -1,4 +1,4 @@
-//! Why there is no page.
+//! Errors of making or serving a page.
 
 use core::fmt;
 use std::io;
@@ -6,31 +6,31 @@ use std::path::{Path, PathBuf};
 
 use impinge_record::ReadError;
 
-/// Why a page cannot be made or served.
+/// An error of making or serving a page.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum HtmlError {
     /// The bytes are not a recording that can be packed.
     Recording(ReadError),
-    /// The template does not have this placeholder just once.
+    /// The template does not contain this placeholder exactly once.
     Placeholder {
         /// The placeholder.
         name: &'static str,
-        /// How often it is there.
+        /// The number of its occurrences.
         count: usize,
     },
     /// A file cannot be read or written.
     File {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         error: io::Error,
     },
-    /// No connections can be taken on this port of the loopback interface: most likely another program has it.
+    /// The port of the loopback interface cannot be opened: most likely another program uses it.
     Port {
         /// The port.
         port: u16,
-        /// Why.
+        /// The reason.
         error: io::Error,
     },
 }

@@ -1,4 +1,4 @@
-//! A page of a program that runs: a small server for browsers on this machine.
+//! The page of a running program: a small server for browsers on this machine.
 
 use std::io::{self, Write as _};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
@@ -15,35 +15,35 @@ use crate::log::{More, PIECE, SharedLog};
 use crate::page::Page;
 use crate::request::{self, Route};
 
-/// The requests that are answered at once; further ones get the status 503.
+/// The largest number of requests that are served at once; further ones get the status 503.
 const MAX_CLIENTS: usize = 32;
 
-/// The connections whose requests are not whole yet. One more closes the one that has waited longest: no number of
-/// silent connections keeps a browser out.
+/// The largest number of connections with incomplete requests. One more closes the connection that has waited longest,
+/// so that silent connections cannot keep a browser out.
 const MAX_PENDING: usize = 32;
 
-/// The head of a request is whole after this long, and 64 KiB of an answer are taken; otherwise the connection is
-/// closed.
+/// The time for the head of a request, and for each 64 KiB of a response; then the connection is closed.
 const IO_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// So often a stream without news looks whether its client is still there.
+/// The interval at which an idle stream checks whether its client is still connected.
 const POLL: Duration = Duration::from_millis(250);
 
-/// A request waits this long for the place of one whose client has gone: longer than a stream takes to notice.
+/// The time that a request waits for the slot of a client that has gone: longer than a stream takes to notice.
 const ADMISSION_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// A server that ends waits this long for clients to take the rest.
+/// The time that a stopping server waits for clients to read the rest.
 const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A server that shows the recording of a running program in a browser on the same machine.
 ///
-/// [`Self::send`] takes what [`Recorder::take_bytes`](impinge_record::Recorder::take_bytes) gives. The page follows the
-/// recording as it grows; one that is opened later gets all of it from the beginning, so the server keeps all
-/// bytes. Connections have threads of their own: a browser that is slow or gone holds up neither the program nor other
-/// browsers, of which 32 follow at once.
+/// [`Self::send`] takes the bytes that [`Recorder::take_bytes`](impinge_record::Recorder::take_bytes) returns. The page
+/// follows the growing recording. A page that is opened later gets all of it from the beginning, so the server keeps
+/// all bytes. Each connection has its own thread: a slow or closed browser blocks neither the program nor other
+/// browsers, of which up to 32 follow at once.
 ///
-/// It listens on 127.0.0.1 alone, and answers only requests by the names `127.0.0.1` and `localhost`. The recording is
-/// for its own page: requests of other sites are refused. Dropping it ends the streams; the pages keep what they have.
+/// It listens on 127.0.0.1 alone, and accepts only requests by the names `127.0.0.1` and `localhost`. Only its own page
+/// may read the recording: requests of other sites are rejected. Dropping it ends the streams; the pages keep the
+/// received data.
 ///
 /// ```no_run
 /// # fn run(assets: impinge_html::Assets) -> Result<(), Box<dyn std::error::Error>> {
@@ -66,7 +66,7 @@ pub struct Live {
     acceptor: Option<JoinHandle<()>>,
 }
 
-/// What a thread needs to answer a request.
+/// The data of a thread that responds to a request.
 #[derive(Debug)]
 struct Server {
     port: u16,
@@ -75,7 +75,7 @@ struct Server {
 }
 
 impl Live {
-    /// Starts a server on a port; 0 takes one that is free. The recording has no bytes yet.
+    /// Starts a server on a port; 0 selects a free one. The recording has no bytes yet.
     ///
     /// # Errors
     /// If the port is in use or not allowed, or the template lacks a placeholder or has one twice.
@@ -91,45 +91,45 @@ impl Live {
         Ok(Self { address, log, acceptor: Some(acceptor.map_err(refused)?) })
     }
 
-    /// What a browser on this machine opens.
+    /// Returns the address to open in a browser on this machine.
     #[must_use]
     pub fn url(&self) -> String {
         format!("http://{}/", self.address)
     }
 
-    /// Appends bytes to the recording and wakes up those who wait for them. Waits for nobody; costs a copy of the bytes.
+    /// Appends bytes to the recording and wakes up waiting readers. Never blocks; costs a copy of the bytes.
     pub fn send(&self, bytes: &[u8]) {
         self.log.append(bytes);
     }
 }
 
-/// Ends the streams. Clients that still read get a second for the rest.
+/// Ends the streams. Clients that are still reading get a second for the rest.
 impl Drop for Live {
     fn drop(&mut self) {
         self.log.close();
-        // A connection wakes up the thread that waits for one.
+        // A connection wakes up the accepting thread.
         let woken = TcpStream::connect_timeout(&self.address, DRAIN_TIMEOUT).is_ok();
         if let Some(acceptor) = self.acceptor.take().filter(|_| woken) {
-            // It ends without a panic, or there is nothing to clean up.
+            // The thread does not panic, and there is nothing to clean up if it did.
             let _ended = acceptor.join();
         }
         self.log.wait_for_clients(DRAIN_TIMEOUT);
     }
 }
 
-/// Takes connections until the log is closed.
+/// Accepts connections until the log is closed.
 fn accept(listener: &TcpListener, server: &Arc<Server>) {
     for stream in listener.incoming() {
         if server.log.is_closed() {
             return;
         }
         let Ok(stream) = stream else {
-            // There are too many open files, or the client has gone: another one may do better.
+            // There are too many open files, or the client has gone: the next connection may succeed.
             thread::sleep(Duration::from_millis(10));
             continue;
         };
         let own = Arc::clone(server);
-        // Without a thread the connection is closed. An error is that of a client that has gone.
+        // If no thread can be started the connection is closed. An error is that of a client that has gone.
         let _spawned = thread::Builder::new().spawn(move || own.serve(stream));
     }
 }
@@ -156,7 +156,7 @@ impl Server {
         request::read(&mut connection, self.port)
     }
 
-    /// All bytes of the log in chunks, as they come, until the client has gone.
+    /// Sends all bytes of the log in chunks, as they arrive, until the client has gone.
     fn stream_log(&self, connection: &mut Connection) -> io::Result<()> {
         let kind = "Content-Type: application/octet-stream\r\nTransfer-Encoding: chunked\r\n";
         connection.write_all(head("200 OK", kind).as_bytes())?;
@@ -181,7 +181,7 @@ impl Server {
     }
 }
 
-/// The head of an answer. Nothing is kept by the browser, and no other site may use it.
+/// Returns the head of a response. Browsers must not cache it, and other sites must not use it.
 fn head(status: &str, fields: &str) -> String {
     format!(
         "HTTP/1.1 {status}\r\n{fields}Cache-Control: no-store\r\nConnection: close\r\n\

@@ -1,11 +1,11 @@
-//! A recording that grows, and its readers, which wait for more of it.
+//! A growing recording, and its waiting readers.
 
 use std::collections::BTreeMap;
 use std::net::{Shutdown, TcpStream};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The bytes that are copied at once for a reader, while the lock is held.
+/// The number of bytes that are copied at once for a reader, while the lock is held.
 pub(crate) const PIECE: usize = 64 * 1024;
 
 /// Bytes to which more are appended, for any number of readers, until it is closed.
@@ -19,30 +19,30 @@ pub(crate) struct SharedLog {
 struct State {
     bytes: Vec<u8>,
     is_closed: bool,
-    /// Requests that are answered.
+    /// The number of requests in service.
     clients: usize,
-    /// Connections whose requests are not whole, by their order.
+    /// Connections with incomplete requests, by their order.
     pending: BTreeMap<u64, TcpStream>,
-    /// The connections so far.
+    /// The number of connections so far.
     connections: u64,
 }
 
-/// What a reader gets that waited.
+/// The result of waiting for more bytes.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum More {
     /// The next bytes.
     Bytes(Vec<u8>),
-    /// Nothing in the time that it waited.
+    /// No bytes arrived in time.
     Nothing,
-    /// There are no more.
+    /// The log is closed and read completely.
     End,
 }
 
-/// A request that is answered, until this is dropped.
+/// A request in service, until this is dropped.
 #[derive(Debug)]
 pub(crate) struct Client<'a>(&'a SharedLog);
 
-/// A connection whose request is not whole, until this is dropped.
+/// A connection with an incomplete request, until this is dropped.
 #[derive(Debug)]
 pub(crate) struct Pending<'a> {
     log: &'a SharedLog,
@@ -55,13 +55,13 @@ impl SharedLog {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Appends bytes; waits for no reader.
+    /// Appends bytes; does not wait for readers.
     pub(crate) fn append(&self, bytes: &[u8]) {
         self.state().bytes.extend(bytes);
         self.changed.notify_all();
     }
 
-    /// Nothing is appended any more. Connections whose requests are not whole end.
+    /// Closes the log. Connections with incomplete requests end.
     pub(crate) fn close(&self) {
         let mut state = self.state();
         state.is_closed = true;
@@ -74,7 +74,7 @@ impl SharedLog {
         self.state().is_closed
     }
 
-    /// Some bytes from an offset on, as soon as there are any, or nothing after so long.
+    /// Returns bytes from an offset on, as soon as there are any, or [`More::Nothing`] after `longest`.
     pub(crate) fn wait_from(&self, offset: usize, longest: Duration) -> More {
         let waits = |state: &mut State| state.bytes.len() <= offset && !state.is_closed;
         let waited = self.changed.wait_timeout_while(self.state(), longest, waits);
@@ -87,7 +87,7 @@ impl SharedLog {
         }
     }
 
-    /// Counts a client; one that comes when there are `limit` waits for a place, but not longer than this.
+    /// Counts a client. If there are `limit` clients it waits for a slot, at most for `longest`.
     pub(crate) fn enter(&self, limit: usize, longest: Duration) -> Option<Client<'_>> {
         let waits = |state: &mut State| state.clients >= limit && !state.is_closed;
         let waited = self.changed.wait_timeout_while(self.state(), longest, waits);
@@ -97,7 +97,8 @@ impl SharedLog {
         is_admitted.then(|| Client(self))
     }
 
-    /// Keeps a connection while its request is read. If there are `limit` already, the first of them ends.
+    /// Keeps a connection while its request is read. If there are `limit` already, the oldest of them is
+    /// closed.
     pub(crate) fn wait_for_request(&self, stream: TcpStream, limit: usize) -> Pending<'_> {
         let mut state = self.state();
         state.connections += 1;
@@ -114,16 +115,16 @@ impl SharedLog {
         Pending { log: self, number }
     }
 
-    /// Waits until all clients have gone, or for so long.
+    /// Waits until all clients have gone, at most for `longest`.
     pub(crate) fn wait_for_clients(&self, longest: Duration) {
         let waits = |state: &mut State| state.clients + state.pending.len() > 0;
         let waited = self.changed.wait_timeout_while(self.state(), longest, waits);
-        // Whether some are left makes no difference: their connections end with the program.
+        // The result is ignored: remaining connections end with the program.
         drop(waited);
     }
 }
 
-/// Ends a connection, so that the thread that waits for it goes on. It may have ended before.
+/// Closes a connection, so that the thread that waits for it continues. It may be closed already.
 fn end(stream: &TcpStream) {
     let _ended = stream.shutdown(Shutdown::Both);
 }

@@ -1,4 +1,4 @@
-//! One HTML file of many parts.
+//! Builds an HTML file from its parts.
 
 use std::borrow::Cow;
 use std::fs;
@@ -12,11 +12,11 @@ use serde_json::{Value, json};
 use crate::assets::Assets;
 use crate::error::HtmlError;
 
-/// A page that shows a recording: one file, which needs nothing else.
+/// Returns a page that shows a recording, as one self-contained file.
 ///
-/// The recording is packed, unless it is already. It may lack its end, but not have half a record:
-/// [`Replay::salvage`](impinge_record::Replay::salvage) gives such bytes. The page has about four thirds of the bytes of its
-/// parts; the time to make it is that of packing.
+/// The recording is packed, unless it is already. Its end may be missing, but it must end with a complete record:
+/// [`Replay::salvage`](impinge_record::Replay::salvage) returns such bytes. The page has about four thirds of the bytes
+/// of its parts; the time is that of packing.
 ///
 /// # Errors
 /// If the bytes cannot be packed, or the template lacks a placeholder or has one twice.
@@ -44,8 +44,8 @@ pub fn export(assets: &Assets, recording: &[u8], title: &str) -> Result<String, 
     Page { title, scene, recording: &packed }.html(assets)
 }
 
-/// Writes the page of the samples as `index.html` in a folder, which is made if it does not exist. The page shows
-/// `thumbnails/NAME.png` in this folder for each sample that has one.
+/// Writes the page of the samples as `index.html` in a folder, which is created if it does not exist. The page shows
+/// `thumbnails/NAME.png` of this folder for each sample that has one.
 ///
 /// # Errors
 /// If the file cannot be written, or the template lacks a placeholder or has one twice.
@@ -58,21 +58,21 @@ pub fn gallery(assets: &Assets, folder: impl AsRef<Path>) -> Result<(), HtmlErro
     fs::write(&path, page).map_err(HtmlError::file(&path))
 }
 
-/// What is in a page besides its assets.
+/// The content of a page besides its assets.
 #[derive(Debug)]
 pub(crate) struct Page<'a> {
     pub(crate) title: &'a str,
-    /// What the page opens.
+    /// The description of what the page opens.
     pub(crate) scene: Value,
-    /// A packed recording, or nothing.
+    /// A packed recording, or empty.
     pub(crate) recording: &'a [u8],
 }
 
 impl Page<'_> {
-    /// The whole page. The parts are put in in one pass: a part that contains a placeholder stays as it is.
+    /// Returns the whole page. All parts are inserted in one pass: a placeholder within a part is not replaced.
     pub(crate) fn html(&self, assets: &Assets) -> Result<String, HtmlError> {
-        // No part may end its element. In JSON a character may be written by its number, and in strings of scripts
-        // and styles after a backslash; elsewhere in these the sequences do not occur.
+        // No part may close its element. In JSON a character can be written as an escape, and in strings of scripts and
+        // styles after a backslash; outside of strings the sequences do not occur.
         let scene = self.scene.to_string().replace('<', "\\u003c");
         let script = assets.script.replace("</script", "<\\/script").replace("<!--", "<\\!--");
         let parts = [
@@ -104,7 +104,7 @@ impl Page<'_> {
     }
 }
 
-/// Text for HTML.
+/// Escapes a text for HTML.
 fn escaped(text: &str) -> String {
     let pairs = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("\"", "&quot;"), ("'", "&#39;")];
     pairs.iter().fold(text.to_owned(), |text, (from, to)| text.replace(from, to))

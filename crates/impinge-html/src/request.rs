@@ -2,24 +2,24 @@
 
 use std::io::{self, Read};
 
-/// The bytes that the head of a request may have.
+/// The largest number of bytes of the head of a request.
 const MAX_HEAD: usize = 16 * 1024;
 
-/// The headers that a request may have.
+/// The largest number of headers of a request.
 const MAX_HEADERS: usize = 64;
 
-/// What a request is answered with.
+/// The response to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Route {
     /// The page.
     Page,
-    /// The recording as it grows.
+    /// The growing recording.
     Log,
-    /// The request is refused with this status.
+    /// An error with this status.
     Refused(&'static str),
 }
 
-/// Reads the head of a request to a server on `port`, and decides what answers it.
+/// Reads the head of a request to a server on `port`, and selects the response.
 ///
 /// # Errors
 /// If the connection ends or is too slow.
@@ -42,7 +42,7 @@ pub(crate) fn read(stream: &mut impl Read, port: u16) -> io::Result<Route> {
     }
 }
 
-/// What answers a request with this head; `None` if it is not whole.
+/// Returns the response to a request with this head; `None` if the head is incomplete.
 fn route(head: &[u8], port: u16) -> Option<Route> {
     let mut headers = [httparse::EMPTY_HEADER; MAX_HEADERS];
     let mut request = httparse::Request::new(&mut headers);
@@ -67,15 +67,15 @@ fn route(head: &[u8], port: u16) -> Option<Route> {
     })
 }
 
-/// The `Host` of a request is a name of this machine. Another name that resolves to it belongs to a foreign page, which
-/// must not read what is served (DNS rebinding). Browsers leave out the port 80.
+/// Whether the `Host` of a request is a name of this machine. Another name that resolves to this machine belongs to a
+/// foreign page, which must not read the recording (DNS rebinding). Browsers omit the port 80.
 fn is_own_host(host: &[u8], port: u16) -> bool {
     ["127.0.0.1", "localhost"].iter().any(|name| host == format!("{name}:{port}").as_bytes())
         || (port == 80 && [&b"127.0.0.1"[..], b"localhost"].contains(&host))
 }
 
-/// Another site asks. Browsers say so by `Sec-Fetch-Site` or `Origin`, whatever the site allows to be sent. A port of
-/// this machine is a site of its own too. Other programs send neither.
+/// Whether another site sent the request. Browsers report this by `Sec-Fetch-Site` or `Origin`, whatever the site
+/// allows. Another port of this machine is another site too. Other programs send neither header.
 fn is_foreign(headers: &[httparse::Header<'_>], port: u16) -> bool {
     headers.iter().any(|header| {
         let is_it = |name: &str| header.name.eq_ignore_ascii_case(name);

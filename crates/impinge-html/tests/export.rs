@@ -1,4 +1,4 @@
-//! The file has all parts, and the recording comes out of it as it went in.
+//! The exported file has all parts, and contains the same recording.
 
 use std::fs;
 
@@ -12,7 +12,7 @@ const TEMPLATE: &str = "<title>{{TITLE}}</title><style>{{STYLE}}</style>\
     <script id=scene>{{SCENE}}</script><script id=recording>{{RECORDING}}</script>\
     <script id=wasm>{{WASM}}</script><script id=program>{{SCRIPT}}</script>";
 
-/// The parts of a page without style, script and engine.
+/// Returns the parts of a page without style, script and engine.
 fn plain(template: String) -> Assets {
     Assets { template, style: String::new(), script: String::new(), module: Vec::new() }
 }
@@ -24,7 +24,7 @@ fn recording() -> Vec<u8> {
     recorder.finish().bytes
 }
 
-/// The text between the tag with an id and the next closing tag.
+/// Returns the text between the tag with an id and the next closing tag.
 fn part<'a>(html: &'a str, id: &str) -> &'a str {
     let (_, rest) = html.split_once(&format!("<script id={id}>")).expect("the part is there");
     rest.split_once("</script>").expect("the part ends").0

@@ -1,4 +1,4 @@
-//! The server by raw connections, as a browser would, and as it would not.
+//! Tests the server by raw connections, with valid and invalid requests.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -33,7 +33,7 @@ fn connect(live: &Live) -> BufReader<TcpStream> {
     BufReader::new(stream)
 }
 
-/// Requests a path at a host; the connection after the head of the answer, and this head.
+/// Requests a path at a host; returns the connection after the head of the response, and this head.
 fn ask(live: &Live, path: &str, host: &str) -> (BufReader<TcpStream>, String) {
     let mut connection = connect(live);
     let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n");
@@ -45,7 +45,7 @@ fn ask(live: &Live, path: &str, host: &str) -> (BufReader<TcpStream>, String) {
     (connection, head)
 }
 
-/// The next chunk of a stream; empty at its end.
+/// Returns the next chunk of a stream; empty at its end.
 fn chunk(connection: &mut BufReader<TcpStream>) -> Vec<u8> {
     let mut length = String::new();
     connection.read_line(&mut length).expect("a length");
@@ -57,7 +57,7 @@ fn chunk(connection: &mut BufReader<TcpStream>) -> Vec<u8> {
     bytes
 }
 
-/// The next bytes of a stream, in however many chunks they come.
+/// Returns the next `count` bytes of a stream, in any number of chunks.
 fn bytes(connection: &mut BufReader<TcpStream>, count: usize) -> Vec<u8> {
     let mut all = Vec::new();
     while all.len() < count {
@@ -126,7 +126,7 @@ fn other_names_and_paths_are_refused() {
     }
     let mut connection = connect(&live);
     let long = vec![b'a'; 40_000];
-    // The server may have closed the connection before all of it is written.
+    // The server may have closed the connection before everything is written.
     let _written = connection.get_mut().write_all(&[b"GET /", &long[..]].concat());
     let mut answer = Vec::new();
     let _closed = connection.read_to_end(&mut answer);
@@ -145,12 +145,12 @@ fn a_client_that_is_slow_or_gone_holds_nobody_up() {
     (0..64).for_each(|_| live.send(&piece));
     let (mut quick, _) = ask(&live, "/log", &host(&live));
     assert_eq!(bytes(&mut quick, 64 << 20).len(), 64 << 20);
-    // These two have taken nothing so far: neither the bytes nor the end of the server waits for them.
+    // These two have read nothing so far: dropping the server does not wait for them.
     drop(live);
     drop((silent, stuck));
 }
 
-/// More than the connections that are served at once.
+/// More than the number of connections that are served at once.
 const MANY: usize = 100;
 
 #[test]
@@ -158,7 +158,7 @@ fn clients_that_have_gone_keep_nobody_out() {
     let live = started();
     live.send(b"log");
     for _ in 0..MANY {
-        // As a page that is loaded again and again: nothing is sent meanwhile that could fail.
+        // Like a page that is reloaded repeatedly: no data is sent meanwhile that could fail.
         let (mut connection, _) = ask(&live, "/log", &host(&live));
         assert_eq!(bytes(&mut connection, 3), b"log");
     }
@@ -181,7 +181,7 @@ fn silent_connections_keep_nobody_out() {
     let silent: Vec<_> = (0..MANY)
         .map(|_| {
             let mut connection = connect(&live);
-            // The server may have closed it before, for others.
+            // The server may have closed it earlier, for others.
             let _written = connection.get_mut().write_all(b"G");
             connection
         })

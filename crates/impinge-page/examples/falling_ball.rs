@@ -1,7 +1,7 @@
 //! Writes the recordings that the tests of the page read: `cargo run -p impinge-page --example falling_ball`.
 //!
-//! A ball of radius 0.5 falls onto a floor whose top is at 0, beside a second ball that rests there, two units away. So
-//! at height `h` above its rest the balls are `sqrt(4 + h²) - 1` apart.
+//! A ball of radius 0.5 falls onto a floor whose top is at 0, two units beside a second ball that rests there. At
+//! height `h` above rest the distance of the balls is `sqrt(4 + h²) - 1`.
 
 use std::error::Error;
 use std::fs;
@@ -14,9 +14,9 @@ use impinge::shape::{Ball, Cuboid, ShapeHandle};
 use impinge::world::CollisionGroups;
 use impinge_record::{Query, Question, RayQuestion, Recordable, Recorder, Registry, Scalar};
 
-/// So many updates, of which the ball rests in the last ones.
+/// The number of updates; the ball rests in the last ones.
 const STEPS: u32 = 40;
-/// The ball begins so high above its rest, and falls by a tenth in each step.
+/// The initial height above rest; the ball falls by a tenth in each step.
 const HEIGHT: f64 = 3.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -52,7 +52,7 @@ fn recording<N: Scalar + Recordable<D>, const D: usize>() -> Result<Vec<u8>, Box
     Ok(recorder.finish().bytes)
 }
 
-/// Moves the ball, asks a ray every tenth step, and updates.
+/// Moves the ball, casts a ray every tenth step, and updates.
 fn advance<N: Scalar + Recordable<D>, const D: usize>(
     recorder: &mut Recorder<N, D, String>,
     falling: CollisionObjectHandle,
@@ -75,7 +75,7 @@ fn advance<N: Scalar + Recordable<D>, const D: usize>(
     Ok(())
 }
 
-/// Without a rotation, at a point of the plane of the first two axes.
+/// Returns a position without rotation, at a point of the plane of the first two axes.
 fn at<N: Recordable<D>, const D: usize>(x: f64, y: f64) -> N::Isometry {
     let translation = Vector::<N, D>::from_fn(|axis, _| N::lit([x, y, 0.0][axis]));
     N::isometry(&Pose::from_translation(translation))

@@ -1,12 +1,12 @@
 //! Answers to the page as data: the members of `PROTOCOL.md`.
 //!
-//! Points, vectors and boxes have three coordinates, of which the last is 0 in 2D. Numbers that are not finite become
-//! `null` in JSON.
+//! Points, vectors and boxes have three coordinates; the last is 0 in 2D. Numbers that are not finite become `null`
+//! in JSON.
 
 use impinge_samples::{Control, Entry, Readout};
 use serde::Serialize;
 
-/// The ends of a box: its least and its greatest coordinates. `None` for one with no end.
+/// The corners of a box with the lowest and the highest coordinates. `None` for an unbounded one.
 pub type Ends = Option<[[f64; 3]; 2]>;
 
 /// The gallery.
@@ -16,14 +16,14 @@ pub struct Gallery {
     pub samples: &'static [Entry],
 }
 
-/// What a stage is. Members that a kind of stage has no value for are empty or zero.
+/// The description of a stage. Members that do not apply to a kind of stage are empty or zero.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Info {
     /// `recording`, `stream` or `sample`.
     pub kind: &'static str,
-    /// The step that it stands at.
+    /// The current step.
     pub step: usize,
-    /// Sentences for people: stand-ins, and what of a recording was lost.
+    /// Sentences for readers: stand-ins, and lost parts of a recording.
     pub notes: Vec<String>,
     /// 2 or 3.
     pub dimension: usize,
@@ -33,34 +33,35 @@ pub struct Info {
     pub name: String,
     /// The heading.
     pub title: String,
-    /// What to see.
+    /// The description.
     pub about: String,
     /// The program that wrote a recording.
     pub written_by: String,
-    /// How many updates a recording has so far.
+    /// The number of updates of a recording so far.
     pub steps: Option<usize>,
-    /// The last record of a recording was read. A stream lacks it until it ends, a recording if its program died.
+    /// Whether the last record of a recording was read. A stream lacks it until it ends, a recording if its program
+    /// crashed.
     pub complete: bool,
-    /// Seconds from a step to the next, where nothing else is known of it.
+    /// The seconds between two steps, if the recording does not define them.
     pub time_step: f64,
-    /// A box of what there is, for the camera.
+    /// A box of all objects, for the camera.
     pub bounds: [[f64; 3]; 2],
     /// The axis that points up on the screen.
     pub up: [f64; 3],
-    /// What happened, in order of the steps.
+    /// The changes at steps, in order of the steps.
     pub marks: Vec<StepMark>,
     /// The controls of a sample.
     pub controls: Vec<Control>,
 }
 
-/// What happened at a step; or in some steps from this one on, where there would be too many marks.
+/// The changes at a step; or the sum of several steps from this one on, if there would be too many marks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct StepMark {
     /// The step.
     pub step: usize,
-    /// Pairs that began to touch.
+    /// Pairs that started touching.
     pub started: u32,
-    /// Pairs that ceased to touch.
+    /// Pairs that stopped touching.
     pub stopped: u32,
     /// Pairs whose proximity changed.
     pub proximities: u32,
@@ -68,32 +69,32 @@ pub struct StepMark {
     pub added: u32,
     /// Objects removed.
     pub removed: u32,
-    /// Other shapes, groups, query types, data or filters.
+    /// Changed shapes, groups, query types, data or filters.
     pub changed: u32,
-    /// Queries asked.
+    /// Queries.
     pub queries: u32,
 }
 
-/// How things are at a step.
+/// The state at a step.
 #[derive(Clone, Debug, Serialize)]
 pub struct Status {
     /// The step.
     pub step: usize,
-    /// How many objects there are.
+    /// The number of objects.
     pub objects: usize,
-    /// How many pairs the narrow phase has.
+    /// The number of pairs of the narrow phase.
     pub pairs: usize,
-    /// How many contact points there are.
+    /// The number of contact points.
     pub contacts: usize,
-    /// In what a replay differs from its recording, for people.
+    /// The difference of a replay from its recording, as a sentence for readers.
     pub diverged: Option<String>,
     /// The first events of the update.
     pub events: Vec<StatusEvent>,
-    /// How many events the update had.
+    /// The number of events of the update.
     pub event_count: usize,
-    /// Controls, if some changed by themselves.
+    /// Controls that the sample changed itself.
     pub controls: Vec<Control>,
-    /// What a sample says.
+    /// The readouts of a sample.
     pub readouts: Vec<Readout>,
 }
 
@@ -101,18 +102,18 @@ pub struct Status {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum StatusEvent {
-    /// Two objects began or ceased to touch.
+    /// Two objects started or stopped touching.
     Contact {
-        /// They began to.
+        /// Whether they started.
         started: bool,
-        /// The object whose handle comes first.
+        /// The object with the smaller handle.
         a: usize,
         /// The other.
         b: usize,
     },
     /// The proximity of two objects changed.
     Proximity {
-        /// The object whose handle comes first.
+        /// The object with the smaller handle.
         a: usize,
         /// The other.
         b: usize,
@@ -123,12 +124,12 @@ pub enum StatusEvent {
     },
 }
 
-/// A shape in words.
+/// A description of a shape.
 #[derive(Clone, Debug, Serialize)]
 pub struct ShapeText {
-    /// A word.
+    /// The kind as a word.
     pub kind: &'static str,
-    /// The word and the sizes.
+    /// The kind and the sizes.
     pub text: String,
 }
 
@@ -145,30 +146,30 @@ pub enum GroupNumbers {
 /// The groups of an object.
 #[derive(Clone, Debug, Serialize)]
 pub struct ShownGroups {
-    /// Those that the object is in.
+    /// The groups that the object is in.
     pub membership: GroupNumbers,
-    /// Those that it interacts with.
+    /// The groups with which it interacts.
     pub whitelist: GroupNumbers,
-    /// Those that it does not interact with.
+    /// The groups with which it does not interact.
     pub blacklist: GroupNumbers,
-    /// It is tested against itself.
+    /// Whether it is tested against itself.
     pub self_collision: bool,
 }
 
-/// What is asked of the pairs of an object.
+/// The query type of an object.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ShownQuery {
     /// Contact points.
     Contacts {
-        /// The share of the distance up to which there are contacts.
+        /// The object's share of the prediction.
         linear: f64,
-        /// The share of the angle, in radians.
+        /// The object's share of the angular prediction, in radians.
         angular: f64,
     },
     /// Proximity.
     Proximity {
-        /// The share of the distance up to which objects are near.
+        /// The object's share of the margin.
         margin: f64,
     },
 }
@@ -181,23 +182,23 @@ pub enum ShownPair {
     Contacts {
         /// The other object.
         object: usize,
-        /// How many contact points there are.
+        /// The number of contact points.
         contacts: usize,
-        /// The depth of the deepest.
+        /// The depth of the deepest contact.
         depth: f64,
-        /// There is a contact point.
+        /// Whether there is a contact point.
         touching: bool,
     },
     /// Proximity, as of the last update.
     Proximity {
         /// The other object.
         object: usize,
-        /// In words.
+        /// The status as a word.
         status: &'static str,
     },
 }
 
-/// All about an object.
+/// The description of an object.
 #[derive(Clone, Debug, Serialize)]
 pub struct ObjectAnswer {
     /// The index of its handle.
@@ -206,19 +207,19 @@ pub struct ObjectAnswer {
     pub shape: ShapeText,
     /// Its data as text.
     pub label: String,
-    /// Where its origin is.
+    /// The position of its origin.
     pub translation: [f64; 3],
     /// A quaternion x, y, z, w.
     pub rotation: [f64; 4],
     /// Its groups.
     pub groups: ShownGroups,
-    /// What is asked of its pairs.
+    /// Its query type.
     pub query: ShownQuery,
-    /// The box around it, there and then.
+    /// Its bounding box at the current position.
     pub tight_box: Ends,
-    /// The box of the broad phase, as of the last update.
+    /// Its fat AABB in the broad phase, as of the last update.
     pub loosened_box: Ends,
-    /// Its pairs that touch or are near, in order of the other objects.
+    /// Its pairs that touch or are near, sorted by the other objects.
     pub pairs: Vec<ShownPair>,
 }
 
@@ -231,7 +232,7 @@ pub struct ShownContact {
     pub b: [f64; 3],
     /// From the first to the second.
     pub normal: [f64; 3],
-    /// Positive where they overlap.
+    /// The depth, positive where they overlap.
     pub depth: f64,
 }
 
@@ -241,7 +242,7 @@ pub struct ManifoldPoint {
     /// The contact.
     #[serde(flatten)]
     pub contact: ShownContact,
-    /// The features of both that meet.
+    /// The touching features of both.
     pub features: String,
 }
 
@@ -252,46 +253,46 @@ pub struct ShownManifold {
     pub contacts: Vec<ManifoldPoint>,
 }
 
-/// One of the reasons for which two objects touch, or do not.
+/// One of the conditions for two objects to touch.
 #[derive(Clone, Debug, Serialize)]
 pub struct Test {
     /// `groups`, `filter`, `boxes` or `distance`.
     pub name: &'static str,
-    /// By this reason alone they might touch.
+    /// Whether the condition is satisfied.
     pub passes: bool,
-    /// Why.
+    /// The explanation.
     pub text: String,
 }
 
-/// Why two objects touch, or do not.
+/// The reason why two objects touch, or do not.
 #[derive(Clone, Debug, Serialize)]
 pub struct Why {
-    /// What the world has.
+    /// Whether they touch in the world.
     pub touch: bool,
-    /// The reason, for people.
+    /// The reason as a sentence for readers.
     pub text: String,
-    /// All reasons, in the order in which a world asks them.
+    /// All conditions, in the order in which a world tests them.
     pub tests: Vec<Test>,
 }
 
-/// All about two objects.
+/// The description of a pair of objects.
 #[derive(Clone, Debug, Serialize)]
 pub struct PairAnswer {
     /// The first object.
     pub a: usize,
     /// The second.
     pub b: usize,
-    /// How far apart they are; 0 if they touch or overlap.
+    /// The distance; 0 if they touch or overlap.
     pub distance: f64,
-    /// The nearest points on both; `None` if they touch or overlap.
+    /// The closest points; `None` if they touch or overlap.
     pub points: Option<[[f64; 3]; 2]>,
     /// Their contact up to the prediction.
     pub contact: Option<ShownContact>,
-    /// In words, by the margins of both.
+    /// The proximity as a word, by the margins of both.
     pub proximity: &'static str,
     /// The manifolds of the world, as of the last update.
     pub manifolds: Vec<ShownManifold>,
-    /// Why they touch, or do not.
+    /// The reason why they touch, or do not.
     pub why: Why,
 }
 
@@ -300,7 +301,7 @@ pub struct PairAnswer {
 pub struct Picked {
     /// The object.
     pub object: Option<usize>,
-    /// Where it is hit; in 2D its nearest point.
+    /// The hit point; in 2D the nearest point of the object.
     pub point: [f64; 3],
     /// The outward normal there; zero in 2D.
     pub normal: [f64; 3],
@@ -313,17 +314,17 @@ pub struct Picked {
 pub struct RayHit {
     /// The object.
     pub object: usize,
-    /// Where.
+    /// The hit point.
     pub point: [f64; 3],
     /// The outward normal there.
     pub normal: [f64; 3],
     /// The time of the ray.
     pub time: f64,
-    /// What of the object is hit.
+    /// The feature that is hit.
     pub feature: String,
 }
 
-/// What a ray hits.
+/// The hits of a ray.
 #[derive(Clone, Debug, Serialize)]
 pub struct RayAnswer {
     /// The hits in order of time.
@@ -335,20 +336,20 @@ pub struct RayAnswer {
 pub struct NearObject {
     /// The object.
     pub object: usize,
-    /// How far it is; 0 if it holds the point.
+    /// The distance; 0 if the object contains the point.
     pub distance: f64,
-    /// Its point that is nearest.
+    /// The nearest point of the object.
     pub point: [f64; 3],
 }
 
-/// What is near a point.
+/// The objects near a point.
 #[derive(Clone, Debug, Serialize)]
 pub struct NearestAnswer {
     /// The objects in order of distance.
     pub nearest: Vec<NearObject>,
 }
 
-/// An answer and the bytes that it names.
+/// A response and the bytes that it refers to.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// The JSON text.

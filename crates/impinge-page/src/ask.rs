@@ -13,13 +13,13 @@ use crate::answer::{NearObject, NearestAnswer, Picked, RayAnswer, RayHit};
 use crate::request::{NearestRequest, PickRequest, RayRequest};
 use crate::space::{coordinates, point, vector};
 
-/// Whether an object has a proximity query: it is drawn transparent.
+/// Whether an object has a proximity query; it is then drawn transparent.
 pub(crate) fn is_sensor<N: Space<D>, const D: usize, T>(object: &CollisionObject<N, D, T>) -> bool {
     matches!(object.query_type(), GeometricQueryType::Proximity(_))
 }
 
-/// The first object that a ray hits, an opaque one if there is any. A ray that begins inside an object hits its far
-/// side, which is what a camera there draws.
+/// Returns the first object that a ray hits, an opaque one if there is any. A ray that begins inside an object hits
+/// its far side, which a camera at that position draws.
 pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     at: &PickRequest,
@@ -38,8 +38,9 @@ pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     })
 }
 
-/// The object that contains a point, else the nearest within reach. Of several that contain it, transparent ones come
-/// last, before them unbounded ones, and of equals the one drawn last comes first.
+/// Returns the object that contains a point, else the nearest one within reach. Among several that contain it, opaque
+/// bounded objects precede unbounded ones, these precede transparent ones, and among equals the one drawn last is
+/// returned.
 pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     at: &PickRequest,
@@ -61,7 +62,7 @@ pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
     })
 }
 
-/// The nearest point on an object; `None` if it contains the point of the query.
+/// Returns the nearest point on an object; `None` if it contains the point of the query.
 fn nearest_point<N: Real, const D: usize>(points: &ClosestPoints<N, D>) -> Option<[f64; 3]> {
     match points {
         ClosestPoints::WithinMargin(_, on_object) => Some(coordinates(&on_object.coords)),
@@ -69,7 +70,7 @@ fn nearest_point<N: Real, const D: usize>(points: &ClosestPoints<N, D>) -> Optio
     }
 }
 
-/// All objects that a ray hits.
+/// Returns all objects that a ray hits.
 pub(crate) fn ray<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     asked: &RayRequest,
@@ -87,7 +88,7 @@ pub(crate) fn ray<N: Space<D>, const D: usize, T>(
     RayAnswer { hits: hits.collect() }
 }
 
-/// The objects nearest to a point.
+/// Returns the objects nearest to a point.
 pub(crate) fn nearest<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     asked: &NearestRequest,
@@ -103,7 +104,7 @@ pub(crate) fn nearest<N: Space<D>, const D: usize, T>(
     NearestAnswer { nearest: nearest.collect() }
 }
 
-/// A feature in words, of a composite with its part: features are numbered within their parts.
+/// Returns a feature as text, for a composite with its part: features are numbered within their parts.
 pub(crate) fn feature_text<N: Real, const D: usize>(
     feature: FeatureId,
     part: u32,

@@ -12,13 +12,13 @@ use crate::groups;
 use crate::shape_text::shape_text;
 use crate::space::{Viewed, coordinates};
 
-/// The greatest number of events in a status; the count of all is beside them.
+/// The greatest number of listed events in a status, which also has their number.
 const MAX_EVENTS: usize = 200;
 
-/// The greatest number of bytes in a label of data that is not text.
+/// The greatest number of bytes in the label of data that is not text.
 const MAX_BYTES: usize = 16;
 
-/// The object of a number, the index of its handle: the generation of the handle is unknown to a page, so that this
+/// Returns the object with a handle of this index. The page does not know the generation of the handle, so this
 /// searches all objects.
 pub(crate) fn object_of<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
@@ -47,13 +47,14 @@ pub(crate) fn object_answer<N: Viewed<D>, const D: usize, T: RecordData>(
     }
 }
 
-/// The corners of a box; `None` if it is unbounded.
+/// Returns the corners of a box; `None` if it is unbounded.
 fn ends<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Ends {
     let corners = [aabb.mins(), aabb.maxs()].map(|point| coordinates(&point.coords));
     aabb.is_bounded().then_some(corners)
 }
 
-/// The data of an object: as text if it is UTF-8 without control characters, else its first bytes in hexadecimal.
+/// Returns the data of an object: as text if it is UTF-8 without control characters, else its first bytes in
+/// hexadecimal.
 fn label(bytes: &[u8]) -> String {
     let text = str::from_utf8(bytes).ok();
     if let Some(text) = text.filter(|text| !text.chars().any(char::is_control)) {
@@ -73,12 +74,12 @@ fn shown_query<N: Real>(query: GeometricQueryType<N>) -> ShownQuery {
     }
 }
 
-/// The pairs of an object that touch or are near, in order of the other objects.
+/// Returns the pairs of an object that touch or are near, sorted by the other objects.
 fn pairs<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     handle: CollisionObjectHandle,
 ) -> Vec<ShownPair> {
-    // One entry for each contact point, those of one partner in a row.
+    // One entry for each contact point, those of one partner consecutively.
     let mut partners: Vec<_> =
         world.contacts_with(handle).map(|(other, _)| other.handle()).collect();
     partners.dedup();
@@ -98,7 +99,7 @@ fn pairs<N: Space<D>, const D: usize, T>(
     pairs.into_iter().map(|(_, pair)| pair).collect()
 }
 
-/// The state of a world. The members that only recordings or samples have are empty.
+/// Returns the state of a world. The members for recordings and samples only are empty.
 pub(crate) fn status<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     step: usize,
@@ -114,7 +115,7 @@ pub(crate) fn status<N: Space<D>, const D: usize, T>(
         before: proximity_text(event.prev_status),
         after: proximity_text(event.new_status),
     });
-    // Contacts come first in the list, whatever their number: a page lists what touches before what is near.
+    // Contacts come first in the list, whatever their number: a page lists touching objects before near ones.
     Status {
         step,
         objects: world.len(),

@@ -1,4 +1,4 @@
-//! The engine: messages to a stage, answers back.
+//! The engine: passes messages to a stage and returns responses.
 
 use core::fmt;
 use std::borrow::Cow;
@@ -12,7 +12,7 @@ use crate::answer::Gallery;
 use crate::request::{Opening, Request};
 use crate::{EngineError, Recorded, Sampled, Shown, Stage, Viewed, message, parts};
 
-/// What is shown, by its scalar and dimension one of some types.
+/// A stage of one of several scalars and dimensions.
 type Opened = Box<dyn Stage>;
 
 /// Answers the messages of `PROTOCOL.md`, and holds one stage.
@@ -35,7 +35,7 @@ type Opened = Box<dyn Stage>;
 #[derive(Default)]
 pub struct Engine {
     stage: Option<Opened>,
-    /// The bytes of a stream whose header is not yet whole: until then its scalar and dimension are unknown, and the
+    /// The bytes of a stream whose header is incomplete: until then its scalar and dimension are unknown, and the
     /// stage is an empty one.
     begun: Option<Vec<u8>>,
 }
@@ -52,12 +52,12 @@ struct Reply {
     payload: Vec<u8>,
 }
 
-/// An answer without a payload.
+/// Returns a response without a payload.
 fn reply(answer: &impl Serialize) -> Result<Reply, EngineError> {
     Ok(Reply { text: serde_json::to_string(answer)?, payload: Vec::new() })
 }
 
-/// The answer that says what is wrong.
+/// The response that describes an error.
 #[derive(Serialize)]
 struct Failure {
     error: String,
@@ -65,18 +65,18 @@ struct Failure {
 }
 
 impl Engine {
-    /// An engine with nothing open.
+    /// Creates an engine without a stage.
     #[must_use]
     pub const fn new() -> Self {
         Self { stage: None, begun: None }
     }
 
-    /// Shows a stage of the caller's: a recording whose shapes and pair filters are code of this program, say.
+    /// Shows a stage of the caller, for instance a recording whose shapes and pair filters are code of this program.
     pub fn show(&mut self, stage: Box<dyn Stage>) {
         (self.stage, self.begun) = (Some(stage), None);
     }
 
-    /// Answers a message, whatever its bytes are; one that cannot be answered gives an answer with `error`.
+    /// Processes a message of any bytes; an invalid one has a response with `error`.
     pub fn call(&mut self, bytes: &[u8]) -> Vec<u8> {
         let reply = self.answer(bytes).unwrap_or_else(|error| {
             let failure = Failure { error: error.to_string(), code: error.code() };
@@ -110,7 +110,7 @@ impl Engine {
         reply(&self.stage()?.info())
     }
 
-    /// Questions to the stage, and changes of it, which are answered by its status.
+    /// Processes queries of the stage, and changes of it, whose response is its status.
     fn ask(&mut self, request: Request) -> Result<Reply, EngineError> {
         let stage = self.stage()?;
         match request {
@@ -128,17 +128,17 @@ impl Engine {
             Request::Reset => stage.reset()?,
             Request::Control { name, value } => stage.control(&name, &control_value(value)?)?,
             Request::Drag(asked) => stage.drag(&asked)?,
-            // Those are answered before.
+            // These are processed earlier.
             Request::Samples | Request::Open(_) | Request::Push => {}
         }
         reply(&stage.status())
     }
 
-    /// The stage before stays if this fails.
+    /// Opens a stage; the current stage stays if this fails.
     fn open(&mut self, opening: &Opening, payload: &[u8]) -> Result<(), EngineError> {
         let stage = match opening {
             Opening::Recording => open_recording(payload)?,
-            // Any scalar and dimension: `push` exchanges it once the header says which.
+            // Any scalar and dimension: `push` replaces the stage when the header is known.
             Opening::Stream => Box::new(Shown::new(Recorded::<f32, 3>::growing(Registry::new()))),
             Opening::Sample { name } => open_sample(name)?,
         };
@@ -150,7 +150,7 @@ impl Engine {
         Ok(())
     }
 
-    /// Bytes of a stream. Those of the header are collected, and given to the stage that it asks for.
+    /// Appends bytes of a stream. Those of the header are collected, and passed to the stage of its type.
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError> {
         let Some(begun) = &mut self.begun else { return self.stage()?.push(bytes) };
         let before = begun.len();
@@ -185,7 +185,7 @@ fn open_recording(bytes: &[u8]) -> Result<Opened, EngineError> {
     stage_of(&Header::read(&bytes)?, Some(&bytes))
 }
 
-/// The stage of a recording: of all its bytes, or of a stream whose bytes are still to come.
+/// Creates the stage of a recording: of all its bytes, or of a stream without bytes yet.
 fn stage_of(header: &Header, bytes: Option<&[u8]>) -> Result<Opened, EngineError> {
     match (header.scalar_bytes, header.dimension) {
         (4, 2) => recorded::<f32, 2>(bytes),
@@ -196,7 +196,7 @@ fn stage_of(header: &Header, bytes: Option<&[u8]>) -> Result<Opened, EngineError
     }
 }
 
-/// As [`stage_of`], of a scalar and a dimension.
+/// Like [`stage_of`], for a scalar and a dimension.
 fn recorded<N: Viewed<D>, const D: usize>(bytes: Option<&[u8]>) -> Result<Opened, EngineError> {
     let recorded = match bytes {
         Some(bytes) => Recorded::<N, D>::open(bytes, Registry::new())?,
@@ -205,7 +205,7 @@ fn recorded<N: Viewed<D>, const D: usize>(bytes: Option<&[u8]>) -> Result<Opened
     Ok(Box::new(Shown::new(recorded)))
 }
 
-/// The value of a control: `null` presses a button.
+/// Converts the value of a control: `null` presses a button.
 fn control_value(value: Value) -> Result<ControlValue, EngineError> {
     match (value.as_f64(), value) {
         (Some(number), _) => Ok(ControlValue::Number(number)),

@@ -1,4 +1,4 @@
-//! Why a message was not answered.
+//! Errors of messages.
 
 use core::fmt;
 
@@ -6,16 +6,16 @@ use impinge::world::WorldError;
 use impinge_record::{Problem, ReadError, RecordError};
 use impinge_samples::SampleError;
 
-/// Why a message was not answered. Its text is for those who write pages; a reader is told by the page what its
-/// [`code`](EngineError::code) means.
+/// The reason why a message has no result. The text is for authors of pages; the page translates the
+/// [`code`](EngineError::code) for readers.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum EngineError {
     /// The message ends before the JSON text does.
     Truncated {
-        /// How many bytes the layout asks for.
+        /// The number of bytes that the layout requires.
         wanted: u64,
-        /// How many there are.
+        /// The number of bytes that exist.
         found: usize,
     },
     /// The text is not JSON, or not a message.
@@ -24,19 +24,19 @@ pub enum EngineError {
     NothingOpen,
     /// The gallery has no sample of this name.
     UnknownSample(String),
-    /// A sample cannot do this: it has no recorded steps, and grows by no bytes.
+    /// A sample does not support this: it has no recorded steps, and no bytes are appended to it.
     OfRecordings(&'static str),
-    /// A recording cannot do this: it has no controls.
+    /// A recording does not support this: it has no controls.
     OfSamples(&'static str),
-    /// More steps than one message may ask for.
+    /// More steps than one message may request.
     TooManySteps(u64),
     /// No object has this number.
     NoObject(u32),
-    /// A pair is of two objects, not of this one and itself.
+    /// A pair must have two different objects.
     OneObject(u32),
     /// The rotation has no direction: all its components are zero.
     Rotation([f64; 4]),
-    /// A control was given a value of no kind: a list, say.
+    /// The value of a control has an invalid type, for instance a list.
     Value(String),
     /// The bytes are not a recording that can be played.
     Read(ReadError),
@@ -47,14 +47,14 @@ pub enum EngineError {
         /// The bytes of a number.
         scalar_bytes: u8,
     },
-    /// The world refuses a change.
+    /// The world rejects a change.
     World(WorldError),
-    /// The sample refuses a change.
+    /// The sample rejects a change.
     Sample(SampleError),
 }
 
 impl EngineError {
-    /// A word for what went wrong: `PROTOCOL.md` has the list.
+    /// Returns a word for the error: `PROTOCOL.md` has the list.
     #[must_use]
     pub const fn code(&self) -> &'static str {
         match self {

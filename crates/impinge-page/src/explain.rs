@@ -13,28 +13,28 @@ use crate::ask::feature_text;
 use crate::groups::{self, Named};
 use crate::space::{coordinates, isometry};
 
-/// Two objects of a world, in the order of the question.
+/// Two objects of a world, in the order of the request.
 #[derive(Debug)]
 pub(crate) struct Two<'a, N: Space<D>, const D: usize, T> {
     pub(crate) world: &'a CollisionWorld<N, D, T>,
     pub(crate) one: &'a CollisionObject<N, D, T>,
     pub(crate) two: &'a CollisionObject<N, D, T>,
-    /// Names of pair filters that are code of another program: here they let all pairs through.
+    /// Names of pair filters that are code of another program: their stand-ins accept all pairs.
     pub(crate) stand_ins: &'a [String],
 }
 
-/// The query of a pair in a world, and the distance up to which it has an answer.
+/// The query type of a pair in a world, and the distance up to which it has a result.
 #[derive(Clone, Copy, Debug)]
 enum Limit<N> {
-    /// Contacts are kept up to the sum of both predictions, and of both skins.
+    /// Contacts exist up to the sum of both predictions, and of both skins.
     Prediction(N),
     /// Objects are near up to the sum of both margins.
     Margin(N),
 }
 
 impl<N: Real> Limit<N> {
-    /// Proximity, if either object has a query of that type: then the prediction of the other counts for nothing, and
-    /// `skins`, the sum of both, neither.
+    /// Proximity, if either object has a query of that type: then the prediction of the other and `skins`, the sum of
+    /// both skins, are ignored.
     fn of(one: GeometricQueryType<N>, two: GeometricQueryType<N>, skins: N) -> Self {
         use GeometricQueryType::{Contacts, Proximity};
         match (one, two) {
@@ -53,7 +53,7 @@ impl<N: Real> Limit<N> {
     }
 }
 
-/// The geometry of two objects at their present positions, which may be others than at the last update.
+/// The geometry of two objects at their current positions, which may differ from those of the last update.
 struct Measures<N: Real, const D: usize> {
     distance: N,
     points: ClosestPoints<N, D>,
@@ -61,7 +61,7 @@ struct Measures<N: Real, const D: usize> {
     proximity: Proximity,
 }
 
-/// A proximity in words.
+/// Returns a proximity as a word.
 pub(crate) const fn proximity_text(proximity: Proximity) -> &'static str {
     match proximity {
         Proximity::Intersecting => "intersecting",
@@ -71,7 +71,7 @@ pub(crate) const fn proximity_text(proximity: Proximity) -> &'static str {
 }
 
 impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
-    /// The answer to the question. Costs four queries about the two shapes.
+    /// Returns the result. Costs four queries about the two shapes.
     pub(crate) fn answer(&self) -> PairAnswer {
         let skin = |object: &CollisionObject<N, D, T>| self.world.skin(object.handle());
         let skins = skin(self.one).zip(skin(self.two)).map_or(N::ZERO, |(one, two)| one + two);
@@ -107,8 +107,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         }
     }
 
-    /// The manifolds of the world. There a pair has the order of the handles; points are flipped where the question has
-    /// the other order.
+    /// Returns the manifolds of the world. There a pair has the order of the handles; points are flipped if the request
+    /// has the other order.
     fn manifolds(&self) -> Vec<ShownManifold> {
         let (one, two) = (self.one.handle(), self.two.handle());
         let views = self.world.contact_pair(one, two).into_iter().flat_map(ContactPair::views);
@@ -127,8 +127,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         ManifoldPoint { contact, features: format!("{feature1}, {feature2}") }
     }
 
-    /// The result is that of the world, as of its last update; the tests are made now. They disagree after a change
-    /// that no update has followed, and where the world has a reason that is no test: a surface with one side.
+    /// Returns the result of the world as of its last update, with conditions that are tested now. They disagree after
+    /// a change without an update, and where the world has a reason without a condition: a one-sided surface.
     fn why(&self, limit: Limit<N>, measures: &Measures<N, D>) -> Why {
         let tests =
             vec![self.groups(), self.filters(), self.boxes(), distance_test(limit, measures)];
@@ -145,7 +145,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Why { touch, text, tests }
     }
 
-    /// Whether the pair touches as of the last update, and the sentence that says so.
+    /// Returns whether the pair touches as of the last update, and a sentence about it.
     fn found(&self) -> (bool, String) {
         let (one, two) = (self.one.handle(), self.two.handle());
         if let Some(pair) = self.world.proximity_pair(one, two) {
@@ -156,7 +156,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         let Some(pair) = self.world.contact_pair(one, two) else {
             return (false, "the last update found no pair of them".to_owned());
         };
-        // A pair is kept while the loosened boxes overlap, with or without manifolds.
+        // A pair exists while the fat AABBs overlap, with or without manifolds.
         let depth = pair.views().map(|view| view.deepest_contact().contact.depth).reduce(max);
         match depth {
             Some(depth) => {
@@ -171,7 +171,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         }
     }
 
-    /// The groups of both, which two fixed objects are not asked for.
+    /// Tests the groups of both, which do not matter for two fixed objects.
     fn groups(&self) -> Test {
         if self.one.is_fixed() && self.two.is_fixed() {
             let text =
@@ -186,7 +186,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Test { name: "groups", passes, text: groups::text(one, two) }
     }
 
-    /// The pair filters of the world. Those that are stand-ins are named as such: they refuse nothing.
+    /// Tests the pair filters of the world. Stand-ins are named as such: they reject nothing.
     fn filters(&self) -> Test {
         let refusing = self.world.refusing_pair_filters(self.one.handle(), self.two.handle());
         let names: Vec<&str> = self.world.broad_phase_pair_filter_names().collect();
@@ -203,7 +203,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Test { name: "filter", passes: refusing.is_empty(), text }
     }
 
-    /// The boxes of the broad phase, as of the last update.
+    /// Tests the boxes of the broad phase, as of the last update.
     fn boxes(&self) -> Test {
         let boxes = [self.one, self.two].map(|object| self.world.loosened_aabb(object.handle()));
         let [Some(box1), Some(box2)] = boxes else {
@@ -212,7 +212,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         };
         let passes = box1.intersects(&box2);
         let text = if passes {
-            // Two half-spaces overlap without bound.
+            // The overlap of two half-spaces may be unbounded.
             let overlap = overlap(&box1, &box2).as_f64();
             let is_finite = overlap.is_finite();
             let by = if is_finite { format!(" by {}", short(overlap)) } else { String::new() };
@@ -225,7 +225,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
     }
 }
 
-/// The least extent of the intersection of two boxes that intersect.
+/// Returns the least extent of the intersection of two boxes that intersect.
 fn overlap<N: Real, const D: usize>(box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> N {
     let on_axis = |axis: usize| {
         let low = max(box1.mins()[axis], box2.mins()[axis]);
@@ -234,12 +234,12 @@ fn overlap<N: Real, const D: usize>(box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> N {
     (0..D).map(on_axis).fold(N::INFINITY, min)
 }
 
-/// The distance of the shapes, or their depth, and the limit up to which it counts.
+/// Tests the distance of the shapes, or their depth, against the limit.
 fn distance_test<N: Real, const D: usize>(limit: Limit<N>, measures: &Measures<N, D>) -> Test {
     let (length, apart) = (short(limit.length().as_f64()), short(measures.distance.as_f64()));
     let passes = measures.distance <= limit.length();
     let depth = measures.contact.as_ref().map(|contact| contact.depth.as_f64());
-    // The depth is negative for shapes that are apart within the prediction, for which the distance is positive.
+    // The depth is negative for shapes that are apart within the prediction; their distance is positive.
     let state = match depth {
         _ if measures.distance > N::ZERO => format!("{apart} apart"),
         Some(depth) if depth > 0.0 => format!("they overlap, {} deep", short(depth)),
@@ -252,7 +252,7 @@ fn distance_test<N: Real, const D: usize>(limit: Limit<N>, measures: &Measures<N
     Test { name: "distance", passes, text: format!("{state}; {kept}") }
 }
 
-/// A contact in the world frame.
+/// Converts a contact, in the world frame.
 pub(crate) fn shown_contact<N: Real, const D: usize>(contact: &Contact<N, D>) -> ShownContact {
     let normal: &Unit<Vector<N, D>> = &contact.normal;
     ShownContact {
@@ -263,10 +263,10 @@ pub(crate) fn shown_contact<N: Real, const D: usize>(contact: &Contact<N, D>) ->
     }
 }
 
-/// A number with four significant digits, without zeros at its end; in scientific notation below 0.001 and from a
+/// Formats a number with four significant digits, without trailing zeros; in scientific notation below 0.001 and from a
 /// million on.
 pub(crate) fn short(number: f64) -> String {
-    // Parsed again, so that zeros at the end are gone. The sum with zero has no negative zero.
+    // Parsed again, which drops trailing zeros. The sum with zero has no negative zero.
     let rounded = format!("{number:.3e}").parse().unwrap_or(number) + 0.0;
     let is_plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs());
     if is_plain { rounded.to_string() } else { format!("{rounded:e}") }

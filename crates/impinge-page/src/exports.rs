@@ -1,4 +1,4 @@
-//! What the host of the WebAssembly module calls: functions of numbers, and one engine.
+//! The exports of the WebAssembly module: functions of numbers, and one engine.
 #![expect(
     unsafe_code,
     reason = "the attribute that keeps a name counts as unsafe; there is no other"
@@ -21,8 +21,8 @@ thread_local! {
         const { RefCell::new(Host { engine: Engine::new(), message: Vec::new(), answer: Vec::new() }) };
 }
 
-/// The address of a buffer for a message of so many bytes, which stands until the next call; 0 if there is no memory
-/// for it.
+/// Returns the address of a buffer for a message of `bytes` bytes, which is valid until the next call; 0 if there is
+/// not enough memory.
 #[unsafe(no_mangle)]
 extern "C" fn reserve(bytes: usize) -> usize {
     HOST.with_borrow_mut(|host| {
@@ -35,18 +35,18 @@ extern "C" fn reserve(bytes: usize) -> usize {
     })
 }
 
-/// Answers the message in the buffer: the address of the answer, which stays until the next call.
+/// Processes the message in the buffer; returns the address of the response, which is valid until the next call.
 #[unsafe(no_mangle)]
 extern "C" fn call(bytes: usize) -> usize {
     HOST.with_borrow_mut(|host| {
-        // Freed with the call: that of a recording may have hundreds of megabytes.
+        // Freed after the call: a recording may have hundreds of megabytes.
         let message = mem::take(&mut host.message);
         host.answer = host.engine.call(&message[..bytes.min(message.len())]);
         host.answer.as_ptr().addr()
     })
 }
 
-/// The length of the answer.
+/// Returns the length of the response.
 #[unsafe(no_mangle)]
 extern "C" fn answer_bytes() -> usize {
     HOST.with_borrow(|host| host.answer.len())

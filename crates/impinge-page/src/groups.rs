@@ -1,4 +1,4 @@
-//! Collision groups in words.
+//! Collision groups as text.
 
 use impinge::world::CollisionGroups;
 
@@ -14,18 +14,18 @@ pub(crate) fn shown(groups: &CollisionGroups) -> ShownGroups {
     }
 }
 
-/// The groups of a mask: bit `g` is group `g`.
+/// Returns the groups of a mask: bit `g` is group `g`.
 fn bits(mask: u32) -> impl Iterator<Item = usize> {
     (0..u32::BITS as usize).filter(move |group| mask >> group & 1 == 1)
 }
 
 fn numbers(mask: u32) -> GroupNumbers {
-    // New groups are members of all that there are.
+    // New groups are members of all groups.
     let is_all = mask == CollisionGroups::new().membership_mask();
     if is_all { GroupNumbers::All("all") } else { GroupNumbers::Some(bits(mask).collect()) }
 }
 
-/// Groups in a sentence.
+/// Lists groups in a sentence.
 fn listed(mask: u32) -> String {
     match numbers(mask) {
         GroupNumbers::All(all) => all.to_owned(),
@@ -37,22 +37,23 @@ fn listed(mask: u32) -> String {
     }
 }
 
-/// The groups of an object, named in a text.
+/// The groups of an object, with a name for the text.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Named<'a> {
     pub(crate) object: usize,
     pub(crate) groups: &'a CollisionGroups,
 }
 
-/// Why the groups of two objects allow a pair or refuse it, as [`CollisionGroups::can_interact_with_groups`] does: the
-/// first refusal, of the lists of either.
+/// Returns why the groups of two objects allow or exclude a pair, as [`CollisionGroups::can_interact_with_groups`]
+/// does: the first exclusion by the lists of either.
 pub(crate) fn text(one: Named<'_>, two: Named<'_>) -> String {
     let refusals = [refusal(one, two), refusal(two, one)];
     let first = refusals.into_iter().flatten().next();
     first.unwrap_or_else(|| "each has a group that the other allows".to_owned())
 }
 
-/// Why the lists of the second object refuse the first; `None` if they allow it. The blacklist takes precedence.
+/// Returns why the lists of the second object exclude the first; `None` if they allow it. The blacklist has
+/// precedence.
 fn refusal(one: Named<'_>, other: Named<'_>) -> Option<String> {
     let membership = one.groups.membership_mask();
     let [whitelist, blacklist] = [other.groups.whitelist_mask(), other.groups.blacklist_mask()];

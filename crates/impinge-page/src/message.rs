@@ -1,9 +1,9 @@
-//! The layout that messages and answers share.
+//! The common layout of messages and responses.
 
 use crate::EngineError;
 
-/// The bytes of a JSON text and a payload: the length of the text, the text with spaces up to a multiple of four
-/// bytes, the payload. The length counts the spaces.
+/// Returns the bytes of a JSON text and a payload: the length of the text, the text padded with spaces to a
+/// multiple of four bytes, the payload. The length includes the spaces.
 ///
 /// ```
 /// let bytes = impinge_page::message(r#"{"do": "samples"}"#, &[7]);
@@ -25,7 +25,7 @@ pub fn message(text: &str, payload: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The text and the payload of a message. Whether the text is JSON, or UTF-8 at all, is not looked at.
+/// Splits a message into text and payload. Does not check whether the text is JSON, or UTF-8.
 ///
 /// # Errors
 /// If the bytes end before the text does.

@@ -1,4 +1,4 @@
-//! Recordings on the stage.
+//! Recordings as stages.
 
 use impinge::debug_render::{DebugDrawing, DebugRender};
 use impinge::narrow_phase::CollisionObjectHandle;
@@ -16,27 +16,27 @@ use crate::stand_in::StandIns;
 use crate::time_line::marks;
 use crate::{EngineError, Viewed};
 
-/// A recording that is replayed, at once or while it grows. The data of objects may be any bytes.
+/// A recording that is replayed, complete or while it grows. The data of objects may be any bytes.
 ///
-/// Names that the registry lacks get stand-ins: pair filters let all pairs through, shapes become balls. The replay then
-/// differs from the recording where that matters. Of a recording without an end, or with a damaged one, the records
-/// before that are replayed. [`Info::notes`] says both.
+/// Names that the registry lacks get stand-ins: pair filters accept all pairs, shapes become balls. The replay then
+/// differs from the recording if they matter. For a recording without an end, or with a damaged one, the earlier
+/// records are replayed. [`Info::notes`] mentions both.
 #[derive(Debug)]
 pub struct Recorded<N: Viewed<D>, const D: usize> {
     replay: Replay<N, D, Vec<u8>>,
     stand_ins: StandIns<N, D>,
     is_stream: bool,
-    /// What could not be read when it was opened; the replay forgets it where its bytes are read again.
+    /// The part that could not be read when it was opened; the replay does not have it after its bytes are read again.
     loss: Option<Loss>,
 }
 
 impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
-    /// A recording of which no more bytes come, at its first update.
+    /// Opens a recording that does not grow, at its first update.
     ///
     /// Costs O(bytes) time and a copy of them.
     ///
     /// # Errors
-    /// As [`Replay::salvage`] and [`Replay::seek`], but for names that the registry lacks.
+    /// As [`Replay::salvage`] and [`Replay::seek`], except for names that the registry lacks.
     pub fn open(bytes: &[u8], registry: Registry<N, D, Vec<u8>>) -> Result<Self, EngineError> {
         let mut recorded = Self { is_stream: false, ..Self::growing(registry) };
         recorded.read(bytes)?;
@@ -45,7 +45,7 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         Ok(recorded)
     }
 
-    /// A recording without bytes, which grows.
+    /// Creates a growing recording without bytes.
     #[must_use]
     pub fn growing(registry: Registry<N, D, Vec<u8>>) -> Self {
         let stand_ins = StandIns::of(registry);
@@ -53,11 +53,11 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         Self { replay, stand_ins, is_stream: true, loss: None }
     }
 
-    /// Reads bytes from the beginning of a recording, again for each name that gets a stand-in on the way.
+    /// Reads bytes from the beginning of a recording, again for each name that gets a stand-in meanwhile.
     fn read(&mut self, bytes: &[u8]) -> Result<(), ReadError> {
         loop {
             let error = if self.is_stream {
-                // Damage is an error: the bytes that follow it are never read.
+                // Damage is an error: bytes after it are never read.
                 self.replay = Replay::growing(&self.stand_ins.registry);
                 self.replay.push(bytes).err()
             } else {
@@ -72,10 +72,10 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         }
     }
 
-    /// Reads all bytes again, with a stand-in for the name that an error says is missing.
+    /// Reads all bytes again, with a stand-in for the missing name in an error.
     ///
     /// # Errors
-    /// The error itself, if it is another one.
+    /// The given error, if it is of another kind.
     fn reread(&mut self, error: ReadError) -> Result<(), ReadError> {
         if !self.stand_ins.add_for(&error) {
             return Err(error);
@@ -84,7 +84,8 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
         self.read(&bytes)
     }
 
-    /// Goes to a step, or to the last one. Names of pair filters are found missing here, where their calls are played.
+    /// Goes to a step, or to the last one. Missing names of pair filters are detected here, where their calls are
+    /// played.
     fn go(&mut self, step: usize) -> Result<(), ReadError> {
         while let Err(error) = self.replay.seek(step) {
             self.reread(error)?;
@@ -132,7 +133,7 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
             self.reread(error)?;
             self.go(step)?;
         }
-        // A stream stands at its first update as soon as it has one, like a recording that is opened.
+        // A stream goes to its first update as soon as it has one, like an opened recording.
         if step == 0 {
             self.go(1)?;
         }
@@ -174,7 +175,7 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
     }
 }
 
-/// What is missing of a recording, for people.
+/// Describes the missing part of a recording for readers.
 fn loss_text(loss: &Loss) -> String {
     match loss.bytes {
         0 => "The recording has no end: its program did not finish it.".to_owned(),
@@ -187,9 +188,9 @@ fn loss_text(loss: &Loss) -> String {
     }
 }
 
-/// In what a replay differs, for people.
+/// Describes the difference of a replay for readers.
 fn divergence_text(found: &Divergence) -> String {
-    // The record of an update makes the next step.
+    // The record of an update leads to the next step.
     let step = found.step + 1;
     match found.difference {
         Difference::Object { index, field: ObjectField::Description } => {

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde_json::Value;
 
-/// What the page asks; each variant is the value of `do`.
+/// A request of the page; each variant is a value of `do`.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase")]
 pub(crate) enum Request {
@@ -41,7 +41,7 @@ const fn one() -> u64 {
     1
 }
 
-/// What is opened.
+/// The kind of stage to open.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub(crate) enum Opening {
@@ -50,7 +50,7 @@ pub(crate) enum Opening {
     Sample { name: String },
 }
 
-/// What a frame shall have.
+/// The content of a frame.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct FrameRequest {
@@ -58,19 +58,19 @@ pub struct FrameRequest {
     pub layers: Vec<String>,
     /// Objects whose boxes and contacts are drawn whatever the layers are.
     pub selected: Vec<u32>,
-    /// How many meshes the page has.
+    /// The number of meshes that the page has.
     pub known: u32,
 }
 
 /// A point on the screen: in 3D the ray through it, in 2D the point `from`.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct PickRequest {
-    /// Where the ray begins; in 2D the point.
+    /// The origin of the ray; in 2D the point.
     pub from: [f64; 3],
-    /// Its direction, of any length; not looked at in 2D.
+    /// Its direction, of any length; ignored in 2D.
     #[serde(default)]
     pub direction: [f64; 3],
-    /// In 2D: up to which distance an object counts that does not hold the point.
+    /// In 2D: the largest distance of an object that does not contain the point.
     #[serde(default)]
     pub reach: f64,
 }
@@ -78,11 +78,11 @@ pub struct PickRequest {
 /// A ray whose points are `from + time * direction`.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct RayRequest {
-    /// Where it begins.
+    /// Its origin.
     pub from: [f64; 3],
     /// Its direction, of any length.
     pub direction: [f64; 3],
-    /// The largest time; without it the ray has no end.
+    /// The maximum time; without it the ray is unbounded.
     #[serde(default)]
     pub longest: Option<f64>,
 }
@@ -93,16 +93,16 @@ pub struct NearestRequest {
     /// The point.
     pub point: [f64; 3],
     #[serde(default = "one")]
-    /// So many at most.
+    /// The largest number of objects.
     pub count: u64,
 }
 
-/// An object is moved by hand.
+/// A request to move an object by hand.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct DragRequest {
     /// The object.
     pub object: u32,
-    /// Where its origin goes.
+    /// The new position of its origin.
     pub translation: [f64; 3],
     /// A quaternion x, y, z, w of any length but zero; without it the object keeps its rotation.
     #[serde(default)]

@@ -1,4 +1,4 @@
-//! Samples on the stage.
+//! Samples as stages.
 
 use impinge::debug_render::{DebugDrawing, DebugRender};
 use impinge::math::Space;
@@ -11,7 +11,7 @@ use crate::describe::status;
 use crate::stage::Source;
 use crate::{EngineError, Viewed};
 
-/// A sample that runs. What it records is dropped after each step.
+/// A running sample. Its recording is dropped after each step.
 #[derive(Debug)]
 pub struct Sampled<const D: usize>
 where
@@ -19,7 +19,8 @@ where
 {
     running: Running<D>,
     entry: Entry,
-    /// The controls as the page has them: those of the last status, with what it has set since.
+    /// The controls as the page knows them: those of the last status, with the values that it has
+    /// set since.
     known: Vec<Control>,
 }
 
@@ -30,7 +31,7 @@ where
     /// A sample at step 0.
     ///
     /// # Errors
-    /// If its world refuses its objects.
+    /// If its world rejects its objects.
     pub fn new(entry: &Entry, sample: Box<dyn Sample<D>>) -> Result<Self, EngineError> {
         let mut running = Running::new(sample)?;
         drop(running.take_bytes());
@@ -38,7 +39,7 @@ where
         Ok(Self { running, entry: *entry, known })
     }
 
-    /// A recorder keeps its bytes until they are taken; nobody here reads them.
+    /// Drops the bytes that a recorder keeps until they are taken, since nothing here reads them.
     fn drop_recording(&mut self) {
         drop(self.running.take_bytes());
     }
@@ -97,7 +98,7 @@ where
         Ok(())
     }
 
-    /// The page has the value that it sets, so that the next status does not repeat it.
+    /// The page knows the value that it sets, so that the next status does not repeat it.
     fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError> {
         self.running.set_control(name, value)?;
         self.drop_recording();

@@ -1,4 +1,4 @@
-//! Shapes in words: a kind, and the sizes that its constructor takes, with four significant digits.
+//! Shapes as text: a kind, and the arguments of its constructor with four significant digits.
 
 use impinge::math::{Point, Real, Vector};
 use impinge::shape::{
@@ -10,7 +10,7 @@ use impinge_record::{Recordable, ShapeData};
 use crate::answer::ShapeText;
 use crate::explain::short;
 
-/// A shape: its kind and its sizes. A type of the recorded program has a kind and no sizes.
+/// Returns the kind and the sizes of a shape. A type of the recorded program has a kind and no sizes.
 pub(crate) fn shape_text<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> ShapeText {
     let kind = kind_text(shape.geometry().kind());
     let sizes = solid_sizes(shape).or_else(|| composite_sizes(shape)).or_else(|| own_sizes(shape));
@@ -40,7 +40,7 @@ const fn kind_text(kind: ShapeKind) -> &'static str {
     }
 }
 
-/// The text of a shape whose type is known: the sizes stand for all that follows the kind.
+/// Returns the text of a shape of known type; `text` has the part after the kind.
 fn sizes(kind: &'static str, text: String) -> Option<ShapeText> {
     Some(ShapeText { kind, text })
 }
@@ -49,7 +49,7 @@ fn length<N: Real>(number: N) -> String {
     short(number.as_f64())
 }
 
-/// `1 × 2 × 3`.
+/// Formats extents as `1 × 2 × 3`.
 fn extents<N: Real, const D: usize>(vector: &Vector<N, D>) -> String {
     let lengths: Vec<String> = vector.iter().map(|x| length(*x)).collect();
     lengths.join(" × ")
@@ -59,7 +59,7 @@ fn distance<N: Real, const D: usize>(from: &Point<N, D>, to: &Point<N, D>) -> St
     length((to - from).norm())
 }
 
-/// The convex solids of both dimensions, and the half-space.
+/// Describes the convex solids of both dimensions, and the half-space.
 fn solid_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
     if let Some(ball) = shape.as_shape::<Ball<N>>() {
         return sizes("ball", format!("radius {}", length(ball.radius())));
@@ -100,9 +100,9 @@ fn solid_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Opt
     sizes("half-space", format!("normal {}", normal.join(", ")))
 }
 
-/// The composites with vertices or children.
+/// Describes the composites with vertices or children.
 fn composite_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
-    // A surface with both sides is the rule and goes without saying.
+    // A two-sided surface is the default and not mentioned.
     let sides = |is_solid: bool, is_one_sided: bool| match (is_solid, is_one_sided) {
         (true, _) => ", solid",
         (false, true) => ", one-sided",
@@ -122,7 +122,7 @@ fn composite_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) ->
     sizes("compound", format!("{} shapes", compound.num_children()))
 }
 
-/// The shapes of one dimension, by the data that recordings have of them: generic code has no names for their types.
+/// Describes the shapes of one dimension, by their data in recordings: generic code cannot name their types.
 fn own_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
     let [kind, height, radius] = ["cylinder", "half height", "radius"];
     match N::own_data(shape)? {
@@ -137,7 +137,7 @@ fn own_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
             sizes("cone", format!("{height} {}, {radius} {}", length(h), length(r)))
         }
         ShapeData::Tetrahedron([a, b, c, d]) => {
-            // Of each corner with those after it: six.
+            // Each corner with the later ones: six edges.
             let edges = [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]];
             let edges = edges.map(|[from, to]| distance(&from, &to)).join(", ");
             sizes("tetrahedron", format!("edges {edges}"))

@@ -1,4 +1,4 @@
-//! Between the library's dimensions and the page, which has three throughout.
+//! Conversions between the dimensions of the library and the page, which always has three.
 
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Vector, na};
@@ -9,19 +9,19 @@ use crate::answer::Picked;
 use crate::ask;
 use crate::request::PickRequest;
 
-/// What the page needs of a scalar and a dimension: every [`Scalar`] with `D` = 2 and `D` = 3.
+/// The requirements of the page on a scalar and a dimension: every [`Scalar`] with `D` = 2 and `D` = 3.
 pub trait Viewed<const D: usize>: Recordable<D> {
-    /// The rotation of an isometry as a unit quaternion x, y, z, w; in 2D about the third axis.
+    /// Returns the rotation of an isometry as a unit quaternion x, y, z, w; in 2D about the third axis.
     fn quaternion(isometry: &Self::Isometry) -> [f64; 4];
 
-    /// The isometry of a translation and a unit quaternion, of which 2D takes z and w alone.
+    /// Returns the isometry of a translation and a unit quaternion; 2D uses only z and w.
     fn placed(translation: &Vector<Self, D>, quaternion: [f64; 4]) -> Self::Isometry;
 
-    /// The registry with a pair filter that lets all pairs through. Closures are filters of one dimension each, and a
-    /// type that is one in both would conflict with them.
+    /// Adds a pair filter to the registry that accepts all pairs. Closures are filters of one dimension each, and a
+    /// type that is a filter in both would conflict with them.
     fn with_open_filter<T>(registry: Registry<Self, D, T>, name: &str) -> Registry<Self, D, T>;
 
-    /// The object at a point on the screen, where, and the normal there.
+    /// Returns the object at a point on the screen, with the hit point and the normal.
     fn pick<T>(world: &CollisionWorld<Self, D, T>, at: &PickRequest) -> Picked;
 }
 
@@ -40,7 +40,7 @@ impl<N: Scalar> Viewed<2> for N {
 
     fn placed(translation: &Vector<N, 2>, [_, _, z, w]: [f64; 4]) -> Isometry2<N> {
         let squared = z * z + w * w;
-        // A turn about an axis in the plane is none in 2D.
+        // A rotation about an axis in the plane is the identity in 2D.
         let [cosine, sine] = if squared > 0.0 {
             [(w * w - z * z) / squared, 2.0 * z * w / squared]
         } else {
@@ -82,7 +82,7 @@ impl<N: Scalar> Viewed<3> for N {
     }
 }
 
-/// Three coordinates; those that the dimension does not have are zero.
+/// Returns three coordinates; those beyond the dimension are zero.
 pub(crate) fn coordinates<N: Real, const D: usize>(vector: &Vector<N, D>) -> [f64; 3] {
     let mut three = [0.0; 3];
     for (coordinate, own) in three.iter_mut().zip(vector.iter()) {
@@ -91,17 +91,17 @@ pub(crate) fn coordinates<N: Real, const D: usize>(vector: &Vector<N, D>) -> [f6
     three
 }
 
-/// The coordinates that the dimension has, rounded to its scalar.
+/// Returns the coordinates of the dimension, rounded to its scalar.
 pub(crate) fn vector<N: Real, const D: usize>(three: [f64; 3]) -> Vector<N, D> {
     Vector::<N, D>::from_fn(|axis, _| N::lit(three[axis]))
 }
 
-/// The point of three coordinates.
+/// Returns the point of three coordinates.
 pub(crate) fn point<N: Real, const D: usize>(three: [f64; 3]) -> Point<N, D> {
     Point::from(vector(three))
 }
 
-/// A pose as queries about two shapes take it, in either dimension; its matrix has the same bits.
+/// Converts a pose to the type of queries about two shapes, in either dimension; its matrix has the same bits.
 pub(crate) fn isometry<N: Real, const D: usize>(
     pose: &Pose<N, D>,
 ) -> na::Isometry<N, na::Rotation<N, D>, D> {
@@ -109,11 +109,11 @@ pub(crate) fn isometry<N: Real, const D: usize>(
     na::Isometry::from_parts(na::Translation::from(pose.translation), rotation)
 }
 
-/// A quaternion of length 1; `None` for one of length zero, or a length that is not finite.
+/// Returns a quaternion of length 1; `None` if its length is zero or not finite.
 pub(crate) fn unit_quaternion(quaternion: [f64; 4]) -> Option<[f64; 4]> {
     let largest = quaternion.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let is_usable = largest > 0.0 && largest.is_finite();
-    // Divided first, so that no square is too large or too small.
+    // Divided first, to avoid overflow and underflow of the squares.
     let scaled = quaternion.map(|x| x / largest);
     let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
     is_usable.then(|| scaled.map(|x| x / length))

@@ -1,4 +1,4 @@
-//! What is shown: a recording or a sample, whatever its scalar and dimension.
+//! Stages: a recording or a sample, independent of scalar and dimension.
 
 use impinge::debug_render::{DebugDrawing, DebugRender};
 use impinge::narrow_phase::CollisionObjectHandle;
@@ -17,58 +17,58 @@ use crate::frame::picture::Picture;
 use crate::request::{DragRequest, FrameRequest, NearestRequest, PickRequest, RayRequest};
 use crate::space::{Viewed, unit_quaternion, vector};
 
-/// So many steps may one message ask for.
+/// The largest number of steps of one message.
 pub(crate) const MAX_STEPS: u64 = 10_000;
 
-/// What an engine shows: the messages of the page as methods, without scalar and dimension.
+/// A stage of an engine: the messages of the page as methods, without scalar and dimension.
 ///
-/// A method that fails has changed nothing, but that a step which fails midway may have changed a part.
+/// A method that fails has changed nothing, except that a step that fails midway may have changed a part.
 #[expect(clippy::missing_errors_doc, reason = "the variants of the error say when they are")]
 pub trait Stage {
-    /// What it is.
+    /// Returns its description.
     fn info(&self) -> Info;
 
-    /// How it is at its step. Controls of a sample are named where they changed since the last call.
+    /// Returns the state at the current step. Controls of a sample are listed if they changed since the last call.
     fn status(&mut self) -> Status;
 
-    /// Appends bytes to a recording that grows.
+    /// Appends bytes to a growing recording.
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError>;
 
-    /// Goes to a step of a recording; beyond the last one to that.
+    /// Goes to a step of a recording; a step beyond the last one goes to the last.
     fn seek(&mut self, step: usize) -> Result<(), EngineError>;
 
-    /// Goes on by some steps; a recording stays at its end.
+    /// Advances by some steps; a recording stays at its end.
     fn advance(&mut self, steps: u64) -> Result<(), EngineError>;
 
-    /// Begins again.
+    /// Goes back to the start.
     fn reset(&mut self) -> Result<(), EngineError>;
 
     /// Sets a control of a sample.
     fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError>;
 
-    /// Draws it.
+    /// Draws a frame.
     fn frame(&mut self, asked: &FrameRequest) -> Result<Frame, EngineError>;
 
-    /// All about an object.
+    /// Describes an object.
     fn object(&self, object: u32) -> Result<ObjectAnswer, EngineError>;
 
-    /// All about two objects, and why they touch or do not.
+    /// Describes two objects, and why they touch or do not.
     fn pair(&self, a: u32, b: u32) -> Result<PairAnswer, EngineError>;
 
-    /// The object at a point on the screen.
+    /// Returns the object at a point on the screen.
     fn pick(&self, at: &PickRequest) -> Picked;
 
-    /// The objects that a ray hits.
+    /// Returns the objects that a ray hits.
     fn ray(&self, asked: &RayRequest) -> RayAnswer;
 
-    /// The objects nearest to a point.
+    /// Returns the objects nearest to a point.
     fn nearest(&self, asked: &NearestRequest) -> NearestAnswer;
 
     /// Moves an object by hand.
     fn drag(&mut self, asked: &DragRequest) -> Result<(), EngineError>;
 }
 
-/// Where the world of a stage comes from: what recordings and samples have each for themselves.
+/// The source of the world of a stage: the part that differs between recordings and samples.
 #[expect(clippy::missing_errors_doc, reason = "the variants of the error say when they are")]
 pub trait Source<N: Viewed<D>, const D: usize> {
     /// The data of the objects.
@@ -77,7 +77,7 @@ pub trait Source<N: Viewed<D>, const D: usize> {
     /// The world.
     fn world(&self) -> &CollisionWorld<N, D, Self::Data>;
 
-    /// As [`Stage::info`], but for what every stage has in common: the dimension, the scalar, the time of a step, the
+    /// As [`Stage::info`], except the common part of all stages: the dimension, the scalar, the time of a step, the
     /// bounds and the axis up.
     fn info(&self) -> Info;
 
@@ -102,14 +102,14 @@ pub trait Source<N: Viewed<D>, const D: usize> {
     /// Moves an object and updates the world.
     fn drag(&mut self, object: CollisionObjectHandle, to: &N::Isometry) -> Result<(), EngineError>;
 
-    /// Draws what is to be seen beside the objects.
+    /// Draws additions to the objects.
     fn draw(&self, drawing: &mut DebugDrawing<N, D>, renderer: &mut dyn DebugRender<N, D>);
 
-    /// Names of pair filters for which others stand in.
+    /// The names of pair filters that have stand-ins.
     fn stand_ins(&self) -> &[String];
 }
 
-/// The stage of a source: its world, and what was drawn of it.
+/// A stage made of a source: its world, and the state of its drawing.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, ShapeHandle};
@@ -136,7 +136,7 @@ pub struct Shown<S, N: Viewed<D>, const D: usize> {
 }
 
 impl<S: Source<N, D>, N: Viewed<D>, const D: usize> Shown<S, N, D> {
-    /// A stage of which nothing was drawn.
+    /// Creates a stage without drawn frames.
     #[must_use]
     pub fn new(source: S) -> Self {
         Self { source, picture: Picture::new() }

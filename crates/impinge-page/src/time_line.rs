@@ -1,14 +1,14 @@
-//! The time line of a recording: the steps at which something happened.
+//! The time line of a recording: the steps with changes.
 
 use impinge_record::Mark;
 
 use crate::answer::StepMark;
 
-/// So many marks are sent at most.
+/// The largest number of marks that are sent.
 pub(crate) const MAX_MARKS: usize = 10_000;
 
-/// The marks of a recording, those left out at which nothing happened. Where there are too many, neighbours are added
-/// up, at the step of the first of them.
+/// Returns the marks of a recording, without steps without changes. If there are too many, neighbours are added up,
+/// at the step of the first of them.
 pub(crate) fn marks(of_updates: &[Mark]) -> Vec<StepMark> {
     let marks = (1..).zip(of_updates).map(|(step, mark)| step_mark(step, mark));
     let marks: Vec<_> =
@@ -31,7 +31,7 @@ fn step_mark(step: usize, mark: &Mark) -> StepMark {
     }
 }
 
-/// Both together, at the step of the first.
+/// Returns the sum, at the step of the first.
 const fn sum(first: StepMark, other: StepMark) -> StepMark {
     StepMark {
         step: first.step,

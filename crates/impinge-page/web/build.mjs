@@ -1,4 +1,4 @@
-// Bundles the page's sources into dist/page.js. With --verify it says whether the committed bundle is what they give.
+// Bundles the page's sources into dist/page.js. With --verify fails if the committed bundle differs from the result.
 
 import { build } from "esbuild";
 import { readFile, writeFile } from "node:fs/promises";
@@ -16,7 +16,7 @@ const { outputFiles } = await build({
   charset: "utf8",
   legalComments: "inline",
 });
-// The bundle stands in a script element, which this text would end.
+// The bundle is the content of a script element, which `</script` would end.
 const bundle = outputFiles[0].text.replaceAll("</script", "<\\/script");
 
 if (process.argv.includes("--verify")) {

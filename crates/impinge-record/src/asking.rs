@@ -1,4 +1,4 @@
-//! Queries that are recorded.
+//! Recorded queries.
 
 use impinge::world::CollisionObject;
 
@@ -10,9 +10,9 @@ use crate::question_data::{CastData, QueryData, QuestionData};
 use crate::recorder::{Recorder, index_of};
 use crate::space::Recordable;
 
-/// Queries: each is the one of [`Query::ask`], written with a hash of its answer.
+/// Queries: each calls [`Query::ask`] and is written with a hash of its result.
 impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
-    /// Asks a query and records the hash of its answer.
+    /// Runs a query and records the hash of its result.
     ///
     /// # Errors
     /// If a shape of the query cannot be written.
@@ -27,10 +27,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(answer)
     }
 
-    /// Asks a query about those of its objects for which a predicate is true. Predicates are code: the recording has
-    /// the objects for which it is false as excluded ones.
+    /// Runs a query about those of its objects that satisfy a predicate. Predicates are code: the recording lists
+    /// the objects that do not satisfy it as excluded ones.
     ///
-    /// Costs a call of the predicate for each object of the world, and four bytes for each that is left out.
+    /// Costs a call of the predicate for each object of the world, and four bytes for each excluded object.
     ///
     /// # Errors
     /// If a shape of the query cannot be written.

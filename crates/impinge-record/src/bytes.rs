@@ -5,39 +5,40 @@ use std::ops::Range;
 use crate::Scalar;
 use crate::error::{Problem, ReadError};
 
-/// A signed number as an unsigned one, so that small numbers of both signs are small: 0, -1, 1, -2, ...
+/// Maps a signed number to an unsigned one, so that small numbers of both signs are small: 0, -1, 1, -2, ...
+/// become 0, 1, 2, 3, ...
 pub(crate) const fn zigzag(number: i64) -> u64 {
     ((number << 1) ^ (number >> 63)).cast_unsigned()
 }
 
-/// The number of [`zigzag`].
+/// The inverse of [`zigzag`].
 pub(crate) const fn from_zigzag(zigzag: u64) -> i64 {
     (zigzag >> 1).cast_signed() ^ -(zigzag & 1).cast_signed()
 }
 
-/// What is written: the bytes of one record.
+/// Writes the bytes of one record.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sink {
     pub(crate) bytes: Vec<u8>,
 }
 
 impl Sink {
-    /// One byte: kinds and flags.
+    /// Writes one byte: kinds and flags.
     pub(crate) fn byte(&mut self, value: u8) {
         self.bytes.push(value);
     }
 
-    /// A byte, 0 or 1.
+    /// Writes a byte, 0 or 1.
     pub(crate) fn flag(&mut self, value: bool) {
         self.byte(u8::from(value));
     }
 
-    /// Four bytes: indices, numbers of shapes, masks.
+    /// Writes four bytes: indices, numbers of shapes, masks.
     pub(crate) fn word(&mut self, value: u32) {
         self.bytes.extend(value.to_le_bytes());
     }
 
-    /// Seven bits a byte, the lowest first; all bytes but the last have the highest bit.
+    /// Writes seven bits per byte, the lowest first; all bytes but the last have the highest bit set.
     pub(crate) fn varint(&mut self, mut value: u64) {
         while value >= 0x80 {
             self.bytes.push(value.to_le_bytes()[0] | 0x80);
@@ -46,34 +47,34 @@ impl Sink {
         self.bytes.push(value.to_le_bytes()[0]);
     }
 
-    /// Eight bytes: hashes.
+    /// Writes eight bytes: hashes.
     pub(crate) fn long(&mut self, value: u64) {
         self.bytes.extend(value.to_le_bytes());
     }
 
-    /// The bits of a number, in as many bytes as the scalar has.
+    /// Writes the bits of a number, in as many bytes as the scalar has.
     pub(crate) fn number<N: Scalar>(&mut self, value: N) {
         self.bytes.extend(&value.bits().to_le_bytes()[..N::BYTES]);
     }
 
-    /// Numbers whose count the reader knows.
+    /// Writes numbers whose count the reader knows.
     pub(crate) fn numbers<N: Scalar>(&mut self, values: &[N]) {
         values.iter().for_each(|value| self.number(*value));
     }
 
-    /// The length of a list. No list of a world has 2^32 elements.
+    /// Writes the length of a list. No list of a world has 2^32 elements.
     pub(crate) fn count(&mut self, length: usize) {
         self.word(u32::try_from(length).expect("a world numbers its parts by 32 bits"));
     }
 
-    /// A list of bytes with its length.
+    /// Writes a list of bytes with its length.
     pub(crate) fn blob(&mut self, bytes: &[u8]) {
         self.count(bytes.len());
         self.bytes.extend(bytes);
     }
 }
 
-/// What is read: a range of the bytes of a recording. Every error has the offset in these.
+/// Reads a range of the bytes of a recording. Every error has the offset in the recording.
 #[derive(Clone, Debug)]
 pub(crate) struct Source<'a> {
     bytes: &'a [u8],
@@ -82,32 +83,32 @@ pub(crate) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// The fields in `range`, which lies within `bytes`.
+    /// Creates a reader of the fields in `range`, which lies within `bytes`.
     pub(crate) const fn new(bytes: &'a [u8], range: Range<usize>) -> Self {
         Self { bytes, at: range.start, end: range.end }
     }
 
-    /// Where the next field begins.
+    /// The offset of the next field.
     pub(crate) const fn offset(&self) -> usize {
         self.at
     }
 
-    /// How many bytes of the range are left.
+    /// The number of bytes left in the range.
     pub(crate) const fn remaining(&self) -> usize {
         self.end - self.at
     }
 
-    /// What was read since an offset.
+    /// Returns the bytes read since an offset.
     pub(crate) fn since(&self, offset: usize) -> &'a [u8] {
         &self.bytes[offset..self.at]
     }
 
-    /// An error at the next field.
+    /// Returns an error at the next field.
     pub(crate) const fn error(&self, problem: Problem) -> ReadError {
         ReadError { offset: self.at, problem }
     }
 
-    /// The next bytes, if the range has as many.
+    /// Reads the next `length` bytes; an error if the range has fewer.
     pub(crate) fn take(&mut self, length: usize) -> Result<&'a [u8], ReadError> {
         if length > self.remaining() {
             return Err(self.error(Problem::Truncated));
@@ -127,7 +128,7 @@ impl<'a> Source<'a> {
         self.array::<1>().map(|[byte]| byte)
     }
 
-    /// One of the values below `count`.
+    /// Reads a byte below `count`.
     pub(crate) fn choice(&mut self, count: u8, what: &'static str) -> Result<u8, ReadError> {
         let offset = self.at;
         let value = self.byte()?;
@@ -147,7 +148,7 @@ impl<'a> Source<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// What [`Sink::varint`] has written.
+    /// Reads a number that [`Sink::varint`] has written.
     pub(crate) fn varint(&mut self) -> Result<u64, ReadError> {
         let error = self.error(Problem::BadValue { what: "a number of several bytes" });
         let mut value = 0;
@@ -167,7 +168,7 @@ impl<'a> Source<'a> {
         Ok(N::of_bits(u64::from_le_bytes(bits)))
     }
 
-    /// So many numbers: no memory is taken for more than the range holds.
+    /// Reads `count` numbers; allocates no more memory than the range holds.
     pub(crate) fn numbers<N: Scalar>(&mut self, count: usize) -> Result<Vec<N>, ReadError> {
         if count.saturating_mul(N::BYTES) > self.remaining() {
             return Err(self.error(Problem::Truncated));
@@ -175,7 +176,7 @@ impl<'a> Source<'a> {
         (0..count).map(|_| self.number()).collect()
     }
 
-    /// The length of a list each of whose elements takes at least so many bytes, one at least.
+    /// Reads the length of a list whose elements take at least `least` bytes each (at least one).
     pub(crate) fn count(&mut self, least: usize) -> Result<usize, ReadError> {
         let offset = self.at;
         let count = self.word()? as usize;
@@ -184,7 +185,7 @@ impl<'a> Source<'a> {
         if fits { Ok(count) } else { Err(ReadError { offset, problem }) }
     }
 
-    /// A list of elements, each of which takes at least so many bytes.
+    /// Reads a list of elements, each of which takes at least `least` bytes.
     pub(crate) fn list<E>(
         &mut self,
         least: usize,
@@ -194,13 +195,13 @@ impl<'a> Source<'a> {
         (0..count).map(|_| element(self)).collect()
     }
 
-    /// A list of bytes, in place.
+    /// Reads a list of bytes, without a copy.
     pub(crate) fn blob(&mut self) -> Result<&'a [u8], ReadError> {
         let length = self.count(1)?;
         self.take(length)
     }
 
-    /// A list of bytes that are UTF-8.
+    /// Reads a list of bytes in UTF-8.
     pub(crate) fn text(&mut self) -> Result<String, ReadError> {
         let offset = self.at;
         let bytes = self.blob()?.to_vec();
@@ -208,7 +209,7 @@ impl<'a> Source<'a> {
         String::from_utf8(bytes).map_err(|_| ReadError { offset, problem })
     }
 
-    /// All fields are read.
+    /// Checks that all fields are read.
     pub(crate) fn finish(&self) -> Result<(), ReadError> {
         if self.remaining() == 0 { Ok(()) } else { Err(self.error(Problem::TrailingBytes)) }
     }

@@ -12,7 +12,7 @@ use crate::shape_data::ShapeData;
 use crate::space::{Recordable, Scalar};
 use crate::state::{ObjectHashes, Observation};
 
-/// The kinds of records that are packed by their fields.
+/// The kinds of records that packing handles by their fields.
 pub(crate) mod kinds {
     pub(crate) const ADD: u8 = 2;
     pub(crate) const SET_POSITIONS: u8 = 3;
@@ -20,7 +20,7 @@ pub(crate) mod kinds {
     pub(crate) const UPDATE: u8 = 15;
 }
 
-/// An object as the call that adds it.
+/// An object, as in the call that adds it.
 #[derive(Clone, Debug)]
 pub(crate) struct ObjectData<N: Space<D>, const D: usize> {
     /// The index of its handle.
@@ -33,14 +33,14 @@ pub(crate) struct ObjectData<N: Space<D>, const D: usize> {
     pub(crate) data: Vec<u8>,
 }
 
-/// The calls that make a world as it was.
+/// The state from which calls rebuild a world.
 #[derive(Clone, Debug)]
 pub(crate) struct KeyFrame<N: Space<D>, const D: usize> {
     /// The names of the filters.
     pub(crate) filters: Vec<String>,
-    /// The indices without objects, the one taken next last.
+    /// The free indices, the next one to be used last.
     pub(crate) vacant: Vec<u32>,
-    /// The objects in order of their indices.
+    /// The objects sorted by index.
     pub(crate) objects: Vec<ObjectData<N, D>>,
 }
 
@@ -77,27 +77,27 @@ pub(crate) enum Call<N: Space<D>, const D: usize> {
         index: u32,
         skin: N,
     },
-    /// Moves an object and predicts where it will be next.
+    /// Moves an object with a prediction of its next position.
     Predict {
         index: u32,
         position: N::Isometry,
         predicted: N::Isometry,
     },
-    /// Has the pairs of one object filtered again, or all.
+    /// Filters the pairs of one object, or of all objects, again.
     Refilter(Option<u32>),
-    /// Lends the next update a filter that refuses these pairs of indices, in order.
+    /// Passes a filter to the next update that rejects these sorted pairs of indices.
     Refuse(Vec<[u32; 2]>),
     KeepEvents,
     UpdatePair([u32; 2]),
-    /// Removes objects; the last one's index is taken next.
+    /// Removes objects; the index of the last one is the next to be used.
     Remove(Vec<u32>),
     RegisterFilter(String),
     UnregisterFilter(String),
-    /// Asks; changes nothing.
+    /// Runs a query; changes nothing.
     Query(Box<QueryData<N, D>>),
-    /// The whole world; gives it new phases.
+    /// The whole world; installs new phases.
     KeyFrame(KeyFrame<N, D>),
-    /// An update, with the hashes of what it led to.
+    /// An update, with the hashes of its result.
     Update(Observation),
     /// The last record.
     End {
@@ -106,7 +106,7 @@ pub(crate) enum Call<N: Space<D>, const D: usize> {
 }
 
 impl<N: Recordable<D>, const D: usize> Call<N, D> {
-    /// The number of the kind of record in the format.
+    /// The number of the kind of the record in the format.
     pub(crate) const fn kind(&self) -> u8 {
         match self {
             Self::Shape(_) => 1,
@@ -193,14 +193,14 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
         }
     }
 
-    /// Reads the fields of a record of a kind, all of them.
+    /// Reads all fields of a record of a kind.
     pub(crate) fn read(kind: u8, source: &mut Source<'_>) -> Result<Self, ReadError> {
         let call = Self::fields(kind, source)?;
         source.finish()?;
         Ok(call)
     }
 
-    /// The fields by the number of [`Self::kind`].
+    /// Reads the fields by the number of [`Self::kind`].
     fn fields(kind: u8, source: &mut Source<'_>) -> Result<Self, ReadError> {
         Ok(match kind {
             1 => Self::Shape(source.shape()?),
@@ -236,13 +236,13 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
     }
 }
 
-/// The fields of calls.
+/// Writes the fields of calls.
 impl Sink {
     pub(crate) fn words(&mut self, words: &[u32]) {
         words.iter().for_each(|word| self.word(*word));
     }
 
-    /// Three masks and the flag of self-collision.
+    /// Writes three masks and the flag of self-collision.
     pub(crate) fn groups(&mut self, groups: &CollisionGroups) {
         let lists = [groups.whitelist_mask(), groups.blacklist_mask()];
         self.word(groups.membership_mask());
@@ -263,7 +263,7 @@ impl Sink {
         }
     }
 
-    /// What adds an object, or an object of a key frame.
+    /// Writes an added object, or an object of a key frame.
     fn object<N: Recordable<D>, const D: usize>(&mut self, object: &ObjectData<N, D>) {
         self.word(object.index);
         self.isometry::<N, D>(&object.position);
@@ -282,7 +282,7 @@ impl Sink {
         frame.objects.iter().for_each(|object| self.object(object));
     }
 
-    /// Hashes and counts, and twelve bytes for each object that changed.
+    /// Writes hashes and counts, and twelve bytes for each changed object.
     fn observation(&mut self, observation: &Observation) {
         self.long(observation.state);
         self.long(observation.events);
@@ -297,9 +297,9 @@ impl Sink {
     }
 }
 
-/// The fields of calls: what [`Sink`] has written.
+/// Reads the fields of calls that [`Sink`] has written.
 impl Source<'_> {
-    /// Masks of groups that exist: a bit above 29 is an error.
+    /// Reads masks of groups: a bit above 29 is an error.
     pub(crate) fn groups(&mut self) -> Result<CollisionGroups, ReadError> {
         let offset = self.offset();
         let [membership, whitelist, blacklist] = [self.word()?, self.word()?, self.word()?];
@@ -341,7 +341,7 @@ impl Source<'_> {
         })
     }
 
-    /// The record of version 1.
+    /// Reads the record of version 1.
     fn first_observation(&mut self) -> Result<Observation, ReadError> {
         let (state, events) = (self.long()?, self.long()?);
         Ok(Observation { state, events, counts: None, changed: Some(self.object_hashes()?) })

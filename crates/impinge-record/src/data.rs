@@ -1,6 +1,6 @@
-//! The user's data of objects as bytes.
+//! User data of objects as bytes.
 
-/// The data of objects that can be recorded: filters read it.
+/// Data of objects that can be recorded, since filters may read it.
 ///
 /// ```
 /// use impinge_record::RecordData;
@@ -21,12 +21,13 @@
 /// assert_eq!(Team::from_bytes(&Team(3).to_bytes()), Some(Team(3)));
 /// ```
 ///
-/// [`Default`] is the data of objects that hold an index for a moment while a key frame is read; nothing reads it.
+/// [`Default`] is the data of objects that occupy an index temporarily while a key frame is read; nothing reads
+/// it.
 pub trait RecordData: Default {
-    /// The data as bytes.
+    /// Returns the data as bytes.
     fn to_bytes(&self) -> Vec<u8>;
 
-    /// The data of these bytes; `None` if they are of none. It is called with any bytes.
+    /// Returns the data of these bytes; `None` if they are invalid. It is called with any bytes.
     fn from_bytes(bytes: &[u8]) -> Option<Self>;
 }
 

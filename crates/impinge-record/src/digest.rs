@@ -1,4 +1,4 @@
-//! The hash of a recording: FNV-1a over 64-bit words, each mixed as `SplitMix64` does. It is the same on every
+//! The hash of a recording: FNV-1a over 64-bit words, each mixed as in `SplitMix64`. It is the same on every
 //! platform.
 
 use std::hash::{Hash, Hasher};
@@ -8,12 +8,12 @@ use impinge::shape::FeatureId;
 
 use crate::space::Scalar;
 
-/// A hash in the making.
+/// An unfinished hash.
 #[derive(Clone, Debug)]
 pub(crate) struct Digest(u64);
 
 impl Digest {
-    /// The offset basis of FNV-1a.
+    /// Returns the offset basis of FNV-1a.
     pub(crate) const fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
@@ -22,30 +22,30 @@ impl Digest {
         self.0
     }
 
-    /// The hash in 32 bits.
+    /// Returns the hash folded to 32 bits.
     #[expect(clippy::cast_possible_truncation, reason = "both halves are folded into one")]
     pub(crate) const fn folded(&self) -> u32 {
         (self.0 ^ (self.0 >> 32)) as u32
     }
 
-    /// Mixes a word, so that numbers which differ in a high bit alone reach the low bits too.
+    /// Mixes a word, so that numbers that differ only in a high bit change the low bits too.
     pub(crate) const fn word(&mut self, word: u64) {
         let mixed = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         self.0 = (self.0 ^ mixed ^ (mixed >> 31)).wrapping_mul(0x0000_0100_0000_01b3);
     }
 
-    /// An index, in 64 bits on every platform.
+    /// Adds an index, as 64 bits on every platform.
     pub(crate) const fn index(&mut self, index: usize) {
         self.word(index as u64);
     }
 
-    /// All bits of numbers.
+    /// Adds all bits of numbers.
     pub(crate) fn numbers<N: Scalar>(&mut self, numbers: &[N]) {
         numbers.iter().for_each(|number| self.word(number.bits()));
     }
 
-    /// The kind as 0, 1 or 2, then the index.
+    /// Adds the kind as 0, 1 or 2, then the index.
     pub(crate) fn feature(&mut self, feature: FeatureId) {
         let (kind, index) = match feature {
             FeatureId::Vertex(index) => (0, index),
@@ -57,14 +57,14 @@ impl Digest {
     }
 }
 
-/// The number of the pair and the number within the pair of the id of a contact, which its `Hash` writes.
+/// Returns the number of the pair and the number within the pair from the id of a contact, by its `Hash`.
 pub(crate) fn id_parts(id: ContactId) -> [u64; 2] {
     let mut parts = IdParts::default();
     id.hash(&mut parts);
     [parts.pair, parts.number]
 }
 
-/// A hasher that keeps what it is given, since ids have no other way to be read.
+/// A hasher that stores its input, since the parts of an id cannot be read otherwise.
 #[derive(Debug, Default)]
 struct IdParts {
     pair: u64,
@@ -76,7 +76,7 @@ impl Hasher for IdParts {
         self.pair
     }
 
-    /// Nothing of an id is written as bytes.
+    /// Ids write no bytes.
     fn write(&mut self, _bytes: &[u8]) {}
 
     fn write_u32(&mut self, number: u32) {

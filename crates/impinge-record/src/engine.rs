@@ -1,4 +1,4 @@
-//! The calls of those who write engines, recorded.
+//! Recorded calls for physics engines.
 
 use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::world::CollisionObject;
@@ -10,7 +10,7 @@ use crate::recorder::{Recorder, index_of};
 use crate::space::Recordable;
 
 impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
-    /// Marks an object as fixed, or takes the mark away.
+    /// Marks an object as fixed, or not fixed.
     ///
     /// # Errors
     /// If the handle is stale.
@@ -24,7 +24,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Puts a skin around an object, for contacts.
+    /// Sets the skin of an object, for contacts.
     ///
     /// # Errors
     /// If the handle is stale or the skin is negative or not finite.
@@ -34,7 +34,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Moves an object and predicts where it will be next.
+    /// Moves an object with a prediction of its next position.
     ///
     /// # Errors
     /// If the handle is stale or a number of a position is not finite.
@@ -49,13 +49,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Has all pairs filtered again at the next update.
+    /// Makes the next update filter all pairs again.
     pub fn refilter_pairs(&mut self) {
         self.world.refilter_pairs();
         self.record(&Call::Refilter(None));
     }
 
-    /// Has the pairs of one object filtered again at the next update.
+    /// Makes the next update filter the pairs of one object again.
     ///
     /// # Errors
     /// If the handle is stale.
@@ -65,10 +65,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Updates the world with a filter of its own and records what the filter refused, and the hashes of what it
-    /// led to. A replay needs no filter.
+    /// Updates the world with a filter for this update, and records the rejected pairs and the hashes of the
+    /// result. A replay needs no filter.
     ///
-    /// The update of a key frame ([`Self::with_key_frames`]) asks about all pairs anew.
+    /// The update of a key frame ([`Self::with_key_frames`]) filters all pairs again.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -108,13 +108,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.end_step();
     }
 
-    /// Has the next update keep the events of the last one.
+    /// Makes the next update keep the events of the last one.
     pub fn keep_events(&mut self) {
         self.world.keep_events();
         self.record(&Call::KeepEvents);
     }
 
-    /// Computes the pair of two objects at their present positions, and answers whether there is one.
+    /// Recomputes the pair of two objects at their current positions; returns whether they have a pair.
     ///
     /// # Errors
     /// If a handle is stale.
@@ -130,12 +130,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(is_kept)
     }
 
-    /// Takes the data of a removed object; not recorded, since no later step depends on it.
+    /// Takes the data of a removed object. This is not recorded, since no later step depends on it.
     pub fn take_removed(&mut self, handle: CollisionObjectHandle) -> Option<T> {
         self.world.take_removed(handle)
     }
 
-    /// After a key frame: the calls that give objects what few have. They change nothing in a world that goes on.
+    /// Records, after a key frame, the calls that set properties that few objects have. They change nothing in a
+    /// running world.
     pub(crate) fn record_rare_facts(&mut self) {
         let mut calls = Vec::new();
         for object in self.world.collision_objects() {

@@ -1,21 +1,22 @@
-//! Why a call cannot be recorded, and why bytes are not a recording.
+//! Errors of recording a call, and of reading a recording.
 
 use core::fmt;
 
 use impinge::shape::{MeshError, ShapeError};
 use impinge::world::{GroupError, WorldError};
 
-/// Why the library refuses what a file or recording says: the error of the constructor or method that was called.
+/// An error of the library about the values of a file or recording: that of the constructor or method that was
+/// called.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LibraryError {
-    /// The numbers of a shape.
+    /// From the values of a shape.
     Shape(ShapeError),
-    /// The numbers of a mesh or line.
+    /// From the values of a mesh or polyline.
     Mesh(MeshError),
-    /// The numbers of groups.
+    /// From the values of groups.
     Group(GroupError),
-    /// A call of a world.
+    /// From a call of a world.
     World(WorldError),
 }
 
@@ -56,19 +57,19 @@ impl From<WorldError> for LibraryError {
     }
 }
 
-/// Why a call was not recorded. The world and the recording are unchanged then.
+/// The reason why a call was not recorded. The world and the recording are then unchanged.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// The world refuses the call.
+    /// The world rejects the call.
     World(WorldError),
-    /// The shape is of a type of the user's own, and the registry does not name it.
+    /// The shape has a type of the user, and the registry does not name it.
     UnknownShape {
         /// The shape, as `Debug` prints it.
         shape: String,
     },
-    /// The constructors of the library do not make this shape again to the bit: a mesh or line whose
-    /// vertices were moved apart or together after it was made.
+    /// The constructors of the library do not reproduce this shape to the bit: it is a mesh or polyline whose
+    /// vertices coincided or separated after it was made.
     Deformed {
         /// The shape, as `Debug` prints it.
         shape: String,
@@ -102,59 +103,59 @@ impl fmt::Display for RecordError {
 
 impl std::error::Error for RecordError {}
 
-/// Why bytes are not a recording that can be replayed, and where.
+/// The reason why bytes are not a valid recording, and the position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadError {
     /// The offset of the field, in bytes from the beginning of the recording.
     pub offset: usize,
-    /// What is wrong there.
+    /// The problem at that position.
     pub problem: Problem,
 }
 
-/// What is wrong with a recording.
+/// A problem of a recording.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Problem {
-    /// The bytes do not begin as a recording does.
+    /// The bytes do not begin with the signature of a recording.
     NotARecording,
-    /// The format is of another version: a later one, or 0.
+    /// The version of the format is not supported: it is later, or 0.
     Version {
         /// The version of the recording.
         found: u32,
     },
-    /// The recording is of worlds of another scalar.
+    /// The recording has worlds of another scalar.
     Scalar {
         /// The bytes of a number in the recording.
         found: u8,
     },
-    /// The recording is of worlds of another dimension.
+    /// The recording has worlds of another dimension.
     Dimension {
         /// The dimension of the recording.
         found: u8,
     },
-    /// The bytes end, or a length goes beyond the end of the record.
+    /// The bytes end early, or a length exceeds the record.
     Truncated,
-    /// The checksum of a record differs from that of the bytes: something before it was changed.
+    /// The checksum of a record differs from that of the bytes: some earlier byte was changed.
     Checksum,
     /// Compressed bytes of a packed recording are damaged.
     Compression,
-    /// A recording, or a part of it, has or would have too many bytes to be packed or unpacked.
+    /// A recording, or a part of it, is too large to be packed or unpacked.
     TooLarge {
-        /// So many bytes.
+        /// The number of bytes.
         bytes: u64,
     },
     /// A record has more bytes than its fields, or bytes follow the last record.
     TrailingBytes,
-    /// There is no record of this kind.
+    /// The kind of a record is unknown.
     UnknownRecord(u8),
-    /// A field has a value that it cannot have.
+    /// A field has an invalid value.
     BadValue {
         /// The field.
         what: &'static str,
     },
-    /// A shape refers to one that is not defined before it.
+    /// A shape refers to a number that is not defined before it.
     NoSuchShape(u32),
-    /// A call names an object that does not live.
+    /// A call names an object that does not exist.
     NoSuchObject(u32),
     /// A new object has another index than in the recording.
     OtherIndex {
@@ -163,11 +164,11 @@ pub enum Problem {
         /// The index in the replayed world.
         replayed: usize,
     },
-    /// The library refuses a shape, groups or a call.
+    /// The library rejects a shape, groups or a call.
     Library(LibraryError),
     /// A shape is nested too deep or has too many parts.
     TooComplex,
-    /// The registry does not name this shape.
+    /// The registry has no shape of this name.
     UnknownShape(String),
     /// The registry has no pair filter of this name.
     UnknownFilter(String),

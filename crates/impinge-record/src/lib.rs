@@ -1,22 +1,22 @@
 //! Recordings of collision worlds as logs of calls: written, replayed forwards and backwards, validated.
 //!
-//! A [`Recorder`] wraps a world and writes down each call that changes it, each query made through it, and after
-//! each update hashes of all that the world says. Since a recording is calls, it outlives changes of the
-//! library's memory layout. [`Replay`] gives the world at any step; [`validate`] plays it all and names the first
-//! step and object in which the replay differs from what was recorded, on this machine or with this version.
+//! A [`Recorder`] wraps a world and records each call that changes it, each query made through it, and after each
+//! update hashes of the state of the world. Since a recording consists of calls, it does not depend on the memory
+//! layout of the library. [`Replay`] returns the world at any step. [`validate`] replays all steps and returns the
+//! first step and object in which the replay differs from the recording, on this machine or with this version.
 //!
 //! A recording can be read while it grows ([`Replay::growing`]), and without its end ([`Replay::salvage`]). It has a
-//! time line ([`Replay::marks`]) and the queries that were asked ([`Replay::queries`]). [`pack`] makes it small, for files
-//! that are sent.
+//! time line ([`Replay::marks`]) and the recorded queries ([`Replay::queries`]). [`pack`] compresses it, for files that
+//! are sent.
 //!
-//! Shapes and pair filters of the user's own are code: a recording has their names, and a [`Registry`] what these stand
-//! for. `FORMAT.md` describes the bytes.
+//! Shapes and pair filters of the user are code: a recording has their names, and a [`Registry`] the objects of these
+//! names. `FORMAT.md` describes the bytes.
 //!
-//! Recordings are read as untrusted input: errors have the offset, lengths are
-//! compared with the bytes that remain before memory is allocated, and shapes go through the constructors of the
-//! library. Reading takes memory in proportion to the bytes, and unpacking at most [`MAX_UNPACKED`] bytes and twice as many
-//! for the streams. A recording may still describe a world that is expensive to update: where all of n objects overlap
-//! there are n (n - 1) / 2 pairs, of [`MAX_PARTS`] parts each at most.
+//! Recordings are treated as untrusted input: errors have the offset, lengths are compared with the remaining bytes
+//! before memory is allocated, and shapes are made by the constructors of the library. Reading takes memory in
+//! proportion to the bytes, and unpacking at most [`MAX_UNPACKED`] bytes and twice as many for the streams. A recording
+//! may still describe a world that is expensive to update: if n objects all overlap, there are n (n - 1) / 2 pairs,
+//! each of at most [`MAX_PARTS`] parts.
 #![forbid(unsafe_code)]
 
 mod asking;

@@ -7,15 +7,15 @@ use crate::call::Call;
 use crate::error::{Problem, ReadError};
 use crate::space::Recordable;
 
-/// The version of the format that this crate writes, and the latest that it reads.
+/// The version of the format that this crate writes, and the latest version that it reads.
 pub const FORMAT_VERSION: u32 = 3;
 
 const MAGIC: [u8; 8] = *b"\x89IPREC\r\n";
 
-/// The version of the library, as the header names it.
+/// The version of the library in the header.
 const WRITER: &str = concat!("impinge ", env!("CARGO_PKG_VERSION"));
 
-/// A recording being written.
+/// An unfinished recording.
 #[derive(Clone, Debug)]
 pub(crate) struct Log {
     pub(crate) bytes: Vec<u8>,
@@ -23,13 +23,13 @@ pub(crate) struct Log {
 }
 
 impl Log {
-    /// A log with its header.
+    /// Creates a log with its header.
     pub(crate) fn new<N: Recordable<D>, const D: usize>(margin: N) -> Self {
         let mut sink = Sink::default();
         sink.bytes.extend(MAGIC);
         sink.word(FORMAT_VERSION);
         sink.blob(WRITER.as_bytes());
-        // Eight bytes and three dimensions at most.
+        // At most eight bytes and three dimensions.
         sink.bytes.extend([N::BYTES, D].map(|small| u8::try_from(small).unwrap_or(u8::MAX)));
         sink.number(margin);
         let mut log = Self::empty();
@@ -37,7 +37,7 @@ impl Log {
         log
     }
 
-    /// A kind, the length of the fields, the fields, and the checksum of all bytes but checksums so far.
+    /// Appends a kind, the length of the fields, the fields, and the checksum of all bytes so far except checksums.
     pub(crate) fn record<N: Recordable<D>, const D: usize>(&mut self, call: &Call<N, D>) {
         let (mut fields, mut sink) = (Sink::default(), Sink::default());
         call.write(&mut fields);
@@ -46,12 +46,12 @@ impl Log {
         self.append(&sink.bytes);
     }
 
-    /// A log without its header.
+    /// Creates a log without a header.
     pub(crate) fn empty() -> Self {
         Self { bytes: Vec::new(), checksum: crc32fast::Hasher::new() }
     }
 
-    /// The last checksum.
+    /// Returns the last checksum.
     pub(crate) fn checksum(&self) -> u32 {
         self.checksum.clone().finalize()
     }
@@ -64,7 +64,7 @@ impl Log {
     }
 }
 
-/// What the header of a recording says.
+/// The content of the header of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
     /// The version of the format.
@@ -78,8 +78,8 @@ pub struct Header {
 }
 
 impl Header {
-    /// Reads the header of a recording of any scalar and dimension; its checksum is that of the first record
-    /// and not looked at.
+    /// Reads the header of a recording of any scalar and dimension. Its checksum is that of the first record and is
+    /// not verified.
     ///
     /// # Errors
     /// If the bytes do not begin as a recording of a known version does.
@@ -95,7 +95,7 @@ impl Header {
         Self::fields(&mut Source::new(bytes, 0..bytes.len()))
     }
 
-    /// Whether bytes whose header cannot be read, with this error, are the beginning of a header: the rest may follow.
+    /// Whether bytes whose header cannot be read, with this error, are the beginning of a valid header.
     ///
     /// ```
     /// use impinge_record::{Header, Recorder, Registry};
@@ -114,7 +114,7 @@ impl Header {
         }
     }
 
-    /// Where the checksum of the header begins, if the bytes have it.
+    /// Returns the offset of the checksum of the header, if the bytes contain it.
     pub(crate) fn end(bytes: &[u8]) -> Result<usize, ReadError> {
         let mut source = Source::new(bytes, 0..bytes.len());
         let header = Self::fields(&mut source)?;
@@ -137,18 +137,18 @@ impl Header {
     }
 }
 
-/// A record as it lies in the bytes.
+/// The position of a record in the bytes.
 #[derive(Clone, Debug)]
 pub(crate) struct Raw {
     pub(crate) kind: u8,
-    /// The fields.
+    /// The range of the fields.
     pub(crate) fields: Range<usize>,
-    /// Where the next record begins.
+    /// The offset of the next record.
     pub(crate) end: usize,
 }
 
 impl Raw {
-    /// The record at an offset; its checksum is not looked at.
+    /// Returns the record at an offset; does not verify its checksum.
     pub(crate) fn at(bytes: &[u8], offset: usize) -> Result<Self, ReadError> {
         let mut source = Source::new(bytes, offset..bytes.len());
         let (kind, length) = (source.byte()?, source.count(1)?);
@@ -166,7 +166,7 @@ impl Raw {
     }
 }
 
-/// How far a recording has been read: it moves on record by record, and only past right checksums.
+/// The position up to which a recording has been read. It advances record by record, past correct checksums only.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cursor {
     checksum: crc32fast::Hasher,
@@ -174,12 +174,12 @@ pub(crate) struct Cursor {
 }
 
 impl Cursor {
-    /// Where the next record begins; 0 before the header.
+    /// The offset of the next record; 0 before the header.
     pub(crate) const fn offset(&self) -> usize {
         self.offset
     }
 
-    /// Reads the header and its checksum: the margin.
+    /// Reads the header and verifies its checksum; returns the margin.
     pub(crate) fn header<N: Recordable<D>, const D: usize>(
         &mut self,
         bytes: &[u8],
@@ -200,7 +200,7 @@ impl Cursor {
         Ok(margin)
     }
 
-    /// Moves to the end of the checksum that follows the bytes up to `end`: it is that of all bytes so far.
+    /// Verifies the checksum of all bytes up to `end`, which follows there, and moves past it.
     pub(crate) fn pass(&mut self, bytes: &[u8], end: usize) -> Result<(), ReadError> {
         let mut source = Source::new(bytes, end..bytes.len());
         let expected = source.word()?;
@@ -214,8 +214,8 @@ impl Cursor {
     }
 }
 
-/// Writes the checksums of a recording anew, up to the first record that is not whole: so that tests reach what
-/// lies behind the checksums with bytes of their own.
+/// Recomputes the checksums of a recording, up to the first incomplete record, so that tests can change bytes that
+/// checksums protect.
 #[doc(hidden)]
 pub fn reseal(bytes: &mut [u8]) {
     let mut checksum = crc32fast::Hasher::new();

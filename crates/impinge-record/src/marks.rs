@@ -1,4 +1,4 @@
-//! The time line of a recording: what happened in each update, and where its records are.
+//! The time line of a recording: the changes and events of each update, and the offsets of its records.
 
 use impinge::narrow_phase::ContactEvent;
 use impinge::world::CollisionWorld;
@@ -6,19 +6,19 @@ use impinge::world::CollisionWorld;
 use crate::call::Call;
 use crate::space::Recordable;
 
-/// How many events an update had.
+/// The numbers of events of an update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EventCounts {
-    /// Pairs that began to touch.
+    /// Pairs that started touching.
     pub started: u32,
-    /// Pairs that ceased to touch.
+    /// Pairs that stopped touching.
     pub stopped: u32,
     /// Pairs whose proximity changed.
     pub proximities: u32,
 }
 
 impl EventCounts {
-    /// The events of the last update.
+    /// Counts the events of the last update.
     pub(crate) fn of<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Self {
         let contacts = world.contact_events();
         let is_start = |event: &&ContactEvent| matches!(event, ContactEvent::Started(..));
@@ -31,7 +31,7 @@ impl EventCounts {
     }
 }
 
-/// What an update did, and the calls since the update before it.
+/// The changes of an update, and the calls since the previous update.
 ///
 /// ```
 /// use impinge::dim3::math::Isometry;
@@ -58,17 +58,17 @@ impl EventCounts {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mark {
-    /// Objects added. Those with which a recording begins, and those of key frames, do not count.
+    /// Added objects, without those of the initial state and of key frames.
     pub added: u32,
     /// Objects removed.
     pub removed: u32,
-    /// Positions set: an object that is set twice counts twice.
+    /// Set positions: an object that is set twice counts twice.
     pub moved: u32,
-    /// Other changes: of shapes, groups, query types, data, filters, skins and marks of fixed objects.
+    /// Other changes: of shapes, groups, query types, data, filters, skins and fixed objects.
     pub changed: u32,
-    /// Queries asked.
+    /// Queries.
     pub queries: u32,
-    /// The events of the update; recordings of version 1 do not say how many they were.
+    /// The events of the update; `None` in recordings of version 1.
     pub events: Option<EventCounts>,
 }
 
@@ -101,40 +101,40 @@ impl Mark {
     }
 }
 
-/// A count of things each of which takes bytes of a recording, or is a pair of a world.
+/// Converts a count of items that take bytes of a recording or are pairs of a world.
 fn small(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// A place before a step, from which a world can be made.
+/// A position before a step, from which a world can be rebuilt.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FrameMark {
-    /// The number of updates before it.
+    /// The number of earlier updates.
     pub(crate) step: usize,
-    /// Where its record begins.
+    /// The offset of its record.
     pub(crate) offset: usize,
-    /// The first step at which a world made here has the events of the recording: not that of the update after
-    /// it, with which all pairs start, nor those that keep the events of that one.
+    /// The first step at which a world that is rebuilt here has the events of the recording. In the update
+    /// after this position all pairs start; later updates may keep the events of that one.
     whole_from: usize,
 }
 
-/// Where the updates and key frames of a recording are, and what happened.
+/// The positions of the updates and key frames of a recording, and the changes of each update.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Timeline {
-    /// Where the first record begins.
+    /// The offset of the first record.
     pub(crate) start: usize,
-    /// For each update.
+    /// One for each update.
     pub(crate) marks: Vec<Mark>,
-    /// In order; the calls since the last update have no mark yet.
+    /// In order of steps; the calls since the last update have no mark yet.
     frames: Vec<FrameMark>,
-    /// The next update keeps the events of the last one.
+    /// Whether the next update keeps the events of the last one.
     keeps_events: bool,
     /// The calls since the last update.
     next: Mark,
 }
 
 impl Timeline {
-    /// Notes a call whose record begins at an offset.
+    /// Adds a call whose record begins at `offset`.
     pub(crate) fn note<N: Recordable<D>, const D: usize>(
         &mut self,
         call: &Call<N, D>,
@@ -161,7 +161,8 @@ impl Timeline {
         }
     }
 
-    /// The last key frame from which a step can be made, with its events. The beginning, if there is none.
+    /// Returns the last key frame from which a step can be rebuilt with its events; the beginning, if there is
+    /// none.
     pub(crate) fn frame_before(&self, step: usize) -> FrameMark {
         let frames = self.frames.partition_point(|frame| frame.whole_from <= step);
         let beginning = FrameMark { step: 0, offset: self.start, whole_from: 0 };

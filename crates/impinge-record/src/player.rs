@@ -19,7 +19,7 @@ use crate::shapes::ShapeTable;
 use crate::space::Recordable;
 use crate::state::{Observation, Observer};
 
-/// What records refer to.
+/// The shapes and names that records refer to.
 #[derive(Debug)]
 pub(crate) struct Resources<N: Recordable<D>, const D: usize, T> {
     pub(crate) shapes: ShapeTable<N, D>,
@@ -27,30 +27,30 @@ pub(crate) struct Resources<N: Recordable<D>, const D: usize, T> {
     pub(crate) margin: N,
 }
 
-/// The world, and its objects by the indices of the recording.
+/// A world, and its objects by the indices of the recording.
 #[derive(Debug)]
 pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     pub(crate) world: CollisionWorld<N, D, T>,
     handles: Vec<Option<CollisionObjectHandle>>,
     observer: Observer,
-    /// The pairs that a filter lent to the next update refuses, sorted; none without such a filter.
+    /// The pairs that the filter of the next update rejects, sorted; empty without such a filter.
     refused: Vec<[u32; 2]>,
     /// The queries since the last update.
     asked: Vec<Asked<N, D>>,
     /// The queries between the last two updates.
     pub(crate) queries: Vec<Asked<N, D>>,
-    /// No call was applied yet: a key frame makes the world.
+    /// Whether no call was applied yet: a key frame may then make the world.
     is_new: bool,
-    /// A key frame made the world, and no update followed: the next one starts all pairs at once.
+    /// Whether a key frame made the world and no update followed: the next update starts all pairs.
     is_remade: bool,
-    /// The events of the last update are those of a world made anew, not those of the recording.
+    /// Whether the events of the last update are those of a rebuilt world, not those of the recording.
     has_other_events: bool,
-    /// The next update keeps the events of the last one.
+    /// Whether the next update keeps the events of the last one.
     keeps_events: bool,
 }
 
-/// Gives a world new phases of the library, to take over at the next update. What follows depends on the
-/// objects alone, not on what was before.
+/// Replaces the phases of a world by new ones of the library, which start at the next update. The results then
+/// depend on the objects alone, not on the history.
 pub(crate) fn exchange_phases<N: Recordable<D>, const D: usize, T>(
     world: &mut CollisionWorld<N, D, T>,
     margin: N,
@@ -61,12 +61,12 @@ pub(crate) fn exchange_phases<N: Recordable<D>, const D: usize, T>(
 }
 
 impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
-    /// A new world.
+    /// Creates a player with a new world.
     pub(crate) fn new(margin: N) -> Result<Self, Problem> {
         Ok(Self::around(CollisionWorld::try_new(margin)?))
     }
 
-    /// A world without objects.
+    /// Creates a player with a world without objects.
     pub(crate) fn around(world: CollisionWorld<N, D, T>) -> Self {
         let (handles, asked, queries) = (Vec::new(), Vec::new(), Vec::new());
         let (observer, refused) = (Observer::default(), Vec::new());
@@ -84,7 +84,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         }
     }
 
-    /// Applies a call; answers in what its outcome differs from the recorded one.
+    /// Applies a call; returns the difference between its result and the recorded one.
     pub(crate) fn apply(
         &mut self,
         call: Call<N, D>,
@@ -139,13 +139,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(None)
     }
 
-    /// The handle of the object that lives at an index.
+    /// Returns the handle of the object at an index.
     fn handle(&self, index: u32) -> Result<CollisionObjectHandle, Problem> {
         let handle = self.handles.get(index as usize).copied().flatten();
         handle.ok_or(Problem::NoSuchObject(index))
     }
 
-    /// Adds an object; its index depends on the calls before and must be the recorded one.
+    /// Adds an object. Its index follows from the earlier calls and must be the recorded one.
     fn add(
         &mut self,
         object: ObjectData<N, D>,
@@ -157,12 +157,12 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.enter(handle, index)
     }
 
-    /// Notes the handle of a new object, which must have the recorded index.
+    /// Stores the handle of a new object, which must have the recorded index.
     fn enter(&mut self, handle: CollisionObjectHandle, index: u32) -> Result<(), Problem> {
         if handle.uid() != index as usize {
             return Err(Problem::OtherIndex { recorded: index, replayed: handle.uid() });
         }
-        // The world has given the index, so that it is at most one more than the largest before.
+        // The world assigned the index, so that it is at most one more than the largest before.
         if self.handles.len() <= handle.uid() {
             self.handles.resize(handle.uid() + 1, None);
         }
@@ -170,7 +170,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Moves objects one by one: a recorder has written them only if all could be moved.
+    /// Moves objects one by one: a recorder writes the call only if all can be moved.
     fn set_positions(&mut self, positions: &[(u32, N::Isometry)]) -> Result<(), Problem> {
         for (index, position) in positions {
             self.world.try_set_position(self.handle(*index)?, *position)?;
@@ -178,7 +178,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Replaces the data of an object. Filters that read it are asked again only about pairs that begin anew.
+    /// Replaces the data of an object. Filters that read it are called again only for new pairs.
     fn set_data(&mut self, index: u32, data: &[u8]) -> Result<(), Problem> {
         let handle = self.handle(index)?;
         let object = self.world.collision_object_mut(handle);
@@ -186,13 +186,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Has the next update refuse pairs.
+    /// Makes the next update reject pairs.
     fn refuse(&mut self, mut pairs: Vec<[u32; 2]>) {
         pairs.sort_unstable();
         self.refused = pairs;
     }
 
-    /// Updates the world, with the recorded answers of a filter that was lent to the update.
+    /// Updates the world, with the recorded results of a filter that was passed to the update.
     fn update_world(&mut self) {
         let refused = std::mem::take(&mut self.refused);
         if refused.is_empty() {
@@ -203,7 +203,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         });
     }
 
-    /// Removes objects, whose indices name nothing then.
+    /// Removes objects; their indices are then free.
     fn remove(&mut self, indices: &[u32]) -> Result<(), Problem> {
         let handles: Result<Vec<_>, _> = indices.iter().map(|index| self.handle(*index)).collect();
         self.world.try_remove(&handles?)?;
@@ -211,13 +211,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(())
     }
 
-    /// Registers the filter that the registry has under a name.
+    /// Registers a filter of the registry by its name.
     fn register(&mut self, name: &str, resources: &Resources<N, D, T>) -> Result<(), Problem> {
         let is_known = resources.registry.register(name, &mut self.world);
         if is_known { Ok(()) } else { Err(Problem::UnknownFilter(name.to_owned())) }
     }
 
-    /// Asks a query again and compares the hash of the answer.
+    /// Runs a query again and compares the hash of the result.
     fn ask(
         &mut self,
         query: &QueryData<N, D>,
@@ -233,19 +233,19 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok((!is_same).then_some(Difference::Answer))
     }
 
-    /// As the recorder did at the key frame.
+    /// Replaces the world, as the recorder did at the key frame.
     fn begin_anew(&mut self, margin: N) {
         exchange_phases(&mut self.world, margin);
         self.observer = Observer::default();
     }
 
-    /// Makes the objects of a key frame at their indices, in a world without objects.
+    /// Adds the objects of a key frame at their indices, to a world without objects.
     fn remake(
         &mut self,
         frame: KeyFrame<N, D>,
         resources: &Resources<N, D, T>,
     ) -> Result<(), Problem> {
-        // Filters are asked about pairs at the first update.
+        // Filters are called at the first update.
         for name in &frame.filters {
             self.register(name, resources)?;
         }
@@ -259,14 +259,14 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
             self.add(object, resources)?;
         }
         vacant.try_for_each(|index| self.hold_place(index))?;
-        // The index that was removed last is taken next.
+        // The index that was removed last is used next.
         frame.vacant.iter().try_for_each(|index| self.remove(&[*index]))?;
         self.begin_anew(resources.margin);
         self.is_remade = true;
         Ok(())
     }
 
-    /// Adds an object that only takes an index, and is gone before the update.
+    /// Adds an object that only occupies an index, and is removed before the update.
     fn hold_place(&mut self, index: u32) -> Result<(), Problem> {
         let (position, ball) = (N::isometry(&Pose::identity()), Ball::try_new(N::ONE)?);
         let (shape, groups) = (ShapeHandle::new(ball), CollisionGroups::empty());
@@ -275,13 +275,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         self.enter(handle, index)
     }
 
-    /// Updates the world and compares its hashes. Objects are looked at only if the hash of the state differs.
+    /// Updates the world and compares its hashes. Objects are compared only if the hash of the state differs.
     fn update(&mut self, recorded: &Observation) -> Option<Difference> {
         let before = self.observer.clone();
         self.update_world();
         self.queries = std::mem::take(&mut self.asked);
         let replayed = self.observer.observe(&self.world);
-        // The recorded world had its pairs before the key frame; in a world made anew all of them start.
+        // The recorded world had its pairs before the key frame; in a rebuilt world all of them start.
         let keeps_events = std::mem::take(&mut self.keeps_events);
         let has_other_events = std::mem::take(&mut self.is_remade);
         self.has_other_events = has_other_events || self.has_other_events && keeps_events;
@@ -295,12 +295,12 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
     }
 }
 
-/// The user's data of an object.
+/// Decodes the user data of an object.
 fn data_of<T: RecordData>(bytes: &[u8]) -> Result<T, Problem> {
     T::from_bytes(bytes).ok_or(Problem::BadValue { what: "the data of an object" })
 }
 
-/// The question with its shapes.
+/// Returns the question with its shapes.
 fn question_of<N: Recordable<D>, const D: usize>(
     question: &QuestionData<N, D>,
     shapes: &ShapeTable<N, D>,

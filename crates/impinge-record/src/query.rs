@@ -1,4 +1,4 @@
-//! Queries as data, and their answers.
+//! Queries as data, and their results.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::{Point, Space, Vector};
@@ -10,8 +10,8 @@ use impinge::world::{CollisionGroups, CollisionWorld, NearObject, QueryFilter};
 use crate::digest::Digest;
 use crate::space::Recordable;
 
-/// What a query asks of a world. Each variant is the method of
-/// [`CollisionWorld`](impinge::world::CollisionWorld) that it names, with its arguments.
+/// The kind of a query with its arguments. Each variant names a method of
+/// [`CollisionWorld`](impinge::world::CollisionWorld).
 #[derive(Clone, Debug)]
 pub enum Question<N: Space<D>, const D: usize> {
     /// `first_ray_hit`.
@@ -24,9 +24,9 @@ pub enum Question<N: Space<D>, const D: usize> {
     ProjectPoint {
         /// The point.
         point: Point<N, D>,
-        /// The largest distance of an answer.
+        /// The largest distance of a result.
         max_distance: N,
-        /// A point inside is its own projection.
+        /// Whether a point inside is its own projection.
         solid: bool,
     },
     /// `objects_in_aabb`.
@@ -35,11 +35,11 @@ pub enum Question<N: Space<D>, const D: usize> {
     Overlapping(PlacedShape<N, D>),
     /// `nearest_objects`.
     Nearest {
-        /// The shape to measure from.
+        /// The shape from which distances are measured.
         from: PlacedShape<N, D>,
-        /// So many objects at most.
+        /// The largest number of objects.
         count: u32,
-        /// The largest distance of an answer.
+        /// The largest distance of a result.
         max_distance: N,
     },
     /// `cast_shape`.
@@ -53,13 +53,13 @@ pub enum Question<N: Space<D>, const D: usize> {
 pub struct RayQuestion<N: Space<D>, const D: usize> {
     /// The ray.
     pub ray: Ray<N, D>,
-    /// The largest parameter of the ray of an answer.
+    /// The largest time of a hit.
     pub max_time: N,
-    /// Rays that begin inside a solid hit it at once.
+    /// Whether rays that begin inside a solid hit it at time zero.
     pub solid: bool,
 }
 
-/// A shape and where it is.
+/// A shape and its position.
 #[derive(Clone, Debug)]
 pub struct PlacedShape<N: Space<D>, const D: usize> {
     /// The position, in the world frame.
@@ -71,73 +71,74 @@ pub struct PlacedShape<N: Space<D>, const D: usize> {
 /// The arguments of a shape cast.
 #[derive(Clone, Debug)]
 pub struct CastQuestion<N: Space<D>, const D: usize> {
-    /// The shape, where it starts.
+    /// The shape at its start.
     pub start: PlacedShape<N, D>,
     /// The velocity, in the world frame.
     pub velocity: Vector<N, D>,
-    /// When, and at which distance, the cast ends.
+    /// The maximum time and the target distance of the cast.
     pub options: ImpactOptions<N>,
 }
 
-/// A question, and which objects it is about.
+/// A question, and the objects that it is about.
 ///
-/// Predicates are code, which no recording holds: a query has groups and excluded objects only, and
-/// [`Recorder::ask_where`](crate::Recorder::ask_where) makes excluded objects of a predicate.
+/// A recording cannot store predicates, which are code: a query has groups and excluded objects
+/// only, and [`Recorder::ask_where`](crate::Recorder::ask_where) converts a predicate to excluded
+/// objects.
 #[derive(Clone, Debug)]
 pub struct Query<N: Space<D>, const D: usize> {
     /// The question.
     pub question: Question<N, D>,
     /// The groups of the query; `None` for all objects.
     pub groups: Option<CollisionGroups>,
-    /// Objects to be left out; stale handles mean nothing.
+    /// Excluded objects; stale handles are ignored.
     pub excluded: Vec<CollisionObjectHandle>,
 }
 
 impl<N: Space<D>, const D: usize> Query<N, D> {
-    /// The question about all objects.
+    /// Creates a query about all objects.
     #[must_use]
     pub const fn new(question: Question<N, D>) -> Self {
         Self { question, groups: None, excluded: Vec::new() }
     }
 }
 
-/// A query of a recording, and what the replayed world answers to it.
+/// A query of a recording, and its result in the replayed world.
 #[derive(Clone, Debug)]
 pub struct Asked<N: Space<D>, const D: usize> {
     /// The query.
     pub query: Query<N, D>,
-    /// The answer, computed by the replay.
+    /// The result, computed by the replay.
     pub answer: Vec<Found<N, D>>,
-    /// The answer has the bits of the recorded one.
+    /// Whether the result has the bits of the recorded one.
     pub is_same: bool,
 }
 
-/// An object that answers a query.
+/// An object in the result of a query.
 #[derive(Clone, Copy, Debug)]
 pub struct Found<N: Space<D>, const D: usize> {
     /// The object.
     pub handle: CollisionObjectHandle,
-    /// What the query computed for it.
+    /// The data that the query computed for it.
     pub detail: Detail<N, D>,
 }
 
-/// What a query computes for an object.
+/// The data that a query computes for an object.
 #[derive(Clone, Copy, Debug)]
 pub enum Detail<N: Space<D>, const D: usize> {
-    /// Nothing more: of points, boxes and overlaps.
+    /// No data: queries by points, boxes and overlaps.
     Object,
-    /// Of rays.
+    /// The hit of a ray.
     Ray(RayIntersection<N, D>),
-    /// Of projections.
+    /// The projection of a point.
     Projection(PointProjection<N, D>),
-    /// Of distances: the distance, and the nearest points.
+    /// A distance and its closest points.
     Near {
         /// The distance.
         distance: N,
         /// The nearest points.
         points: ClosestPoints<N, D>,
     },
-    /// Of shape casts.
+    /// The impact of a shape cast.
     Impact(Impact<N, D>),
 }
 
@@ -153,7 +154,8 @@ impl<N: Space<D>, const D: usize> Found<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Query<N, D> {
-    /// Asks a world; the answers are in the order of the method that the question names.
+    /// Runs the query in a world; the results are in the order of the method that the question
+    /// names.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -240,7 +242,7 @@ impl<N: Space<D>, const D: usize> From<(CollisionObjectHandle, Detail<N, D>)> fo
     }
 }
 
-/// The hash of an answer, with all bits of its numbers.
+/// Returns the hash of a result, with all bits of its numbers.
 pub(crate) fn answer_hash<N: Recordable<D>, const D: usize>(answer: &[Found<N, D>]) -> u64 {
     let mut digest = Digest::new();
     for found in answer {

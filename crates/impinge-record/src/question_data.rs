@@ -1,4 +1,4 @@
-//! Queries as records have them: with the numbers of shapes.
+//! Queries as in records: shapes are numbers.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::{Point, Space, Vector};
@@ -15,16 +15,16 @@ pub(crate) struct QueryData<N: Space<D>, const D: usize> {
     /// The question.
     pub(crate) question: QuestionData<N, D>,
     pub(crate) groups: Option<CollisionGroups>,
-    /// The indices of excluded objects that live.
+    /// The indices of existing excluded objects.
     pub(crate) excluded: Vec<u32>,
-    /// The hash of the answer.
+    /// The hash of the result.
     pub(crate) answer: u64,
 }
 
 /// A question whose shape is a number.
 #[derive(Clone, Debug)]
 pub(crate) enum QuestionData<N: Space<D>, const D: usize> {
-    /// A ray: the first hit or all.
+    /// A ray: the first hit, or all hits.
     Ray {
         all: bool,
         ray: Ray<N, D>,
@@ -61,7 +61,7 @@ pub(crate) struct CastData<N: Space<D>, const D: usize> {
     pub(crate) options: ImpactOptions<N>,
 }
 
-/// The fields of queries.
+/// Writes the fields of queries.
 impl Sink {
     pub(crate) fn query<N: Recordable<D>, const D: usize>(&mut self, query: &QueryData<N, D>) {
         self.question(&query.question);
@@ -72,7 +72,7 @@ impl Sink {
         self.long(query.answer);
     }
 
-    /// A kind, then the arguments of the method that the question names.
+    /// Writes a kind, then the arguments of the method that the question names.
     fn question<N: Recordable<D>, const D: usize>(&mut self, question: &QuestionData<N, D>) {
         match question {
             QuestionData::Ray { all, ray, max_time, solid } => {
@@ -111,7 +111,7 @@ impl Sink {
         }
     }
 
-    /// A tolerance is written in any case, so that the record has one length.
+    /// Always writes a tolerance, so that the record has one length.
     fn cast<N: Recordable<D>, const D: usize>(&mut self, cast: &CastData<N, D>) {
         self.byte(if cast.all { 8 } else { 7 });
         self.isometry::<N, D>(&cast.position);
@@ -124,7 +124,7 @@ impl Sink {
     }
 }
 
-/// The fields of queries: what [`Sink`] has written.
+/// Reads the fields of queries that [`Sink`] has written.
 impl Source<'_> {
     pub(crate) fn query<N: Recordable<D>, const D: usize>(
         &mut self,
@@ -169,7 +169,7 @@ impl Source<'_> {
         })
     }
 
-    /// A box with its corners in order, or the box of everything, which no constructor takes.
+    /// Reads a box with ordered corners, or the unbounded box, which no constructor accepts.
     fn aabb<N: Recordable<D>, const D: usize>(&mut self) -> Result<Aabb<N, D>, ReadError> {
         let error = self.error(Problem::BadValue { what: "a box" });
         let (mins, maxs) = (self.point()?, self.point()?);

@@ -1,4 +1,4 @@
-//! A world that writes down what is called.
+//! A world that records its calls.
 
 use core::fmt;
 use core::num::NonZeroU64;
@@ -20,17 +20,17 @@ use crate::state::Observer;
 
 /// A collision world that records the calls which change it, and the queries made through it.
 ///
-/// It owns the world, and lends it for reading alone ([`Deref`]): no change can go unrecorded. Each method is
-/// the one of [`CollisionWorld`] of the same name, and returns what it refuses as an error; then neither the world
-/// nor the recording has changed. Queries by `Deref` are not recorded, which does no harm.
+/// It owns the world and dereferences to it for reading only ([`Deref`]), so that no change is unrecorded. Each method
+/// calls the method of [`CollisionWorld`] of the same name and returns its errors; neither the world nor the recording
+/// has then changed. Queries through `Deref` are not recorded, which does no harm.
 ///
-/// An update is written with hashes of what it led to, to the bit: positions, groups, query types, pairs,
-/// contacts, proximities and events. That costs O(objects + contacts) time, and 12 bytes for each object whose
-/// hashes changed. A shape is written once, by value, and is kept alive while the recorder lives.
+/// An update is recorded with hashes of its result, to the bit: positions, groups, query types, pairs, contacts,
+/// proximities and events. That costs O(objects + contacts) time, and 12 bytes for each object whose hashes changed. A
+/// shape is written once, by value, and is kept alive while the recorder lives.
 ///
-/// What changes a world and has no method here cannot be recorded: other phases ([`CollisionWorld::set_broad_phase`],
-/// [`CollisionWorld::set_narrow_phase`]) and algorithms of a narrow phase are code, and the data of an object is set,
-/// not lent for changes.
+/// Changes without a method here cannot be recorded: other phases ([`CollisionWorld::set_broad_phase`],
+/// [`CollisionWorld::set_narrow_phase`]) and algorithms of a narrow phase are code, and the data of an object is
+/// replaced, not borrowed mutably.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -60,14 +60,14 @@ pub struct Recorder<N: Recordable<D>, const D: usize, T> {
     observer: Observer,
     log: Log,
     updates: u64,
-    /// A key frame comes before the update after so many.
+    /// A key frame is written before each update whose number is a multiple of this.
     key_frames: Option<NonZeroU64>,
 }
 
-/// What a recorder leaves.
+/// The result of a recorder.
 #[derive(Debug)]
 pub struct Recording<N: Recordable<D>, const D: usize, T> {
-    /// The bytes that [`Recorder::take_bytes`] has not taken: without it the whole recording.
+    /// The bytes that [`Recorder::take_bytes`] has not taken; if it was not called, the whole recording.
     pub bytes: Vec<u8>,
     /// The world.
     pub world: CollisionWorld<N, D, T>,
@@ -76,14 +76,14 @@ pub struct Recording<N: Recordable<D>, const D: usize, T> {
 /// A world that cannot be recorded.
 #[derive(Debug)]
 pub struct Refused<N: Recordable<D>, const D: usize, T> {
-    /// Why.
+    /// The reason.
     pub error: RecordError,
     /// The world, unchanged.
     pub world: Box<CollisionWorld<N, D, T>>,
 }
 
 impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
-    /// A recorder of a new world without objects.
+    /// Creates a recorder of a new world without objects.
     ///
     /// # Errors
     /// If the margin is negative, NaN or infinite.
@@ -91,15 +91,15 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(Self::around(CollisionWorld::try_new(margin)?, margin, registry))
     }
 
-    /// Records a world that has objects already, from a key frame on, and updates it.
+    /// Records a world that already has objects, beginning with a key frame, and updates it.
     ///
-    /// The update gives it new phases of the library with this margin, as
-    /// [`set_narrow_phase`](CollisionWorld::set_narrow_phase) does: events of this update are those of the
-    /// objects' changes, and contacts get new ids. So all that follows depends on what the key frame says,
-    /// not on the world's history.
+    /// The update installs new phases of the library with this margin, as
+    /// [`set_narrow_phase`](CollisionWorld::set_narrow_phase) does: events of this update are those of the changes of
+    /// objects, and contacts get new ids. So all later results depend on the key frame alone, not on the history of the
+    /// world.
     ///
     /// # Errors
-    /// If the margin is not usable, a shape cannot be written, or the registry lacks a filter of the world.
+    /// If the margin is invalid, a shape cannot be written, or the registry lacks a filter of the world.
     pub fn of_world(
         world: CollisionWorld<N, D, T>,
         margin: N,
@@ -127,11 +127,11 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Self { world, margin, registry, shapes, observer, log, updates, key_frames }
     }
 
-    /// Writes a key frame before every update whose number is a multiple of `updates`: a replay goes back by at
-    /// most so many updates. None by default; then it goes back to the start of the recording.
+    /// Writes a key frame before every update whose number is a multiple of `updates`: a replay then goes back by at
+    /// most as many updates. Without key frames, the default, it goes back to the start of the recording.
     ///
-    /// A key frame takes about as many bytes as adding all objects. Its update computes every pair anew, and
-    /// contacts get new ids, as with [`Self::of_world`]; events are as without.
+    /// A key frame takes about as many bytes as adding all objects. Its update recomputes every pair, and contacts get
+    /// new ids, as with [`Self::of_world`]; events are as without.
     #[must_use]
     pub const fn with_key_frames(mut self, updates: NonZeroU64) -> Self {
         self.key_frames = Some(updates);
@@ -141,7 +141,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     /// Adds an object.
     ///
     /// # Errors
-    /// If the world refuses it, or the shape cannot be written.
+    /// If the world rejects it, or the shape cannot be written.
     pub fn add(
         &mut self,
         position: N::Isometry,
@@ -224,15 +224,15 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Changes the shape of an object, of which the type is given, and answers what `change` does; see
+    /// Changes the shape of an object, whose type is given, and returns the result of `change`; see
     /// [`CollisionWorld::deform`].
     ///
-    /// The recording gets the whole shape, as [`Self::set_shape`] does: a mesh of many vertices that changes at every
+    /// The recording gets the whole shape, as with [`Self::set_shape`]: a mesh of many vertices that changes at every
     /// step makes a large recording, and all its shapes are kept alive while the recorder lives.
     ///
     /// # Errors
-    /// If the handle is stale or the shape of another type, then `change` is not called; if the changed shape cannot be
-    /// written.
+    /// If the handle is stale or the shape has another type; `change` is then not called. If the changed shape cannot
+    /// be written.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -304,10 +304,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Registers the pair filter that the registry has under a name.
+    /// Registers a pair filter of the registry by its name.
     ///
     /// # Errors
-    /// If it has none.
+    /// If the registry has no such filter.
     pub fn register_broad_phase_pair_filter(&mut self, name: &str) -> Result<(), RecordError> {
         if !self.registry.register(name, &mut self.world) {
             return Err(RecordError::UnknownFilter(name.to_owned()));
@@ -316,20 +316,20 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Unregisters the pair filter of a name, if there is one.
+    /// Unregisters the pair filter of a name, if it exists.
     pub fn unregister_broad_phase_pair_filter(&mut self, name: &str) {
         self.world.unregister_broad_phase_pair_filter(name);
         self.record(&Call::UnregisterFilter(name.to_owned()));
     }
 
-    /// Updates the world and records the hashes of what it led to.
+    /// Updates the world and records the hashes of the result.
     pub fn update(&mut self) {
         self.begin_step();
         self.world.update();
         self.end_step();
     }
 
-    /// Writes a key frame, if it is time for one.
+    /// Writes a key frame, if the next update needs one.
     pub(crate) fn begin_step(&mut self) {
         if self.key_frames.is_some_and(|every| self.updates > 0 && self.updates % every == 0) {
             let known = self.key_frame();
@@ -337,14 +337,14 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         }
     }
 
-    /// Records an update that has been.
+    /// Records a finished update.
     pub(crate) fn end_step(&mut self) {
         self.updates += 1;
         let observation = self.observer.observe(&self.world);
         self.record(&Call::Update(observation));
     }
 
-    /// The calls that make the world, and new phases for it.
+    /// Writes the calls that rebuild the world, and installs new phases in it.
     fn key_frame(&mut self) -> Result<(), RecordError> {
         let mut objects = Vec::with_capacity(self.world.len());
         for object in self.world.collision_objects() {
@@ -367,8 +367,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// The indices without objects, the one taken next last. Those that were in use too often to be taken again
-    /// come first.
+    /// Returns the free indices, the next one to be used last. Indices that were used too often to be used again come
+    /// first.
     fn vacant(&self, objects: &[ObjectData<N, D>]) -> Vec<u32> {
         let small = |index| u32::try_from(index).expect("an index has 31 bits");
         let free: Vec<u32> = self.world.vacant_indices().map(small).collect();
@@ -381,7 +381,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         spent.chain(free).collect()
     }
 
-    /// The bytes written since the last call: for recordings that go to a file as they grow.
+    /// Returns the bytes written since the last call: for recordings that are written to a file as they grow.
     ///
     /// ```
     /// use impinge_record::{Recorder, Registry, validate};
@@ -407,12 +407,12 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Recording { bytes: self.log.bytes, world: self.world }
     }
 
-    /// The number of a shape, which is written before the next record if it is new.
+    /// Returns the number of a shape; a new shape is written before the next record.
     pub(crate) fn number(&mut self, shape: &ShapeHandle<N, D>) -> Result<u32, RecordError> {
         self.shapes.number(shape, &self.registry)
     }
 
-    /// Writes a record, after the shapes that are new in it.
+    /// Writes a record, after its new shapes.
     pub(crate) fn record(&mut self, call: &Call<N, D>) {
         for shape in self.shapes.unwritten.drain(..) {
             self.log.record(&Call::Shape(shape));
@@ -421,7 +421,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     }
 }
 
-/// The first filter of a world that the registry lacks.
+/// Returns the first filter of a world that the registry lacks.
 fn unknown_filter<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     registry: &Registry<N, D, T>,
@@ -430,7 +430,7 @@ fn unknown_filter<N: Recordable<D>, const D: usize, T>(
     names.find(|name| !registry.has_filter(name)).map(str::to_owned)
 }
 
-/// The index of an object, by which the recording names it.
+/// Returns the index of an object, by which the recording names it.
 pub(crate) fn index_of(handle: CollisionObjectHandle) -> u32 {
     u32::try_from(handle.uid()).expect("an index has 31 bits")
 }

@@ -1,4 +1,4 @@
-//! What a recording names and does not hold: shapes of the user's own, and pair filters.
+//! Objects that a recording names but does not contain: shapes of user types, and pair filters.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -11,8 +11,8 @@ use impinge::world::{BroadPhasePairFilter, CollisionWorld};
 /// Registers a filter in a world.
 type Register<N, const D: usize, T> = Arc<dyn Fn(&mut CollisionWorld<N, D, T>) + Send + Sync>;
 
-/// Shapes of the user's own types and pair filters, by name. A recording holds the names; the program that
-/// replays it gives the same things under these.
+/// Shapes of user types and pair filters, by name. A recording contains the names; the program that
+/// replays it must register the same objects under these.
 ///
 /// ```
 /// use impinge::dim2::world::CollisionObject;
@@ -29,7 +29,7 @@ pub struct Registry<N: Space<D>, const D: usize, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> Registry<N, D, T> {
-    /// Names nothing.
+    /// Creates an empty registry.
     #[must_use]
     pub const fn new() -> Self {
         Self { shapes: BTreeMap::new(), filters: BTreeMap::new() }
@@ -56,19 +56,19 @@ impl<N: Space<D>, const D: usize, T> Registry<N, D, T> {
         self
     }
 
-    /// A filter has this name.
+    /// Whether a filter has this name.
     #[must_use]
     pub fn has_filter(&self, name: &str) -> bool {
         self.filters.contains_key(name)
     }
 
-    /// The shape of a name.
+    /// Returns the shape of a name.
     #[must_use]
     pub fn shape(&self, name: &str) -> Option<&ShapeHandle<N, D>> {
         self.shapes.get(name)
     }
 
-    /// The name of a shape, the first in order if it has several.
+    /// Returns the name of a shape, the first one if it has several.
     pub(crate) fn name_of(&self, shape: &ShapeHandle<N, D>) -> Option<&str> {
         let mut shapes = self.shapes.iter();
         shapes.find(|(_, own)| own.is_same(shape)).map(|(name, _)| name.as_str())

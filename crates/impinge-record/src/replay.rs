@@ -1,4 +1,4 @@
-//! Recordings played: to any step, forwards and backwards.
+//! Replays recordings to any step, forwards and backwards.
 
 use impinge::world::CollisionWorld;
 
@@ -14,10 +14,10 @@ use crate::registry::Registry;
 use crate::shapes::ShapeTable;
 use crate::space::Recordable;
 
-/// A recording and the world that it makes, at a step: after so many updates.
+/// A recording and its world at a step, which is the number of applied updates.
 ///
 /// Going forwards applies the calls of each step, or those from a key frame on, if one is nearer. Going backwards
-/// makes the world anew, from the last key frame at least two updates before the step, or from the start.
+/// rebuilds the world from the last key frame at least two updates before the step, or from the start.
 ///
 /// Memory: the recording and its shapes, 40 bytes for each update, and one world.
 ///
@@ -51,49 +51,49 @@ use crate::space::Recordable;
 pub struct Replay<N: Recordable<D>, const D: usize, T> {
     bytes: Vec<u8>,
     resources: Resources<N, D, T>,
-    /// How far the bytes have been read.
+    /// The position up to which the bytes have been read.
     cursor: Cursor,
     timeline: Timeline,
-    /// The last record has been read.
+    /// Whether the last record has been read.
     is_complete: bool,
-    /// Why no more bytes are taken.
+    /// The error after which no more bytes are accepted.
     damage: Option<ReadError>,
     loss: Option<Loss>,
     player: Player<N, D, T>,
-    /// The world is not that of the recording.
+    /// Whether the world was changed by the user.
     is_changed: bool,
     step: usize,
-    /// Where the next record to be played begins.
+    /// The offset of the next record to be played.
     offset: usize,
     divergence: Option<Divergence>,
 }
 
-/// The end of a recording that could not be read.
+/// The unreadable end of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loss {
-    /// Where it begins: the bytes before it are kept.
+    /// The offset at which it begins: the bytes before it are kept.
     pub offset: usize,
-    /// How many bytes it has; 0 if the recording only lacks its last record.
+    /// The number of its bytes; 0 if the recording only lacks its last record.
     pub bytes: usize,
-    /// Why it could not be read.
+    /// The reason why it could not be read.
     pub error: ReadError,
 }
 
-/// Why the reading of records has ended without damage.
+/// The reason why the reading of records ended without damage.
 #[derive(Debug)]
 enum Reading {
     /// The last record was read.
     Ended,
-    /// The next record, or the header, is not whole; the error says what lacks.
+    /// The next record, or the header, is incomplete; the error describes the missing part.
     Waits(ReadError),
 }
 
 impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
-    /// A recording at step 0: before the first call. All of it is read and its shapes are made.
+    /// Opens a recording at step 0, before the first call. Reads all records and makes the shapes.
     ///
     /// # Errors
-    /// If the bytes are not a whole recording of this scalar and dimension, by this version of the format or an
-    /// earlier one; if the registry lacks a name.
+    /// If the bytes are not a complete recording of this scalar and dimension, in this version of the format or an
+    /// earlier one, or if the registry lacks a name.
     pub fn open(
         bytes: impl Into<Vec<u8>>,
         registry: &Registry<N, D, T>,
@@ -106,7 +106,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         }
     }
 
-    /// A recording without bytes, to which [`Self::push`] gives them as they come. Its world has no object.
+    /// Creates a recording without bytes, to which [`Self::push`] appends them as they arrive. Its world has no
+    /// object.
     ///
     /// ```
     /// use impinge_record::{Recorder, Registry, Replay};
@@ -125,7 +126,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     /// ```
     #[must_use]
     pub fn growing(registry: &Registry<N, D, T>) -> Self {
-        // The header brings the margin, and another world.
+        // The header has the margin, and another world is then made.
         let (shapes, margin) = (ShapeTable::new(), N::ZERO);
         Self {
             bytes: Vec::new(),
@@ -143,13 +144,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         }
     }
 
-    /// What can be read of a recording that lacks its end, because the program crashed, or whose end is damaged: all
-    /// records up to the first that is not whole or has a wrong checksum. [`Self::loss`] says what is left out.
+    /// Opens a recording whose end is missing, because the program crashed, or damaged: reads all records up to the
+    /// first that is incomplete or has a wrong checksum. [`Self::loss`] describes the rest.
     ///
-    /// Records after a damaged one cannot be read: each checksum is that of all bytes before it.
+    /// Records after a damaged one cannot be read: each checksum covers all bytes before it.
     ///
     /// # Errors
-    /// As [`Self::open`], if already the header cannot be read.
+    /// As [`Self::open`], if the header cannot be read.
     ///
     /// ```
     /// use impinge_record::{Problem, Recorder, Registry, Replay};
@@ -186,12 +187,12 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         Ok(replay)
     }
 
-    /// Appends bytes to a recording that grows, and reads the records that are whole by now, each once; answers how
-    /// many updates were among them. The step stays.
+    /// Appends bytes to a growing recording, and reads the records that are now complete, each once. Returns the
+    /// number of updates among them. The step does not change.
     ///
     /// # Errors
-    /// As [`Self::open`], but for records that are not whole: these wait for the rest. After an error the replay
-    /// keeps what came before, and every later call returns the error again.
+    /// As [`Self::open`], but incomplete records are no error: they wait for the rest. After an error the replay
+    /// keeps the earlier records, and every later call returns the error again.
     pub fn push(&mut self, bytes: &[u8]) -> Result<usize, ReadError> {
         if let Some(damage) = &self.damage {
             return Err(damage.clone());
@@ -207,7 +208,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         }
     }
 
-    /// Reads the records that are whole: their checksums and fields, the shapes, and the time line.
+    /// Reads the complete records: their checksums and fields, the shapes, and the time line.
     fn scan(&mut self) -> Result<Reading, ReadError> {
         if self.cursor.offset() == 0 {
             match self.scan_header() {
@@ -260,26 +261,26 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         Ok(())
     }
 
-    /// The last record counts the updates.
+    /// Checks the number of updates in the last record.
     fn check_end(&self, updates: u64, offset: usize) -> Result<(), ReadError> {
         let problem = Problem::BadValue { what: "the number of updates" };
         let is_right = updates == self.len() as u64;
         if is_right { Ok(()) } else { Err(ReadError { offset, problem }) }
     }
 
-    /// The bytes of the recording, as far as they came; after [`Self::salvage`] without what is lost.
+    /// The received bytes of the recording; after [`Self::salvage`] without the lost ones.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// The last record has come. Only a recording that grows, or was salvaged, may lack it.
+    /// Whether the last record was received. Only a growing or salvaged recording may lack it.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.is_complete
     }
 
-    /// What [`Self::salvage`] has left out; `None` if the recording is whole.
+    /// The part that [`Self::salvage`] has dropped; `None` if the recording is complete.
     #[must_use]
     pub const fn loss(&self) -> Option<&Loss> {
         self.loss.as_ref()
@@ -291,26 +292,26 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         &self.player.world
     }
 
-    /// The world, to try what would happen if. The next [`Self::seek`] undoes all changes, also to the same step:
-    /// it makes the world anew.
+    /// The world for experiments. The next [`Self::seek`], also to the same step, undoes all changes: it rebuilds
+    /// the world.
     pub const fn world_mut(&mut self) -> &mut CollisionWorld<N, D, T> {
         self.is_changed = true;
         &mut self.player.world
     }
 
-    /// How many updates the world has had.
+    /// The number of updates of the world.
     #[must_use]
     pub const fn step(&self) -> usize {
         self.step
     }
 
-    /// How many updates the recording has.
+    /// The number of updates of the recording.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.timeline.marks.len()
     }
 
-    /// The recording has no update.
+    /// Whether the recording has no update.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.timeline.marks.is_empty()
@@ -322,8 +323,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         &self.timeline.marks
     }
 
-    /// The queries asked between the update before the current one and the current one, in order, with answers
-    /// computed when they were played: before the current update. At step 0 there are none.
+    /// The queries between the previous update and the current one, in order, with results that were computed when
+    /// they were played, before the current update. At step 0 there are none.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -350,17 +351,18 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         &self.player.queries
     }
 
-    /// The first difference from the recording in what was played so far, in any direction.
+    /// The first difference from the recording in the played steps, in any direction.
     #[must_use]
     pub const fn divergence(&self) -> Option<Divergence> {
         self.divergence
     }
 
-    /// Goes to a step, forwards or backwards: to where its update has just been. Beyond the last step it goes to
+    /// Goes to a step, forwards or backwards: the state just after its update. A step beyond the last one goes to
     /// the last.
     ///
     /// # Errors
-    /// If a call cannot be applied: the bytes are of no recorder. The world is then after the calls before it.
+    /// If a call cannot be applied, so that no recorder wrote the bytes. The world is then in the state after the
+    /// calls before it.
     pub fn seek(&mut self, step: usize) -> Result<(), ReadError> {
         let step = step.min(self.len());
         let frame = self.timeline.frame_before(step);
@@ -373,7 +375,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         Ok(())
     }
 
-    /// Goes to the end: applies the calls after the last update too. A recording of a world that was never updated
+    /// Goes to the end: also applies the calls after the last update. A recording of a world that was never updated
     /// has all of its objects there.
     ///
     /// # Errors
@@ -383,7 +385,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         self.finish()
     }
 
-    /// Applies all calls from here on.
+    /// Applies all remaining calls.
     fn finish(&mut self) -> Result<(), ReadError> {
         while self.offset < self.cursor.offset() {
             self.apply_next()?;
@@ -391,7 +393,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         Ok(())
     }
 
-    /// A new world before a key frame, or before the first call.
+    /// Makes a new world before a key frame, or before the first call.
     fn restart(&mut self, mark: FrameMark) -> Result<(), ReadError> {
         let FrameMark { step, offset, .. } = mark;
         let made = Player::new(self.resources.margin);
@@ -416,10 +418,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     }
 }
 
-/// Plays a whole recording and compares every hash: `None` if the replay is the recording, to the bit.
+/// Replays a whole recording and compares every hash. Returns `None` if the replay equals the recording, to the bit.
 ///
-/// Where the hash of the state differs, the hashes of its objects, which the recording has unless it was packed,
-/// name the first object in order of the handles.
+/// If the hash of the state differs, the hashes of its objects name the first differing object by handle. The
+/// recording has them unless it was packed.
 ///
 /// # Errors
 /// As [`Replay::open`] and [`Replay::seek`].
@@ -428,7 +430,7 @@ pub fn validate<N: Recordable<D>, const D: usize, T: RecordData>(
     registry: &Registry<N, D, T>,
 ) -> Result<Option<Divergence>, ReadError> {
     let mut replay = Replay::open(bytes, registry)?;
-    // Every call from the first on, whatever key frames there are.
+    // Every call from the first one on, regardless of key frames.
     replay.finish()?;
     Ok(replay.divergence)
 }

@@ -1,4 +1,4 @@
-//! Shapes as data: what the constructors of the library take.
+//! Shapes as data: the arguments of the constructors of the library.
 
 use impinge::math::{Point, Space, Unit, Vector};
 use impinge::shape::{
@@ -10,7 +10,7 @@ use crate::bytes::{Sink, Source};
 use crate::error::{Problem, ReadError, RecordError};
 use crate::space::{Recordable, Scalar};
 
-/// A shape by value. Shapes within it are named by their number among the shapes of the recording.
+/// A shape by value. Shapes within it are numbers in the list of shapes of the recording.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(missing_docs, reason = "the fields are the arguments of the constructors")]
 pub enum ShapeData<N: Space<D>, const D: usize> {
@@ -35,28 +35,28 @@ pub enum ShapeData<N: Space<D>, const D: usize> {
     HeightField(Field<N, D>),
 }
 
-/// Written for the sides of a body; for those of a skin whether it has one only.
+/// The value of the field of sides for a solid body; for a surface the field is whether it has one side only.
 const SOLID: u8 = 2;
 
-/// The arguments of a mesh of triangles or a line of segments.
+/// The arguments of a triangle mesh or a polyline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh<N: Space<D>, const D: usize, const ENDS: usize> {
     /// The vertices.
     pub vertices: Vec<Point<N, D>>,
-    /// The corners of each part.
+    /// The vertex indices of each part.
     pub parts: Vec<[u32; ENDS]>,
-    /// Nothing touches it from behind, as of a solid.
+    /// Whether it has no contacts from behind, as a solid has none.
     pub is_one_sided: bool,
-    /// It is a body, not a skin.
+    /// Whether it is solid, not a surface.
     pub is_solid: bool,
-    /// Contacts treat each part on its own.
+    /// Whether contacts treat each part separately.
     pub keeps_internal_edges: bool,
 }
 
 /// The arguments of a height field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field<N: Space<D>, const D: usize> {
-    /// How many heights a row has; all of them in 2D.
+    /// The number of heights in a row; in 2D all of them.
     pub columns: usize,
     /// The heights, row by row.
     pub heights: Vec<N>,
@@ -64,13 +64,13 @@ pub struct Field<N: Space<D>, const D: usize> {
     pub scale: Vector<N, D>,
     /// For each cell: bits 0 and 1 for removed parts, bit 2 for a backward diagonal.
     pub marks: Vec<u8>,
-    /// Nothing touches it from behind.
+    /// Whether it has no contacts from behind.
     pub is_one_sided: bool,
-    /// Contacts treat each part on its own.
+    /// Whether contacts treat each part separately.
     pub keeps_internal_edges: bool,
 }
 
-/// The shape as data; `number` gives the number of a shape within it. `None` for a type of the user's own.
+/// Returns the shape as data; `number` returns the number of a shape within it. `None` for a user type.
 pub(crate) fn data_of<N: Recordable<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     number: &mut dyn FnMut(&ShapeHandle<N, D>) -> Result<u32, RecordError>,
@@ -90,7 +90,7 @@ pub(crate) fn data_of<N: Recordable<D>, const D: usize>(
     Ok(data.or_else(|| N::own_data(&**shape)))
 }
 
-/// The convex solids of both dimensions, and the half-space.
+/// Returns the data of convex solids of both dimensions, and of the half-space.
 fn solid_data<N: Recordable<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
 ) -> Option<ShapeData<N, D>> {
@@ -114,7 +114,7 @@ fn solid_data<N: Recordable<D>, const D: usize>(
     })
 }
 
-/// The composites with vertices.
+/// Returns the data of composites with vertices.
 fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeData<N, D>> {
     if let Some(line) = shape.as_shape::<Polyline<N, D>>() {
         return Some(ShapeData::Polyline(Mesh {
@@ -135,7 +135,7 @@ fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
     }))
 }
 
-/// The two shapes, of the same data, join their parts in the same way.
+/// Whether the two shapes, of equal data, join their parts in the same way.
 pub(crate) fn joins_alike<N: Recordable<D>, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,
@@ -159,10 +159,11 @@ pub(crate) fn joins_alike<N: Recordable<D>, const D: usize>(
 }
 
 impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
-    /// The shape, by the constructors that check their arguments; `shape` gives those within it, and those with names.
+    /// Makes the shape, by the constructors that check their arguments; `shape` returns the shapes within it, and
+    /// named ones.
     ///
     /// # Errors
-    /// If a constructor refuses the numbers, if `shape` does, or if this dimension has no such shape.
+    /// If a constructor rejects the values, if `shape` returns an error, or if this dimension has no such shape.
     pub fn make(
         &self,
         shape: &dyn Fn(u32) -> Result<ShapeHandle<N, D>, Problem>,
@@ -194,7 +195,7 @@ impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
         })
     }
 
-    /// The numbers of the shapes within it.
+    /// Returns the numbers of the shapes within it.
     pub(crate) fn inner(&self) -> Vec<u32> {
         match self {
             Self::Rounded { shape, .. } => vec![*shape],
@@ -204,14 +205,14 @@ impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
     }
 }
 
-/// The half-space of a normal, which is not normalized: that could change its bits.
+/// Makes the half-space of a normal, which is not normalized: that could change its bits.
 fn half_space<N: Recordable<D>, const D: usize>(
     normal: &Vector<N, D>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
     Ok(ShapeHandle::new(Plane::<N, D>::try_new(Unit::new_unchecked(*normal))?))
 }
 
-/// The line of its arguments.
+/// Makes a polyline of its arguments.
 fn line_of_parts<N: Recordable<D>, const D: usize>(
     mesh: &Mesh<N, D, 2>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
@@ -222,7 +223,7 @@ fn line_of_parts<N: Recordable<D>, const D: usize>(
     Ok(ShapeHandle::new(line))
 }
 
-/// The mesh of its arguments.
+/// Makes a mesh of its arguments.
 fn mesh_of_parts<N: Recordable<D>, const D: usize>(
     parts: &Mesh<N, D, 3>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
@@ -233,14 +234,14 @@ fn mesh_of_parts<N: Recordable<D>, const D: usize>(
     Ok(ShapeHandle::new(mesh))
 }
 
-/// The fields of shapes.
+/// Writes the fields of shapes.
 impl Sink {
-    /// Points whose count the reader knows.
+    /// Writes points whose count the reader knows.
     pub(crate) fn points<N: Scalar, const D: usize>(&mut self, points: &[Point<N, D>]) {
         points.iter().for_each(|point| self.numbers(point.coords.as_slice()));
     }
 
-    /// Points with their count.
+    /// Writes points with their count.
     fn point_list<N: Scalar, const D: usize>(&mut self, points: &[Point<N, D>]) {
         self.count(points.len());
         self.points(points);
@@ -250,7 +251,7 @@ impl Sink {
         self.numbers(&N::isometry_numbers(isometry));
     }
 
-    /// Vertices, parts, the number of sides and a flag.
+    /// Writes vertices, parts, the number of sides and a flag.
     fn mesh<N: Recordable<D>, const D: usize, const ENDS: usize>(
         &mut self,
         mesh: &Mesh<N, D, ENDS>,
@@ -263,7 +264,7 @@ impl Sink {
         self.flag(mesh.keeps_internal_edges);
     }
 
-    /// The count of heights in a row, the heights, the scale, the marks and two flags.
+    /// Writes the number of heights in a row, the heights, the scale, the marks and two flags.
     fn field<N: Recordable<D>, const D: usize>(&mut self, field: &Field<N, D>) {
         self.count(field.columns);
         self.count(field.heights.len());
@@ -274,7 +275,7 @@ impl Sink {
         self.flag(field.keeps_internal_edges);
     }
 
-    /// The points, then the loops of the faces.
+    /// Writes the points, then the loops of the faces.
     fn hull<N: Scalar, const D: usize>(&mut self, points: &[Point<N, D>], faces: &[Vec<u32>]) {
         self.point_list(points);
         self.count(faces.len());
@@ -284,7 +285,7 @@ impl Sink {
         }
     }
 
-    /// Positions and numbers of shapes that are defined before.
+    /// Writes positions and numbers of shapes that are defined before.
     fn children<N: Recordable<D>, const D: usize>(&mut self, children: &[(N::Isometry, u32)]) {
         self.count(children.len());
         for (at, child) in children {
@@ -293,7 +294,7 @@ impl Sink {
         }
     }
 
-    /// A kind, then the fields of the shape.
+    /// Writes a kind, then the fields of the shape.
     pub(crate) fn shape<N: Recordable<D>, const D: usize>(&mut self, shape: &ShapeData<N, D>) {
         self.byte(shape.kind());
         match shape {
@@ -355,7 +356,7 @@ impl<N: Space<D>, const D: usize> ShapeData<N, D> {
     }
 }
 
-/// The fields of shapes.
+/// Reads the fields of shapes.
 impl Source<'_> {
     pub(crate) fn vector<N: Scalar, const D: usize>(&mut self) -> Result<Vector<N, D>, ReadError> {
         let numbers = self.numbers::<N>(D)?;
@@ -380,7 +381,7 @@ impl Source<'_> {
         self.list(D * N::BYTES, Self::point)
     }
 
-    /// An isometry as it was, whether or not its rotation is one: the world refuses those that are not finite.
+    /// Reads an isometry unchanged, whether or not its rotation is valid: the world rejects those that are not finite.
     pub(crate) fn isometry<N: Recordable<D>, const D: usize>(
         &mut self,
     ) -> Result<N::Isometry, ReadError> {
@@ -419,12 +420,12 @@ impl Source<'_> {
         })
     }
 
-    /// Loops of corners: each takes four bytes at least, its count.
+    /// Reads loops of vertices: each takes at least the four bytes of its count.
     fn faces(&mut self) -> Result<Vec<Vec<u32>>, ReadError> {
         self.list(4, |source| source.list(4, Self::word))
     }
 
-    /// What [`Sink::shape`] wrote.
+    /// Reads a shape that [`Sink::shape`] wrote.
     pub(crate) fn shape<N: Recordable<D>, const D: usize>(
         &mut self,
     ) -> Result<ShapeData<N, D>, ReadError> {

@@ -1,4 +1,4 @@
-//! The shapes of a recording: each once, by number.
+//! The shapes of a recording: each is stored once and has a number.
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use crate::registry::Registry;
 use crate::shape_data::{ShapeData, data_of, joins_alike};
 use crate::space::Recordable;
 
-/// So deep may shapes nest: a rounded shape or compound is one deeper than what it holds.
+/// The largest nesting depth: a rounded shape or compound is one deeper than its content.
 pub const MAX_DEPTH: u32 = impinge::shape::MAX_NESTING;
 
-/// So many parts may a shape have, those of what it holds counted as often as it holds them.
+/// The largest number of parts of a shape; parts of a shared shape count for each use.
 pub const MAX_PARTS: usize = 1 << 20;
 
-/// A shape, and how large it is.
+/// A shape, with its depth and number of parts.
 #[derive(Clone, Debug)]
 struct SizedShape<N: Space<D>, const D: usize> {
     handle: ShapeHandle<N, D>,
@@ -31,12 +31,12 @@ pub(crate) struct ShapeTable<N: Space<D>, const D: usize> {
 }
 
 impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
-    /// Without shapes.
+    /// Creates an empty table.
     pub(crate) const fn new() -> Self {
         Self { shapes: Vec::new() }
     }
 
-    /// The shape of a number, if it is defined by now.
+    /// Returns the shape of a number, if it is defined already.
     pub(crate) fn get(&self, number: u32) -> Result<&ShapeHandle<N, D>, Problem> {
         let shape = self.shapes.get(number as usize);
         Ok(&shape.ok_or(Problem::NoSuchShape(number))?.handle)
@@ -52,7 +52,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         self.push(data, handle)
     }
 
-    /// The shape of some data, unless it would be too complex.
+    /// Makes the shape of some data; an error if it would be too complex.
     fn make<T>(
         &self,
         data: &ShapeData<N, D>,
@@ -66,7 +66,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         data.make(&|number| self.get(number).cloned())
     }
 
-    /// How deep a shape of this data is, and how many parts those within it have.
+    /// Returns the depth of a shape of this data, and the number of parts of the shapes within it.
     fn check(&self, data: &ShapeData<N, D>) -> Result<[usize; 2], Problem> {
         let (mut depth, mut parts) = (0, 0_usize);
         for number in data.inner() {
@@ -78,7 +78,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         if is_simple { Ok([depth as usize, parts]) } else { Err(Problem::TooComplex) }
     }
 
-    /// Gives the next number to a shape made of some data.
+    /// Assigns the next number to a shape made of some data.
     fn push(&mut self, data: &ShapeData<N, D>, handle: ShapeHandle<N, D>) -> Result<(), Problem> {
         let [depth, inner] = self.check(data)?;
         let own = handle.geometry().as_composite().map_or(1, |parts| parts.num_parts() as usize);
@@ -88,29 +88,30 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
     }
 }
 
-/// The shapes that a recorder has met. It keeps each of them alive: their addresses are their identities.
+/// The shapes that a recorder has seen. They are kept alive: their addresses are their identities.
 #[derive(Clone, Debug)]
 pub(crate) struct KnownShapes<N: Space<D>, const D: usize> {
     table: ShapeTable<N, D>,
-    /// The number of the shape at an address. It is looked up only: the order of addresses means nothing.
+    /// For each address the number of the shape. It is used for look-ups only: nothing depends on the order of
+    /// addresses.
     numbers: BTreeMap<usize, u32>,
-    /// Those that are not written yet.
+    /// The shapes that are not written yet.
     pub(crate) unwritten: Vec<ShapeData<N, D>>,
 }
 
 impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
-    /// A recorder has met none.
+    /// Creates an empty set.
     pub(crate) fn new() -> Self {
         Self { table: ShapeTable::new(), numbers: BTreeMap::new(), unwritten: Vec::new() }
     }
 
-    /// The number of a shape, which is new if it was not met before.
+    /// Returns the number of a shape; a new one if it was not seen before.
     pub(crate) fn number<T>(
         &mut self,
         shape: &ShapeHandle<N, D>,
         registry: &Registry<N, D, T>,
     ) -> Result<u32, RecordError> {
-        // The shape is kept alive below, so that no other one comes to have its address.
+        // The shape is kept alive below, so that no other shape gets its address.
         let address = std::ptr::from_ref(&**shape).cast::<()>().addr();
         if let Some(&number) = self.numbers.get(&address) {
             return Ok(number);
@@ -128,8 +129,8 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
         Ok(number)
     }
 
-    /// The data make the shape again: the same data, and parts that are joined in the same way. A mesh whose vertices
-    /// were moved keeps the joints that it was made with, which its vertices alone do not say.
+    /// Checks that the data reproduce the shape: the same data, and parts that are joined in the same way. A mesh
+    /// with moved vertices keeps the adjacency that it was made with, which does not follow from its vertices.
     fn check<T>(
         &self,
         data: &ShapeData<N, D>,
@@ -150,7 +151,7 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
     }
 }
 
-/// The name that the registry has for a shape of the user's own.
+/// Returns the name in the registry of a shape of a user type.
 fn named<N: Recordable<D>, const D: usize, T>(
     shape: &ShapeHandle<N, D>,
     registry: &Registry<N, D, T>,

@@ -1,4 +1,4 @@
-//! What recordings need of a scalar and a dimension.
+//! Requirements of recordings on a scalar and a dimension.
 
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Real, Space};
@@ -12,10 +12,10 @@ use crate::shape_data::{Field, ShapeData};
 
 /// The scalars of recordings: `f32` and `f64`.
 pub trait Scalar: Real {
-    /// How many bytes a number takes.
+    /// The number of bytes of a number.
     const BYTES: usize;
 
-    /// The number of these bits: the inverse of [`Real::bits`].
+    /// Returns the number of these bits: the inverse of [`Real::bits`].
     fn of_bits(bits: u64) -> Self;
 }
 
@@ -38,52 +38,52 @@ impl Scalar for f64 {
 
 /// A scalar and a dimension whose worlds can be recorded: every [`Scalar`] with `D` = 2 and `D` = 3.
 pub trait Recordable<const D: usize>: Space<D> + Scalar {
-    /// How many numbers describe an isometry.
+    /// The number of scalars that describe an isometry.
     const ISOMETRY_NUMBERS: usize;
 
-    /// The numbers of an isometry: the translation, then cosine and sine of the rotation in 2D, the
+    /// Returns the scalars of an isometry: the translation, then cosine and sine of the rotation in 2D, the
     /// components i, j, k, w of its quaternion in 3D.
     fn isometry_numbers(isometry: &Self::Isometry) -> Vec<Self>;
 
-    /// The isometry of these numbers, as they are: the rotation is not normalized. `None` for another
-    /// count of numbers.
+    /// Returns the isometry of these scalars, unchanged: the rotation is not normalized. `None` if their number
+    /// is wrong.
     fn isometry_of(numbers: &[Self]) -> Option<Self::Isometry>;
 
-    /// The shapes of one dimension as data; `None` for others.
+    /// Returns shapes that exist in one dimension only as data; `None` for others.
     fn own_data(shape: &dyn Shape<Self, D>) -> Option<ShapeData<Self, D>>;
 
-    /// The shape of [`Self::own_data`].
+    /// Makes a shape of the data of [`Self::own_data`].
     ///
     /// # Errors
-    /// If the library refuses the numbers, or the data is of no shape of this dimension.
+    /// If the library rejects the values, or this dimension has no shape of this data.
     fn own_shape(data: &ShapeData<Self, D>) -> Result<ShapeHandle<Self, D>, Problem>;
 
-    /// The line with one side, in 2D; the line itself in 3D.
+    /// Returns the one-sided polyline in 2D; in 3D the polyline itself.
     fn one_sided_line(line: Polyline<Self, D>) -> Polyline<Self, D>;
 
-    /// The mesh with one side, in 3D; the mesh itself in 2D.
+    /// Returns the one-sided mesh in 3D; in 2D the mesh itself.
     fn one_sided_mesh(mesh: TriMesh<Self, D>) -> TriMesh<Self, D>;
 
-    /// The line as a body, in 2D; the line itself in 3D.
+    /// Returns the solid polyline in 2D; in 3D the polyline itself.
     ///
     /// # Errors
-    /// If the line bounds nothing or is inside out.
+    /// If the polyline bounds no area or is inside out.
     fn solid_line(line: Polyline<Self, D>) -> Result<Polyline<Self, D>, MeshError>;
 
-    /// The mesh as a body, in 3D; the mesh itself, which is filled, in 2D.
+    /// Returns the solid mesh in 3D; in 2D the mesh itself, which is filled.
     ///
     /// # Errors
-    /// If the mesh bounds nothing or is inside out.
+    /// If the mesh bounds no volume or is inside out.
     fn solid_mesh(mesh: TriMesh<Self, D>) -> Result<TriMesh<Self, D>, MeshError>;
 }
 
-/// Neither dimension has a shape of this data.
+/// The dimension has no shape of this data.
 const FOREIGN: Problem = Problem::BadValue { what: "the kind of a shape" };
 
 impl<N: Scalar> Recordable<2> for N {
     const ISOMETRY_NUMBERS: usize = 4;
 
-    /// The complex number is unit up to rounding and is written as it is: to normalize it could change bits.
+    /// The complex number is unit up to rounding and is written unchanged: normalizing it could change bits.
     fn isometry_numbers(isometry: &Isometry2<N>) -> Vec<N> {
         let (translation, turn) = (&isometry.translation.vector, isometry.rotation.as_ref());
         vec![translation.x, translation.y, turn.re, turn.im]
@@ -188,14 +188,14 @@ impl<N: Scalar> Recordable<3> for N {
     }
 }
 
-/// The faces are left out where the hull of the points alone is the same to the bit.
+/// The faces are omitted if the hull of the points alone is equal to the bit.
 fn hull_data<N: Scalar>(hull: &ConvexHull<N>, faces: Vec<Vec<u32>>) -> ShapeData<N, 3> {
     let points = hull.vertices().to_vec();
     let is_given_by_points = hull_of(&points, &[]).is_ok_and(|other| other == *hull);
     ShapeData::Hull { points, faces: if is_given_by_points { Vec::new() } else { faces } }
 }
 
-/// Without faces the hull of the points.
+/// Without faces, makes the hull of the points.
 fn hull_of<N: Scalar>(
     points: &[Point<N, 3>],
     faces: &[Vec<u32>],
@@ -210,7 +210,7 @@ fn hull_of<N: Scalar>(
 const HOLES: [u8; 2] = [1, 2];
 const BACKWARD: u8 = 4;
 
-/// The arguments of a height field in 2D: a mark for each segment.
+/// Returns the arguments of a height field in 2D: a mark for each segment.
 fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
     let holes = (0..).take(field.num_cells()).map(|cell| u8::from(field.is_hole(cell)));
     Field {
@@ -223,7 +223,7 @@ fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
     }
 }
 
-/// The height field of these arguments, in 2D.
+/// Makes the height field of these arguments, in 2D.
 fn line_of<N: Scalar>(data: &Field<N, 2>) -> Result<HeightField<N, 2>, Problem> {
     let field = HeightField::<N, 2>::try_new(data.heights.clone(), data.scale)?;
     check_marks(data, field.num_cells(), HOLES[0])?;
@@ -232,8 +232,8 @@ fn line_of<N: Scalar>(data: &Field<N, 2>) -> Result<HeightField<N, 2>, Problem> 
     Ok(if data.keeps_internal_edges { field.with_internal_edges_kept() } else { field })
 }
 
-/// The arguments of a height field in 3D: a mark for each cell of two triangles. Whatever rule the diagonals were
-/// made by, each is written.
+/// Returns the arguments of a height field in 3D: a mark for each cell of two triangles. Each diagonal is
+/// written, whatever rule made it.
 fn sheet_data<N: Scalar>(field: &HeightField<N, 3>) -> Field<N, 3> {
     let columns = field.columns() - 1;
     let mark = |cell: u32| {
@@ -254,7 +254,7 @@ fn sheet_data<N: Scalar>(field: &HeightField<N, 3>) -> Field<N, 3> {
     }
 }
 
-/// The height field of these arguments, in 3D. Heights that make no whole rows are refused by the constructor.
+/// Makes the height field of these arguments, in 3D. The constructor rejects heights that make no whole rows.
 fn sheet_of<N: Scalar>(data: &Field<N, 3>) -> Result<HeightField<N, 3>, Problem> {
     let rows = data.heights.len() / data.columns.max(1);
     let heights = data.heights.clone();
@@ -274,7 +274,7 @@ fn sheet_of<N: Scalar>(data: &Field<N, 3>) -> Result<HeightField<N, 3>, Problem>
     Ok(if data.keeps_internal_edges { field.with_internal_edges_kept() } else { field })
 }
 
-/// A mark for each cell, of known bits.
+/// Checks that there is a mark for each cell, with known bits only.
 fn check_marks<N: Recordable<D>, const D: usize>(
     field: &Field<N, D>,
     cells: usize,

@@ -1,4 +1,4 @@
-//! Hashes of a world after an update: of the whole, of its events, and of each object that changed.
+//! Hashes of a world after an update: of the whole state, of its events, and of each changed object.
 
 use impinge::narrow_phase::{ContactEvent, ContactPair, GeometricQueryType, ProximityEvent};
 use impinge::query::{ContactPoint, Proximity};
@@ -9,38 +9,38 @@ use crate::divergence::{Difference, ObjectField};
 use crate::marks::EventCounts;
 use crate::space::Recordable;
 
-/// The hashes of an object, as they are recorded.
+/// The recorded hashes of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ObjectHashes {
     /// The index of the object.
     pub(crate) index: u32,
-    /// The state of the object as calls have made it.
+    /// The hash of the properties that calls have set.
     pub(crate) description: u32,
-    /// Of the pairs in which the object is the first, with their contacts.
+    /// The hash of the pairs in which the object is the first, with their contacts.
     pub(crate) pairs: u32,
 }
 
-/// What an update is recorded with.
+/// The hashes and counts that are recorded with an update.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Observation {
-    /// Of all objects and pairs.
+    /// The hash of all objects and pairs.
     pub(crate) state: u64,
-    /// Of the events of the update.
+    /// The hash of the events of the update.
     pub(crate) events: u64,
-    /// How many events of each kind the update had; version 1 of the format does not say.
+    /// The number of events of each kind in the update; `None` in version 1 of the format.
     pub(crate) counts: Option<EventCounts>,
-    /// The objects whose hashes are others than after the update before, in order; packed recordings leave
-    /// them out.
+    /// The objects whose hashes differ from those after the previous update, in order; packed recordings
+    /// omit them.
     pub(crate) changed: Option<Vec<ObjectHashes>>,
 }
 
-/// What is remembered from one update to the next.
+/// The state that is kept from one update to the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Observer {
-    /// The number of the pair of the first contact: numbers of pairs are relative to it, since they count
-    /// on over an exchange of phases.
+    /// The number of the pair of the first contact. Numbers of pairs are relative to it, since they
+    /// continue after an exchange of phases.
     first_pair: Option<u64>,
-    /// The hashes by index, of indices that never held an object zero.
+    /// The hashes by index; zero for indices that never had an object.
     known: Vec<[u32; 2]>,
 }
 
@@ -76,13 +76,13 @@ impl Observer {
         Observation { state, events, counts, changed: Some(changed) }
     }
 
-    /// The hashes by index after the recorded changes, of which those of indices that are used no more are
-    /// out of date.
+    /// Returns the hashes by index after the recorded changes. The hashes of indices that are no longer
+    /// used are out of date.
     pub(crate) fn after(&self, changed: &[ObjectHashes]) -> Vec<[u32; 2]> {
         let mut known = self.known.clone();
         for ObjectHashes { index, description, pairs } in changed {
             let index = *index as usize;
-            // An index beyond the next one is of no recorder.
+            // An index beyond the next one was not written by a recorder.
             known.resize(known.len().max(index.min(known.len()) + 1), [0; 2]);
             if let Some(hashes) = known.get_mut(index) {
                 *hashes = [*description, *pairs];
@@ -91,7 +91,7 @@ impl Observer {
         known
     }
 
-    /// The first object whose hashes are not those recorded.
+    /// Returns the first object whose hashes differ from the recorded ones.
     pub(crate) fn difference(&self, recorded: &[[u32; 2]]) -> Option<Difference> {
         let living = self.known.iter().enumerate().filter(|(_, hashes)| **hashes != [0; 2]);
         for (index, own) in living {
@@ -105,7 +105,7 @@ impl Observer {
         None
     }
 
-    /// By index: a hash of the pairs in which an object is the first.
+    /// Returns by index a hash of the pairs in which an object is the first.
     fn pair_digests<N: Recordable<D>, const D: usize, T>(
         &mut self,
         world: &CollisionWorld<N, D, T>,
@@ -125,7 +125,7 @@ impl Observer {
         digests
     }
 
-    /// All manifolds of a pair, in their order.
+    /// Adds all manifolds of a pair, in their order.
     fn contacts<N: Recordable<D>, const D: usize>(
         &mut self,
         pair: ContactPair<'_, N, D>,
@@ -137,7 +137,7 @@ impl Observer {
         }
     }
 
-    /// Geometry, id, features and parts of a contact.
+    /// Adds geometry, id, features and parts of a contact.
     fn point<N: Recordable<D>, const D: usize>(
         &mut self,
         point: &ContactPoint<N, D>,
@@ -158,7 +158,7 @@ impl Observer {
     }
 }
 
-/// Position, groups, query type, and what few objects have: what calls have made of an object.
+/// Adds position, groups, query type, and rare properties: the state that calls have set.
 fn description_digest<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     object: &CollisionObject<N, D, T>,
@@ -188,7 +188,7 @@ fn description_digest<N: Recordable<D>, const D: usize, T>(
     digest
 }
 
-/// The events of the last update, in order.
+/// Returns the hash of the events of the last update, in order.
 fn events_hash<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> u64 {
     let mut digest = Digest::new();
     for event in world.contact_events() {
@@ -207,7 +207,7 @@ fn events_hash<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D,
     digest.finish()
 }
 
-/// A number for each status that does not depend on the order of the library's variants.
+/// Returns a number for each status that does not depend on the order of the library's variants.
 const fn proximity_number(proximity: Proximity) -> u64 {
     match proximity {
         Proximity::Intersecting => 2,

@@ -1,9 +1,9 @@
-//! Bodies that fall, push each other and come to rest: enough dynamics for piles and stacks to look right.
+//! Rigid bodies that fall, collide and come to rest: a minimal solver for the samples with piles and stacks.
 //!
-//! It is no part of the library, which computes contacts and leaves motion to its users. The method is sequential
-//! impulses with warm starts (Catto, "Iterative dynamics with temporal coherence", 2005): each contact point gets the
-//! impulse that stops its approach, in turn and several times, starting from the impulse that the point with the
-//! same id had a step before.
+//! The library itself computes contacts and leaves motion to its users. The method is sequential impulses with warm
+//! starts (Catto, "Iterative dynamics with temporal coherence", 2005): each contact point gets the impulse that stops
+//! its approach, in turn and several times, starting from the impulse of the point with the same id in the previous
+//! step.
 
 use std::collections::BTreeMap;
 
@@ -18,59 +18,59 @@ use crate::{Isometry, SampleError, TIME_STEP, World};
 const ITERATIONS: usize = 20;
 const GRAVITY: f32 = 10.0;
 const FRICTION: f32 = 0.5;
-/// An overlap that is left alone, so that contacts last.
+/// A penetration that is not corrected, so that contacts persist.
 const SLOP: f32 = 0.005;
-/// The share of a deeper overlap that is gone after a step.
+/// The share of a deeper penetration that is corrected in a step.
 const RECOVERY: f32 = 0.2;
-/// Slower bodies stay where they are.
+/// Bodies slower than this are not moved.
 const REST_SPEED: f32 = 0.03;
 
-/// A body that moves. Its mass is that of a cube, so that it turns as easily about every axis.
+/// A moving body. It has the inertia of a cube, which is the same about every axis.
 #[derive(Clone, Debug)]
 struct Body<const D: usize> {
     /// The object of the world.
     object: CollisionObjectHandle,
-    /// Zero would be a body that nothing moves.
+    /// Zero for a body of infinite mass.
     inverse_mass: f32,
-    /// The same about every axis.
+    /// Equal about every axis.
     inverse_inertia: f32,
-    /// Of the centre, per second.
+    /// The velocity of the centre, per second.
     velocity: Vector<f32, D>,
-    /// The velocity of a point seen from the centre is this matrix times its place.
+    /// The angular velocity as a matrix: it maps a point relative to the centre to its velocity.
     spin: Matrix<f32, D>,
 }
 
-/// A contact point that the solver works on.
+/// A contact point in the solver.
 #[derive(Clone, Debug)]
 struct Row<const D: usize> {
     id: ContactId,
-    /// Indices of bodies; `None` for what does not move.
+    /// Indices of bodies; `None` for an object that does not move.
     bodies: [Option<usize>; 2],
-    /// The point, seen from both centres.
+    /// The point relative to both centres.
     arms: [Vector<f32, D>; 2],
     normal: Vector<f32, D>,
-    /// The least speed of parting along the normal; negative while there is a gap to close.
+    /// The target speed of separation along the normal; negative while there is a gap.
     speed: f32,
     impulse: Impulse<D>,
 }
 
-/// What a contact point has got so far.
+/// The accumulated impulse of a contact point.
 #[derive(Clone, Copy, Debug)]
 struct Impulse<const D: usize> {
     /// Along the normal; never negative.
     normal: f32,
-    /// Across it.
+    /// Tangential to the contact.
     friction: Vector<f32, D>,
 }
 
-/// The bodies of a world. What is not among them does not move.
+/// The bodies of a world. Other objects do not move.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bodies<const D: usize> {
     /// In the order in which they were added.
     bodies: Vec<Body<D>>,
     /// The index of each object.
     indices: BTreeMap<CollisionObjectHandle, usize>,
-    /// Of the last step, by the ids of contacts, which stay while the same features meet.
+    /// The impulses of the last step by contact id, which persists while the contact moves.
     impulses: BTreeMap<ContactId, Impulse<D>>,
 }
 
@@ -78,7 +78,7 @@ impl<const D: usize> Bodies<D>
 where
     f32: Recordable<D>,
 {
-    /// Lets an object fall, whose mass is that of a cube with a half width.
+    /// Adds an object as a falling body, with the mass of a cube of this half width.
     pub(crate) fn add(&mut self, object: CollisionObjectHandle, half_width: f32) {
         let mass = (0..D).fold(1.0, |mass, _| mass * 2.0 * half_width);
         let body = Body {
@@ -92,7 +92,7 @@ where
         self.bodies.push(body);
     }
 
-    /// Gives a body a velocity.
+    /// Sets the velocity of a body.
     pub(crate) fn push(&mut self, object: CollisionObjectHandle, velocity: Vector<f32, D>) {
         if let Some(index) = self.indices.get(&object) {
             self.bodies[*index].velocity = velocity;
@@ -104,14 +104,14 @@ where
         self.bodies.iter().map(|body| body.velocity.norm()).fold(0.0, max)
     }
 
-    /// Moves the bodies by a step, pushed by gravity and by the contacts of the last update.
+    /// Advances the bodies by a step, under gravity and the contacts of the last update.
     pub(crate) fn advance(&mut self, world: &mut World<D>) -> Result<(), SampleError> {
         for body in &mut self.bodies {
             body.velocity[1] -= GRAVITY * TIME_STEP;
         }
         let mut rows = self.rows(world);
         for row in &rows {
-            // A warm start: most of the work was done a step before.
+            // Warm start: applies the impulse of the previous step.
             let push = row.normal * row.impulse.normal + row.impulse.friction;
             self.apply(row, &push);
         }
@@ -121,7 +121,7 @@ where
             }
         }
         self.impulses = rows.iter().map(|row| (row.id, row.impulse)).collect();
-        // All positions are set at once: the world takes all or none.
+        // All positions are set in one call: the world accepts all or none.
         let moved: Vec<_> = self.bodies.iter_mut().filter_map(|body| body.moved(world)).collect();
         Ok(world.set_positions(&moved)?)
     }
@@ -147,10 +147,10 @@ where
         point: &ContactPoint<f32, D>,
     ) -> Row<D> {
         let contact = &point.contact;
-        // Between the two surfaces, so that both bodies have the same lever.
+        // The middle between the two surface points, so that both bodies have the same lever.
         let middle = (contact.world1.coords + contact.world2.coords) * 0.5;
         let depth = contact.depth;
-        // A gap may be closed within a step; an overlap is undone slowly, which keeps piles calm.
+        // A gap may be closed within a step; a penetration is corrected slowly, which keeps piles stable.
         let closing = if depth < 0.0 { depth } else { RECOVERY * max(depth - SLOP, 0.0) };
         let none = Impulse { normal: 0.0, friction: Vector::<f32, D>::zeros() };
         Row {
@@ -163,7 +163,7 @@ where
         }
     }
 
-    /// Corrects the impulse of a point: none ever pulls, and friction is bounded by the push (Coulomb).
+    /// Corrects the impulse of a point: the normal impulse is never negative, and friction is bounded by it (Coulomb).
     fn solve(&mut self, row: &mut Row<D>) {
         let normal = row.normal;
         let parting = self.relative_velocity(row).dot(&normal);
@@ -173,7 +173,7 @@ where
         row.impulse.normal = wanted;
 
         let velocity = self.relative_velocity(row);
-        // What is left of the velocity along the surface is slowed down.
+        // Friction reduces the remaining tangential velocity.
         let sliding = velocity - normal * velocity.dot(&normal);
         let direction = unit_or(&sliding, Vector::<f32, D>::zeros());
         let friction = row.impulse.friction - sliding * self.mass(row, &direction);
@@ -184,7 +184,7 @@ where
         row.impulse.friction = friction;
     }
 
-    /// The velocity of the second body at the point, seen from the first.
+    /// Returns the velocity of the second body at the point, relative to the first.
     fn relative_velocity(&self, row: &Row<D>) -> Vector<f32, D> {
         let velocity = |side: usize| {
             let body = row.bodies[side].map(|index| &self.bodies[index]);
@@ -194,7 +194,7 @@ where
         velocity(1) - velocity(0)
     }
 
-    /// The impulse along a direction that changes the relative speed by 1.
+    /// Returns the impulse along a direction that changes the relative speed by 1 (the effective mass).
     fn mass(&self, row: &Row<D>, direction: &Vector<f32, D>) -> f32 {
         let inverse = |side: usize| {
             let body = row.bodies[side].map(|index| &self.bodies[index]);
@@ -205,13 +205,13 @@ where
         1.0 / (inverse(0) + inverse(1))
     }
 
-    /// Pushes the second body by an impulse at the point, and the first one back.
+    /// Applies an impulse to the second body at the point, and the opposite to the first.
     fn apply(&mut self, row: &Row<D>, impulse: &Vector<f32, D>) {
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
             if let Some(index) = row.bodies[side] {
                 let (body, push) = (&mut self.bodies[index], impulse * sign);
                 body.velocity += push * body.inverse_mass;
-                // The plane of the turn is that of the lever and the push: an antisymmetric matrix in both dimensions.
+                // The rotation is in the plane of lever and impulse: an antisymmetric matrix in both dimensions.
                 let moment = push * row.arms[side].transpose();
                 body.spin += (moment - moment.transpose()) * body.inverse_inertia;
             }
@@ -223,9 +223,9 @@ impl<const D: usize> Body<D>
 where
     f32: Recordable<D>,
 {
-    /// The position after a step; `None` for a body at rest.
+    /// Returns the position after a step; `None` for a body at rest.
     fn moved(&mut self, world: &World<D>) -> Option<(CollisionObjectHandle, Isometry<D>)> {
-        // A little of every motion is lost, as it is to air.
+        // A small damping of all motion, as by air.
         self.velocity *= 0.998;
         self.spin *= 0.99;
         if self.velocity.norm() < REST_SPEED && self.spin.norm() < REST_SPEED {
@@ -241,7 +241,7 @@ where
     }
 }
 
-/// The nearest columns that are perpendicular and of length 1, one after the other (Gram and Schmidt).
+/// Orthonormalizes the columns, one after the other (Gram-Schmidt).
 fn orthonormal<const D: usize>(mut matrix: Matrix<f32, D>) -> Matrix<f32, D> {
     for column in 0..D {
         let mut axis = matrix.column(column).into_owned();

@@ -16,10 +16,10 @@ use crate::samples::worlds::{
     scenery::Scenery, slide::Slide, waves::Waves,
 };
 
-/// Makes a row an entry for each of its dimensions, whose digit ends the name and the heading.
+/// Expands a row to an entry for each of its dimensions; the digit of the dimension ends the name and the heading.
 ///
-/// A row has the name, the heading, the dimensions, what a test looks for, the sample, and two sentences on what there
-/// is to see.
+/// A row has the name, the heading, the dimensions, the property that a test checks, the sample, and a description of
+/// two sentences.
 macro_rules! entries {
     ($(
         $name:literal, $title:literal, [$($make:ident $digit:literal),+], $shows:ident, $sample:expr,

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::SampleError;
 
-/// What a control is, and its value. It serializes with its name in lower case as the member `kind`.
+/// The kind of a control, and its value. It serializes with its name in lower case as the member `kind`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ControlKind {
@@ -19,10 +19,10 @@ pub enum ControlKind {
         min: f64,
         /// The greatest value.
         max: f64,
-        /// By how much a slider changes it; values between are taken as well.
+        /// The step of a slider; values between are accepted.
         step: f64,
     },
-    /// One of some words.
+    /// One of several words.
     Choice {
         /// The word.
         value: &'static str,
@@ -34,14 +34,14 @@ pub enum ControlKind {
         /// The value.
         value: bool,
     },
-    /// Something to be done once, at the next step.
+    /// An action that runs once, at the next step.
     Button,
 }
 
 /// A control, as a page displays it. It serializes as one object of all its members.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Control {
-    /// The name by which it is set; unique within a sample.
+    /// The unique name within a sample.
     pub name: &'static str,
     /// The text beside it.
     pub label: &'static str,
@@ -53,13 +53,13 @@ pub struct Control {
 /// A value for a control.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ControlValue {
-    /// Of a number.
+    /// The value of a number.
     Number(f64),
-    /// Of a choice.
+    /// The value of a choice.
     Choice(String),
-    /// Of a flag.
+    /// The value of a flag.
     Flag(bool),
-    /// Of a button.
+    /// A press of a button.
     Pressed,
 }
 
@@ -85,18 +85,18 @@ pub enum ControlValue {
 pub struct Panel {
     /// In the order in which they were declared.
     controls: Vec<Control>,
-    /// The names of the buttons whose action is still to be done.
+    /// The names of the pressed buttons whose action has not run yet.
     pressed: BTreeSet<&'static str>,
 }
 
 impl Panel {
-    /// No controls.
+    /// Creates a panel without controls.
     #[must_use]
     pub const fn new() -> Self {
         Self { controls: Vec::new(), pressed: BTreeSet::new() }
     }
 
-    /// With a number: its value at first, and the least value, the greatest, and the step.
+    /// Adds a number with its initial value, minimum, maximum and step.
     #[must_use]
     pub fn number(
         self,
@@ -108,7 +108,7 @@ impl Panel {
         self.with(name, label, ControlKind::Number { value, min, max, step })
     }
 
-    /// With a choice: the word at first, and all words.
+    /// Adds a choice with its initial word and all words.
     #[must_use]
     pub fn choice(
         self,
@@ -120,13 +120,13 @@ impl Panel {
         self.with(name, label, ControlKind::Choice { value, choices })
     }
 
-    /// With a flag.
+    /// Adds a flag.
     #[must_use]
     pub fn flag(self, name: &'static str, label: &'static str, value: bool) -> Self {
         self.with(name, label, ControlKind::Flag { value })
     }
 
-    /// With a button.
+    /// Adds a button.
     #[must_use]
     pub fn button(self, name: &'static str, label: &'static str) -> Self {
         self.with(name, label, ControlKind::Button)
@@ -143,10 +143,11 @@ impl Panel {
         &self.controls
     }
 
-    /// Sets a control; nothing changes where that is refused.
+    /// Sets a control; an invalid value changes nothing.
     ///
     /// # Errors
-    /// If no control has the name, the value is of another kind, out of bounds, NaN, or none of the words.
+    /// If no control has the name, or the value is of another kind, out of bounds, NaN, or not one of the
+    /// words.
     pub fn set(&mut self, name: &str, value: &ControlValue) -> Result<(), SampleError> {
         let control = self.controls.iter_mut().find(|control| control.name == name);
         let control = control.ok_or_else(|| SampleError::UnknownControl(name.to_owned()))?;

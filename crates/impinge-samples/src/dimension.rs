@@ -1,4 +1,4 @@
-//! What samples need of a dimension: its solids, surfaces and rotations.
+//! The shapes, surfaces and rotations of samples that differ by dimension.
 
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Real, Vector};
@@ -18,24 +18,24 @@ pub(crate) trait Dimension<const D: usize>: Recordable<D> {
     /// The names of all solids, the half-space last.
     const SOLIDS: &'static [&'static str];
 
-    /// All of them but the half-space, which is the last.
+    /// All solids except the half-space, which is the last.
     const BOUNDED: &'static [&'static str] = match Self::SOLIDS.split_last() {
         Some((_, bounded)) => bounded,
         None => &[],
     };
 
-    /// A solid of one dimension; `None` for those that both have.
+    /// Returns a solid that exists in this dimension only; `None` for those of both dimensions.
     fn own_solid(kind: &str, size: f32) -> Option<ShapeHandle<f32, D>>;
 
     /// The convex hull of points that span all dimensions.
     fn hull(points: &[Point<f32, D>]) -> ShapeHandle<f32, D>;
 
-    /// A surface `cells` wide, of cells of size 1 around the origin, whose height is a function of x and z; z is 0
-    /// in 2D. Triangles in 3D, segments in 2D.
+    /// Returns a surface that is `cells` wide, with cells of size 1 around the origin and with a height that is a
+    /// function of x and z; z is 0 in 2D. Triangles in 3D, segments in 2D.
     fn surface(cells: usize, kind: SurfaceKind, height: &HeightFunction<'_>)
     -> ShapeHandle<f32, D>;
 
-    /// The motion of a body that turns from x to y by so many radians per unit of time.
+    /// Returns the motion of a body that rotates from x to y by `turn` radians per unit of time.
     fn spinning(
         start: Self::Isometry,
         linear: Vector<f32, D>,
@@ -46,23 +46,23 @@ pub(crate) trait Dimension<const D: usize>: Recordable<D> {
     fn placed(placement: &Placement<D>) -> Self::Isometry;
 }
 
-/// The height over x and z.
+/// The height as a function of x and z.
 pub(crate) type HeightFunction<'a> = dyn Fn(f32, f32) -> f32 + 'a;
 
-/// How a surface is stored, and what its contacts are like.
+/// The kind of a surface and of its contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SurfaceKind {
-    /// A mesh or line, with contacts of the surface as a whole.
+    /// A mesh or polyline, with contacts of the surface as a whole.
     Mesh,
-    /// A mesh or line, with contacts of each triangle by itself.
+    /// A mesh or polyline, with contacts of each triangle or segment alone.
     MeshWithEdges,
-    /// A mesh or line, solid from below.
+    /// A one-sided mesh or polyline, without contacts from below.
     OneSidedMesh,
     /// A height field.
     Field,
 }
 
-/// A solid by its name; of a name that no solid has, a ball.
+/// Returns a solid by its name; a ball if the name is unknown.
 pub(crate) fn solid<const D: usize>(kind: &str, size: f32) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -78,7 +78,7 @@ where
         "tapered capsule" => {
             ShapeHandle::new(TaperedCapsule::new(0.6 * size, 0.5 * size, 0.25 * size))
         }
-        // A segment has no inside, nor has a triangle in 3D.
+        // A segment has no interior, nor has a triangle in 3D.
         "segment" => ShapeHandle::new(Segment::new(corner(-1.0, -0.3), corner(1.0, 0.3))),
         "triangle" => {
             let corners = (corner(-1.0, -0.6), corner(1.0, -0.6), corner(0.0, 0.9));
@@ -136,7 +136,7 @@ impl Dimension<2> for f32 {
                 vector([width, 1.0, 0.0]),
             ));
         }
-        // From right to left: what is on the left of a line is behind it.
+        // From right to left: the left side of a polyline is its back.
         let points = xs.rev().map(|x| Point::<Self, 2>::new(x, height(x, 0.0)));
         let line = Polyline::open(points.collect());
         ShapeHandle::new(match kind {
@@ -216,8 +216,8 @@ impl Dimension<3> for f32 {
     ) -> ShapeHandle<Self, 3> {
         let width = number(cells);
         let at = |n: usize| number(n) - 0.5 * width;
-        // Row by row along z, in each row along x: the order of a height field's heights.
-        // A mesh takes the same vertices, so that both kinds are one surface.
+        // Row by row along z, in each row along x: the order of the heights of a height field.
+        // A mesh has the same vertices, so that both kinds are the same surface.
         let vertices = (0..=cells).flat_map(|row| (0..=cells).map(move |column| [column, row]));
         let vertices = vertices.map(|[column, row]| {
             Point::<Self, 3>::new(at(column), height(at(column), at(row)), at(row))
@@ -246,7 +246,7 @@ impl Dimension<3> for f32 {
         linear: Vector<Self, 3>,
         turn: Self,
     ) -> Box<dyn RigidMotion<Self, 3>> {
-        // A turn from x to y is one about z.
+        // A rotation from x to y is about z.
         let angular = Vector::<Self, 3>::z() * turn;
         Box::new(ConstantVelocities::<Self, 3>::new(start, linear, angular))
     }

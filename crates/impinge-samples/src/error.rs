@@ -1,4 +1,4 @@
-//! Why a sample refuses something.
+//! Errors of samples.
 
 use core::fmt;
 
@@ -6,13 +6,13 @@ use impinge_record::RecordError;
 
 use crate::ControlValue;
 
-/// Why a sample refuses something. Where a control was refused, nothing has changed.
+/// An error of a sample. An invalid control has changed nothing.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SampleError {
     /// The sample has no control of this name.
     UnknownControl(String),
-    /// The control takes values of another kind.
+    /// The kind of the value differs from that of the control.
     WrongKind {
         /// The control.
         name: &'static str,
@@ -35,7 +35,7 @@ pub enum SampleError {
         /// The value.
         value: String,
     },
-    /// The world refuses a call: a position that is not finite, the handle of an object that is gone.
+    /// The world rejects a call: a position that is not finite, or the handle of a removed object.
     World(RecordError),
 }
 

@@ -25,21 +25,21 @@ impl Make {
     }
 }
 
-/// The number of its dimension.
+/// Serializes as the number of its dimension.
 impl Serialize for Make {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.dimension().serialize(serializer)
     }
 }
 
-/// What is to be seen of a sample within its first two seconds, for tests.
+/// The property of a sample that tests check within its first two seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
     /// A contact.
     Contacts,
-    /// An event of proximity.
+    /// A proximity event.
     ProximityEvents,
-    /// Something that is drawn beside the objects.
+    /// A drawing beside the objects.
     Drawing,
 }
 
@@ -50,12 +50,12 @@ pub struct Entry {
     pub name: &'static str,
     /// The heading.
     pub title: &'static str,
-    /// What to see, in two sentences.
+    /// A description in two sentences.
     pub about: &'static str,
-    /// What is to be seen soon.
+    /// The property that is visible soon after the start.
     #[serde(skip)]
     pub shows: Shows,
-    /// Makes it.
+    /// The constructor.
     #[serde(rename = "dimension")]
     pub make: Make,
 }

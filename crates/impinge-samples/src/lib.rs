@@ -1,11 +1,10 @@
-//! Samples: scenes with controls, to look at the library and to learn from.
+//! Samples: interactive scenes with controls, each about one subject of the library.
 //!
 //! [`entries`] is the gallery. Each [`Entry`] makes a [`Sample`], which [`Running`] runs: it owns the controls and the
-//! world, which is recorded, so that what was seen can be given to others as a file. A back end of `debug_render`
-//! draws it.
+//! world. The world is recorded, so that a run can be saved as a file. A back end of `debug_render` draws it.
 //!
-//! Samples compute in `f32` and use no time, no chance and no trigonometry of the platform: the same calls lead
-//! to the same bits on every machine.
+//! Samples compute in `f32` and use no clock, no random numbers and no trigonometry of the platform: the same calls
+//! give the same bits on every machine.
 //!
 //! ```
 //! use impinge_samples::{Make, Running, entries};

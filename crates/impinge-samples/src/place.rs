@@ -1,4 +1,4 @@
-//! Positions, vectors and points from three numbers, of which 2D takes the first two.
+//! Positions, vectors and points from three numbers; 2D uses the first two.
 
 use impinge::math::na::{self, Rotation};
 use impinge::math::{Matrix, Point, Pose, Real, Space, Unit, Vector};
@@ -28,7 +28,7 @@ where
     f32::isometry(&Pose::from_translation(vector(xyz)))
 }
 
-/// A position turned by an angle from the x axis to the y axis.
+/// Returns a position rotated by an angle from the x axis to the y axis.
 pub(crate) fn turned<const D: usize>(xyz: [f32; 3], angle: f32) -> Isometry<D>
 where
     f32: Space<D>,
@@ -36,8 +36,8 @@ where
     f32::isometry(&Pose { rotation: turn([0, 1], angle), translation: vector(xyz) })
 }
 
-/// The rotation by an angle from one axis to another. Sine and cosine are those of the library, which have the
-/// same bits everywhere.
+/// Returns the rotation by an angle from one axis to another. Sine and cosine are those of the library, which
+/// have the same bits everywhere.
 pub(crate) fn turn<const D: usize>([from, to]: [usize; 2], angle: f32) -> Matrix<f32, D> {
     let (sine, cosine) = angle.sine_cosine();
     let mut matrix = Matrix::<f32, D>::identity();
@@ -46,7 +46,7 @@ pub(crate) fn turn<const D: usize>([from, to]: [usize; 2], angle: f32) -> Matrix
     matrix
 }
 
-/// The pose of an object; the identity if it is gone.
+/// Returns the pose of an object; the identity if it was removed.
 pub(crate) fn pose_of<const D: usize>(
     world: &World<D>,
     object: CollisionObjectHandle,
@@ -58,7 +58,7 @@ where
     object.map_or_else(Pose::identity, |object| f32::pose(object.position()))
 }
 
-/// A pose as the isometry that queries about two shapes take in any dimension.
+/// Converts a pose to the isometry type of queries about two shapes, in any dimension.
 pub(crate) fn isometry<const D: usize>(
     pose: &Pose<f32, D>,
 ) -> na::Isometry<f32, Rotation<f32, D>, D> {
@@ -66,7 +66,7 @@ pub(crate) fn isometry<const D: usize>(
     na::Isometry::from_parts(pose.translation.into(), rotation)
 }
 
-/// Numbers from 0 to 1 without a pattern: the fractional parts of multiples of an irrational number, which
+/// Returns quasirandom numbers from 0 to 1: the fractional parts of multiples of an irrational number, which
 /// differs by stream (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
 #[expect(clippy::cast_possible_truncation, reason = "a fraction rounded to f32")]
 pub(crate) fn scattered(index: usize, stream: usize) -> f32 {
@@ -76,7 +76,7 @@ pub(crate) fn scattered(index: usize, stream: usize) -> f32 {
     (position - position.floor()) as f32
 }
 
-/// To and fro between 0 and 1: a triangle wave of period 1.
+/// A triangle wave of period 1 between 0 and 1.
 pub(crate) fn to_and_fro(phase: f32) -> f32 {
     1.0 - (2.0 * (phase - phase.floor()) - 1.0).abs()
 }

@@ -1,4 +1,4 @@
-//! What most samples need: names of the library, and the few functions of this crate.
+//! Common imports of samples: names of the library, and the few functions of this crate.
 
 pub(crate) use impinge::debug_render::{Color, SweptShape};
 pub(crate) use impinge::math::{Point, Pose, Space, Vector, max, min, unit, unit_or};
@@ -15,9 +15,9 @@ pub(crate) use crate::place::{
 };
 pub(crate) use crate::{Canvas, Isometry, Panel, Readout, Sample, SampleError, TIME_STEP, World};
 
-/// What is as it should be.
+/// The colour of correct or free items.
 pub(crate) const GREEN: Color = Color::rgb(90, 200, 120);
-/// What hits something.
+/// The colour of hits.
 pub(crate) const RED: Color = Color::rgb(240, 80, 70);
-/// What is measured.
+/// The colour of measurements.
 pub(crate) const BLUE: Color = Color::rgb(80, 160, 250);

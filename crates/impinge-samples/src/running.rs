@@ -1,4 +1,4 @@
-//! A sample that runs.
+//! A running sample.
 
 use core::fmt;
 
@@ -10,8 +10,8 @@ use crate::{Canvas, Control, ControlValue, Isometry, Panel, Readout, Sample, Sam
 
 /// A sample with its controls and its world.
 ///
-/// The world is updated after each method that changes it. A method that fails may have changed a part; a
-/// [`restart`](Self::restart) begins anew.
+/// The world is updated after each method that changes it. A method that fails may have changed a part of it;
+/// [`restart`](Self::restart) begins again.
 ///
 /// ```
 /// use impinge_samples::{ControlValue, Make, Running, entries};
@@ -39,10 +39,10 @@ impl<const D: usize> Running<D>
 where
     f32: Recordable<D>,
 {
-    /// The sample at step 0, with its objects, updated once.
+    /// Starts a sample at step 0, with its objects, updated once.
     ///
     /// # Errors
-    /// Where the world refuses the objects.
+    /// If the world rejects the objects.
     pub fn new(sample: Box<dyn Sample<D>>) -> Result<Self, SampleError> {
         let world = Recorder::new(sample.margin(), sample.registry())?;
         let panel = sample.panel();
@@ -51,11 +51,11 @@ where
         Ok(running)
     }
 
-    /// Begins again at step 0, with the controls as they are. The recording goes on: its objects are removed and
-    /// added again.
+    /// Begins again at step 0, with the current values of the controls. The recording continues: its objects are
+    /// removed and added again.
     ///
     /// # Errors
-    /// Where the world refuses the objects.
+    /// If the world rejects the objects.
     pub fn restart(&mut self) -> Result<(), SampleError> {
         self.sample.rebuild(&mut self.world, &self.panel)?;
         self.step = 0;
@@ -65,17 +65,17 @@ where
     /// Advances by a step of [`TIME_STEP`](crate::TIME_STEP).
     ///
     /// # Errors
-    /// Where the world refuses a change.
+    /// If the world rejects a change.
     pub fn advance(&mut self) -> Result<(), SampleError> {
         self.sample.advance(&mut self.world, &mut self.panel)?;
         self.step += 1;
         self.update()
     }
 
-    /// Sets a control, and shows at once what does not need a step. A button takes effect at the next step.
+    /// Sets a control, and applies effects that need no step at once. A button takes effect at the next step.
     ///
     /// # Errors
-    /// If the control or the value is refused; see [`Panel::set`].
+    /// If the control or the value is invalid; see [`Panel::set`].
     pub fn set_control(&mut self, name: &str, value: &ControlValue) -> Result<(), SampleError> {
         self.panel.set(name, value)?;
         if *value == ControlValue::Pressed {
@@ -85,7 +85,7 @@ where
         self.update()
     }
 
-    /// Moves an object, as a person does who drags it.
+    /// Moves an object to where the user drags it.
     ///
     /// # Errors
     /// If the handle is stale or the position is not finite.
@@ -103,12 +103,12 @@ where
         self.sample.updated(&mut self.world, &self.panel)
     }
 
-    /// Draws what the sample shows beside its objects; [`DebugDrawing::world`] draws these.
+    /// Draws the additional drawing of the sample; [`DebugDrawing::world`] draws the objects.
     pub fn draw(&self, drawing: &mut DebugDrawing<f32, D>, renderer: &mut dyn DebugRender<f32, D>) {
         self.sample.draw(&self.world, &self.panel, &mut Canvas { drawing, renderer });
     }
 
-    /// The numbers that the sample shows.
+    /// Returns the values that the sample displays.
     #[must_use]
     pub fn readouts(&self) -> Vec<Readout> {
         self.sample.readouts(&self.world, &self.panel)
@@ -120,32 +120,32 @@ where
         self.panel.controls()
     }
 
-    /// The world, for any query.
+    /// The world, for queries.
     #[must_use]
     pub const fn world(&self) -> &World<D> {
         &self.world
     }
 
-    /// How many steps were made.
+    /// The number of steps made.
     #[must_use]
     pub const fn step(&self) -> usize {
         self.step
     }
 
-    /// What the recording names and does not hold.
+    /// Returns the registry of names that the recording refers to.
     #[must_use]
     pub fn registry(&self) -> Registry<f32, D, String> {
         self.sample.registry()
     }
 
-    /// The bytes of the recording since the last call. Who does not want the recording drops them after each
-    /// step, since they are kept in memory until then.
+    /// Returns the bytes of the recording since the last call. They are kept in memory until then: callers that
+    /// need no recording drop them after each step.
     #[must_use]
     pub fn take_bytes(&mut self) -> Vec<u8> {
         self.world.take_bytes()
     }
 
-    /// Ends the recording: the bytes since the last [`take_bytes`](Self::take_bytes).
+    /// Ends the recording and returns the bytes since the last [`take_bytes`](Self::take_bytes).
     #[must_use]
     pub fn finish(self) -> Vec<u8> {
         self.world.finish().bytes

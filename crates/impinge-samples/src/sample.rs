@@ -1,4 +1,4 @@
-//! What a sample is.
+//! The trait of samples.
 
 use core::fmt;
 
@@ -10,45 +10,45 @@ use serde::Serialize;
 
 use crate::{Panel, SampleError};
 
-/// The world of a sample, which is recorded; the data of an object is its label.
+/// The recorded world of a sample; the data of an object is its label.
 pub type World<const D: usize> = Recorder<f32, D, String>;
 
 /// Seconds of a step.
 pub const TIME_STEP: f32 = 1.0 / 60.0;
 
-/// The positions of a world.
+/// The position type of a world.
 pub type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 
-/// A scene with controls, that shows one thing about the library.
+/// A scene with controls, about one subject of the library.
 ///
-/// [`Running`](crate::Running) calls these methods, and updates the world after each that may change it. A step
-/// is [`TIME_STEP`] long. The same calls lead to the same bits on every machine.
+/// [`Running`](crate::Running) calls these methods, and updates the world after each method that may change it.
+/// A step takes [`TIME_STEP`]. The same calls give the same bits on every machine.
 pub trait Sample<const D: usize>: Send
 where
     f32: Recordable<D>,
 {
-    /// The controls, with their values at first.
+    /// Returns the controls, with their initial values.
     fn panel(&self) -> Panel {
         Panel::new()
     }
 
-    /// By how much the boxes of the broad phase are loosened.
+    /// The margin of the boxes of the broad phase.
     fn margin(&self) -> f32 {
         0.02
     }
 
-    /// Names for the shapes and the pair filters of the sample's own.
+    /// Returns the names of the shapes and the pair filters of this sample.
     fn registry(&self) -> Registry<f32, D, String> {
         Registry::new()
     }
 
-    /// Adds the objects to a world without any, and forgets what was before.
+    /// Adds the objects to an empty world, and resets the state.
     ///
     /// # Errors
-    /// Where the world refuses an object.
+    /// If the world rejects an object.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError>;
 
-    /// Removes all objects and adds them again: what a sample of another size, or one that restarts, does.
+    /// Removes all objects and adds them again, for another size or a restart.
     ///
     /// # Errors
     /// As [`Self::build`].
@@ -57,10 +57,10 @@ where
         self.build(world, panel)
     }
 
-    /// A control was set, not a button: what can be seen at once, without a step, is changed.
+    /// Called after a control, not a button, was set: applies changes that need no step.
     ///
     /// # Errors
-    /// Where the world refuses a change.
+    /// If the world rejects a change.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let _ = (world, panel);
         Ok(())
@@ -69,19 +69,19 @@ where
     /// Moves the objects by one step.
     ///
     /// # Errors
-    /// Where the world refuses a change.
+    /// If the world rejects a change.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError>;
 
-    /// The world was updated: its events are counted here, and its queries asked.
+    /// Called after an update of the world: counts its events and runs queries.
     ///
     /// # Errors
-    /// Where the world refuses a query.
+    /// If the world rejects a query.
     fn updated(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let _ = (world, panel);
         Ok(())
     }
 
-    /// A person moved an object.
+    /// Called after the user moved an object.
     ///
     /// # Errors
     /// If the handle is stale or the position is not finite.
@@ -94,26 +94,26 @@ where
         Ok(world.set_position(object, *to)?)
     }
 
-    /// Draws what is to be seen beside the objects: rays, paths, distances.
+    /// Draws additions to the objects: rays, paths, distances.
     fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let _ = (world, panel, canvas);
     }
 
-    /// Numbers to be shown.
+    /// Returns values for display.
     fn readouts(&self, world: &World<D>, panel: &Panel) -> Vec<Readout> {
         let _ = (world, panel);
         Vec::new()
     }
 }
 
-/// What samples draw with.
+/// The drawing interface of samples.
 pub struct Canvas<'a, const D: usize>
 where
     f32: Space<D>,
 {
     /// Draws queries, and whole worlds.
     pub drawing: &'a mut DebugDrawing<f32, D>,
-    /// Takes lines and points.
+    /// Receives lines and points.
     pub renderer: &'a mut dyn DebugRender<f32, D>,
 }
 
@@ -121,24 +121,24 @@ impl<const D: usize> Canvas<'_, D>
 where
     f32: Space<D>,
 {
-    /// A line that belongs to a query.
+    /// Draws a line that belongs to a query.
     pub fn line(&mut self, ends: [Point<f32, D>; 2], color: Color) {
         self.renderer.line(ends, color, Drawn::Query);
     }
 
-    /// Lines from each point to the next.
+    /// Draws lines from each point to the next.
     pub fn path(&mut self, points: &[Point<f32, D>], color: Color) {
         for ends in points.windows(2) {
             self.line([ends[0], ends[1]], color);
         }
     }
 
-    /// A point that a query found.
+    /// Draws a point that a query found.
     pub fn point(&mut self, at: &Point<f32, D>, size: f32, color: Color) {
         self.renderer.point(at, size, color, Drawn::QueryHit);
     }
 
-    /// A text beside a point.
+    /// Draws a text beside a point.
     pub fn text(&mut self, at: &Point<f32, D>, text: &str, color: Color) {
         self.renderer.text(at, text, color, Drawn::QueryHit);
     }
@@ -153,7 +153,7 @@ where
     }
 }
 
-/// A number or a word to be shown beside the picture.
+/// A number or a word for display beside the picture.
 ///
 /// ```
 /// use impinge_samples::Readout;
@@ -164,27 +164,28 @@ where
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Readout {
-    /// What it is.
+    /// The label.
     pub label: &'static str,
     /// Its value.
     pub value: String,
 }
 
 impl Readout {
-    /// Anything that can be written.
+    /// Creates a readout of any value that can be formatted.
     #[must_use]
     pub fn new(label: &'static str, value: impl fmt::Display) -> Self {
         Self { label, value: value.to_string() }
     }
 
-    /// A number with four digits after the point, or in scientific notation where that would hide it.
+    /// Formats a number with four digits after the point, or in scientific notation if it is too small for
+    /// that.
     #[must_use]
     pub fn number(label: &'static str, value: f32) -> Self {
         let is_hidden = value != 0.0 && !(0.001..1.0e5).contains(&value.abs());
         Self::new(label, if is_hidden { format!("{value:.3e}") } else { format!("{value:.4}") })
     }
 
-    /// A number, or the word `none` where there is none.
+    /// Formats a number, or `none`.
     #[must_use]
     pub fn optional(label: &'static str, value: Option<f32>) -> Self {
         value.map_or_else(|| Self::new(label, "none"), |value| Self::number(label, value))

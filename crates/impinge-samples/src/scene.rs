@@ -1,4 +1,4 @@
-//! The scenes of `impinge-scenes` in a world.
+//! Plays the scenes of `impinge-scenes` in a world.
 
 use impinge::math::{Point, Real, Unit, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -12,14 +12,14 @@ use impinge_scenes::{Scene, SceneObject, SceneQuery, SceneShape};
 use crate::dimension::Dimension;
 use crate::{SampleError, World};
 
-/// A scene that is played: each object is a function of the step.
+/// A scene in a world: each position is a function of the step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Play<const D: usize> {
     /// The objects with their motions.
     scene: Scene<D>,
     /// In the order of the scene.
     handles: Vec<CollisionObjectHandle>,
-    /// Of the positions that the world has.
+    /// The step of the positions in the world.
     step: u32,
 }
 
@@ -27,7 +27,7 @@ impl<const D: usize> Play<D>
 where
     f32: Dimension<D>,
 {
-    /// Adds the objects of a scene, as they are at step 0.
+    /// Adds the objects of a scene, at their positions of step 0.
     pub(crate) fn start(scene: Scene<D>, world: &mut World<D>) -> Result<Self, SampleError> {
         let mut handles = Vec::with_capacity(scene.objects.len());
         for (index, object) in scene.objects.iter().enumerate() {
@@ -39,13 +39,13 @@ where
         Ok(Self { scene, handles, step: 0 })
     }
 
-    /// Moves the objects to where they are at the next step. Those at rest are left alone.
+    /// Moves the objects to their positions of the next step. Objects at rest are skipped.
     pub(crate) fn advance(&mut self, world: &mut World<D>) -> Result<(), SampleError> {
         self.step += 1;
         let (scene, step) = (&self.scene, self.step);
         let moved = self.handles.iter().enumerate().filter_map(|(index, handle)| {
             let (before, now) = (scene.placement(index, step - 1), scene.placement(index, step));
-            // What stays where it is needs no call.
+            // Unchanged positions need no call.
             (before != now).then(|| (*handle, f32::placed(&now)))
         });
         Ok(world.set_positions(&moved.collect::<Vec<_>>())?)
@@ -57,7 +57,7 @@ where
     }
 }
 
-/// A shape of a scene. It has plain numbers, which the constructors of the library take as they are.
+/// Converts a shape of a scene. Its numbers are passed to the constructors of the library unchanged.
 fn shape_of<const D: usize>(shape: &SceneShape<D>) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -65,7 +65,7 @@ where
     let vector = |xyz: &[f64; D]| Vector::<f32, D>::from_fn(|axis, _| f32::lit(xyz[axis]));
     let point = |xyz: &[f64; D]| Point::from(vector(xyz));
     let points = |list: &[[f64; D]]| list.iter().map(point).collect::<Vec<_>>();
-    // Solids that one dimension lacks are made of the data that recordings have of them.
+    // Solids that one dimension lacks are made from their data in recordings.
     let own = |data: &ShapeData<f32, D>| {
         f32::own_shape(data).expect("a scene has valid solids of its own dimension")
     };
@@ -99,7 +99,7 @@ where
     }
 }
 
-/// Groups of a scene are lists of numbers.
+/// Converts the groups of a scene, which are lists of numbers.
 fn groups_of<const D: usize>(object: &SceneObject<D>) -> CollisionGroups {
     let mut groups = CollisionGroups::new();
     groups.set_membership(object.groups.membership);
@@ -108,7 +108,7 @@ fn groups_of<const D: usize>(object: &SceneObject<D>) -> CollisionGroups {
     groups
 }
 
-/// Predictions and margins are those of the scene: lengths, but for the angle.
+/// Converts a query type: predictions and margins are lengths, except the angle.
 fn query_of(query: SceneQuery) -> GeometricQueryType<f32> {
     match query {
         SceneQuery::Contacts { linear, angular } => {

@@ -1,4 +1,5 @@
-//! A stair of boxes, as a PNG. The path of the file is the argument, or one among temporary files.
+//! A stair of boxes, as a PNG. The argument is the path of the file; without it a temporary file is
+//! written.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -8,12 +9,12 @@ use impinge_view::{Camera, PngPicture};
 use std::path::PathBuf;
 use std::{env, fs, io};
 
-/// The faces of a box whose corner `i` has the upper end of axis `k` if bit `k` of `i` is set,
-/// counter-clockwise as seen from outside.
+/// The faces of a box; its corner `i` has the upper end of axis `k` if bit `k` of `i` is set.
+/// Counter-clockwise as seen from outside.
 const FACES: [[u32; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 
-/// A box with the sides of 2 `half`.
+/// Returns the mesh of a box with half extents `half`.
 fn box_mesh(id: u64, half: Vector<f32>) -> ShapeMesh<f32, 3> {
     let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
     let corner = |corner| {

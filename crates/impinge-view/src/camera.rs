@@ -1,12 +1,12 @@
-//! Where a picture is seen from.
+//! The camera of a picture.
 
 use impinge::dim3::math::{Point, Real, Vector};
 use impinge::math::unit;
 
-/// A direction of view and a projection; the place follows from what is to be seen.
+/// A direction of view and a projection; the position follows from the framed content.
 ///
-/// The scene's frame is the world's. A 2D scene has `z = 0`, which
-/// [`Camera::plane`] sees with x to the right and y upwards.
+/// World frame. A 2D scene has `z = 0`; [`Camera::plane`] shows it with x to the right and y
+/// upwards.
 ///
 /// ```
 /// use impinge::dim3::math::{Point, Vector};
@@ -22,26 +22,27 @@ use impinge::math::unit;
 pub struct Camera {
     /// Right, up and back: orthonormal, `back = right x up`.
     axes: [Vector<f64>; 3],
-    /// The tangent of half the angle of view; zero if orthographic.
+    /// The tangent of half the angle of view; zero for an orthographic camera.
     tangent: f64,
     framed: Option<[Point<f64>; 2]>,
 }
 
-/// The least and the largest angle of view, in radians.
+/// The minimum and the maximum of the angle of view, in radians.
 const ANGLES: [f64; 2] = [0.01, 2.5];
 
 impl Camera {
-    /// Looks at 2D scenes: x to the right, y upwards, orthographic.
+    /// Returns a camera for 2D scenes: x to the right, y upwards, orthographic.
     #[must_use]
     pub fn plane() -> Self {
         Self::look_along(&-Vector::z(), &Vector::y())
     }
 
-    /// Looks along a direction, orthographic; `up` points to the upper side of the picture.
+    /// Returns an orthographic camera that looks along a direction; `up` points to the upper side of
+    /// the picture.
     ///
-    /// Neither has to be a unit vector, nor `up` perpendicular to the direction. A direction that
-    /// is zero or not finite counts as `-z`; an `up` that is so, or parallel to the direction, gives
-    /// way to the axis that is the most perpendicular to the direction.
+    /// Neither needs to be a unit vector, nor `up` perpendicular to the direction. A direction that
+    /// is zero or not finite becomes `-z`. An `up` that is zero, not finite, or parallel to the
+    /// direction is replaced by the axis that is the most perpendicular to the direction.
     #[must_use]
     pub fn look_along(direction: &Vector<f64>, up: &Vector<f64>) -> Self {
         let back = -unit_of(direction).unwrap_or_else(|| -Vector::z());
@@ -53,8 +54,8 @@ impl Camera {
         Self { axes: [right, back.cross(&right), back], tangent: 0.0, framed: None }
     }
 
-    /// The same direction in perspective: parallels converge. The angle of view, in radians, is
-    /// that of the whole scene, and is clamped to 0.01 to 2.5; NaN counts as the smallest.
+    /// Returns a perspective camera with the same direction. The angle of view, in radians, covers
+    /// the whole scene, and is clamped to 0.01 to 2.5; NaN counts as the minimum.
     #[must_use]
     pub fn perspective(self, view_angle: f64) -> Self {
         let [least, largest] = ANGLES;
@@ -64,10 +65,10 @@ impl Camera {
         Self { tangent: sine / cosine, ..self }
     }
 
-    /// Frames a box, given by two opposite corners, instead of everything that is drawn.
+    /// Frames a box, given by two opposite corners, instead of all drawn content.
     ///
-    /// What lies outside is cut off by the sides of the picture. Corners that are not finite are
-    /// ignored: the picture frames everything.
+    /// Content outside is clipped by the sides of the picture. If a corner is not finite, the
+    /// picture frames all content.
     #[must_use]
     pub fn fit(self, bounds: [Point<f64>; 2]) -> Self {
         let is_finite = bounds.iter().all(|corner| corner.iter().all(|x| x.is_finite()));
@@ -92,12 +93,12 @@ impl Camera {
         self.axes[2]
     }
 
-    /// The tangent of half the angle of view; zero if orthographic.
+    /// The tangent of half the angle of view; zero for an orthographic camera.
     pub(crate) fn tangent(&self) -> f64 {
         self.tangent
     }
 
-    /// The corners of the box to frame, if it is not everything.
+    /// Returns the corners of the framed box; `None` if all content is framed.
     pub(crate) fn framed(&self) -> Option<Vec<Point<f64>>> {
         let ends = self.framed?;
         let corner = |index: usize| {
@@ -107,12 +108,13 @@ impl Camera {
     }
 }
 
-/// The direction of a vector of any size; `None` for zero, infinite and NaN.
+/// Returns the unit vector of a vector of any length; `None` for zero, infinite and NaN.
 fn unit_of(v: &Vector<f64>) -> Option<Vector<f64>> {
     unit(v).map(|(direction, _)| direction)
 }
 
-/// The direction of the product of two unit vectors, unless these are parallel up to rounding.
+/// Returns the unit vector of the cross product of two unit vectors; `None` if these are parallel up
+/// to rounding.
 fn unit_of_sine(v: &Vector<f64>) -> Option<Vector<f64>> {
     (v.norm_squared() > 1e-20).then(|| v / v.norm())
 }

@@ -2,16 +2,17 @@
 
 use crate::image::Image;
 
-/// How two images differ.
+/// The result of a comparison of two images.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
     /// The sizes of both.
     pub sizes: [[u32; 2]; 2],
-    /// How many pixels differ by more than the tolerance, those that only one image has included.
+    /// The number of pixels that differ by more than the tolerance, including those that only one image
+    /// has.
     pub pixels: u64,
-    /// The largest difference of a channel, of pixels that both have.
+    /// The largest difference of a channel among the common pixels.
     pub largest: u8,
-    /// The first image, faint, with the pixels that differ in magenta.
+    /// The first image, faded, with the differing pixels in magenta.
     pub picture: Image,
 }
 
@@ -24,7 +25,7 @@ impl Difference {
 }
 
 /// Compares two images pixel by pixel. Pixels whose channels all differ by at most `tolerance` count as
-/// equal; a tolerance of 0 asks for the same pixels.
+/// equal; with a tolerance of 0 the pixels must be equal.
 ///
 /// ```
 /// use impinge_view::{Image, compare};

@@ -1,4 +1,4 @@
-//! Kept meshes as lines and faces in the world.
+//! Converts kept meshes to lines and faces in the world frame.
 
 use crate::kept_mesh::{KeptMesh, unit};
 use crate::lens::Lens;
@@ -7,26 +7,26 @@ use crate::shade::edge_tone;
 use impinge::debug_render::{Color, Drawn};
 use impinge::dim3::math::{Point, Vector};
 
-/// Lines and faces of everything that was drawn.
+/// The lines and faces of a drawing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Flat {
     pub(crate) strokes: Vec<Stroke>,
     pub(crate) faces: Vec<Face>,
 }
 
-/// A triangle with normals in the camera's frame, on the side that is seen.
+/// A triangle with normals in the camera's frame, on the visible side.
 #[derive(Clone, Debug)]
 pub(crate) struct Face {
     pub(crate) corners: [Point<f64>; 3],
     pub(crate) normals: [Vector<f64>; 3],
     pub(crate) color: Color,
     pub(crate) what: Drawn,
-    /// Whether it is of no mesh, so that it has no edges of its own.
+    /// Whether it belongs to no mesh, so that it has no edges of its own.
     pub(crate) is_alone: bool,
 }
 
-/// The lines and faces of a recording: the edges of meshes in a darker tone, and the outlines that
-/// their surfaces have when seen through a lens.
+/// Returns the lines and faces of a recording, including the edges of meshes in a darker tone, and
+/// the silhouettes of their surfaces as seen through a lens.
 pub(crate) fn flatten(recording: &Recording, lens: &Lens) -> Flat {
     let mut flat = Flat::default();
     for placed in &recording.placed {
@@ -75,7 +75,7 @@ fn face_of(triangle: &ColoredTriangle, lens: &Lens) -> Face {
     Face { corners, normals, color, what, is_alone: true }
 }
 
-/// Edges of faces of a colour: a darker tone, and more opaque.
+/// The colour of edges of faces: a darker tone, and more opaque.
 pub(crate) fn edge_color(color: Color) -> Color {
     let alpha = if color.alpha == 0 { 0 } else { color.alpha / 2 + 128 };
     Color { rgb: edge_tone(color.rgb), alpha }

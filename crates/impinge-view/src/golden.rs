@@ -1,4 +1,4 @@
-//! Images of today against images of yesterday.
+//! Comparison of images with golden images.
 
 use crate::compare::compare;
 use crate::image::{Image, ImageError};
@@ -6,10 +6,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fmt, fs, io};
 
-/// A folder of golden images, and where the image and the difference go when a test fails.
+/// A folder of golden images, and a folder for the image and the difference of a failed test.
 ///
-/// With the environment variable `IMPINGE_BLESS=1` a check writes the golden image instead of reading
-/// it.
+/// With the environment variable `IMPINGE_BLESS=1` a check writes the golden image instead of reading it.
 ///
 /// ```
 /// use impinge_view::{Golden, GoldenError, Image};
@@ -29,8 +28,8 @@ pub struct Golden {
 }
 
 impl Golden {
-    /// The golden images in a folder. Failures go to `impinge-view` in the folder that
-    /// `CARGO_TARGET_DIR` names, or in the `target` of the workspace of the current folder.
+    /// Uses the golden images in a folder. Failures are written to `impinge-view` in the folder
+    /// `CARGO_TARGET_DIR`, or in the `target` of the workspace of the current folder.
     #[must_use]
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         let bless = env::var_os("IMPINGE_BLESS").is_some_and(|value| value == "1");
@@ -44,14 +43,14 @@ impl Golden {
         Self { failures: failures.into(), ..self }
     }
 
-    /// Whether to write golden images, whatever the environment says.
+    /// Sets whether golden images are written, regardless of the environment.
     #[must_use]
     pub fn with_bless(self, bless: bool) -> Self {
         Self { bless, ..self }
     }
 
-    /// Allows each channel to differ by a tolerance, and as many pixels by more than this. Without, the
-    /// images have to be equal.
+    /// Allows each channel to differ by `tolerance`, and `allowed` pixels by more. Without this, the
+    /// images must be equal.
     #[must_use]
     pub fn with_bound(self, tolerance: u8, allowed: u64) -> Self {
         Self { tolerance, allowed, ..self }
@@ -62,8 +61,7 @@ impl Golden {
     /// # Errors
     ///
     /// If there is no golden image, it cannot be read, or the image differs by more than the bound. Then
-    /// `NAME.png` and, if there was something to compare with, `NAME.difference.png` are among the
-    /// failures.
+    /// `NAME.png` and, after a comparison, `NAME.difference.png` are written to the folder of failures.
     pub fn check(&self, name: &str, image: &Image) -> Result<(), GoldenError> {
         let path = self.folder.join(format!("{name}.png"));
         if self.bless {
@@ -86,12 +84,12 @@ impl Golden {
         Err(GoldenError::Differs { pixels, largest, image: found })
     }
 
-    /// Compares a text with the golden one, a file of this name: of a picture `NAME.svg`. The bound is for
-    /// images alone.
+    /// Compares a text with the golden file of this name, for instance a picture `NAME.svg`. The bound
+    /// applies to images only.
     ///
     /// # Errors
     ///
-    /// If there is no golden text, or it differs. Then the text is among the failures.
+    /// If there is no golden text, or it differs. The text is then written to the folder of failures.
     pub fn check_text(&self, name: &str, text: &str) -> Result<(), GoldenError> {
         let path = self.folder.join(name);
         if self.bless {
@@ -127,34 +125,34 @@ fn target_folder() -> PathBuf {
     root.unwrap_or(&current).join("target")
 }
 
-/// Why an image is not the golden one.
+/// The reason why an image or text fails the comparison.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum GoldenError {
     /// There is no golden image, or it cannot be read.
     Missing {
-        /// Where it was looked for.
+        /// The path of the golden image.
         golden: PathBuf,
-        /// Where the image is.
+        /// The path of the written image.
         image: PathBuf,
     },
     /// More pixels differ than allowed, or the size does.
     Differs {
-        /// How many.
+        /// The number of differing pixels.
         pixels: u64,
         /// The largest difference of a channel.
         largest: u8,
-        /// Where the image is; the difference is beside it.
+        /// The path of the written image; the difference is beside it.
         image: PathBuf,
     },
-    /// A text is another.
+    /// A text differs.
     TextDiffers {
         /// The first line that differs, counted from 1.
         line: usize,
-        /// Where the text is.
+        /// The path of the written text.
         text: PathBuf,
     },
-    /// The golden image is none.
+    /// The golden image is not a valid PNG.
     Image(ImageError),
     /// A file could not be written.
     Io(io::Error),

@@ -1,24 +1,24 @@
-//! Which parts of lines are hidden by surfaces.
+//! Visibility of lines: the parts that surfaces hide.
 
 use crate::flatten::{Face, Flat};
 use crate::lens::{OnScreen, View};
 use crate::raster::{Ink, Raster, whole};
 
-/// A part of a line, all of it seen or all of it hidden.
+/// A part of a line that is completely visible or completely hidden.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Run {
     pub(crate) is_hidden: bool,
     pub(crate) ends: [OnScreen; 2],
 }
 
-/// The most samples along a line.
+/// The largest number of samples along a line.
 const MAX_SAMPLES: usize = 4096;
-/// Runs with fewer samples than this belong to the run before them.
+/// Shorter runs, in samples, are merged with the previous run.
 const MIN_RUN: usize = 3;
-/// Samples for a pixel.
+/// Samples per pixel.
 const FINENESS: f64 = 2.0;
 
-/// The depths of all opaque faces.
+/// Returns the depths of all opaque faces.
 pub(crate) fn depths(flat: &Flat, view: &View, size: [usize; 2]) -> Raster {
     let mut raster = Raster::new(size, [0; 3]);
     let is_opaque = |face: &&Face| face.color.alpha == u8::MAX;
@@ -35,7 +35,7 @@ pub(crate) fn depths(flat: &Flat, view: &View, size: [usize; 2]) -> Raster {
     raster
 }
 
-/// The runs of a line, one after the other. Costs a look at the depths for each half pixel.
+/// Returns the runs of a line in order. Costs a depth look-up for each half pixel.
 pub(crate) fn runs(ends: &[OnScreen; 2], depths: &Raster) -> Vec<Run> {
     let [start, end] = *ends;
     let (dx, dy) = (end.x - start.x, end.y - start.y);
@@ -56,8 +56,9 @@ pub(crate) fn runs(ends: &[OnScreen; 2], depths: &Raster) -> Vec<Run> {
     turns.iter().zip(ends).map(run).collect()
 }
 
-/// Whether the pixel of a point and its eight neighbours are all nearer. Beside an outline the surface
-/// is so steep that the pixel alone is often nearer, but on the other side of it there is something else.
+/// Whether the pixel of a point and its eight neighbours are all nearer. Beside a silhouette the surface
+/// is so steep that the pixel alone is often nearer, but a neighbour on the other side of the silhouette
+/// is not.
 fn is_hidden(at: &OnScreen, depths: &Raster) -> bool {
     const STEPS: [f64; 3] = [-1.0, 0.0, 1.0];
     let hides = |dx: f64, dy: f64| {
@@ -66,7 +67,7 @@ fn is_hidden(at: &OnScreen, depths: &Raster) -> bool {
     STEPS.iter().all(|dy| STEPS.iter().all(|dx| hides(*dx, *dy)))
 }
 
-/// Where runs begin, and which they are. There is at least one sample.
+/// Returns the starts of the runs, and whether they are hidden. There must be at least one sample.
 fn turns(hidden: &[bool]) -> Vec<(usize, bool)> {
     let mut found: Vec<(usize, bool)> = Vec::new();
     let mut index = 0;

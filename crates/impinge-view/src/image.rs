@@ -17,7 +17,7 @@ pub struct Image {
 pub(crate) const MAX_SIDE: u32 = 8192;
 
 impl Image {
-    /// An image of one colour. Width and height are clamped to 1 to 8192.
+    /// Returns an image of one colour. Width and height are clamped to 1 to 8192.
     ///
     /// ```
     /// let image = impinge_view::Image::filled([3, 0], [255, 0, 0, 255]);
@@ -33,7 +33,7 @@ impl Image {
         Self { size, pixels: vec![pixel; count] }
     }
 
-    /// An opaque image of as many pixels as its size says.
+    /// Returns an opaque image; `size` must match the number of pixels.
     pub(crate) fn opaque(size: [u32; 2], pixels: &[[u8; 3]]) -> Self {
         let pixels = pixels.iter().map(|[red, green, blue]| [*red, *green, *blue, 255]);
         Self { size, pixels: pixels.collect() }
@@ -62,12 +62,12 @@ impl Image {
         self.pixels[y as usize * self.size[0] as usize + x as usize]
     }
 
-    /// Changes a pixel. There must be one.
+    /// Changes a pixel, which must exist.
     pub(crate) fn set_pixel(&mut self, x: u32, y: u32, pixel: [u8; 4]) {
         self.pixels[y as usize * self.size[0] as usize + x as usize] = pixel;
     }
 
-    /// Changes the colour of the pixel in which a point lies, if there is one.
+    /// Changes the colour of the pixel that contains a point, if there is one.
     pub(crate) fn change(&mut self, at: [f64; 2], color: impl Fn([u8; 3]) -> [u8; 3]) {
         let is_inside = (0..2).all(|axis| at[axis] >= 0.0 && at[axis] < f64::from(self.size[axis]));
         if is_inside {
@@ -79,10 +79,11 @@ impl Image {
         }
     }
 
-    /// The same in at most so many colours, which makes its file smaller; clamped to 2 to 256.
+    /// Returns the image reduced to at most `count` colours, which makes its file smaller; `count` is
+    /// clamped to 2 to 256.
     ///
-    /// The colours are means of boxes that halve the pixels again and again (P. Heckbert, *Color Image
-    /// Quantization for Frame Buffer Display*, 1982). Opaque images stay opaque.
+    /// The colours are means of boxes that split the pixels in halves repeatedly (P. Heckbert, *Color
+    /// Image Quantization for Frame Buffer Display*, 1982). Opaque images stay opaque.
     ///
     /// ```
     /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -105,11 +106,11 @@ impl Image {
         Self { size: self.size, pixels }
     }
 
-    /// The bytes of a PNG file: with a palette, if there are at most 256 colours, all opaque.
+    /// Returns the bytes of a PNG file: with a palette, if there are at most 256 colours, all opaque.
     ///
     /// # Panics
     ///
-    /// Never: an image has a size that PNG allows, and memory does not fail to be written.
+    /// Never: an image has a size that PNG allows, and writing to memory does not fail.
     #[must_use]
     pub fn to_png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
@@ -126,7 +127,7 @@ impl Image {
         encoder.set_color(kind);
         encoder.set_depth(png::BitDepth::Eight);
         if palette.is_some() {
-            // Differences of indices mean nothing.
+            // Differences of indices are meaningless.
             encoder.set_filter(png::Filter::NoFilter);
         }
         encoder.set_compression(png::Compression::High);
@@ -137,11 +138,12 @@ impl Image {
         bytes
     }
 
-    /// Reads a PNG file. Those with 16 bits a channel or a palette are converted, gray ones are not.
+    /// Reads a PNG file. Files with 16 bits per channel or a palette are converted, gray ones are an
+    /// error.
     ///
     /// # Errors
     ///
-    /// What is wrong with the bytes: not a PNG, cut off, gray, or larger than 8192 pixels.
+    /// If the bytes are not a PNG, truncated, gray, or larger than 8192 pixels.
     pub fn from_png(bytes: &[u8]) -> Result<Self, ImageError> {
         let mut decoder = png::Decoder::new(Cursor::new(bytes));
         decoder.set_transformations(
@@ -163,7 +165,7 @@ impl Image {
     }
 }
 
-/// Why bytes are not an image.
+/// The reason why bytes are not a valid image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImageError {
     message: String,

@@ -1,4 +1,4 @@
-//! Meshes as a picture keeps them.
+//! Meshes in the form in which a picture stores them.
 
 use crate::recording::embed;
 use impinge::debug_render::ShapeMesh;
@@ -6,7 +6,7 @@ use impinge::dim3::math::{Point, Vector};
 use impinge::math::Real;
 use std::collections::BTreeMap;
 
-/// A mesh in `f64` and 3D, with what is needed to shade it and to find its outline.
+/// A mesh in `f64` and 3D, with the data for shading and silhouettes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KeptMesh {
     pub(crate) vertices: Vec<Point<f64>>,
@@ -15,7 +15,7 @@ pub(crate) struct KeptMesh {
     /// A normal for each corner of each triangle: equal at smooth edges, zero if degenerate.
     pub(crate) normals: Vec<[Vector<f64>; 3]>,
     pub(crate) hinges: Vec<Hinge>,
-    /// Lines and triangles with an index or a vertex that is out of range.
+    /// The number of lines and triangles with an invalid index or vertex.
     pub(crate) left_out: u64,
 }
 
@@ -26,11 +26,11 @@ pub(crate) struct Hinge {
     pub(crate) triangles: [usize; 2],
 }
 
-/// Edges of two faces whose normals have a larger cosine than this are smooth.
+/// The smallest cosine of the angle between the normals of two faces with a smooth edge.
 const SMOOTH: f64 = 0.75;
 
 impl KeptMesh {
-    /// Keeps what is finite of a mesh. Costs `O(n log n)`.
+    /// Keeps the finite part of a mesh. Costs `O(n log n)`.
     pub(crate) fn new<N: Real, const D: usize>(mesh: &ShapeMesh<N, D>) -> Self {
         let found: Vec<_> = mesh.vertices.iter().map(embed).collect();
         let is_good = |index: &u32| matches!(found.get(*index as usize), Some(Some(_)));
@@ -48,10 +48,10 @@ impl KeptMesh {
         kept
     }
 
-    /// The triangles with the first of equal vertices in the place of each.
+    /// Returns the triangles with each vertex replaced by the first equal one.
     fn welded(&self) -> Vec<[usize; 3]> {
         let mut first = BTreeMap::new();
-        // The sum with zero is the same for both zeros.
+        // The sum with zero is equal for both zeros.
         let bits =
             |vertex: &Point<f64>| [vertex.x, vertex.y, vertex.z].map(|x| (x + 0.0).to_bits());
         let vertices = self.vertices.iter().enumerate();
@@ -60,7 +60,8 @@ impl KeptMesh {
         self.triangles.iter().map(|corners| corners.map(|index| index_of[index])).collect()
     }
 
-    /// For each corner the sum of the normals of the faces around it that go on smoothly.
+    /// Returns for each corner the sum of the normals of the faces around it that are connected
+    /// smoothly.
     fn corner_normals(&self, welded: &[[usize; 3]]) -> Vec<[Vector<f64>; 3]> {
         let normals: Vec<_> = (0..self.triangles.len()).map(|index| self.normal(index)).collect();
         let units: Vec<_> = normals.iter().map(unit).collect();
@@ -79,14 +80,14 @@ impl KeptMesh {
         corners.map(|(triangle, corners)| corners.map(|corner| smooth(triangle, corner))).collect()
     }
 
-    /// The normal of a triangle, twice its area long.
+    /// Returns the normal of a triangle, whose length is twice the area.
     pub(crate) fn normal(&self, triangle: usize) -> Vector<f64> {
         let [a, b, c] = self.triangles[triangle].map(|index| self.vertices[index]);
         (b - a).cross(&(c - a))
     }
 }
 
-/// The unit vector of a vector, zero of one that is zero or too small to have one.
+/// Returns the unit vector of a vector; zero if the vector is zero or too small.
 pub(crate) fn unit(v: &Vector<f64>) -> Vector<f64> {
     let norm = v.norm();
     if norm > 0.0 { v / norm } else { Vector::zeros() }
@@ -110,7 +111,7 @@ mod tests {
     use super::*;
     use impinge::dim3::math::Point as Point3;
 
-    /// Two triangles that share an edge along z, the second turned up by a slope.
+    /// Returns two triangles that share an edge along z, the second tilted up by a slope.
     fn roof(slope: f32) -> ShapeMesh<f32, 3> {
         let vertices = [[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, slope, 0.0]];
         ShapeMesh {

@@ -1,4 +1,4 @@
-//! Where texts stand beside their points.
+//! Placement of texts beside their points.
 
 use crate::lens::{View, larger};
 use crate::recording::{Label, Recording};
@@ -7,9 +7,9 @@ use crate::recording::{Label, Recording};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Letter {
     pub(crate) width: f64,
-    /// Above the base line.
+    /// The height above the base line.
     pub(crate) ascent: f64,
-    /// Below it.
+    /// The depth below the base line.
     pub(crate) descent: f64,
 }
 
@@ -27,14 +27,14 @@ struct Frame {
     high: [f64; 2],
 }
 
-/// From a point to the nearest side of its text.
+/// The distance from a point to the nearest side of its text.
 const GAP: f64 = 5.0;
 
-/// The texts whose points are on a page of a size in pixels, in the order in which they were drawn.
+/// Returns the texts whose points are on a page of a size in pixels, in drawing order.
 ///
-/// A text is to the upper right of its point. Where that leaves the page or overlaps an earlier text, it
-/// is to the lower right, upper left or lower left, and if none of these is free, as far to the upper
-/// right as the page allows. Costs O(n^2) comparisons for n texts.
+/// A text is placed to the upper right of its point. If it would leave the page or overlap an earlier
+/// text there, it is placed to the lower right, upper left or lower left, and if none of these is free,
+/// at the upper right shifted onto the page. Costs O(n^2) comparisons for n texts.
 pub(crate) fn placed_labels<'a>(
     recording: &'a Recording,
     view: &View,
@@ -57,7 +57,7 @@ pub(crate) fn placed_labels<'a>(
     placed
 }
 
-/// The first frame beside a point that is inside the page and overlaps no other.
+/// Returns the first frame beside a point that is inside the page and overlaps no other.
 fn free_frame(point: [f64; 2], size: [f64; 2], page: [f64; 2], taken: &[Frame]) -> Frame {
     let [right, above] = [point[0] + GAP, point[1] - GAP - size[1]];
     let [left, below] = [point[0] - GAP - size[0], point[1] + GAP];
@@ -83,7 +83,7 @@ impl Frame {
         others.iter().any(overlaps)
     }
 
-    /// Moves it onto a page, the upper left corner first if it is too large.
+    /// Shifts it onto a page; its upper left corner stays on the page if it is too large.
     fn push_onto(&mut self, page: [f64; 2]) {
         for (axis, end) in page.into_iter().enumerate() {
             let beyond = larger(self.high[axis] - end, 0.0);

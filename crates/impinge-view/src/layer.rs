@@ -1,8 +1,8 @@
-//! Names and line widths of what is drawn.
+//! Names and line widths of layers.
 
 use impinge::debug_render::Drawn;
 
-/// How a layer is called and drawn.
+/// The name and style of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layer {
     /// The class of its group in SVG.
@@ -11,7 +11,7 @@ pub(crate) struct Layer {
     pub(crate) name: &'static str,
     /// The width of its lines in pixels.
     pub(crate) width: f64,
-    /// Whether it can be seen through what hides it, fainter.
+    /// Whether it is drawn, fainter, through surfaces that hide it.
     pub(crate) shows_through: bool,
 }
 

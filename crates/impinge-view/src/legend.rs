@@ -1,9 +1,9 @@
-//! Where the entries of a legend stand.
+//! Positions of the entries of a legend.
 
 use crate::layer::Layer;
 use impinge::debug_render::Color;
 
-/// A layer, and where the line of its colour begins; its name follows [`NAME_AT`] further.
+/// A layer, and the start of the line of its colour; its name begins [`NAME_AT`] further.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LegendEntry {
     pub(crate) layer: Layer,
@@ -13,17 +13,17 @@ pub(crate) struct LegendEntry {
 
 /// The length of the line of a colour.
 pub(crate) const SWATCH: f64 = 16.0;
-/// From the start of the line to the name.
+/// The distance from the start of the line to the name.
 pub(crate) const NAME_AT: f64 = 22.0;
 /// The height of a row.
 const ROW: f64 = 20.0;
 /// The margin of a row.
 const MARGIN: f64 = 16.0;
-/// From the end of a name to the next line.
+/// The distance from the end of a name to the next line.
 const GAP: f64 = 14.0;
 
-/// One entry for each layer, in as many rows as a width in pixels asks for, and the height of all rows.
-/// `letter` is the width of a character.
+/// Returns an entry for each layer, in as many rows as the width in pixels requires, and the height of
+/// all rows. `letter` is the width of a character.
 pub(crate) fn legend(
     layers: &[(Layer, Color)],
     width: f64,

@@ -1,16 +1,16 @@
-//! From points of the world to points of the picture.
+//! Projection from points of the world to points of the picture.
 
 use crate::camera::Camera;
 use impinge::dim3::math::{Point, Vector};
 
-/// A camera at its place, which is such that the angle of view holds what is framed.
+/// A camera with a position at which the angle of view covers the framed content.
 #[derive(Clone, Debug)]
 pub(crate) struct Lens {
     axes: [Vector<f64>; 3],
     is_perspective: bool,
-    /// The viewer in the camera's frame; zero if orthographic.
+    /// The viewer in the camera's frame; zero for an orthographic camera.
     eye: Vector<f64>,
-    /// What is nearer to the viewer than this is cut off.
+    /// The near plane: the smallest distance from the viewer that is drawn.
     near: f64,
     low: [f64; 2],
     high: [f64; 2],
@@ -20,13 +20,13 @@ pub(crate) struct Lens {
 #[derive(Clone, Debug)]
 pub(crate) struct View {
     lens: Lens,
-    /// Pixels for a length of one in the image plane.
+    /// Pixels per unit length in the image plane.
     scale: f64,
     center: [f64; 2],
 }
 
 /// A point of the picture in pixels, y downwards; depths grow away from the viewer and are linear in
-/// x and y, in perspective too.
+/// x and y, also in perspective.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct OnScreen {
     pub(crate) x: f64,
@@ -42,7 +42,8 @@ pub(crate) struct Window {
 }
 
 impl Lens {
-    /// The lens of a camera that frames points; without points, a square of side 1 at the origin.
+    /// Returns the lens of a camera that frames points; without points, a square of side 1 at the
+    /// origin.
     pub(crate) fn new(camera: &Camera, points: &[Point<f64>]) -> Self {
         let framed = camera.framed();
         let points = framed.as_deref().unwrap_or(points);
@@ -64,10 +65,10 @@ impl Lens {
         lens
     }
 
-    /// Moves the eye to the least distance at which the points are inside the angle of view.
+    /// Moves the eye to the smallest distance at which the points are inside the angle of view.
     ///
-    /// Inside on the right is `x - ex <= t (ez - z)`, so that `ex + t ez` is at least the maximum of
-    /// `x + t z`; likewise on the other sides.
+    /// A point is inside on the right if `x - ex <= t (ez - z)`, so that `ex + t ez` must be at
+    /// least the maximum of `x + t z`; the other sides are analogous.
     fn place_eye(&mut self, tangent: f64, points: &[Point<f64>]) {
         let mut sides = [f64::NEG_INFINITY; 4];
         let mut z = [f64::INFINITY, f64::NEG_INFINITY];
@@ -96,12 +97,12 @@ impl Lens {
         }
     }
 
-    /// Width and height of what is framed, in the image plane.
+    /// The width and height of the framed content, in the image plane.
     pub(crate) fn size(&self) -> [f64; 2] {
         [self.high[0] - self.low[0], self.high[1] - self.low[1]]
     }
 
-    /// The view in which the framed extents fill a window, in their own proportions.
+    /// Returns the view in which the framed extents fill a window, with their aspect ratio.
     pub(crate) fn within(self, window: &Window) -> View {
         let [width, height] = self.size();
         let fit = |extent: f64, pixels: f64| {
@@ -113,17 +114,17 @@ impl Lens {
         View { lens: self, scale: if scale.is_finite() { scale } else { least }, center }
     }
 
-    /// A point in the camera's frame: to the right, up, and towards the viewer.
+    /// Returns a point in the camera's frame: to the right, up, and towards the viewer.
     fn local(&self, point: &Point<f64>) -> Vector<f64> {
         self.turned(&point.coords)
     }
 
-    /// A direction in the camera's frame.
+    /// Returns a direction in the camera's frame.
     pub(crate) fn turned(&self, v: &Vector<f64>) -> Vector<f64> {
         Vector::new(self.axes[0].dot(v), self.axes[1].dot(v), self.axes[2].dot(v))
     }
 
-    /// How far a point is in front of the viewer, or below the orthographic origin.
+    /// The distance of a point in front of the viewer, or below the orthographic origin.
     fn distance(&self, local: &Vector<f64>) -> f64 {
         self.eye.z - local.z
     }
@@ -138,7 +139,7 @@ impl Lens {
         }
     }
 
-    /// Whether a point in front of the plane through `on` with a normal sees the side of the normal.
+    /// Whether the viewer is on the front side of the plane through `on` with a normal.
     pub(crate) fn faces(&self, normal: &Vector<f64>, on: &Point<f64>) -> bool {
         let normal = self.turned(normal);
         if self.is_perspective {
@@ -150,7 +151,7 @@ impl Lens {
 }
 
 impl View {
-    /// Pixels for a length at a point.
+    /// Returns the number of pixels of a length at a point.
     pub(crate) fn pixels(&self, length: f64, at: &Point<f64>) -> f64 {
         let distance = self.lens.distance(&self.lens.local(at));
         if self.lens.is_perspective {
@@ -160,26 +161,26 @@ impl View {
         }
     }
 
-    /// A point, drawn as if it were nearer by a bias in pixels. None if it is too near the viewer.
+    /// Projects a point, moved nearer by a bias in pixels; `None` if it is before the near plane.
     pub(crate) fn point(&self, at: &Point<f64>, bias: f64) -> Option<OnScreen> {
         let local = self.lens.local(at);
         (self.lens.distance(&local) >= self.lens.near).then(|| self.project(&local, bias))
     }
 
-    /// A line; the part that is too near the viewer is cut off.
+    /// Projects a line; the part before the near plane is clipped.
     pub(crate) fn line(&self, ends: &[Point<f64>; 2], bias: f64) -> Option<[OnScreen; 2]> {
         let cut = self.cut(ends);
         let [start, end] = cut[..] else { return None };
         Some([self.project(&start, bias), self.project(&end, bias)])
     }
 
-    /// The corners of a triangle, of which the part that is too near the viewer is cut off: none,
-    /// three or four.
+    /// Projects the corners of a triangle; the part before the near plane is clipped: none, three or
+    /// four corners.
     pub(crate) fn triangle(&self, corners: &[Point<f64>; 3], bias: f64) -> Vec<OnScreen> {
         self.cut(corners).iter().map(|local| self.project(local, bias)).collect()
     }
 
-    /// Clips a polygon (or a line) by the near plane, after Sutherland and Hodgman (1974).
+    /// Clips a polygon (or a line) by the near plane (Sutherland and Hodgman, 1974).
     fn cut(&self, corners: &[Point<f64>]) -> Vec<Vector<f64>> {
         let local: Vec<_> = corners.iter().map(|corner| self.lens.local(corner)).collect();
         let beyond = |p: &Vector<f64>| self.lens.distance(p) - self.lens.near;

@@ -1,4 +1,4 @@
-//! Texts of pixels.
+//! Texts as pixels.
 
 use crate::image::Image;
 use crate::labels::Letter;
@@ -6,12 +6,12 @@ use crate::shade::mixed;
 use impinge::debug_render::Color;
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
-/// The only size that is compiled in: legible without being in the way.
+/// The only compiled font size: legible and small.
 const HEIGHT: RasterHeight = RasterHeight::Size16;
 const WEIGHT: FontWeight = FontWeight::Regular;
 /// The rows of a character above its base line.
 const ASCENT: u8 = 13;
-/// How much of a halo covers what is behind, of 1.
+/// The opacity of the halo behind characters, of 1.
 const HALO: f64 = 0.75;
 
 /// The size of the characters.
@@ -21,14 +21,14 @@ pub(crate) fn letter() -> Letter {
     Letter { width, ascent, descent: HEIGHT.val() as f64 - ascent }
 }
 
-/// How much of each pixel a text covers, from 0 to 255, with one empty pixel on each side.
+/// The coverage of each pixel by a text, from 0 to 255, with one empty pixel on each side.
 struct Coverage {
     size: [usize; 2],
     pixels: Vec<u8>,
 }
 
 impl Coverage {
-    /// Characters that the font does not have are question marks.
+    /// Characters that the font lacks become question marks.
     fn of(text: &str) -> Self {
         let advance = get_raster_width(WEIGHT, HEIGHT);
         let size = [text.chars().count() * advance + 2, HEIGHT.val() + 2];
@@ -45,7 +45,7 @@ impl Coverage {
         coverage
     }
 
-    /// The coverage of a pixel, in the frame of the text.
+    /// Returns the coverage of a pixel, in the frame of the text.
     fn at(&self, x: usize, y: usize) -> u8 {
         self.pixels[y * self.size[0] + x]
     }
@@ -59,8 +59,8 @@ impl Coverage {
     }
 }
 
-/// Writes a text with the left end of its base line at a pixel, with a halo of the colour of the paper.
-/// What is outside the image is cut off.
+/// Writes a text with the left end of its base line at a pixel, with a halo of the background colour.
+/// Pixels outside the image are clipped.
 pub(crate) fn draw_text(image: &mut Image, at: [f64; 2], text: &str, color: Color, paper: [u8; 3]) {
     let coverage = Coverage::of(text);
     let [left, base] = at.map(|x| (x + 0.5).floor());

@@ -1,4 +1,4 @@
-//! Pictures of what impinge computes, without a GPU.
+//! Pictures of worlds, shapes and query results of impinge, without a GPU.
 //!
 //! Two back ends of [`impinge::debug_render::DebugRender`], each for 2D and 3D, `f32` and `f64`:
 //!
@@ -8,11 +8,10 @@
 //! * [`PngPicture`] draws surfaces with a depth buffer, soft light from the upper left, darker edges
 //!   and transparency, texts, and a legend if it is asked for.
 //!
-//! A picture collects what is drawn and computes nothing until it is asked for its bytes. Its
-//! [`Camera`] frames itself: everything that was drawn fits, with a margin. NaN, infinite and huge
-//! coordinates are left out and [counted](Picture::left_out). The same drawing gives the same bytes
-//! on every run and machine: there are only `+ - * /` and roots, and the software sine of the
-//! library.
+//! A picture collects the drawing and computes nothing until its bytes are requested. Its [`Camera`]
+//! frames all content, with a margin. NaN, infinite and huge coordinates are omitted and
+//! [counted](Picture::left_out). The same drawing gives the same bytes on every run and machine:
+//! there are only `+ - * /` and roots, and the software sine of the library.
 //!
 //! ```
 //! use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -32,7 +31,7 @@
 //!
 //! [`world_drawing`] draws a world in sizes that suit its objects.
 //!
-//! [`Golden`] compares an [`Image`] with a file, for tests that would notice a change of a picture.
+//! [`Golden`] compares an [`Image`] with a file, for tests that detect changes of a picture.
 #![forbid(unsafe_code)]
 
 mod camera;

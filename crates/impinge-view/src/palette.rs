@@ -1,23 +1,23 @@
-//! Images in few colours.
+//! Reduction of images to few colours.
 
 use std::collections::BTreeMap;
 
 /// Red, green, blue and alpha.
 type Pixel = [u8; 4];
 
-/// The colours of an image, and which of them stands for each of its pixels.
+/// The colours of an image, and the colour of each of its pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct Palette {
     colors: Vec<Pixel>,
-    /// The number of the colour of each pixel value.
+    /// The index of the colour of each pixel value.
     index: BTreeMap<Pixel, u8>,
 }
 
-/// The most colours of a PNG file with a palette.
+/// The largest number of colours of a PNG file with a palette.
 pub(crate) const MAX_COLORS: usize = 256;
 
 impl Palette {
-    /// All colours of pixels; none if there are more than 256 or some are not opaque.
+    /// Returns all colours of pixels; `None` if there are more than 256 or some are not opaque.
     pub(crate) fn exactly(pixels: &[Pixel]) -> Option<Self> {
         let mut index = BTreeMap::new();
         for pixel in pixels {
@@ -32,10 +32,11 @@ impl Palette {
         Some(Self { colors: index.keys().copied().collect(), index })
     }
 
-    /// At most `count` colours, of 1 to 256, that stand for all pixels: the box whose longest side, times the
-    /// root of the number of its pixels, is the largest is cut at the median until there are enough.
+    /// Returns at most `count` colours, of 1 to 256, that represent all pixels: the box whose longest side,
+    /// times the root of the number of its pixels, is the largest is split at the median until there are
+    /// enough.
     pub(crate) fn of(pixels: &[Pixel], count: usize) -> Self {
-        // Sorted, so that the colours do not depend on where the pixels are.
+        // Sorted, so that the colours do not depend on the positions of the pixels.
         let mut counts = BTreeMap::new();
         for pixel in pixels {
             *counts.entry(*pixel).or_insert(0_u32) += 1;
@@ -50,7 +51,7 @@ impl Palette {
             else {
                 break;
             };
-            // All boxes have one colour: there are no more.
+            // Each box has a single colour: there are no more colours.
             if size == 0.0 {
                 break;
             }
@@ -64,23 +65,23 @@ impl Palette {
         Self { colors, index: (0..=u8::MAX).zip(boxes).flat_map(of_box).collect() }
     }
 
-    /// The number of the colour of a pixel that the palette was made of; 0 of others.
+    /// Returns the index of the colour of a pixel of the image; 0 for other pixels.
     pub(crate) fn index(&self, pixel: Pixel) -> u8 {
         self.index.get(&pixel).copied().unwrap_or_default()
     }
 
-    /// The colour that stands for a pixel that the palette was made of.
+    /// Returns the colour that represents a pixel of the image.
     pub(crate) fn nearest(&self, pixel: Pixel) -> Pixel {
         self.colors[usize::from(self.index(pixel))]
     }
 
-    /// Red, green and blue of each colour.
+    /// Returns red, green and blue of each colour.
     pub(crate) fn rgb(&self) -> Vec<u8> {
         self.colors.iter().flat_map(|[red, green, blue, _]| [*red, *green, *blue]).collect()
     }
 }
 
-/// The channel with the largest range of a box, and the range times the root of the number of pixels.
+/// Returns the channel with the largest range of a box, and the range times the root of the number of pixels.
 fn extent(pixels: &[(Pixel, u32)]) -> (usize, f64) {
     let range = |channel: usize| {
         let values = pixels.iter().map(|(pixel, _)| pixel[channel]);
@@ -94,7 +95,8 @@ fn extent(pixels: &[(Pixel, u32)]) -> (usize, f64) {
     (channel, f64::from(range) * f64::from(count).sqrt())
 }
 
-/// Takes the pixels above the median of a channel out of a box of several colours; both parts have some.
+/// Splits a box of several colours at the median of a channel, and returns the upper part; neither part is
+/// empty.
 fn cut(pixels: &mut Vec<(Pixel, u32)>, channel: usize) -> Vec<(Pixel, u32)> {
     pixels.sort_by_key(|(pixel, _)| (pixel[channel], *pixel));
     // By pixels, not by colours: large areas get more of the palette.
@@ -107,7 +109,7 @@ fn cut(pixels: &mut Vec<(Pixel, u32)>, channel: usize) -> Vec<(Pixel, u32)> {
     pixels.split_off(median.unwrap_or_default().clamp(1, pixels.len() - 1))
 }
 
-/// The mean of the pixels of a box, of which there are some.
+/// Returns the mean of the pixels of a box, which is not empty.
 fn mean(pixels: &[(Pixel, u32)]) -> Pixel {
     let count: u64 = pixels.iter().map(|(_, count)| u64::from(*count)).sum();
     [0, 1, 2, 3].map(|channel| {

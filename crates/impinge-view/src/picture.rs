@@ -1,4 +1,4 @@
-//! What pictures of every format have in common.
+//! The common part of pictures of all formats.
 
 use crate::camera::Camera;
 use crate::layer::Layer;
@@ -7,11 +7,11 @@ use crate::recording::Recording;
 use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};
 use impinge::math::{Point, Space};
 
-/// A picture: a back end that collects what is drawn until its bytes are asked for.
+/// A picture: a back end that collects a drawing until its bytes are requested.
 ///
 /// [`SvgPicture`](crate::SvgPicture) and [`PngPicture`](crate::PngPicture) are its two formats. A mesh is
-/// kept by its id at the first call, so what a later mesh with the same id contains is not read. A
-/// point is a disc with the given diameter, at least 5 pixels wide.
+/// stored by its id at the first call; the content of a later mesh with the same id is ignored. A point
+/// is a disc with the given diameter, at least 5 pixels wide.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -35,31 +35,31 @@ impl<F> Picture<F> {
         Self { recording: Recording::default(), camera, format }
     }
 
-    /// How many lines, triangles, points, texts and meshes were left out, because a coordinate is NaN,
-    /// infinite or above 1e13, a size is negative, or a mesh has no vertex of an index.
+    /// The number of omitted lines, triangles, points, texts and meshes: a coordinate is NaN, infinite or
+    /// above 1e13, a size is negative, or a mesh has an index without a vertex.
     #[must_use]
     pub fn left_out(&self) -> u64 {
         self.recording.left_out
     }
 
-    /// Forgets what was drawn, for the next picture; the meshes are kept.
+    /// Clears the drawing, for the next picture; the meshes are kept.
     pub fn clear(&mut self) {
         self.recording.clear();
     }
 
-    /// Sees the same from elsewhere.
+    /// Shows the same drawing from another camera.
     pub fn set_camera(&mut self, camera: Camera) {
         self.camera = camera;
     }
 
-    /// The layers that occur, with the colour that each has first.
+    /// Returns the layers of the drawing, with the first colour of each.
     pub(crate) fn layers(&self) -> Vec<(Layer, Color)> {
         let layers = self.recording.layers().into_iter();
         let colors = |layer| Some((Layer::of(layer), self.recording.color_of(layer)?));
         layers.filter_map(colors).collect()
     }
 
-    /// The camera at the place from which it sees everything.
+    /// Returns the camera at the position from which it shows all content.
     pub(crate) fn lens(&self) -> Lens {
         Lens::new(&self.camera, &self.recording.points())
     }

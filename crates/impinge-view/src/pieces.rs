@@ -1,4 +1,4 @@
-//! What is drawn, as triangles on the screen.
+//! The drawing as triangles on the screen.
 
 use crate::flatten::{Face, Flat};
 use crate::layer::Layer;
@@ -17,25 +17,25 @@ pub(crate) struct Piece {
     normals: Option<[Vector<f64>; 3]>,
     color: Color,
     shows_through: bool,
-    /// The mean of its corners.
+    /// The mean depth of its corners.
     depth: f64,
 }
 
-/// How much nearer than they are lines are drawn, in pixels, so that their faces do not hide them.
+/// The distance by which lines are moved nearer, in pixels, so that their faces do not hide them.
 pub(crate) const LINE_BIAS: f64 = 2.0;
-/// The same for faces of other layers than objects.
+/// The distance for faces of layers other than objects.
 const FACE_BIAS: f64 = 1.0;
-/// The same for points.
+/// The distance for points.
 const DOT_BIAS: f64 = 4.0;
-/// The rim that sets points off from what is behind.
+/// The rim that separates points from the background.
 const RIM: Color = Color::rgb(255, 255, 255);
-/// The corners of a point.
+/// The number of corners of a point.
 const DOT_CORNERS: u8 = 24;
 
 /// The least radius of points, in pixels.
 pub(crate) const MIN_DOT_RADIUS: f64 = 2.5;
 
-/// Faces, then lines, then points. Lengths on the screen are multiplied by `samples`.
+/// Returns faces, then lines, then points. Lengths on the screen are multiplied by `samples`.
 pub(crate) fn pieces(flat: &Flat, dots: &[Dot], view: &View, samples: f64) -> Vec<Piece> {
     let faces = flat.faces.iter().filter_map(|face| face_piece(face, view, samples));
     let strokes = flat.strokes.iter().filter_map(|stroke| stroke_piece(stroke, view, samples));
@@ -43,7 +43,8 @@ pub(crate) fn pieces(flat: &Flat, dots: &[Dot], view: &View, samples: f64) -> Ve
     faces.chain(strokes).chain(dots).collect()
 }
 
-/// Opaque pieces in their order, transparent ones from far to near, and at last what shows through.
+/// Draws opaque pieces in their order, transparent ones from far to near, and at last pieces that
+/// are visible through others.
 pub(crate) fn draw(pieces: &[Piece], raster: &mut Raster) {
     let (opaque, mut transparent): (Vec<_>, Vec<_>) =
         pieces.iter().partition(|piece| piece.color.alpha == u8::MAX);
@@ -94,7 +95,7 @@ fn face_piece(face: &Face, view: &View, samples: f64) -> Option<Piece> {
     Some(Piece { triangles, normals: Some(normals), color: face.color, shows_through, depth })
 }
 
-/// Whether nothing of a face is cut off, so that its corners are those of the triangle.
+/// Whether a face is not clipped, so that its corners are those of the triangle.
 fn is_whole(face: &Face, view: &View) -> bool {
     face.corners.iter().all(|corner| view.point(corner, 0.0).is_some())
 }
@@ -113,7 +114,7 @@ fn stroke_piece(stroke: &Stroke, view: &View, samples: f64) -> Option<Piece> {
     Some(Piece { triangles, normals: None, color, shows_through, depth })
 }
 
-/// A rim and a disc.
+/// Returns a rim and a disc.
 fn dot_pieces(dot: &Dot, view: &View, samples: f64) -> Vec<Piece> {
     let Some(center) = view.point(&dot.at, DOT_BIAS * samples) else { return Vec::new() };
     let radius = larger(view.pixels(dot.size, &dot.at) * 0.5, MIN_DOT_RADIUS * samples);

@@ -24,13 +24,13 @@ pub struct Png {
 
 /// A picture of surfaces with a depth buffer.
 ///
-/// Faces are shaded on both sides by a soft light from the upper left of the viewer, smoothly where a
-/// mesh is so. Edges of meshes and the outlines of their surfaces are in a darker tone of the faces.
-/// Colours with an alpha below 255 are mixed in from far to near, by the middles of triangles and
-/// lines. Contacts, proximities and queries show through what hides them, fainter. A pixel is the mean
-/// of 2 by 2 samples. Texts are in front of everything, in Noto Sans Mono, 16 pixels high, with a halo of the
-/// background; they avoid the sides and each other where they can. Those of points outside the picture
-/// are left out without being counted, and characters beyond Latin-1 are question marks.
+/// Faces are shaded on both sides by a soft light from the upper left of the viewer, smoothly where a mesh is
+/// smooth. Edges of meshes and silhouettes of their surfaces are in a darker tone of the faces. Colours with
+/// an alpha below 255 are blended from far to near, by the centres of triangles and lines. Contacts,
+/// proximities and queries are visible through surfaces that hide them, fainter. A pixel is the mean of 2 by
+/// 2 samples. Texts are in front of everything, in Noto Sans Mono, 16 pixels high, with a halo of the
+/// background; they avoid the sides and each other where possible. Texts of points outside the picture are
+/// omitted without being counted, and characters beyond Latin-1 become question marks.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -46,17 +46,17 @@ pub struct Png {
 /// ```
 pub type PngPicture = Picture<Png>;
 
-/// The sides of the square of samples for a pixel.
+/// The number of samples per pixel along each side.
 const SAMPLES: usize = 2;
 /// The pixels of the line of a colour in the legend.
 const SWATCH_STEPS: u8 = 16;
-/// The names of the legend.
+/// The colour of the names of the legend.
 const INK: Color = Color::rgb(48, 54, 63);
-/// Near white, a little warm.
+/// A warm near white.
 const BACKGROUND: Color = Color::rgb(250, 249, 246);
 
 impl Picture<Png> {
-    /// A picture with a width and a height in pixels, which are clamped to 1 to 8192.
+    /// Creates a picture with a width and a height in pixels, which are clamped to 1 to 8192.
     #[must_use]
     pub fn new(camera: Camera, size: [u32; 2]) -> Self {
         let size = size.map(|side| side.clamp(1, MAX_SIDE));
@@ -65,37 +65,37 @@ impl Picture<Png> {
         Self::with_format(camera, format)
     }
 
-    /// Another background than near white. Its alpha is not used.
+    /// Sets another background than near white. Its alpha is ignored.
     #[must_use]
     pub fn with_background(mut self, background: Color) -> Self {
         self.format.background = background;
         self
     }
 
-    /// A margin in pixels, on all sides; without, it is a sixteenth of the shorter side. What is not
-    /// between 0 and a third of the shorter side is clamped to it; NaN counts as 0.
+    /// Sets a margin in pixels, on all sides; the default is a sixteenth of the shorter side. The margin is
+    /// clamped to 0 to a third of the shorter side; NaN counts as 0.
     #[must_use]
     pub fn with_margin(mut self, margin: f64) -> Self {
         self.format.margin = Some(margin);
         self
     }
 
-    /// Names and colours of the layers that occur, in rows at the lower side. The drawing gets the room
-    /// above them; a picture too low for both has no legend.
+    /// Adds a legend with names and colours of the layers of the drawing, in rows at the lower side. The
+    /// drawing gets the space above them; a picture too low for both has no legend.
     #[must_use]
     pub fn with_legend(mut self) -> Self {
         self.format.has_legend = true;
         self
     }
 
-    /// Leaves the texts out, of a scene with too many of them.
+    /// Omits the texts, for a scene with too many of them.
     #[must_use]
     pub fn without_texts(mut self) -> Self {
         self.format.has_texts = false;
         self
     }
 
-    /// Renders what was drawn.
+    /// Renders the drawing.
     ///
     /// Costs 44 bytes of memory for each pixel while it runs, and time in proportion to the pixels that
     /// triangles and lines cover.
@@ -115,13 +115,13 @@ impl Picture<Png> {
         image
     }
 
-    /// The bytes of a PNG file, of [`Self::to_image`].
+    /// Returns the bytes of a PNG file of [`Self::to_image`].
     #[must_use]
     pub fn to_png(&self) -> Vec<u8> {
         self.to_image().to_png()
     }
 
-    /// The entries of the legend and their height in pixels, if there is one.
+    /// Returns the entries of the legend and their height in pixels, if there is one.
     fn legend(&self) -> (Vec<LegendEntry>, f64) {
         let [width, height] = self.format.size.map(f64::from);
         let (entries, own) = legend(&self.layers(), width, letter().width);
@@ -157,7 +157,8 @@ impl Picture<Png> {
 }
 
 impl Png {
-    /// The picture without its margins and a legend of a height, in so many samples for a pixel.
+    /// Returns the picture without its margins and a legend of height `legend`, scaled by the samples per
+    /// pixel.
     fn window(&self, legend: f64, samples: f64) -> Window {
         let size = self.size.map(f64::from);
         let shorter = -larger(-size[0], -size[1]);

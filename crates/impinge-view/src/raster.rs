@@ -1,4 +1,4 @@
-//! Triangles and lines to pixels, with a depth buffer.
+//! Rasterizes triangles and lines, with a depth buffer.
 
 use crate::lens::{OnScreen, larger};
 
@@ -10,14 +10,14 @@ pub(crate) struct Raster {
     color: Vec<[u8; 3]>,
 }
 
-/// Which pixels a triangle covers, and what becomes of them.
+/// The pixels of a triangle that change, and the operation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Ink {
-    /// Those that are not nearer than it; they take its colour and its depth.
+    /// Pixels that are not nearer than the triangle; they get its colour and its depth.
     Solid,
-    /// Those that are not nearer than it; its colour is mixed in, with this alpha.
+    /// Pixels that are not nearer than the triangle; its colour is blended, with this alpha.
     Blend(u8),
-    /// Those that hide it; its colour is mixed in, with this alpha.
+    /// Pixels that hide the triangle; its colour is blended, with this alpha.
     Ghost(u8),
 }
 
@@ -25,7 +25,7 @@ pub(crate) enum Ink {
 struct Oriented {
     corners: [OnScreen; 3],
     area: f64,
-    /// Whether pixel centers on the edge from this corner to the next are inside: top and left edges.
+    /// Whether pixel centres on the edge from this corner to the next are inside: top and left edges.
     owns_edge: [bool; 3],
 }
 
@@ -35,14 +35,14 @@ impl Raster {
         Self { size, depth: vec![f64::INFINITY; count], color: vec![background; count] }
     }
 
-    /// The depth at a point of the picture; none outside.
+    /// Returns the depth at a point of the picture; `None` outside.
     pub(crate) fn depth_at(&self, x: f64, y: f64) -> Option<f64> {
         let [width, height] = self.size;
         let is_inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
         is_inside.then(|| self.depth[whole(y, height) * width + whole(x, width)])
     }
 
-    /// The mean colours of squares of pixels with a side, row by row.
+    /// Returns the mean colours of squares of pixels with side `side`, row by row.
     pub(crate) fn reduced(&self, side: usize) -> Vec<[u8; 3]> {
         let size = self.size.map(|length| length / side);
         let mut pixels = Vec::with_capacity(size[0] * size[1]);
@@ -68,9 +68,9 @@ impl Raster {
 
     /// Fills a triangle. The colour is a function of the barycentric coordinates.
     ///
-    /// Corners are rounded to 1/256 pixel, so that the tests of pixel centers are exact up to 65536
-    /// pixels from the corner of the picture: of two triangles with a common edge exactly one covers
-    /// a pixel on it.
+    /// Corners are rounded to 1/256 pixel, so that the tests of pixel centres are exact up to 65536
+    /// pixels from the corner of the picture: a pixel on a common edge of two triangles is covered by
+    /// exactly one.
     pub(crate) fn fill(
         &mut self,
         corners: &[OnScreen; 3],
@@ -112,7 +112,7 @@ impl Raster {
 }
 
 impl Oriented {
-    /// None of a triangle without area or with coordinates that are not finite.
+    /// Returns `None` for a triangle without area or with coordinates that are not finite.
     fn new(corners: &[OnScreen; 3]) -> Option<Self> {
         let snap = |x: f64| (x * 256.0 + 0.5).floor() / 256.0;
         let [a, b, c] = corners.map(|p| OnScreen { x: snap(p.x), y: snap(p.y), depth: p.depth });
@@ -140,7 +140,8 @@ impl Oriented {
         [whole(top, height), whole(bottom + 1.0, height)]
     }
 
-    /// The pixels of a row outside of which none is inside, with one to spare on each side.
+    /// Returns a range of pixels of a row that contains all inside, with one extra pixel on each
+    /// side.
     fn columns(&self, y: usize, width: usize) -> [usize; 2] {
         let y = y as f64 + 0.5;
         let (mut left, mut right) = (0.0, width as f64);
@@ -156,14 +157,14 @@ impl Oriented {
         [whole(left, width), whole(right, width)]
     }
 
-    /// The barycentric coordinates of the center of a pixel, if it is inside.
+    /// Returns the barycentric coordinates of the centre of a pixel, if it is inside.
     fn weights(&self, x: usize, y: usize) -> Option<[f64; 3]> {
         let (x, y) = (x as f64 + 0.5, y as f64 + 0.5);
         let mut areas = [0.0; 3];
         for (index, [from, to]) in self.edges().into_iter().enumerate() {
             let area = (to.x - from.x) * (y - from.y) - (to.y - from.y) * (x - from.x);
             let is_inside = area > 0.0 || (area == 0.0 && self.owns_edge[index]);
-            // The edge from a corner is opposite to the one before it.
+            // The edge from a corner is opposite to the previous corner.
             areas[(index + 2) % 3] = area;
             if !is_inside {
                 return None;
@@ -172,15 +173,15 @@ impl Oriented {
         Some(areas.map(|area| area / self.area))
     }
 
-    /// The depth; exactly that of the corners if these are equal.
+    /// Returns the depth; exactly that of the corners if these are equal.
     fn depth(&self, weights: &[f64; 3]) -> f64 {
         let [a, b, c] = self.corners.map(|corner| corner.depth);
         a + weights[1] * (b - a) + weights[2] * (c - a)
     }
 }
 
-/// The two triangles of a line with a width in pixels, a little longer than its ends so that corners
-/// are closed.
+/// Returns the two triangles of a line with a width in pixels, slightly longer than the line so that
+/// corners are closed.
 pub(crate) fn ribbon(ends: &[OnScreen; 2], width: f64) -> [[OnScreen; 3]; 2] {
     let [start, end] = *ends;
     let along = [end.x - start.x, end.y - start.y];
@@ -197,7 +198,7 @@ pub(crate) fn ribbon(ends: &[OnScreen; 2], width: f64) -> [[OnScreen; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
 
-/// The whole part of a number, clamped to 0 and a limit; 0 of NaN.
+/// Returns the integer part of a number, clamped to 0 and a limit; 0 for NaN.
 #[expect(clippy::cast_possible_truncation, reason = "clamped to the limit")]
 #[expect(clippy::cast_sign_loss, reason = "clamped to zero")]
 pub(crate) fn whole(x: f64, limit: usize) -> usize {
@@ -218,8 +219,8 @@ mod tests {
 
     #[test]
     fn triangles_with_a_common_edge_cover_each_pixel_once() {
-        // A fan of four triangles around a point with fractions, in both orientations, mixed in with
-        // half alpha: a pixel covered twice is darker, one not covered is white.
+        // A fan of four triangles around a point with fractional coordinates, in both orientations,
+        // blended with half alpha: a pixel covered twice is darker, one not covered is white.
         let corners =
             [at(2.0, 3.0, 1.0), at(18.0, 3.0, 1.0), at(18.0, 15.0, 1.0), at(2.0, 15.0, 1.0)];
         for center in [at(9.5, 8.5, 1.0), at(10.0, 9.0, 1.0), at(7.3, 11.7, 1.0)] {
@@ -288,7 +289,7 @@ mod tests {
         let mut raster = Raster::new([4, 2], [255; 3]);
         let corners = [at(0.0, 0.0, 0.0), at(2.0, 0.0, 0.0), at(0.0, 2.0, 0.0)];
         raster.fill(&corners, Ink::Solid, |_| [0; 3]);
-        // The diagonal is not a left edge: the centers on it belong to the neighbour.
+        // The diagonal is not a left edge: the centres on it belong to the neighbour.
         assert_eq!(raster.reduced(2), [[191; 3], [255; 3]], "one of four pixels");
     }
 }

@@ -1,4 +1,4 @@
-//! What was drawn, in the order in which it was.
+//! A drawing, in the order of its calls.
 
 use crate::kept_mesh::KeptMesh;
 use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};
@@ -7,7 +7,7 @@ use impinge::math::{self, Real, Space};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-/// Everything that was drawn, in `f64` and 3D: 2D has `z = 0`.
+/// The drawing in `f64` and 3D; 2D has `z = 0`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recording {
     pub(crate) meshes: BTreeMap<u64, KeptMesh>,
@@ -16,11 +16,11 @@ pub(crate) struct Recording {
     pub(crate) triangles: Vec<ColoredTriangle>,
     pub(crate) dots: Vec<Dot>,
     pub(crate) labels: Vec<Label>,
-    /// Lines, triangles, points, texts and whole meshes that have no place in a picture.
+    /// The number of omitted lines, triangles, points, texts and meshes.
     pub(crate) left_out: u64,
 }
 
-/// A kept mesh and where it is.
+/// A kept mesh and its position.
 #[derive(Clone, Debug)]
 pub(crate) struct PlacedMesh {
     pub(crate) id: u64,
@@ -64,11 +64,11 @@ pub(crate) struct Label {
     pub(crate) what: Drawn,
 }
 
-/// The largest coordinate that has a place in a picture: its square and its cube are far from the end
-/// of `f64`, and a scene of meters is smaller than the orbit of Neptune.
+/// The largest coordinate of a picture: its square and its cube are far from the limit of `f64`, and
+/// a scene of meters is smaller than the orbit of Neptune.
 pub(crate) const MAX_COORDINATE: f64 = 1e13;
 
-/// A point in 3D; `None` if it is NaN, infinite or huge.
+/// Converts a point to 3D; `None` if it is NaN, infinite or huge.
 pub(crate) fn embed<N: Real, const D: usize>(point: &math::Point<N, D>) -> Option<Point<f64>> {
     let embedded = Point::from(embed_vector(&point.coords));
     let is_good = embedded.iter().all(|x| x.abs() <= MAX_COORDINATE);
@@ -94,12 +94,12 @@ fn embed_all<N: Real, const D: usize, const K: usize>(
 }
 
 impl Recording {
-    /// Forgets what was drawn, and keeps the meshes.
+    /// Clears the drawing, and keeps the meshes.
     pub(crate) fn clear(&mut self) {
         *self = Self { meshes: std::mem::take(&mut self.meshes), ..Self::default() };
     }
 
-    /// Every point to be framed.
+    /// Returns all points that are framed.
     pub(crate) fn points(&self) -> Vec<Point<f64>> {
         let mut points: Vec<_> = self.strokes.iter().flat_map(|stroke| stroke.ends).collect();
         points.extend(self.triangles.iter().flat_map(|triangle| triangle.corners));
@@ -115,7 +115,7 @@ impl Recording {
         points
     }
 
-    /// What the drawn things belong to, in the order of [`Drawn`], each once.
+    /// Returns the layers of the drawing, in the order of [`Drawn`], each once.
     pub(crate) fn layers(&self) -> Vec<Drawn> {
         let strokes = self.strokes.iter().map(|stroke| stroke.what);
         let triangles = self.triangles.iter().map(|triangle| triangle.what);
@@ -127,7 +127,7 @@ impl Recording {
         unique.into_iter().collect()
     }
 
-    /// The colour that a layer has first.
+    /// Returns the first colour of a layer.
     pub(crate) fn color_of(&self, layer: Drawn) -> Option<Color> {
         let placed = self.placed.iter().map(|placed| (placed.what, placed.color));
         let dots = self.dots.iter().map(|dot| (dot.what, dot.color));
@@ -148,7 +148,7 @@ impl Recording {
 }
 
 impl PlacedMesh {
-    /// The vertices of the mesh in the world.
+    /// Returns the vertices of the mesh in the world frame.
     pub(crate) fn vertices(&self, kept: &KeptMesh) -> Vec<Point<f64>> {
         kept.vertices.iter().map(|vertex| self.rotation * vertex + self.translation).collect()
     }

@@ -1,19 +1,19 @@
-//! Colours of surfaces in soft light, and of edges.
+//! Colours of surfaces under soft light, and of edges.
 
 use impinge::dim3::math::Vector;
 
 /// The direction to the light in the camera's frame: from the upper left, in front. A unit vector
 /// within 1e-3.
 const LIGHT: [f64; 3] = [-0.465, 0.675, 0.573];
-/// What red, green and blue are multiplied by on the dark side: a little blue.
+/// The factors of red, green and blue on the dark side: slightly blue.
 const SHADE: [f64; 3] = [0.48, 0.52, 0.60];
-/// What they are multiplied by where the light falls straight: a little warm.
+/// The factors under perpendicular light: slightly warm.
 const LIT: [f64; 3] = [1.10, 1.08, 1.05];
-/// Edges are halfway between the colour of their face and this.
+/// Edges have the mean of the colour of their face and this.
 const INK: [u8; 3] = [26, 32, 44];
 
-/// A colour on a surface with a unit normal in the camera's frame. The zero vector counts as halfway
-/// between light and shade.
+/// Returns a colour on a surface with a unit normal in the camera's frame. The zero vector counts as
+/// halfway between light and shade.
 pub(crate) fn shaded(rgb: [u8; 3], normal: &Vector<f64>) -> [u8; 3] {
     let [x, y, z] = LIGHT;
     let light = 0.5 + 0.5 * (normal.x * x + normal.y * y + normal.z * z);
@@ -24,12 +24,12 @@ pub(crate) fn shaded(rgb: [u8; 3], normal: &Vector<f64>) -> [u8; 3] {
     [channel(0), channel(1), channel(2)]
 }
 
-/// The colour of the edges of faces of a colour.
+/// Returns the colour of the edges of faces of a colour.
 pub(crate) fn edge_tone(rgb: [u8; 3]) -> [u8; 3] {
     mixed(rgb, INK, 0.55)
 }
 
-/// A colour that is so far on the way from one to another, from 0 to 1.
+/// Interpolates two colours; `part` is from 0 to 1.
 pub(crate) fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
     let channel = |index: usize| {
         let (from, to) = (f64::from(from[index]), f64::from(to[index]));
@@ -38,7 +38,7 @@ pub(crate) fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
     [channel(0), channel(1), channel(2)]
 }
 
-/// The nearest of the numbers 0 to 255; 0 of NaN.
+/// Rounds to an integer from 0 to 255; 0 for NaN.
 #[expect(clippy::cast_possible_truncation, reason = "clamped")]
 #[expect(clippy::cast_sign_loss, reason = "clamped")]
 fn byte(x: f64) -> u8 {

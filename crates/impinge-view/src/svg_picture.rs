@@ -25,11 +25,11 @@ pub struct Svg {
 
 /// A picture of lines.
 ///
-/// Each layer is a group with a class: `object`, `contact-point`, `query-hit` and so on, in the order
-/// of [`Drawn`]; in a group, what is nearer comes later. Lengths on the page are in pixels with two
-/// digits. Colours that are too dark for a dark page are lighter there. Texts avoid the sides of the page
-/// and each other where they can; those of points outside the page are left out. What was
-/// [left out](Picture::left_out) is mentioned in the description.
+/// Each layer is a group with a class: `object`, `contact-point`, `query-hit` and so on, in the order of
+/// [`Drawn`]; in a group, nearer elements come later. Lengths on the page are in pixels with two digits.
+/// Colours that are too dark for a dark page are lighter there. Texts avoid the sides of the page and
+/// each other where possible; texts of points outside the page are omitted. The description mentions the
+/// number of [omitted](Picture::left_out) elements.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -44,23 +44,23 @@ pub struct Svg {
 /// ```
 pub type SvgPicture = Picture<Svg>;
 
-/// The size of characters, roughly: which font it is depends on the reader.
+/// The approximate size of characters: the font depends on the reader.
 pub(crate) const LETTER: Letter = Letter { width: 8.0, ascent: 10.0, descent: 3.0 };
 /// The margin on all sides, in pixels.
 const MARGIN: f64 = 16.0;
-/// The largest height of the drawing, in widths.
+/// The largest ratio of the height of the drawing to its width.
 const TALLEST: f64 = 1.5;
 
 impl Picture<Svg> {
-    /// A picture of a 2D scene, to scale, y upwards. Shapes and triangles are filled with a tint. The
-    /// width in pixels is clamped to 64 to 8192; the height follows from what is drawn.
+    /// Creates a picture of a 2D scene, to scale, y upwards. Shapes and triangles are filled with a tint.
+    /// The width in pixels is clamped to 64 to 8192; the height follows from the content.
     #[must_use]
     pub fn plane(width: u32) -> Self {
         Self::of(Camera::plane(), width, true)
     }
 
-    /// A picture of a 3D scene: lines alone. Where opaque meshes and triangles hide them they are
-    /// fainter and dotted. Of surfaces the outlines are drawn too. Width and height as in
+    /// Creates a picture of a 3D scene from lines. Lines are fainter and dotted where opaque meshes and
+    /// triangles hide them. Silhouettes of surfaces are drawn too. Width and height as in
     /// [`Self::plane`].
     #[must_use]
     pub fn space(camera: Camera, width: u32) -> Self {
@@ -74,8 +74,8 @@ impl Picture<Svg> {
         Self::with_format(camera, format)
     }
 
-    /// A title and a description, for screen readers and tooltips. Characters that XML does not allow
-    /// become U+FFFD.
+    /// Sets a title and a description, for screen readers and tooltips. Characters that XML does not
+    /// allow become U+FFFD.
     #[must_use]
     pub fn with_title(mut self, title: &str, description: &str) -> Self {
         self.format.title = title.to_owned();
@@ -83,14 +83,15 @@ impl Picture<Svg> {
         self
     }
 
-    /// Without the names and colours of the layers below the drawing.
+    /// Omits the legend below the drawing.
     #[must_use]
     pub fn without_legend(mut self) -> Self {
         self.format.has_legend = false;
         self
     }
 
-    /// The text of an SVG file. Of 3D scenes it costs a search along each line, half a pixel at a time.
+    /// Returns the text of an SVG file. For 3D scenes it costs a search along each line, half a pixel at
+    /// a time.
     #[must_use]
     pub fn to_svg(&self) -> String {
         let lens = self.lens();
@@ -166,7 +167,7 @@ impl Picture<Svg> {
 }
 
 impl Svg {
-    /// The page without margins and legend, for a drawing with a width and a height.
+    /// Returns the page without margins and legend, for a drawing with a width and a height.
     fn window(&self, [width, height]: [f64; 2]) -> Window {
         let inner = f64::from(self.width) - 2.0 * MARGIN;
         let tallest = inner * TALLEST;
@@ -176,16 +177,16 @@ impl Svg {
     }
 }
 
-/// A scene as it is seen on its page.
+/// A scene projected to its page.
 struct Page {
     flat: Flat,
     view: View,
-    /// The depths of what hides lines, if anything does.
+    /// The depths of surfaces that hide lines, if there are any.
     depths: Option<Raster>,
 }
 
 impl Page {
-    /// The parts of a line and whether they are hidden.
+    /// Returns the parts of a line and whether they are hidden.
     fn runs(&self, ends: &[OnScreen; 2]) -> Vec<(bool, [OnScreen; 2])> {
         match &self.depths {
             Some(depths) => {
@@ -202,7 +203,7 @@ fn label_layer(layer: Drawn, labels: &[PlacedLabel<'_>], body: &mut Body) {
     }
 }
 
-/// The lines of a layer: hidden ones first, each from far to near. Triangles have sides.
+/// Draws the lines of a layer: hidden ones first, each from far to near. Triangles have sides.
 fn stroke_layer(layer: Drawn, page: &Page, body: &mut Body) {
     let strokes = page.flat.strokes.iter().filter(|stroke| stroke.what == layer);
     let mut lines: Vec<_> = strokes.map(|stroke| (stroke.ends, stroke.color)).collect();

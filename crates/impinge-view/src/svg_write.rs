@@ -8,12 +8,12 @@ use crate::svg_picture::LETTER;
 use impinge::debug_render::Color;
 use std::fmt::Write;
 
-/// The drawing, and the colours that it needs.
+/// The drawing, and its colours.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     size: [f64; 2],
     text: String,
-    /// The N-th is that of the classes `sN` and `fN`.
+    /// Colour N belongs to the classes `sN` and `fN`.
     colors: Vec<[u8; 3]>,
     layers: Vec<Layer>,
     open: Option<Open>,
@@ -21,14 +21,14 @@ pub(crate) struct Body {
     legend_height: f64,
 }
 
-/// How a line is drawn, apart from its width.
+/// The style of a line, except its width.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Key {
     pub(crate) color: Color,
     pub(crate) is_hidden: bool,
 }
 
-/// A path that goes on with each line of the same key.
+/// A path that later lines of the same key extend.
 #[derive(Clone, Debug)]
 struct Open {
     key: Key,
@@ -48,7 +48,7 @@ impl Body {
         self.layers.push(layer);
     }
 
-    /// Ends it.
+    /// Ends the group.
     pub(crate) fn close(&mut self) {
         self.push("</g>\n");
     }
@@ -70,7 +70,7 @@ impl Body {
         self.open = Some(Open { key, last: end });
     }
 
-    /// Fills polygons, as one path so that nothing shines through between them.
+    /// Fills polygons, as one path so that no gaps are visible between them.
     pub(crate) fn fill(&mut self, color: Color, polygons: &[Vec<OnScreen>]) {
         let mut path = String::new();
         for polygon in polygons.iter().filter(|polygon| polygon.len() > 2) {
@@ -92,14 +92,14 @@ impl Body {
         self.push(&format!("<circle {class} cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>\n"));
     }
 
-    /// Writes a text from the left end of its base line, with a halo that separates it from what is behind.
+    /// Writes a text from the left end of its base line, with a halo that separates it from the background.
     pub(crate) fn label(&mut self, at: [f64; 2], text: &str, color: Color) {
         let class = self.class('f', Key { color, is_hidden: false });
         let ([x, y], text) = (at.map(number), escaped(text));
         self.push(&format!("<text {class} x=\"{x}\" y=\"{y}\">{text}</text>\n"));
     }
 
-    /// Names and colours of layers, below the drawing.
+    /// Writes names and colours of layers, below the drawing.
     pub(crate) fn legend(&mut self, layers: &[(Layer, Color)]) {
         let (entries, height) = legend(layers, self.size[0], LETTER.width);
         for LegendEntry { layer, color, at: [left, middle] } in entries {
@@ -122,7 +122,7 @@ impl Body {
         self.text.push_str(text);
     }
 
-    /// The attributes of a colour, for strokes (`s`) or fills (`f`).
+    /// Returns the attributes of a colour, for strokes (`s`) or fills (`f`).
     fn class(&mut self, kind: char, key: Key) -> String {
         let found = self.colors.iter().position(|color| *color == key.color.rgb);
         let index = found.unwrap_or_else(|| {
@@ -138,7 +138,7 @@ impl Body {
         attributes
     }
 
-    /// The style of the elements in the document with an id, in light and in dark.
+    /// Returns the style of the elements in the document with an id, for light and dark pages.
     fn style(&self, id: &str) -> String {
         let mut light = format!(
             "#{id} .paper{{fill:#fbfaf7}}#{id} .ink{{fill:#30363f}}#{id} text{{stroke:#fbfaf7}}\n"
@@ -168,15 +168,15 @@ fn rule(id: &str, index: usize, [red, green, blue]: [u8; 3]) -> String {
     format!("#{id} .s{index}{{stroke:{color}}}#{id} .f{index}{{fill:{color}}}\n")
 }
 
-/// A colour as it is on a dark page: lighter, if it is dark.
+/// Returns the colour for a dark page: lighter, if the colour is dark.
 fn on_dark(rgb: [u8; 3]) -> [u8; 3] {
     let [red, green, blue] = rgb.map(u32::from);
-    // The weights of the luminance of sRGB, out of 100.
+    // The weights of the luminance of sRGB, in percent.
     let luminance = (21 * red + 72 * green + 7 * blue) / 100;
     if luminance < 150 { mixed(rgb, [238, 242, 250], 0.5) } else { rgb }
 }
 
-/// The whole file.
+/// Returns the whole file.
 pub(crate) fn document(body: Body, title: &str, description: &str) -> String {
     let id = format!("impinge-{:016x}", hash(&[&body.text, &body.legend, title, description]));
     let [width, height] = body.size.map(number);
@@ -206,7 +206,8 @@ pub(crate) fn document(body: Body, title: &str, description: &str) -> String {
     svg
 }
 
-/// FNV-1a, by Fowler, Noll and Vo: the id of a document, so that the styles of several on one page do not mix.
+/// FNV-1a, by Fowler, Noll and Vo: the id of a document, so that the styles of several documents on one page
+/// do not mix.
 fn hash(texts: &[&str]) -> u64 {
     let bytes = texts.iter().flat_map(|text| text.bytes().chain([0]));
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
@@ -214,13 +215,13 @@ fn hash(texts: &[&str]) -> u64 {
     })
 }
 
-/// A number with two digits; zero has no sign.
+/// Formats a number with two digits; zero has no sign.
 fn number(x: f64) -> String {
     let text = format!("{x:.2}");
     if text == "-0.00" { "0.00".into() } else { text }
 }
 
-/// A text as XML has it.
+/// Escapes a text for XML.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {

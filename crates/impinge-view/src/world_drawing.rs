@@ -6,10 +6,10 @@ use impinge::math::{Point, Space, Vector};
 use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::world::CollisionWorld;
 
-/// What draws a world, with options whose sizes are for objects of length 1.
+/// Returns a drawing for a world, with options whose sizes are for objects of length 1.
 ///
-/// They are scaled by the median of the objects' longest sides, half-spaces reach as far as the bounded objects, and
-/// objects have six quiet colours in turn. Costs O(n log n) for n objects.
+/// They are scaled by the median of the objects' longest sides. Half-spaces are drawn up to the extent of the
+/// bounded objects, and objects have six muted colours in turn. Costs O(n log n) for n objects.
 ///
 /// ```
 /// use impinge::debug_render::DebugOptions;
@@ -40,16 +40,16 @@ pub fn world_drawing<N: Space<D>, const D: usize, T>(
     DebugDrawing::new(options).with_object_color(object_color)
 }
 
-/// Lengths of a world; 1 where there is none.
+/// Lengths of a world; 1 if it has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Extent {
     /// The median of the objects' longest sides, the lower one of two: a box on a floor is typical, not the floor.
     typical: f64,
-    /// The distance from the origin, along an axis, within which all bounded objects are.
+    /// The distance from the origin, along an axis, that contains all bounded objects.
     whole: f64,
 }
 
-/// The lengths of a world. Objects without bounds, such as half-spaces, count nothing.
+/// Computes the lengths of a world. Unbounded objects, such as half-spaces, are ignored.
 fn extent<N: Space<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Extent {
     let boxes =
         world.collision_objects().map(|object| object.shape().aabb(&N::pose(object.position())));
@@ -65,7 +65,7 @@ fn extent<N: Space<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Ex
     Extent { typical: or_one(typical), whole: or_one(whole) }
 }
 
-/// Contact normals.
+/// The colour of contact normals.
 const NORMAL: Color = Color::rgb(190, 110, 20);
 
 /// The colour of an object.
@@ -73,7 +73,7 @@ fn object_color(handle: CollisionObjectHandle) -> Option<Color> {
     Some(COLORS[handle.uid() % COLORS.len()])
 }
 
-/// Objects, in turn.
+/// The colours of objects, in turn.
 const COLORS: [Color; 6] = [
     Color::rgb(124, 146, 176),
     Color::rgb(204, 128, 104),

@@ -1,4 +1,5 @@
-//! What all queries answer for all pairs of kinds, and a world with one object of each kind.
+//! Hashes of the results of all queries for all pairs of kinds, and of a world with one object of
+//! each kind.
 
 use std::array::from_fn;
 use std::fmt::Debug;
@@ -22,10 +23,10 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 
 use crate::scene_stage::{Digest, digest_state};
 
-/// Where shapes are; how they are turned is written down too, since sines are those of the platform.
+/// The positions of shapes. Their rotations are constants too, since the sines of platforms differ.
 const PLACES: [[f64; 3]; 4] = [[0.0; 3], [1.5, 0.25, -0.5], [0.3, -0.2, 0.1], [4.0, 1.0, 2.0]];
 
-/// Of the plane.
+/// Returns the hash of the queries in 2D.
 pub(crate) fn in_plane<N: Real>() -> u64 {
     let turns = [[1.0, 0.0], [0.6, 0.8], [1.0, 0.0], [-0.8, 0.6]];
     let poses = from_fn(|index| {
@@ -37,7 +38,7 @@ pub(crate) fn in_plane<N: Real>() -> u64 {
     of_all(&shapes_of_plane(), &poses)
 }
 
-/// Of space.
+/// Returns the hash of the queries in 3D.
 pub(crate) fn in_space<N: Real>() -> u64 {
     let turns = [[1.0, 0.0, 0.0, 0.0], [0.8, 0.36, 0.48, 0.0], [1.0, 0.0, 0.0, 0.0], [0.5; 4]];
     let poses = from_fn(|index| {
@@ -67,12 +68,12 @@ where
     digest.finish()
 }
 
-/// Numbers are written with as many digits as tell them apart.
+/// Adds a result; numbers have as many digits as distinguish them.
 fn note(answer: &impl Debug, digest: &mut Digest) {
     digest.write(format!("{answer:?}").as_bytes());
 }
 
-/// Rays and points.
+/// Runs the queries by rays and points.
 fn one<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Isometry<N, R, D>,
@@ -90,7 +91,7 @@ fn one<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     }
 }
 
-/// Queries about a pair.
+/// Runs the queries about a pair.
 fn two<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     [g1, g2]: [&dyn Shape<N, D>; 2],
     [m1, m2]: [&Isometry<N, R, D>; 2],
@@ -106,7 +107,7 @@ fn two<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     note(&time_of_impact(m1, &rest, g1, m2, &velocity, g2), digest);
 }
 
-/// Manifolds: one object of each kind in each place, over a few steps.
+/// Runs a world: one object of each kind at each position, over a few steps.
 fn together<N, R, const D: usize>(
     shapes: &[ShapeHandle<N, D>],
     poses: &[Isometry<N, R, D>; 4],
@@ -134,7 +135,7 @@ fn together<N, R, const D: usize>(
     }
 }
 
-/// Those of both dimensions.
+/// Returns the shapes of both dimensions.
 fn shapes<N: Space<D>, const D: usize>(corners: &[Point<N, D>; 3]) -> Vec<ShapeHandle<N, D>> {
     let [a, b, c] = *corners;
     let half = Vector::<N, D>::from_fn(|axis, _| N::lit([1.0, 0.5, 2.0][axis]));
@@ -177,7 +178,7 @@ fn shapes_of_space<N: Real>() -> Vec<ShapeHandle<N, 3>> {
     let p = |x: f64, y: f64, z: f64| Point::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z));
     let mut all = shapes(&[p(-1.0, -0.5, 0.0), p(1.0, -0.25, 0.5), p(0.25, 1.0, -0.5)]);
     let cube = surfaces::cuboid(&Cuboid::new(Vector::<N, 3>::repeat(N::ONE)));
-    // Of more vertices than eight.
+    // A hull with more than eight vertices.
     let stone = [p(1.2, 0.0, 0.1), p(0.0, 1.3, 0.2), p(-0.1, 0.3, -1.4)];
     let hull = ConvexHull::from_points(&[&cube.vertices[..], &stone[..]].concat());
     let heights = [0.0, 1.0, 0.5, -1.0, 0.0, 0.25].map(N::lit).to_vec();

@@ -1,8 +1,8 @@
 //! Hashes of scenes and queries, which are the same on every target: the golden ones of the test `determinism`,
-//! one of the answers for all pairs of kinds, and those of the recordings in the repository.
+//! one of the results for all pairs of kinds, and those of the recordings in the repository.
 //!
-//! Natively the program of this package prints them. As a WebAssembly module it exports functions of numbers
-//! alone, by which `compare.mjs` reads them in Node.
+//! The native program of this package prints them. The WebAssembly module exports functions of numbers, by
+//! which `compare.mjs` reads them in Node.
 
 #[macro_use]
 #[path = "../../impinge/tests/it/support/scene_stage/runs.rs"]
@@ -21,9 +21,9 @@ use impinge_scenes::{
 use runs::Run;
 use scene_stage::Play;
 
-/// A hash by its name.
+/// A named hash.
 pub struct Check {
-    /// Of scenes as in the golden file.
+    /// For scenes the name in the golden file.
     pub name: String,
     /// Computes it.
     pub hash: Box<dyn Fn() -> u64 + Send + Sync>,
@@ -72,18 +72,18 @@ where
     checks.push(Check { name: run.key("f64"), hash: Box::new(hash64) });
 }
 
-/// What the host sees.
+/// The exports for the host.
 #[cfg(target_family = "wasm")]
 mod exports {
     #![expect(unsafe_code, reason = "the attribute that keeps a name counts as unsafe")]
 
-    /// How many checks there are.
+    /// Returns the number of checks.
     #[unsafe(no_mangle)]
     extern "C" fn count() -> usize {
         super::checks().len()
     }
 
-    /// A byte of the name of a check; zero after the last.
+    /// Returns a byte of the name of a check; zero after the last.
     #[unsafe(no_mangle)]
     extern "C" fn name(check: usize, byte: usize) -> u32 {
         super::checks()[check].name.as_bytes().get(byte).copied().unwrap_or(0).into()

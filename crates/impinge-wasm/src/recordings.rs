@@ -1,4 +1,4 @@
-//! The recordings in the repository, replayed: a hash of every step, and no difference from what was recorded.
+//! The recordings in the repository, replayed: a hash of every step, and no difference from the recording.
 
 use std::hash::Hasher;
 
@@ -7,7 +7,7 @@ use impinge_record::{Recordable, Registry, Replay};
 
 use crate::scene_stage::{Digest, digest_state};
 
-/// Of every shape in 2D, in `f32`.
+/// The recording of every shape in 2D, in `f32`.
 pub(crate) fn in_plane() -> u64 {
     type Object = CollisionObject<f32, 2, u32>;
     let odd = |one: &Object, two: &Object| (one.data() + two.data()) % 2 == 1;
@@ -15,7 +15,7 @@ pub(crate) fn in_plane() -> u64 {
     replayed(bytes, &Registry::new().with_filter("odd", odd))
 }
 
-/// Of every shape in 3D, in `f64`.
+/// The recording of every shape in 3D, in `f64`.
 pub(crate) fn in_space() -> u64 {
     type Object = CollisionObject<f64, 3, u32>;
     let odd = |one: &Object, two: &Object| (one.data() + two.data()) % 2 == 1;

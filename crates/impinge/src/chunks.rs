@@ -1,4 +1,5 @@
-//! Long lists of work, cut into chunks: in order on one thread, with the feature `parallel` on several.
+//! Parallel work on long lists: cut into chunks that run in order, or with the feature `parallel`
+//! on several threads.
 //!
 //! ```text
 //!   range    | 0..64 | 64..128 | 128..192 | 192..200 |     the last may be shorter
@@ -7,22 +8,22 @@
 //!                 one half            the other            halves of halves go to threads that are free
 //! ```
 //!
-//! Where a chunk ends follows from the number of elements alone, and no chunk reads what another writes. So
-//! the bits of the answers do not depend on the threads.
+//! The ends of chunks depend only on the number of elements, and no chunk reads what another
+//! writes. So the bits of the results do not depend on the threads.
 
 use core::ops::{ControlFlow, Range};
 
-/// The elements that one thread computes at a time: enough to hide what a chunk costs beside its elements, few
-/// enough to end soon after a cancellation.
+/// Number of elements that one thread computes at a time: enough to outweigh the overhead of a
+/// chunk, few enough to end soon after a cancellation.
 pub(crate) const CHUNK: usize = 64;
 
-/// Slots for the answers about a range of elements, which can be cut where the range is.
+/// Output slots of a range of elements, which can be cut along with the range.
 pub(crate) trait Cut: Sized + Send {
-    /// The slots of the first `at` elements and those of the others.
+    /// Splits the slots into those of the first `at` elements and those of the others.
     fn cut(self, at: usize) -> (Self, Self);
 }
 
-/// A slot for each element, or none for any.
+/// A slot for each element, or an empty column.
 impl<T: Send> Cut for &mut [T] {
     #[inline]
     fn cut(self, at: usize) -> (Self, Self) {
@@ -31,7 +32,7 @@ impl<T: Send> Cut for &mut [T] {
     }
 }
 
-/// For work whose answers lie elsewhere.
+/// No slots, for work that writes its results elsewhere.
 impl Cut for () {
     fn cut(self, _: usize) -> ((), ()) {
         ((), ())
@@ -49,8 +50,8 @@ impl<T: Send> Cut for PerChunk<'_, T> {
     }
 }
 
-/// Calls `work` with each chunk of a range and its slots, until a call breaks. Several threads may be within
-/// `work` at a time, and then some chunks after the one that breaks are begun, too.
+/// Calls `work` with each chunk of a range and its slots, until a call breaks. Several threads may
+/// run `work` at a time; then some chunks after the one that breaks may run too.
 pub(crate) fn each_chunk<C: Cut>(
     range: Range<usize>,
     columns: C,
@@ -63,7 +64,7 @@ pub(crate) fn each_chunk<C: Cut>(
     in_order(range, columns, work)
 }
 
-/// One chunk after the other.
+/// Runs the chunks one after the other.
 fn in_order<C: Cut>(
     range: Range<usize>,
     mut columns: C,
@@ -79,7 +80,8 @@ fn in_order<C: Cut>(
     ControlFlow::Continue(())
 }
 
-/// Both halves of the chunks at once. The depth is the logarithm of their number.
+/// Runs both halves of the chunks in parallel. The recursion depth is the logarithm of their
+/// number.
 #[cfg(feature = "parallel")]
 fn in_halves<C: Cut>(
     range: Range<usize>,

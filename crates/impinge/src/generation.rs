@@ -1,15 +1,17 @@
-//! Which of the objects that held an index of a table a handle names, and whose table it is.
+//! Generations of handles: they distinguish the objects that had one index of a table, and tables
+//! from each other.
 
 use core::fmt;
 use core::hash::{Hash, Hasher};
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// The part of a handle beside the index: how many objects held the index before (16 bits), and a tag of the
-/// table (16 bits). One comparison of 32 bits refuses stale and foreign handles alike.
+/// The part of a handle besides the index: the number of objects that had the index before (16
+/// bits), and a tag of the table (16 bits). A single comparison of 32 bits rejects both stale and
+/// foreign handles.
 ///
-/// The order is by count; the tag decides only between handles of different tables. `Hash`, `Debug` and
-/// the serialized form are those of the count, so that they do not depend on the order in which tables
-/// are made. A tag is used again after 65535 other tables; a table that is cloned shares its tag.
+/// The order is by count; the tag decides only between handles of different tables. `Hash`, `Debug`
+/// and the serialized form use the count alone, so that they do not depend on the order in which
+/// tables are created. A tag is used again after 65535 other tables; a cloned table keeps its tag.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "u16", into = "u16"))]
@@ -18,26 +20,27 @@ pub(crate) struct Generation(u32);
 /// The lowest bit of the count.
 const ONE: u32 = 1 << 16;
 
-/// Tables made so far; wraps.
+/// Number of tables created so far; wraps.
 static TABLES: AtomicU32 = AtomicU32::new(0);
 
 impl Generation {
-    /// The first generation in a new table.
+    /// Returns the first generation in a new table.
     pub(crate) fn of_new_table() -> Self {
         Self(1 + TABLES.fetch_add(1, Ordering::Relaxed) % (ONE - 1))
     }
 
-    /// A generation of no table, which every table refuses.
+    /// Returns a generation without a table, which every table rejects.
     pub(crate) const fn of_no_table(count: u16) -> Self {
         Self((count as u32) << 16)
     }
 
-    /// How many objects held the index before.
+    /// Returns the number of objects that had the index before.
     pub(crate) const fn count(self) -> u16 {
         (self.0 >> 16) as u16
     }
 
-    /// That of the next object at the same index; `None` once the counts are used up.
+    /// Returns the generation of the next object at this index; `None` once the counts are
+    /// exhausted.
     pub(crate) fn next(self) -> Option<Self> {
         self.0.checked_add(ONE).map(Self)
     }

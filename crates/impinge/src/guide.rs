@@ -1,6 +1,6 @@
-//! The user guide: what the library does and how to use it, chapter by chapter.
+//! The user guide: the features of the library and how to use them, chapter by chapter.
 //!
-//! In the order to read it; every block of code is compiled and run as a test.
+//! Chapters are in reading order; every block of code is compiled and run as a test.
 //!
 //! 1. [`introduction`]: two objects in a world, and the contact between them.
 //! 2. [`pipeline`]: how a world works, step by step, and its two phases alone.
@@ -8,19 +8,19 @@
 //! 4. [`composites`]: compounds, meshes, terrain, deforming shapes.
 //! 5. [`own_shapes`]: shapes that you implement.
 //! 6. [`contacts`]: contact points and manifolds, from step to step.
-//! 7. [`groups`]: which pairs a world looks at.
-//! 8. [`events`]: what began and ended.
+//! 7. [`groups`]: which pairs a world considers.
+//! 8. [`events`]: contacts and proximities that began or ended.
 //! 9. [`queries`]: rays, casts, points and distances, with or without a world.
-//! 10. [`batches`]: one question about many placed shapes.
-//! 11. `drawing`: seeing what the library sees, with the feature `debug_render`.
-//! 12. [`performance`]: what a step costs, and what makes it cheaper.
-//! 13. [`guarantees`]: what you can rely on, to which precision.
+//! 10. [`batches`]: one query for many placed shapes.
+//! 11. `drawing`: lines of what the library computes, with the feature `debug_render`.
+//! 12. [`performance`]: the cost of a step, and how to reduce it.
+//! 13. [`guarantees`]: the guarantees and their precision.
 //!
 //! [`coming_from`] translates programs that use ncollide, parry, rapier or Box2D.
 //!
-//! This module is part of the documentation alone: a program has no `impinge::guide`.
+//! This module exists only in the documentation: a program has no `impinge::guide`.
 
-/// A picture of a line of text.
+/// A picture with a line of text.
 macro_rules! in_the_book {
     () => {
         "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' width='440' height='28'%3E%3Crect width='440' \
@@ -29,9 +29,9 @@ macro_rules! in_the_book {
     };
 }
 
-/// A chapter. Its links name the files that it is made of; the first definition of a name holds, so here they
-/// lead to the modules. The pictures in lines are part of the page; those in pixels are not in the package,
-/// and a line of text stands in for them.
+/// Declares a chapter. Its links refer to files of the guide; since the first definition of a link
+/// name is used, these definitions make them refer to modules. Line pictures are embedded; pixel
+/// pictures are not in the package, and a line of text replaces them.
 macro_rules! chapter {
     ($name:ident, $file:literal $(, $picture:literal)*) => {
         #[doc = "[batches]: self::batches"]
@@ -79,7 +79,7 @@ chapter!(performance, "performance.md", "tree");
 chapter!(guarantees, "guarantees.md");
 chapter!(coming_from, "coming-from.md");
 
-/// The page of the crate, run as a test.
+/// The README of the crate, run as a test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct Readme;

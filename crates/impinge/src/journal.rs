@@ -1,19 +1,24 @@
-//! What undoes the changes since some marks.
+//! An undo journal: notes that revert the changes since a mark.
 //!
-//! An owner notes what was there before it changes it. To go back to a mark, it undoes its notes, the newest first: things
-//! in dense arrays come back to the places that they had. Without marks nothing is noted.
+//! An owner notes the old state before it changes it. To return to a mark, it reverts its notes, the newest first, so
+//! that entries of dense arrays return to their former indices. Without marks nothing is noted.
+//!
+//! ```text
+//! marks      1           2           3
+//! notes      a b c       d           e f      undo(2): f, e, d, then `None`; mark 2 stays, 3 is gone
+//! ```
 
 use core::fmt;
 use std::collections::VecDeque;
 
-/// The notes `U` since each mark, and what is kept whole with a mark, `H`.
+/// Notes `U` since each mark, and state `H` copied whole with each mark.
 pub(crate) struct Journal<U, H = ()> {
-    /// By mark, the oldest first.
+    /// One frame for each mark, the oldest first.
     frames: VecDeque<Frame<U, H>>,
-    /// The memory of frames that are gone.
+    /// Memory of removed frames, for reuse.
     spare: Vec<Vec<U>>,
-    /// By index of a thing: the periods in which it, and the whole of it, were last noted. A period ends with each
-    /// mark and each return.
+    /// By index of an object: the periods in which a part of it, and the whole of it, were last noted. Each mark and
+    /// each return to a mark begins a period.
     noted: Vec<[u32; 2]>,
     period: u32,
 }
@@ -44,19 +49,20 @@ impl<U, H> Clone for Journal<U, H> {
 }
 
 impl<U, H> Journal<U, H> {
-    /// There is a mark, so changes are to be noted.
+    /// Returns `true` if there is a mark, so that changes must be noted.
     #[inline]
     pub(crate) fn is_on(&self) -> bool {
         !self.frames.is_empty()
     }
 
-    /// There are marks, and a thing has not been noted since the last one: it will count as noted from now on.
+    /// Returns `true` if there are marks and the object has not been noted since the last one; it counts as noted from
+    /// then on.
     #[inline]
     pub(crate) fn is_first(&mut self, index: usize) -> bool {
         self.is_on() && self.is_first_of(index, 0)
     }
 
-    /// As [`Self::is_first`], where some notes are of parts of a thing and others of the whole, which spare those of parts.
+    /// As [`Self::is_first`], for a note of the whole object, which makes notes of its parts superfluous.
     #[inline]
     pub(crate) fn is_first_whole(&mut self, index: usize) -> bool {
         let is_first = self.is_on() && self.is_first_of(index, 1);
@@ -73,7 +79,7 @@ impl<U, H> Journal<U, H> {
         core::mem::replace(&mut self.noted[index][part], self.period) != self.period
     }
 
-    /// Notes what undoes a change, if there is a mark.
+    /// Adds the note that reverts a change, if there is a mark.
     #[inline]
     pub(crate) fn note(&mut self, undo: U) {
         if let Some(frame) = self.frames.back_mut() {
@@ -81,14 +87,14 @@ impl<U, H> Journal<U, H> {
         }
     }
 
-    /// Adds a mark. Numbers ascend.
+    /// Sets a mark. Numbers must ascend.
     pub(crate) fn mark(&mut self, number: u64, head: H) {
         let notes = self.spare.pop().unwrap_or_default();
         self.frames.push_back(Frame { number, head, notes });
         self.end_period();
     }
 
-    /// Forgets the marks with smaller numbers.
+    /// Drops the marks with smaller numbers.
     pub(crate) fn forget_before(&mut self, number: u64) {
         while self.frames.front().is_some_and(|frame| frame.number < number) {
             if let Some(frame) = self.frames.pop_front() {
@@ -100,12 +106,12 @@ impl<U, H> Journal<U, H> {
         }
     }
 
-    /// The mark is kept.
+    /// Returns `true` if the mark is kept.
     pub(crate) fn has(&self, number: u64) -> bool {
         self.frames.iter().any(|frame| frame.number == number)
     }
 
-    /// Takes the newest note since a mark; `None` when there is none left. Later marks are gone then.
+    /// Takes the newest note since a mark; `None` when there is none left. By then later marks are gone.
     pub(crate) fn undo(&mut self, number: u64) -> Option<U> {
         while let Some(frame) = self.frames.back_mut() {
             if let Some(undo) = frame.notes.pop() {
@@ -121,7 +127,7 @@ impl<U, H> Journal<U, H> {
         None
     }
 
-    /// What is kept with the last mark.
+    /// Returns the state copied with the last mark.
     pub(crate) fn head(&self) -> Option<&H> {
         self.frames.back().map(|frame| &frame.head)
     }

@@ -1,9 +1,9 @@
 //! Collision detection in 2D and 3D: who touches whom, where, and since when.
 //!
-//! You move your objects by your own rules; there are no forces here. A world says, at each
-//! update, which pairs came to touch or parted, where their contact points are, how deep and along
-//! which direction. It also answers rays, points, boxes, shapes and moving shapes, and [`query`] any
-//! question about two shapes on their own.
+//! You move your objects by your own rules; there are no forces here. At each update a world
+//! computes which pairs began to touch or parted, where their contact points are, how deep and
+//! along which direction. It also answers queries with rays, points, boxes, shapes and moving
+//! shapes; [`query`] has the queries between two single shapes.
 //!
 //! ```
 //! use impinge::dim3::prelude::*;
@@ -24,46 +24,48 @@
 //!
 //! # Where to begin
 //!
-//! * The guide explains it all, chapter by chapter, with programs; users of ncollide, parry and rapier
-//!   find there what is called what. It is the module [`guide`] of this documentation.
-//! * [`dim2`] and [`dim3`] hold the names to type: everything with the dimension filled in, and a
-//!   `prelude` with what the usual program needs. The modules beside them hold the same things for every
-//!   dimension `D`; write code against those only where it shall serve both.
-//! * [`world::CollisionWorld`] is all that most programs use. Its parts work alone too:
+//! * The guide explains the library chapter by chapter, with programs; it has tables of names for
+//!   users of ncollide, parry and rapier. It is the module [`guide`] of this documentation.
+//! * [`dim2`] and [`dim3`] have the names to use: everything with the dimension filled in, and a
+//!   `prelude` for common programs. The modules beside them are generic over the dimension `D`; use
+//!   those for code that serves both.
+//! * [`world::CollisionWorld`] is all that most programs need. Its parts work alone too:
 //!   [`broad_phase`] on boxes, [`narrow_phase`] on one pair, [`query`] on two placed shapes.
-//! * [`batch`] asks one question about very many placed shapes in one call, with the answers in arrays.
-//! * [`checker`] answers for many configurations of a robot at once whether they are free.
-//! * [`shape`] has the solids, and the meshes, height fields and compounds made of them. Positions are
-//!   isometries; `dim2::math` and `dim3::math` have them, vectors and points under one name in both, and
-//!   `na` is all of nalgebra, whose types they are.
+//! * [`batch`] evaluates one query for very many placed shapes in one call, with the results in
+//!   arrays.
+//! * [`checker`] tests many configurations of a robot at once for collisions.
+//! * [`shape`] has the solids, and the meshes, height fields and compounds made of them. Positions
+//!   are isometries; `dim2::math` and `dim3::math` define them, vectors and points under equal
+//!   names, and `na` re-exports nalgebra, whose types they are.
 //!
-//! # What holds everywhere
+//! # Guarantees
 //!
-//! * Intersecting, a distance of zero, and a contact with a depth of zero or more are one fact. (No
-//!   contact have half-spaces that overlap without bound, and surfaces with one side with what is
-//!   behind them; of composites that just touch the contact may be a rounding error away.) Touching
-//!   counts, and so does a distance equal to a prediction or margin.
-//! * A depth is positive inside. Normals are unit vectors from the first solid to the second. Angles
-//!   are in radians. Lengths and times have the units that you give them.
+//! * Intersecting, a distance of zero, and a contact with a depth of zero or more are equivalent.
+//!   (Exceptions: half-spaces that overlap without bound and one-sided surfaces with solids behind
+//!   them have no contact; for composites that just touch, the contact may differ by a rounding
+//!   error.) Touching counts, and so does a distance equal to a prediction or margin.
+//! * A depth is positive inside. Normals are unit vectors from the first solid to the second.
+//!   Angles are in radians. Lengths and times have the units of your input.
 //! * No tolerance is absolute: scaling all input by a power of two scales all results exactly.
-//! * The same calls give the same bits, on every run, machine and number of threads. Pairs, events
-//!   and answers come in order of the handles.
-//! * Constructors and methods of worlds that panic on misuse have a `try_` twin that returns the error;
-//!   either way nothing was changed. To ask for a part, corner or height that does not exist panics as
-//!   it does for a slice.
+//! * Equal calls give equal bits, on every run, on every machine and for any number of threads.
+//!   Pairs, events and results come in order of the handles.
+//! * Constructors and methods of worlds that panic on misuse have a `try_` twin that returns the
+//!   error; in both cases nothing has changed. An index of a part, corner or height that does not
+//!   exist panics as it does for a slice.
 //!
 //! # Features
 //!
-//! * `dim2` and `dim3` (both default): the plane and space. Who needs one of them writes
-//!   `default-features = false, features = ["dim3"]`; what is off is not compiled.
-//! * `batch` (default): batches and checkers compiled in the library; without it they are compiled in
-//!   your crate, where it uses them.
-//! * `f64`: `f64` as a scalar beside `f32`.
+//! * `dim2` and `dim3` (both default): 2D and 3D. For one of them write `default-features = false,
+//!   features = ["dim3"]`; a disabled dimension is not compiled.
+//! * `batch` (default): compiles batches and checkers in the library; without it they are compiled
+//!   in your crate, where it uses them.
+//! * `f64`: the scalar `f64` besides `f32`.
 //! * `parallel`: updates and batches on several threads, with the same bits.
-//! * `debug_render`: drawing worlds, shapes and queries with a back end of yours.
+//! * `debug_render`: drawing worlds, shapes and queries with your own back end.
 //! * `serde`: `Serialize` and `Deserialize` for plain values.
 //! * `mint`: conversions to and from other vector libraries, through nalgebra.
-//! * `glam`: the same to and from glam 0.33: points, vectors, rotations and isometries by `into`.
+//! * `glam`: conversions to and from glam 0.33 for points, vectors, rotations and isometries, by
+//!   `into`.
 #![forbid(unsafe_code)]
 
 pub mod batch;

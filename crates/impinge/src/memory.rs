@@ -1,12 +1,12 @@
-//! When lists give memory back.
+//! Releasing memory of lists.
 //!
-//! A list that has been long keeps its memory, so that a step takes none from the allocator. What was long
-//! once, when everything came at the same time, would keep it for ever. So whoever owns lists notes how
-//! long they were, and once in [`PERIOD`] updates gives back what was not needed since. Short lists keep
-//! what they have; all outcomes depend on lengths alone.
+//! A list that has been long keeps its memory, so that a step does not allocate. Without limit, a
+//! list that was long once, such as after a bulk insertion, would keep it for ever. So owners of
+//! lists note their lengths, and once in [`PERIOD`] updates release memory that was not needed
+//! since. Short lists keep theirs; the results depend on lengths alone.
 
-/// Implements `Clone` field by field, so that `clone_from` writes into the lists that are there. A field that is
-/// missing does not compile.
+/// Implements `Clone` field by field, so that `clone_from` reuses the memory of lists. A missing
+/// field does not compile.
 macro_rules! clone_fields {
     ([$($generics:tt)*] $type:ty { $($field:ident),* $(,)? }) => {
         impl<$($generics)*> Clone for $type {
@@ -22,14 +22,14 @@ macro_rules! clone_fields {
 }
 pub(crate) use clone_fields;
 
-/// Updates between two looks at the lists.
+/// Updates between two checks of the lists.
 const PERIOD: u32 = 64;
-/// The entries for which a list may keep memory.
+/// Number of entries up to which a list always keeps its memory.
 const KEPT: usize = 4096;
-/// The bytes that a list may have to spare.
+/// Number of spare bytes up to which a list always keeps its memory.
 const SPARE: usize = 16384;
 
-/// How long the lists of an owner have been lately, and how many things it has.
+/// Recent lengths of an owner's lists, and its number of objects.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recent {
     updates: u32,
@@ -37,22 +37,22 @@ pub(crate) struct Recent {
     count: usize,
 }
 
-/// What a look at the lists may act on.
+/// Statistics of a period, by which lists are shrunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Look {
-    /// How long a list has been at most since the last look.
+    /// The greatest length of a list since the last check.
     pub(crate) longest: usize,
-    /// No more things are there than at the last look.
+    /// The number of objects has not increased since the last check.
     pub(crate) is_settled: bool,
 }
 
 impl Recent {
-    /// Notes that some list was so long in this update.
+    /// Notes the length of a list in this update.
     pub(crate) fn note(&mut self, length: usize) {
         self.longest = self.longest.max(length);
     }
 
-    /// Ends an update in which there were so many things; now and then it is time for a look.
+    /// Ends an update with `count` objects; returns the statistics when a period is over.
     pub(crate) fn end_update(&mut self, count: usize) -> Option<Look> {
         self.updates += 1;
         if self.updates < PERIOD {
@@ -65,14 +65,14 @@ impl Recent {
 }
 
 impl Look {
-    /// Gives back what a list of passing use has beyond what was needed lately, if that is most of it.
+    /// Shrinks a temporary list if less than a quarter of it was needed lately.
     pub(crate) fn trim<T>(self, list: &mut Vec<T>) {
         if list.capacity() > KEPT && list.capacity() / 4 > self.longest {
             list.shrink_to((2 * self.longest).max(list.len()));
         }
     }
 
-    /// Leaves a list that has stopped to grow an eighth to spare.
+    /// Shrinks a list that has stopped growing to an eighth of spare capacity.
     pub(crate) fn fit<T>(self, list: &mut Vec<T>) {
         let spare = list.len() / 8;
         let surplus = list.capacity() - list.len();
@@ -86,7 +86,7 @@ impl Look {
 mod tests {
     use super::*;
 
-    /// The looks of some updates in which a list was so long.
+    /// Returns the checks in a number of updates with a list of this length.
     fn looks(recent: &mut Recent, updates: u32, length: usize, count: usize) -> Vec<Look> {
         let one = |_| {
             recent.note(length);

@@ -19,7 +19,7 @@ mod scenes3;
 
 const STEPS: usize = 300;
 
-/// What one step took: all of it, and the narrow phase, by Avian's own clock.
+/// Durations of one step and of its narrow phase, the latter by Avian's own clock.
 #[derive(Clone, Copy, Default)]
 struct Step {
     whole: Duration,

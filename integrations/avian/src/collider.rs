@@ -13,7 +13,7 @@ pub(crate) type Vec_<const D: usize> = <f32 as Glam<D>>::Vec;
 /// The library's isometry.
 pub(crate) type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 
-/// The coordinate that stands for infinity in boxes: the largest whose difference to its opposite is a number.
+/// The coordinate that replaces infinity in boxes: the largest for which `FAR - (-FAR)` is finite.
 const FAR: f32 = f32::MAX / 2.0;
 
 /// The shape of an entity, for Avian's plugins: what Avian's own `Collider` is for parry.
@@ -71,7 +71,7 @@ where
         Self::made(shape.map(ShapeHandle::new).map_err(Into::into))
     }
 
-    /// Why there is no shape, if a constructor was given what makes none.
+    /// The error of the constructor, if its arguments make no shape.
     #[must_use]
     pub fn error(&self) -> Option<ColliderError> {
         self.shape.as_ref().err().copied()
@@ -80,7 +80,7 @@ where
     /// The library's shape, without the scale of the transform.
     ///
     /// # Errors
-    /// Those of [`Self::error`].
+    /// See [`Self::error`].
     pub fn shape(&self) -> Result<&ShapeHandle<f32, D>, ColliderError> {
         self.shape.as_ref().map_err(|error| *error)
     }
@@ -88,7 +88,7 @@ where
     /// The library's shape, with the scale of the transform.
     ///
     /// # Errors
-    /// Those of [`Self::error`].
+    /// See [`Self::error`].
     pub fn shape_scaled(&self) -> Result<&ShapeHandle<f32, D>, ColliderError> {
         self.scaled.as_ref().map_err(|error| *error)
     }
@@ -106,7 +106,7 @@ where
         self.scale
     }
 
-    /// Applies other factors; see [`scaled`].
+    /// Replaces the scale; see [`scaled`]. If the shape cannot be scaled so, the old scale stays.
     pub(crate) fn rescale(&mut self, scale: Vec_<D>, detail: u32) {
         let Ok(shape) = &self.shape else { return };
         if scale == self.scale {
@@ -185,8 +185,8 @@ where
         Self::of::<_, ColliderError>(children.and_then(|children| Ok(Compound::try_new(children)?)))
     }
 
-    /// The corners of the box around the shape at a pose; of a collider in error that of the point there. Avian asserts
-    /// that they are numbers in order, so they are, wherever the collider has got to.
+    /// The corners of the box around the shape at a pose; a collider in error has a box of size zero there. Avian asserts
+    /// that `min <= max`, so NaN is replaced and infinity clamped.
     pub(crate) fn corners(&self, pose: &Isometry<D>) -> [Vec_<D>; 2] {
         let known = |x: f32| if x.is_nan() { 0.0 } else { x.clamp(-FAR, FAR) };
         let at = f32::translation(pose).map(known);
@@ -196,20 +196,20 @@ where
         [around.mins(), around.maxs()].map(|corner| f32::vec(&corner.coords.zip_map(&at, near)))
     }
 
-    /// Mass, centre and inertia; nothing of a collider in error, and of what encloses no volume.
+    /// Mass, centre and inertia at a density; zero for a collider in error and for a shape without volume.
     pub(crate) fn weighed(&self, density: f32) -> MassProperties<f32, D> {
         let Ok(shape) = &self.scaled else { return MassProperties::default() };
         mass_properties(&**shape, density).unwrap_or_default()
     }
 
-    /// The same for a mass of 1; nothing if the shape has no mass.
+    /// Mass, centre and inertia for a total mass of 1; zero if the shape has no mass.
     pub(crate) fn weighed_as_one(&self) -> MassProperties<f32, D> {
         let whole = self.weighed(1.0);
         if whole.mass() > 0.0 { whole.with_mass(1.0).unwrap_or_default() } else { whole }
     }
 }
 
-/// The subdivisions of an approximation, where Avian does not say: its own number.
+/// Subdivisions of an approximation; Avian's own default.
 const DETAIL: u32 = 10;
 
 pub(crate) fn points<const D: usize>(vertices: Vec<Vec_<D>>) -> Vec<Point<f32, D>>

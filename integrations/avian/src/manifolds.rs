@@ -1,4 +1,4 @@
-//! From the contacts of impinge to numbers that either of Avian's crates takes.
+//! Converts impinge's contacts to numbers that both of Avian's crates take.
 
 use core::hash::{Hash, Hasher};
 
@@ -15,15 +15,15 @@ use crate::collider::{Isometry, Vec_};
 use crate::pairs::PairState;
 use crate::scaling::Dimension;
 
-/// Two placed colliders, in a frame with the world's axes whose origin is that of the first collider: far from the
-/// world's origin nothing is lost.
+/// Two placed colliders. The frame has the world's axes and its origin at the first collider's position, so contacts
+/// far from the world's origin lose no digits.
 pub(crate) struct Meeting<'a, const D: usize>
 where
     f32: Dimension<D>,
 {
     /// `None` if either is in error.
     shapes: Option<[&'a dyn Shape<f32, D>; 2]>,
-    /// Both rotations, with the place of the second beside the first.
+    /// Both rotations, and the position of the second relative to the first.
     poses: [Isometry<D>; 2],
     has_parts: bool,
 }
@@ -33,7 +33,7 @@ pub(crate) struct Touch<const D: usize>
 where
     f32: Dimension<D>,
 {
-    /// The middle between the two surfaces, from the origin of either collider.
+    /// The midpoint between the two surfaces, relative to the origin of each collider.
     pub(crate) anchors: [Vec_<D>; 2],
     /// Positive if they overlap.
     pub(crate) penetration: f32,
@@ -55,12 +55,12 @@ where
         Self { shapes, poses, has_parts }
     }
 
-    /// Either shape is a composite: contacts wander from part to part.
+    /// Whether either shape is a composite, whose contacts move from part to part.
     pub(crate) fn has_parts(&self) -> bool {
         self.has_parts
     }
 
-    /// Calls `read` with the manifolds of the pair up to a distance; none of them is empty.
+    /// Calls `read` with the manifolds of the pair up to the distance `prediction`, computed without memory; none is empty.
     pub(crate) fn contacts(&self, prediction: f32, read: impl FnOnce(&[&ContactManifold<f32, D>])) {
         let Some(shapes) = self.shapes else { return read(&[]) };
         let found = f32::contacts(&self.poses, shapes, &ahead(prediction));
@@ -71,7 +71,7 @@ where
         }
     }
 
-    /// The same, with what is known of the pair, which is brought up to date.
+    /// Updates `state` and calls `read` with the manifolds of the pair up to the distance `prediction`; none is empty.
     pub(crate) fn update(
         &self,
         state: &mut PairState<D>,
@@ -110,7 +110,7 @@ where
     }
 }
 
-/// A margin that is negative or NaN asks for what touches.
+/// The prediction for a margin; a negative or NaN margin finds touching shapes only.
 fn ahead(prediction: f32) -> ContactPrediction<f32> {
     ContactPrediction::new(prediction.max(0.0), 0.0, 0.0)
 }
@@ -129,8 +129,8 @@ where
     Touch { anchors, penetration: contact.depth, name }
 }
 
-/// The features of two convex shapes, in Avian's code: the kind in the two upper bits. Points on the same features, such
-/// as those of a round cap, are told apart by their order, in the four bits below.
+/// Encodes the features of two convex shapes as Avian does: the kind in the two upper bits. The four bits below count
+/// points with equal features, such as the points of a round cap.
 fn feature_names<const D: usize>(contacts: &[TrackedContact<f32, D>], index: usize) -> [u32; 2] {
     let features = |tracked: &TrackedContact<f32, D>| {
         [tracked.kinematic.feature1(), tracked.kinematic.feature2()]
@@ -146,8 +146,8 @@ fn feature_names<const D: usize>(contacts: &[TrackedContact<f32, D>], index: usi
     })
 }
 
-/// The name of a contact within its pair, spread over two numbers. Avian takes points for the same if both of their
-/// features are, in either order, so both numbers are taken from a hash.
+/// Encodes a contact id as two feature ids. Avian matches two points if both of their ids agree, in either order, so
+/// both ids are bits of one hash.
 fn own_name(id: ContactId) -> [u32; 2] {
     let mut hasher = Fnv(0xCBF2_9CE4_8422_2325);
     id.hash(&mut hasher);

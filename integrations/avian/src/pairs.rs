@@ -1,4 +1,4 @@
-//! What is kept of pairs with a composite between two steps.
+//! The state of pairs with a composite, kept between two steps.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -9,20 +9,20 @@ use impinge::narrow_phase::{IdAllocator, PairManifoldGenerator};
 
 use crate::scaling::Dimension;
 
-/// Locks beside each other: threads that work on different pairs seldom wait for one another.
+/// Number of locks. Pairs are spread over them, so that threads seldom wait for one another.
 const SHARDS: usize = 256;
-/// Pairs that may be kept for nothing before ended ones are looked for.
+/// Number of ended pairs that may be kept before a sweep.
 const SPARE: usize = 64;
 
 /// The two entities of a pair, in the order of Avian's graph of contacts.
 type Key = (Entity, Entity);
 type Shard<const D: usize> = BTreeMap<Key, Box<PairState<D>>>;
 
-/// What is known of the pairs in which a mesh, a line, a height field or a compound meets something: a resource that the
-/// plugin adds, unless there is one.
+/// A resource with the contacts of each pair that contains a mesh, a polyline, a height field or a compound. The plugin
+/// adds it, unless the app has one.
 ///
-/// By it contact points keep their names while they move over the parts, and contacts are kept while neither collider
-/// moves much beside the other. Two convex shapes are asked anew in each step. An app that goes back in time, for
+/// Contact points keep their ids while they move over the parts, and contacts are reused while the colliders hardly move
+/// relative to each other. Pairs of convex shapes are computed anew in each step and have no state. An app that goes back in time, for
 /// rollback, keeps a clone of it beside Avian's `ContactGraph`, or [clears](Self::clear) it: then points get new names, and the
 /// solver starts those contacts from zero.
 #[derive(Resource)]
@@ -41,7 +41,7 @@ where
     f32: Dimension<D>,
 {
     pub(crate) generator: PairManifoldGenerator<f32, D>,
-    /// Of the pair alone: names need to differ within a pair.
+    /// Allocates ids for this pair alone: they must differ within a pair only.
     pub(crate) ids: IdAllocator,
 }
 
@@ -64,7 +64,7 @@ fn shard_of((one, other): Key) -> usize {
     (mixed >> 40) as usize % SHARDS
 }
 
-/// A thread that panicked left a map that is whole.
+/// Locks a shard; a thread that panicked left its map intact.
 fn locked<T>(shard: &Mutex<T>) -> MutexGuard<'_, T> {
     shard.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -83,7 +83,7 @@ where
     /// The tolerance of `default()`: a tenth of Avian's own for contacts, in Avian's unit of length.
     pub const TOLERANCE: f32 = 5e-4;
 
-    /// No pair yet. Contacts are kept, and only their depths measured anew, while no point of the smaller collider has moved
+    /// Holds no pair. Contacts are reused, with new depths, while no point of the smaller collider has moved
     /// farther than the tolerance beside the other. Zero, and what is negative or no number, computes them each time.
     #[must_use]
     pub fn reusing(tolerance: f32) -> Self {
@@ -108,13 +108,13 @@ where
         self.shards = shards(|_| Shard::default());
     }
 
-    /// Calls `update` with what is kept of a pair.
+    /// Calls `update` with the state of the pair `key`; holds a lock meanwhile.
     pub(crate) fn with<R>(&self, key: Key, update: impl FnOnce(&mut PairState<D>) -> R) -> R {
         let begin = || Box::new(PairState::new(self.tolerance));
         update(locked(&self.shards[shard_of(key)]).entry(key).or_insert_with(begin))
     }
 
-    /// Forgets the pairs that do not live, if they are many among `count` that do.
+    /// Removes the pairs that are not alive, if more than twice `count`, the number of living pairs, are kept.
     pub(crate) fn sweep(&mut self, count: usize, mut lives: impl FnMut(Key) -> bool) {
         if self.len() <= 2 * count + SPARE {
             return;

@@ -1,4 +1,4 @@
-//! What spatial queries ask of one collider.
+//! Rays and points against one collider.
 
 use bevy_impinge::Glam;
 use impinge::math::{Point, Space};

@@ -1,4 +1,4 @@
-//! Scaled shapes: exactly where the library has them, else the hull of points on their surface.
+//! Scales shapes: exactly where the library can, else by the convex hull of points on the surface.
 
 use bevy_impinge::{ColliderError, Glam};
 use impinge::math::{Point, Vector};
@@ -6,10 +6,10 @@ use impinge::narrow_phase::ContactPrediction;
 use impinge::query::ContactManifold;
 use impinge::shape::{ScaleError, Shape, ShapeHandle};
 
-/// The number of subdivisions that is enough for anybody: a hull of some six thousand points in 3D.
+/// Largest number of subdivisions; about 6000 points in 3D.
 const MAX_DETAIL: u32 = 64;
 
-/// What the two dimensions do differently: implemented for `f32` with `D` = 2 and `D` = 3.
+/// Operations that differ by dimension; implemented for `f32` with `D` = 2 and `D` = 3.
 pub trait Dimension<const D: usize>: Glam<D> {
     /// The contacts of two placed shapes, without memory.
     #[doc(hidden)]
@@ -24,8 +24,8 @@ pub trait Dimension<const D: usize>: Glam<D> {
     fn hull(points: &[Point<f32, D>]) -> Result<ShapeHandle<f32, D>, ColliderError>;
 }
 
-/// The shape scaled along its axes. A convex one that the library does not have scaled so, such as a capsule with
-/// oval ends, becomes the hull of its support points in some directions, scaled: it is inside of the true shape.
+/// Scales a shape along its axes. A convex shape that the library cannot scale exactly, such as a capsule with oval
+/// ends, becomes the convex hull of scaled support points, which lies inside the true shape.
 pub(crate) fn scaled<const D: usize>(
     shape: &ShapeHandle<f32, D>,
     scale: &Vector<f32, D>,
@@ -54,8 +54,8 @@ where
     f32::hull(&points)
 }
 
-/// Unit vectors all around, those along the axes among them: to the points of a grid on a square or cube. For ten
-/// subdivisions they are 40 in 2D and 218 in 3D. Without trigonometry, so that each processor has the same.
+/// Unit vectors towards the points of a grid on the surface of a square or cube, the axes included: 40 in 2D and 218 in
+/// 3D for `detail` 10. No trigonometry, so that every processor computes the same bits.
 fn directions<const D: usize>(detail: u32) -> impl Iterator<Item = Vector<f32, D>> {
     let half = detail.clamp(1, MAX_DETAIL).div_ceil(2 * (D as u32 - 1));
     let width = 2 * half + 1;

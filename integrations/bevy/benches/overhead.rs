@@ -1,5 +1,5 @@
-//! What the plugin adds to the update of its world: 10 000 moving entities, beside a world of the library that is given
-//! the same poses. Both step alternately in one process; of each step the best of several runs counts.
+//! The overhead of the plugin over the update of its world: 10 000 moving entities, beside a world of the library that
+//! is given the same poses. Both step alternately in one process; the best of several runs counts for each step.
 //!
 //! ```sh
 //! cargo bench --bench overhead
@@ -36,7 +36,7 @@ struct Mover {
 }
 
 impl Mover {
-    /// Where it is at a step, as a function of the step alone: back and forth within the cube.
+    /// Returns the position at a step, as a function of the step alone: back and forth within the cube.
     fn at(&self, step: usize) -> Transform {
         let time = step as f32;
         let fold = |x: f32| HALF - ((x + HALF).rem_euclid(4.0 * HALF) - 2.0 * HALF).abs();
@@ -47,7 +47,7 @@ impl Mover {
     }
 }
 
-/// A number from -1 to 1.
+/// Returns a number from -1 to 1.
 fn random(state: &mut u32) -> f32 {
     *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     (*state >> 8) as f32 / (1 << 23) as f32 - 1.0
@@ -91,7 +91,7 @@ fn app(movers: &[Mover], cube: &Collider) -> (App, Vec<Entity>) {
     (app, entities)
 }
 
-/// Microseconds of a step: moving and updating the bare world, its update alone, and the plugin's schedule.
+/// Microseconds of a step: moving and updating the bare world, its update alone, and the schedule of the plugin.
 type Times = [f64; 3];
 
 fn run(movers: &[Mover]) -> (Vec<Times>, usize) {

@@ -1,4 +1,5 @@
-//! Bullets that do not tunnel: each casts its shape along its way, which is many times longer than the wall is thick.
+//! Bullets that do not tunnel: each casts its shape along its path, which is many times longer than the thickness of
+//! the wall.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
@@ -25,7 +26,7 @@ fn fly(
     time: Res<Time<FixedTime>>,
     mut commands: Commands,
 ) {
-    // Bullets meet all but bullets.
+    // Bullets interact with everything but bullets.
     let layers = CollisionLayers::new(BULLETS, CollisionLayers::ALL & !BULLETS);
     for (entity, bullet, collider, mut transform) in &mut bullets {
         let motion = bullet.velocity * time.delta_secs();

@@ -10,7 +10,7 @@ use bevy_transform::prelude::*;
 const SPEED: f32 = 4.0;
 const STEP_HEIGHT: f32 = 0.4;
 
-/// What the player wants, as a direction in the plane of the floor.
+/// The wish of the player, as a direction in the plane of the floor.
 #[derive(Component)]
 struct Character {
     wish: Vec3,
@@ -28,7 +28,7 @@ fn build(mut commands: Commands) {
     commands.spawn((character, Collider::capsule(0.3, 1.2), Transform::from_xyz(0.0, 0.92, 0.0)));
 }
 
-/// Up by a step, across, and down again, as far as nothing is in the way.
+/// Moves up by a step, across, and down again, as far as there is no obstacle.
 fn walk(
     mut characters: Query<(Entity, &Character, &Collider, &mut Transform)>,
     collisions: Res<Collisions>,

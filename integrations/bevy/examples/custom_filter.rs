@@ -1,4 +1,4 @@
-//! A pair filter of one's own reads components: players of one team do not meet, until one of them changes sides.
+//! A pair filter that reads components: players of one team do not collide, until one of them changes its team.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
@@ -26,7 +26,7 @@ impl PairFilter for Teams<'_, '_> {
     }
 }
 
-/// A filter is asked once about a pair: those of a player that changes its team are asked about again.
+/// A filter is called once for a pair: the pairs of a player that changes its team are filtered again.
 fn ask_again(changed: Query<Entity, Changed<Team>>, mut collisions: ResMut<Collisions>) {
     for entity in &changed {
         collisions.refilter(entity);

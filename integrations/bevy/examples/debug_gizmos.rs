@@ -1,5 +1,5 @@
-//! Debug drawing: the colliders and contacts of a world as lines of Bevy's gizmos. In a window `DebugGizmosPlugin` is
-//! all it takes; here the lines go to a buffer and are counted.
+//! Debug drawing: the colliders and contacts of a world as lines of Bevy's gizmos. With a window, `DebugGizmosPlugin`
+//! is sufficient; here the lines go to a buffer and are counted.
 
 use bevy_app::prelude::*;
 use bevy_gizmos::config::DefaultGizmoConfigGroup;

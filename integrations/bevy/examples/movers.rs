@@ -1,5 +1,5 @@
-//! Ten thousand moving entities, half of them in a hierarchy; every collision that started and has not ended is one that
-//! the world has.
+//! Ten thousand moving entities, half of them in a hierarchy. Every collision that started and has not ended is one of
+//! the world.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ struct Velocity(Vec3);
 #[derive(Resource, Default)]
 struct Touching(BTreeSet<(Entity, Entity)>);
 
-/// Within a cube; velocities turn around at its sides.
+/// Moves within a cube; velocities reverse at its sides.
 fn fly(mut movers: Query<(&mut Velocity, &mut Transform)>) {
     for (mut velocity, mut transform) in &mut movers {
         transform.translation += velocity.0;
@@ -41,7 +41,7 @@ fn note(
     }
 }
 
-/// A number from -1 to 1.
+/// Returns a number from -1 to 1.
 fn random(state: &mut u32) -> f32 {
     *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     (*state >> 8) as f32 / (1 << 23) as f32 - 1.0

@@ -1,4 +1,4 @@
-//! A one-way platform: a jumping character passes it from below and lands on it. The character's filter leaves out the
+//! A one-way platform: a jumping character passes it from below and lands on it. The character's filter excludes the
 //! platforms that its feet are not above.
 
 use bevy_app::prelude::*;
@@ -8,7 +8,7 @@ use bevy_math::{Isometry2d, Vec2};
 use bevy_time::{Fixed as FixedTime, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::prelude::*;
 
-/// Solid from above alone.
+/// A platform with collisions from above only.
 #[derive(Component)]
 struct OneWay;
 
@@ -18,7 +18,7 @@ struct Character {
 }
 
 const GRAVITY: Vec2 = Vec2::new(0.0, -20.0);
-/// From the middle of the character to its feet.
+/// The distance from the centre of the character to its feet.
 const FEET: f32 = 0.9;
 
 fn fall(

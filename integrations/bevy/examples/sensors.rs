@@ -1,4 +1,5 @@
-//! An automatic door: a sensor counts who is near by observers, and the door is open while anybody is.
+//! An automatic door: observers of a sensor count the visitors, and the door is open while there is
+//! any.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;

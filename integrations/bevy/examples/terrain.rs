@@ -1,4 +1,5 @@
-//! A rover on a height field: rays find the ground below its wheels, contacts tell when a falling stone has landed.
+//! A rover on a height field: rays find the ground below its wheels, contacts report when a falling stone has
+//! landed.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
@@ -55,7 +56,7 @@ fn main() {
     let stone = (Stone, Collider::sphere(0.25), Transform::from_xyz(6.0, 4.0, 2.0));
     let stone = world.spawn(stone).id();
 
-    // The first frame has no time behind it, and the first step ends with the ground in the world.
+    // The first frame has no elapsed time, and the first step ends with the ground in the world.
     for _ in 0..2 {
         app.update();
     }

@@ -1,4 +1,4 @@
-//! What is kept of an entity: its object, and what it looked like when it was last read.
+//! The state of an entity: its object, and the components that were last read.
 
 use bevy_ecs::change_detection::DetectChanges;
 use bevy_ecs::hierarchy::ChildOf;
@@ -16,7 +16,7 @@ use crate::{
     Collider, ColliderError, CollisionLayers, Collisions, FixedCollider, Sensor, WorldKey,
 };
 
-/// The object of an entity, and the pose and scale that it was given.
+/// The object of an entity, with the pose and scale that it was given.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Body<const D: usize>
 where
@@ -27,7 +27,7 @@ where
     scale: Vector<f32, D>,
 }
 
-/// Where an entity is.
+/// The transform of an entity.
 #[derive(QueryData)]
 pub(crate) struct Whereabouts {
     transform: &'static Transform,
@@ -36,7 +36,7 @@ pub(crate) struct Whereabouts {
 }
 
 impl WhereaboutsItem<'_, '_> {
-    /// The pose and scale; those of an entity without a parent are not rounded.
+    /// Returns the pose and scale; those of an entity without a parent are not rounded.
     #[inline]
     fn placement<const D: usize>(&self) -> Result<Placement<D>, ColliderError>
     where
@@ -50,7 +50,7 @@ impl WhereaboutsItem<'_, '_> {
     }
 }
 
-/// All that matters of an entity.
+/// The relevant components of an entity.
 #[derive(QueryData)]
 pub(crate) struct Everything<const D: usize, W: WorldKey>
 where
@@ -68,8 +68,8 @@ impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// Follows an entity of which only the transform has changed. `false` if that is not enough: it is new, has
-    /// another scale, or had or has a problem.
+    /// Moves the object of an entity of which only the transform has changed. Returns `false` if that is not
+    /// sufficient: the entity is new, has another scale, or had or has a problem.
     #[inline]
     pub(crate) fn try_move(&mut self, entity: Entity, at: &WhereaboutsItem<'_, '_>) -> bool {
         let Some(body) = self.bodies.get_mut(&entity) else { return false };
@@ -89,7 +89,7 @@ where
         is_moved
     }
 
-    /// Reads an entity anew. On an error the object is as it was, or there is none.
+    /// Reads an entity again. On an error the object is unchanged, or there is none.
     pub(crate) fn refresh(
         &mut self,
         entity: &EverythingItem<'_, '_, D, W>,
@@ -136,7 +136,7 @@ where
         Ok(())
     }
 
-    /// Gives an object what differs from what it has: the pairs of one that is given the same would be looked at again.
+    /// Sets the properties of an object that differ: setting equal ones would filter and recompute its pairs again.
     fn set_properties(
         &mut self,
         entity: &EverythingItem<'_, '_, D, W>,

@@ -16,7 +16,7 @@ use impinge::shape::{
 use crate::glam::{Glam, Pose, Vec_};
 use crate::{ColliderError, ColliderProblem, Collisions};
 
-/// The key of a world, a type of yours: `#[derive(Clone, Copy, Debug, Default, PartialEq)] struct Ghosts;`.
+/// The key of a world, a type of the user: `#[derive(Clone, Copy, Debug, Default, PartialEq)] struct Ghosts;`.
 ///
 /// Implemented for every type with these traits. Each key has its own plugin, [`Collider`], [`Collisions`] and events;
 /// an entity may have a collider in several worlds.
@@ -24,18 +24,19 @@ pub trait WorldKey: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
 
 impl<T: Copy + Debug + Default + PartialEq + Send + Sync + 'static> WorldKey for T {}
 
-/// The key of the world that is meant if none is named.
+/// The key of the world that is used if none is named.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DefaultWorld;
 
-/// The shape of an entity, in the entity's own frame: makes it an object of a collision world.
+/// The shape of an entity, in the entity's local frame: makes it an object of a collision world.
 ///
-/// Cloning is cheap and shares the shape. The component may be replaced or assigned at any time; the entity follows its
-/// transform, parents included. A scale of the transform is applied where the library has the scaled shape exactly.
+/// Cloning is cheap and shares the shape. The component may be replaced or assigned at any time. The entity follows its
+/// transform, parents included. A scale of the transform is applied if the library can represent the scaled shape
+/// exactly.
 ///
-/// Constructors take full lengths. One with a size that is negative or NaN makes a collider with an
-/// [error](Self::error), which the plugin reports on the entity; it does not panic. Every solid of `bevy_math` that the
-/// library has exactly becomes a collider by `into()`.
+/// Constructors take full lengths. A size that is negative or NaN makes a collider with an [error](Self::error), which
+/// the plugin reports on the entity; the constructor does not panic. Every solid of `bevy_math` that the library can
+/// represent exactly converts to a collider by `into()`.
 ///
 /// ```
 /// use bevy_impinge::d3::Collider;
@@ -73,7 +74,7 @@ impl<const D: usize, W: WorldKey> Collider<D, W>
 where
     f32: Glam<D>,
 {
-    /// Why there is no shape, if a constructor was given what makes none.
+    /// The reason why there is no shape, if the arguments of a constructor were invalid.
     #[must_use]
     pub fn error(&self) -> Option<ColliderError> {
         self.shape.as_ref().err().copied()
@@ -82,18 +83,18 @@ where
     /// The library's shape.
     ///
     /// # Errors
-    /// Those of [`Self::error`].
+    /// The error of [`Self::error`].
     pub fn shape(&self) -> Result<&ShapeHandle<f32, D>, ColliderError> {
         self.shape.as_ref().map_err(|error| *error)
     }
 
-    /// The same shape in the world of another key.
+    /// Returns the same shape for the world of another key.
     #[must_use]
     pub fn in_world<V: WorldKey>(self) -> Collider<D, V> {
         Collider { shape: self.shape, world: PhantomData }
     }
 
-    /// The shape scaled along the entity's axes; the shape itself if all factors are 1.
+    /// Returns the shape scaled along the entity's axes; the shape itself if all factors are 1.
     pub(crate) fn scaled(
         &self,
         scale: &Vector<f32, D>,
@@ -110,13 +111,13 @@ impl<const D: usize> Collider<D>
 where
     f32: Glam<D>,
 {
-    /// Any shape of the library, or one of your own.
+    /// Creates a collider of any shape of the library, or one of your own.
     #[must_use]
     pub fn new<S: Shape<f32, D>>(shape: S) -> Self {
         Self::from_shape(Ok(ShapeHandle::new(shape)))
     }
 
-    /// A shape that is shared with others.
+    /// Creates a collider of a shared shape.
     #[must_use]
     pub fn from_handle(shape: ShapeHandle<f32, D>) -> Self {
         Self::from_shape(Ok(shape))
@@ -126,7 +127,7 @@ where
         Self { shape, world: PhantomData }
     }
 
-    /// The collider of what a constructor of the library returned.
+    /// Converts the result of a constructor of the library to a collider.
     pub(crate) fn made<S: Shape<f32, D>, E: Into<ColliderError>>(shape: Result<S, E>) -> Self {
         Self::from_shape(shape.map(ShapeHandle::new).map_err(Into::into))
     }
@@ -135,57 +136,57 @@ where
         Self::made(Ball::try_new(radius))
     }
 
-    /// The points within `radius` of a segment of `length` along the y axis, with its middle at the origin: the whole is
-    /// `length + 2 * radius` long.
+    /// Creates a capsule: the points within `radius` of a segment of `length` along the y axis, with its centre at the
+    /// origin. Its full length is `length + 2 * radius`.
     #[must_use]
     pub fn capsule(radius: f32, length: f32) -> Self {
         Self::made(Capsule::try_new(length / 2.0, radius))
     }
 
-    /// The points within `radius` of a segment.
+    /// Creates a capsule: the points within `radius` of the segment from `a` to `b`.
     #[must_use]
     pub fn capsule_between(a: Vec_<D>, b: Vec_<D>, radius: f32) -> Self {
         Self::made(Capsule::try_from_ends(point(a), point(b), radius))
     }
 
-    /// The hull of a ball of `radius_bottom` and one of `radius_top` at `length` above it along the y axis, with the
-    /// middle of their centres at the origin.
+    /// Creates the hull of a ball of `radius_bottom` and one of `radius_top` at `length` above it along the y axis; the
+    /// midpoint of their centres is at the origin.
     #[must_use]
     pub fn tapered_capsule(radius_bottom: f32, radius_top: f32, length: f32) -> Self {
         Self::made(TaperedCapsule::try_new(length / 2.0, radius_bottom, radius_top))
     }
 
-    /// A straight line between two points.
+    /// Creates the segment between two points.
     #[must_use]
     pub fn segment(a: Vec_<D>, b: Vec_<D>) -> Self {
         Self::made(Segment::try_new(point(a), point(b)))
     }
 
-    /// A filled triangle; in 3D it has no thickness.
+    /// Creates a filled triangle; in 3D it has no thickness.
     #[must_use]
     pub fn triangle(a: Vec_<D>, b: Vec_<D>, c: Vec_<D>) -> Self {
         Self::made(Triangle::try_new(point(a), point(b), point(c)))
     }
 
-    /// A chain of segments, open at its ends.
+    /// Creates a chain of segments, open at its ends.
     #[must_use]
     pub fn polyline(vertices: impl IntoIterator<Item = Vec_<D>>) -> Self {
         Self::made(Polyline::try_open(points(vertices)))
     }
 
-    /// A chain of segments whose last vertex is joined to the first.
+    /// Creates a chain of segments whose last vertex is connected to the first.
     #[must_use]
     pub fn closed_polyline(vertices: impl IntoIterator<Item = Vec_<D>>) -> Self {
         Self::made(Polyline::try_closed(points(vertices)))
     }
 
-    /// Triangles of three indices each: in 2D an area, in 3D a surface without an interior.
+    /// Creates a triangle mesh with three indices per triangle: in 2D an area, in 3D a surface without an interior.
     #[must_use]
     pub fn trimesh(vertices: impl IntoIterator<Item = Vec_<D>>, triangles: Vec<[u32; 3]>) -> Self {
         Self::made(TriMesh::try_new(points(vertices), triangles))
     }
 
-    /// Colliders side by side, each at its pose in the frame of the whole.
+    /// Creates a compound of colliders, each at its pose in the frame of the compound.
     #[must_use]
     pub fn compound<P: Into<Pose<D>>>(children: impl IntoIterator<Item = (P, Self)>) -> Self {
         let placed = |(pose, child): (P, Self)| Ok((f32::isometry_of(&pose.into()), child.shape?));
@@ -193,7 +194,7 @@ where
         Self::made(children.and_then(|children| Ok(Compound::try_new(children)?)))
     }
 
-    /// All points within `radius` of this convex shape: corners and edges become round.
+    /// Returns all points within `radius` of this convex shape: corners and edges become round.
     #[must_use]
     pub fn rounded(self, radius: f32) -> Self {
         Self::made(self.shape.and_then(|shape| Ok(Rounded::try_from_handle(shape, radius)?)))

@@ -12,12 +12,12 @@ use crate::glam::{Glam, Pose};
 use crate::report::PairEvent;
 use crate::{ColliderError, DefaultWorld, WorldKey};
 
-/// The entities with colliders, and who touches whom as of the last step: a resource that the plugin inserts.
+/// The entities with colliders, and their contacts as of the last step: a resource that the plugin inserts.
 ///
-/// Systems take `Res<Collisions>` and ask: rays, shapes, points, contacts, [`Self::move_and_slide`]. Poses are those
-/// that the last [`ImpingeSystems::Follow`](crate::ImpingeSystems::Follow) saw; pairs and contacts those of the last
-/// [`ImpingeSystems::Step`](crate::ImpingeSystems::Step). An entity that was removed since is not found. Answers come
-/// in an order that depends on the order of insertion alone.
+/// Systems take `Res<Collisions>` for queries: rays, shapes, points, contacts, [`Self::move_and_slide`]. Poses are
+/// those of the last [`ImpingeSystems::Follow`](crate::ImpingeSystems::Follow); pairs and contacts those of the last
+/// [`ImpingeSystems::Step`](crate::ImpingeSystems::Step). An entity that was removed since is not found. The order of
+/// results depends on the order of insertion alone.
 ///
 /// ```
 /// use bevy_app::prelude::*;
@@ -41,13 +41,13 @@ where
     f32: Glam<D>,
 {
     pub(crate) world: CollisionWorld<f32, D, Entity>,
-    /// Looked up, never iterated.
+    /// For look-ups, never iterated.
     pub(crate) bodies: EntityHashMap<Body<D>>,
-    /// Entities with a [`ColliderProblem`](crate::ColliderProblem); looked up, never iterated.
+    /// Entities with a [`ColliderProblem`](crate::ColliderProblem); for look-ups, never iterated.
     pub(crate) problems: EntityHashMap<ColliderError>,
-    /// Entities to read again although no component of theirs has changed.
+    /// Entities to read again although none of their components has changed.
     pub(crate) dirty: Vec<Entity>,
-    /// What ended in the last step, then what started.
+    /// The pairs that ended in the last step, then those that started.
     pub(crate) events: Vec<PairEvent>,
     /// The prediction of contacts, for each of two colliders.
     pub(crate) prediction: f32,
@@ -73,7 +73,7 @@ where
         }
     }
 
-    /// The library's world, to ask what is not asked here; the data of its objects are their entities.
+    /// The library's world, for queries without a method here; the data of its objects are their entities.
     #[must_use]
     pub const fn world(&self) -> &CollisionWorld<f32, D, Entity> {
         &self.world
@@ -85,7 +85,7 @@ where
         self.world.len()
     }
 
-    /// There is no entity in the world.
+    /// Whether there is no entity in the world.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.world.is_empty()
@@ -97,14 +97,15 @@ where
         self.bodies.contains_key(&entity)
     }
 
-    /// Where an entity is in the world; `None` if it is not in it.
+    /// Returns the pose of an entity in the world; `None` if it is not in the world.
     #[must_use]
     pub fn pose(&self, entity: Entity) -> Option<Pose<D>> {
         self.object(entity).map(|object| f32::pose_of(object.position()))
     }
 
-    /// Has the [`PairFilter`](crate::PairFilter) asked again about the pairs of an entity at the next step; a filter is
-    /// asked once, when the boxes of two colliders begin to overlap. Nothing happens if the entity is not in the world.
+    /// Makes the next step call the [`PairFilter`](crate::PairFilter) again for the pairs of an entity. Otherwise a
+    /// filter is called once, when the boxes of two colliders begin to overlap. Does nothing if the entity is not in
+    /// the world.
     pub fn refilter(&mut self, entity: Entity) {
         if let Some(body) = self.bodies.get(&entity) {
             self.world.refilter_pairs_of(body.handle);
@@ -120,7 +121,7 @@ where
         self.world.collision_object(self.bodies.get(&entity)?.handle)
     }
 
-    /// Takes an entity out of the world; its pairs end at the next step. `true` if it had a problem.
+    /// Removes an entity from the world; its pairs end at the next step. Returns `true` if it had a problem.
     pub(crate) fn forget(&mut self, entity: Entity) -> bool {
         if let Some(body) = self.bodies.remove(&entity) {
             self.world.remove(&[body.handle]);

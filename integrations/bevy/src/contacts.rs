@@ -1,4 +1,4 @@
-//! Who touches whom, and where.
+//! Contacts of entities.
 
 use bevy_ecs::prelude::Entity;
 use impinge::narrow_phase::{CollisionObjectHandle, ContactPair as PairOfObjects};
@@ -18,12 +18,12 @@ where
     pub point: Vec_<D>,
     /// The point on the surface of the other entity.
     pub other_point: Vec_<D>,
-    /// How deep the colliders overlap here: zero if they touch, minus the distance if they are apart, which they are
-    /// within the prediction alone.
+    /// The penetration depth: zero if they touch, minus the distance if they are apart, which happens only within the
+    /// prediction.
     pub depth: f32,
 }
 
-/// Two entities in contact along one normal. Entities with a mesh, a compound or the like may have several.
+/// Two entities in contact along one normal. Entities with a composite shape, such as a mesh, may have several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactPair<const D: usize>
 where
@@ -31,11 +31,11 @@ where
 {
     /// The entity.
     pub entity: Entity,
-    /// The one that it touches.
+    /// The entity that it touches.
     pub other: Entity,
     /// The unit vector from the entity to the other.
     pub normal: Vec_<D>,
-    /// The points of contact: one at least, in 2D two at most, in 3D four.
+    /// The points of contact: at least one, at most two in 2D and four in 3D.
     pub points: Vec<ContactPoint<D>>,
 }
 
@@ -80,14 +80,14 @@ impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// All contacts, in the order in which the colliders were added; sensors have none. The entity of a pair is the one
-    /// that was added first.
+    /// Returns all contacts, in the order in which the colliders were added; sensors have none. `entity` of a pair is
+    /// the one that was added first.
     pub fn contact_pairs(&self) -> impl Iterator<Item = ContactPair<D>> {
         let views = self.world.contact_views();
         views.map(|(one, other, view)| ContactPair::new([*one.data(), *other.data()], view))
     }
 
-    /// The contacts of an entity, seen from it; none if it is not in the world.
+    /// Returns the contacts of an entity, with normals that point away from it; none if it is not in the world.
     pub fn contacts_with(&self, entity: Entity) -> impl Iterator<Item = ContactPair<D>> {
         let handle = self.bodies.get(&entity).map(|body| body.handle);
         handle.into_iter().flat_map(move |handle| {
@@ -96,7 +96,7 @@ where
         })
     }
 
-    /// The contacts of an entity with an object, seen from the entity.
+    /// Returns the contacts of an entity with an object, with normals that point away from the entity.
     fn contacts_between(
         &self,
         (entity, handle): (Entity, CollisionObjectHandle),
@@ -110,8 +110,8 @@ where
         })
     }
 
-    /// The entities that an entity touches, sensors too: what
-    /// [`CollidingEntities`](crate::CollidingEntities) has. Empty if it is not in the world.
+    /// Returns the entities that an entity touches, including sensors, as
+    /// [`CollidingEntities`](crate::CollidingEntities) has them. Empty if it is not in the world.
     #[must_use]
     pub fn touching(&self, entity: Entity) -> Vec<Entity> {
         let Some(body) = self.bodies.get(&entity) else { return Vec::new() };
@@ -119,7 +119,7 @@ where
         pairs.filter(|&other| self.are_touching(entity, other)).collect()
     }
 
-    /// Two entities touch; if one is a sensor, they overlap or touch.
+    /// Whether two entities touch; if one is a sensor, whether they overlap or touch.
     #[must_use]
     pub fn are_touching(&self, one: Entity, other: Entity) -> bool {
         let (Some(one), Some(other)) = (self.bodies.get(&one), self.bodies.get(&other)) else {

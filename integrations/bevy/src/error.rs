@@ -1,4 +1,4 @@
-//! Why an entity is not followed.
+//! Errors of colliders and transforms.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -9,24 +9,25 @@ use impinge::world::WorldError;
 
 use crate::{DefaultWorld, WorldKey};
 
-/// Why the collider of an entity is not in the world, or not as the entity says.
+/// The reason why the collider of an entity is not in the world, or not with its current components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ColliderError {
-    /// A size or point of the shape is not usable.
+    /// A size or point of the shape is invalid.
     Shape(ShapeError),
-    /// Vertices or indices of a mesh or polyline are not usable.
+    /// Vertices or indices of a mesh or polyline are invalid.
     Mesh(MeshError),
-    /// The shape does not exist with the scale of the transform: the ends of a capsule would be oval, say. Change the scale, or take a
-    /// shape that has every scale, such as a convex hull or a triangle mesh.
+    /// The library cannot represent the shape with the scale of the transform: for instance the ends of a capsule would
+    /// be elliptic. Change the scale, or use a shape that supports every scale, such as a convex hull or a triangle
+    /// mesh.
     Scale(ScaleError),
-    /// A number of the transform is NaN or infinite, or its quaternion is no rotation.
+    /// A component of the transform is NaN or infinite, or its quaternion is not a rotation.
     Pose(WorldError),
-    /// A scaled parent is rotated against its child: the product is no scale along the child's axes.
+    /// A scaled parent is rotated relative to its child: the product is no scale along the child's axes.
     Sheared,
-    /// In 2D: the transform turns the entity out of the x-y plane.
+    /// In 2D: the transform rotates the entity out of the x-y plane.
     OutOfPlane,
-    /// A `Mesh` that has no triangles to read, and why.
+    /// A `Mesh` without readable triangles, and the reason.
     NoTriangles(&'static str),
 }
 
@@ -70,7 +71,8 @@ impl From<WorldError> for ColliderError {
     }
 }
 
-/// On an entity whose collider is not in the world as it says: why. The plugin inserts it and removes it.
+/// On an entity whose collider is not in the world with its current components: the reason. The plugin inserts and
+/// removes it.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct ColliderProblem<const D: usize, W: WorldKey = DefaultWorld> {
     /// The reason.
@@ -78,7 +80,8 @@ pub struct ColliderProblem<const D: usize, W: WorldKey = DefaultWorld> {
     pub(crate) world: PhantomData<W>,
 }
 
-/// A message: the collider of an entity is not in the world as it says. Written once when a problem begins or changes.
+/// A message: the collider of an entity is not in the world with its current components. Written once when a problem
+/// begins or changes.
 #[derive(Message, Clone, Copy, Debug, PartialEq)]
 pub struct ColliderFailed<const D: usize, W: WorldKey = DefaultWorld> {
     /// The entity.

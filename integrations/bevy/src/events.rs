@@ -1,4 +1,4 @@
-//! What is told about pairs: messages, events for observers, and what an entity touches.
+//! Reports about pairs: messages, events for observers, and the list of entities that an entity touches.
 
 use core::marker::PhantomData;
 use core::ops::Deref;
@@ -7,40 +7,40 @@ use bevy_ecs::prelude::{Component, Entity, EntityEvent, Message};
 
 use crate::{DefaultWorld, WorldKey};
 
-/// Two entities began to touch: their distance became zero.
+/// Two entities started touching: their distance became zero.
 ///
-/// As a message it comes once per pair. As an event it is triggered twice, each time with the other entity as
-/// target, so that an observer of either entity sees its own side. In a step all that ended comes before what began;
-/// of each part contacts come before sensors, both in the order in which the colliders were added.
+/// As a message it comes once per pair. As an event it is triggered twice, each time with the other entity as target,
+/// so that observers of both entities get it. In a step ended pairs come before started ones; in each part contacts
+/// come before sensors, both in the order in which the colliders were added.
 #[derive(Message, EntityEvent, Clone, Copy, Debug, PartialEq)]
 pub struct CollisionStarted<const D: usize, W: WorldKey = DefaultWorld> {
-    /// The entity; of a message the one whose collider was added first.
+    /// The entity; in a message the one whose collider was added first.
     #[event_target]
     pub entity: Entity,
     /// The entity that it touches.
     pub other: Entity,
-    /// One of the two is a sensor.
+    /// Whether one of the two is a sensor.
     pub is_sensor: bool,
     pub(crate) world: PhantomData<W>,
 }
 
-/// Two entities ceased to touch: they parted, or one of them was removed, disabled, or is no longer allowed to meet the
-/// other. Each [`CollisionStarted`] has one. An entity of it may be gone.
+/// Two entities stopped touching: they separated, or one of them was removed, disabled, or is no longer allowed to
+/// collide with the other. Each [`CollisionStarted`] has exactly one. An entity of it may be despawned.
 ///
-/// Messages and events come as those of [`CollisionStarted`] do.
+/// Messages and events have the same order as those of [`CollisionStarted`].
 #[derive(Message, EntityEvent, Clone, Copy, Debug, PartialEq)]
 pub struct CollisionEnded<const D: usize, W: WorldKey = DefaultWorld> {
-    /// The entity; of a message the one whose collider was added first.
+    /// The entity; in a message the one whose collider was added first.
     #[event_target]
     pub entity: Entity,
     /// The entity that it touched.
     pub other: Entity,
-    /// One of the two was a sensor.
+    /// Whether one of the two was a sensor.
     pub is_sensor: bool,
     pub(crate) world: PhantomData<W>,
 }
 
-/// The entities that this one touches, as of the last step, in ascending order of their indices. Insert it where you want to read it:
+/// The entities that this one touches, as of the last step, sorted by index. Insert it where you want to read it:
 /// entities without it cost nothing.
 #[derive(Component, Clone, Debug, PartialEq)]
 pub struct CollidingEntities<const D: usize, W: WorldKey = DefaultWorld> {
@@ -55,8 +55,8 @@ impl<const D: usize> Default for CollidingEntities<D> {
     }
 }
 
-/// The order of lists of entities: by index, then by generation. That of [`Entity`] itself is another, which Bevy
-/// chose for speed.
+/// The order of lists of entities: by index, then by generation. The order of [`Entity`] itself differs, since Bevy
+/// chose it for speed.
 pub(crate) fn rank(entity: &Entity) -> (u32, u32) {
     (entity.index_u32(), entity.generation().to_bits())
 }
@@ -68,7 +68,7 @@ impl<const D: usize, W: WorldKey> CollidingEntities<D, W> {
         CollidingEntities { entities: Vec::new(), world: PhantomData }
     }
 
-    /// Whether an entity is touched. Costs O(log n).
+    /// Whether an entity is in the list. Costs O(log n).
     #[must_use]
     pub fn contains(&self, entity: Entity) -> bool {
         self.position(entity).is_ok()

@@ -1,4 +1,4 @@
-//! From entities to the world: what was inserted, changed, moved or disabled.
+//! Updates the world from entities that were inserted, changed, moved or disabled.
 
 use core::marker::PhantomData;
 use core::mem::{discriminant, take};
@@ -27,8 +27,8 @@ type IsChanged<const D: usize, W> = Or<(
 )>;
 type IsMoved = Or<(Changed<Transform>, Changed<GlobalTransform>, Changed<ChildOf>)>;
 
-/// Brings the objects of the world up to date with their entities: first those that only moved, then all others in
-/// ascending order, so that the order of objects does not depend on archetypes.
+/// Updates the objects of the world from their entities: first those that only moved, then all others in ascending
+/// order, so that the order of objects does not depend on archetypes.
 pub(crate) fn follow<const D: usize, W: WorldKey>(
     mut collisions: ResMut<'_, Collisions<D, W>>,
     moved: Query<'_, '_, (Entity, Whereabouts), (With<Collider<D, W>>, IsMoved)>,
@@ -49,7 +49,7 @@ pub(crate) fn follow<const D: usize, W: WorldKey>(
     dirty.sort_unstable_by_key(rank);
     dirty.dedup();
     for entity in dirty.drain(..) {
-        // An entity that is gone or disabled is no longer in the world.
+        // An entity that is despawned or disabled is no longer in the world.
         if let Ok(item) = entities.get(entity) {
             let result = collisions.refresh(&item);
             failures.note(collisions, entity, result);
@@ -58,7 +58,7 @@ pub(crate) fn follow<const D: usize, W: WorldKey>(
     collisions.dirty = dirty;
 }
 
-/// Where problems go.
+/// The outputs for problems.
 #[derive(bevy_ecs::system::SystemParam)]
 pub(crate) struct Failures<'w, 's, const D: usize, W: WorldKey> {
     commands: Commands<'w, 's>,
@@ -69,7 +69,7 @@ impl<const D: usize, W: WorldKey> Failures<'_, '_, D, W>
 where
     f32: Glam<D>,
 {
-    /// Tells of a problem that begins or ends.
+    /// Reports a problem that begins or ends.
     fn note(
         &mut self,
         collisions: &mut Collisions<D, W>,
@@ -93,7 +93,7 @@ where
     }
 }
 
-/// The object of an entity that is disabled leaves the world.
+/// Removes the object of a disabled entity from the world.
 pub(crate) fn forget_disabled<const D: usize, W: WorldKey>(
     disabled: On<'_, '_, Add, Disabled>,
     collisions: Option<ResMut<'_, Collisions<D, W>>>,
@@ -105,8 +105,8 @@ pub(crate) fn forget_disabled<const D: usize, W: WorldKey>(
     }
 }
 
-/// An entity that loses a component is read again. Change detection does not see that, and messages of removal would
-/// be forgotten where frames are more frequent than steps.
+/// Marks an entity that loses a component to be read again. Change detection does not detect that, and messages of
+/// removal are dropped where frames are more frequent than steps.
 pub(crate) fn notice_removal<C: Component, const D: usize, W: WorldKey>(
     removed: On<'_, '_, Remove, C>,
     collisions: Option<ResMut<'_, Collisions<D, W>>>,
@@ -118,7 +118,8 @@ pub(crate) fn notice_removal<C: Component, const D: usize, W: WorldKey>(
     }
 }
 
-/// An entity without a parent is where its own transform says, whether or not its global transform was computed anew.
+/// Marks an entity that lost its parent: its position is then that of its own transform, whether or not its global
+/// transform was recomputed.
 pub(crate) fn notice_orphan<const D: usize, W: WorldKey>(
     removed: On<'_, '_, Remove, ChildOf>,
     collisions: Option<ResMut<'_, Collisions<D, W>>>,

@@ -15,8 +15,8 @@ use impinge::math::Point;
 use crate::glam::Glam;
 use crate::{Collisions, DefaultWorld, ImpingeSystems, WorldKey};
 
-/// What is drawn of a world, as lines: by default colliders, contact points and normals. A resource; change its
-/// [`options`](Self::set_options) at any time.
+/// The options for drawing a world as lines: by default colliders, contact points and normals. A resource; change
+/// its [`options`](Self::set_options) at any time.
 #[derive(Resource)]
 pub struct DebugGizmos<const D: usize, W: WorldKey = DefaultWorld>
 where
@@ -41,17 +41,17 @@ impl<const D: usize, W: WorldKey> DebugGizmos<D, W>
 where
     f32: Glam<D>,
 {
-    /// Changes what is drawn, and how large points and normals are.
+    /// Sets the drawn layers, and the sizes of points and normals.
     pub fn set_options(&mut self, options: DebugOptions<f32>) {
         self.drawing.set_options(options);
     }
 
-    /// Draws nothing, or draws again.
+    /// Disables or enables drawing.
     pub fn set_enabled(&mut self, is_enabled: bool) {
         self.is_enabled = is_enabled;
     }
 
-    /// Draws a world into gizmos, those of a system or a buffer of yours.
+    /// Draws a world into gizmos of a system or into a buffer of yours.
     pub fn draw<C: GizmoConfigGroup, E: Send + Sync + 'static>(
         &mut self,
         collisions: &Collisions<D, W>,
@@ -72,7 +72,7 @@ where
     }
 }
 
-/// Draws a world with the default gizmos in `PostUpdate`: needs Bevy's `GizmoPlugin`, and [`DebugGizmos`], which it
+/// Draws a world with the default gizmos in `PostUpdate`. Needs Bevy's `GizmoPlugin`, and [`DebugGizmos`], which it
 /// inserts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DebugGizmosPlugin<const D: usize, W = DefaultWorld>(PhantomData<W>);
@@ -99,7 +99,7 @@ fn draw<const D: usize, W: WorldKey>(
 
 /// A back end of the library's drawing that draws lines with gizmos; for drawings of your own.
 pub struct GizmoLines<'a, C: GizmoConfigGroup, E: Send + Sync + 'static> {
-    /// Where lines go.
+    /// The output for lines.
     pub gizmos: &'a mut GizmoBuffer<C, E>,
 }
 

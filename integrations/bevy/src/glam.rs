@@ -1,4 +1,4 @@
-//! Bevy's mathematical types beside those of the library, in one trait that both dimensions implement.
+//! Conversions between the mathematical types of Bevy and of the library, in a trait that both dimensions implement.
 
 use core::fmt::Debug;
 
@@ -19,29 +19,29 @@ pub trait Glam<const D: usize>: Space<D> {
     /// A half-line: `Ray2d` or `Ray3d`.
     type Ray: Copy + Debug + PartialEq + Send + Sync + 'static;
 
-    /// The library's vector.
+    /// Converts to the library's vector.
     fn vector(vec: Self::Vec) -> Vector<f32, D>;
-    /// Bevy's vector.
+    /// Converts to Bevy's vector.
     fn vec(vector: &Vector<f32, D>) -> Self::Vec;
-    /// The library's pose.
+    /// Converts to the library's pose.
     fn isometry_of(pose: &Self::Pose) -> Self::Isometry;
-    /// Bevy's pose.
+    /// Converts to Bevy's pose.
     fn pose_of(isometry: &Self::Isometry) -> Self::Pose;
-    /// Moves a pose by a vector of the world.
+    /// Translates a pose by a vector in the world frame.
     #[doc(hidden)]
     fn translate(isometry: &mut Self::Isometry, by: &Vector<f32, D>);
 
-    /// The library's ray, with a direction of length 1.
+    /// Converts to the library's ray, with a direction of length 1.
     fn ray(ray: &Self::Ray) -> Ray<f32, D>;
 
-    /// Pose and scale of an entity without a parent: its numbers, without rounding.
+    /// Returns pose and scale of an entity without a parent: its values, without rounding.
     #[doc(hidden)]
     fn place_root(transform: &Transform) -> Result<Placement<D>, ColliderError>
     where
         Self: Sized,
         f32: Glam<D>;
 
-    /// Pose and scale of an entity with a parent, decomposed from the affine map.
+    /// Returns pose and scale of an entity with a parent, decomposed from the affine map.
     #[doc(hidden)]
     fn place_child(transform: &GlobalTransform) -> Result<Placement<D>, ColliderError>
     where
@@ -56,7 +56,7 @@ pub(crate) type Pose<const D: usize> = <f32 as Glam<D>>::Pose;
 /// The library's isometry.
 pub(crate) type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 
-/// Where an entity is, and the factors along the axes of its own frame.
+/// The pose of an entity, and the scale factors along the axes of its local frame.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<const D: usize>
@@ -67,14 +67,15 @@ where
     pub(crate) scale: Vector<f32, D>,
 }
 
-/// The largest cosine between two scaled axes that count as perpendicular: about 0.06°. A chain of rotations in `f32`
-/// is off by some 1e-6.
+/// The largest cosine between two scaled axes that count as perpendicular: about 0.06°. The error of a chain of
+/// rotations in `f32` is about 1e-6.
 pub(crate) const MAX_SHEAR: f32 = 1e-3;
-/// The relative difference of two scales that counts as rounding of a chain of transforms.
+/// The largest relative difference of two scales that is attributed to rounding in a chain of transforms.
 const SCALE_ROUNDING: f32 = 1e-5;
 
-/// A scale computed from a product of matrices, without its rounding: factors that agree within [`SCALE_ROUNDING`]
-/// become equal, those that agree with ±1 become that. So a capsule below a rotated parent remains a capsule.
+/// Removes the rounding error of a scale that was computed from a product of matrices: factors that agree within
+/// [`SCALE_ROUNDING`] become equal, those that agree with ±1 become ±1. So a capsule below a rotated parent remains a
+/// capsule.
 pub(crate) fn settled<const D: usize>(mut scale: Vector<f32, D>) -> Vector<f32, D> {
     let first = scale[0].abs();
     let is_near = |a: f32, b: f32| (a - b).abs() <= SCALE_ROUNDING * b;
@@ -88,8 +89,8 @@ pub(crate) fn settled<const D: usize>(mut scale: Vector<f32, D>) -> Vector<f32, 
     scale
 }
 
-/// `old`, if the new scale differs from it by rounding alone: else a turning parent would give its children a new
-/// shape in each step.
+/// Returns `old` if the new scale differs from it by rounding alone; otherwise a rotating parent would give its
+/// children a new shape in each step.
 pub(crate) fn kept_scale<const D: usize>(
     old: Vector<f32, D>,
     new: Vector<f32, D>,

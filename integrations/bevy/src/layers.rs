@@ -1,12 +1,12 @@
-//! Components beside the collider: who may meet whom, sensors, and what does not move.
+//! Components beside the collider: collision layers, sensors, and fixed colliders.
 
 use bevy_ecs::prelude::Component;
 use impinge::world::{CollisionGroups, GroupError};
 
-/// Which colliders may meet: two do if each has a membership that the other filters for.
+/// Collision layers: two colliders interact if each has a membership that the other filters for.
 ///
-/// Layers are the bits 0 to 29 of masks. A collider without this component is a member of all and meets all. The
-/// component may be changed at any time; pairs that are no longer allowed end at the next step.
+/// Layers are the bits 0 to 29 of masks. A collider without this component is a member of all layers and interacts
+/// with all. The component may be changed at any time; pairs that are no longer allowed end at the next step.
 ///
 /// ```
 /// use bevy_impinge::CollisionLayers;
@@ -27,10 +27,10 @@ pub struct CollisionLayers {
 impl CollisionLayers {
     /// The mask of all layers.
     pub const ALL: u32 = CollisionGroups::ALL;
-    /// A member of nothing that meets nothing.
+    /// A member of no layer that interacts with none.
     pub const NONE: Self = Self { memberships: 0, filters: 0 };
 
-    /// Member of the layers of the first mask, meets members of the second.
+    /// Creates layers: a member of the first mask that interacts with members of the second.
     ///
     /// # Panics
     /// On bit 30 or 31; [`Self::try_new`] returns it.
@@ -43,7 +43,7 @@ impl CollisionLayers {
         }
     }
 
-    /// Member of the layers of the first mask, meets members of the second.
+    /// Creates layers: a member of the first mask that interacts with members of the second.
     ///
     /// # Errors
     /// On bit 30 or 31 of a mask.
@@ -53,25 +53,25 @@ impl CollisionLayers {
         Ok(Self { memberships, filters })
     }
 
-    /// The layers that it is a member of.
+    /// The layers of which it is a member.
     #[must_use]
     pub const fn memberships(&self) -> u32 {
         self.memberships
     }
 
-    /// The layers whose members it meets.
+    /// The layers with whose members it interacts.
     #[must_use]
     pub const fn filters(&self) -> u32 {
         self.filters
     }
 
-    /// Two colliders with these layers may meet. Symmetric.
+    /// Whether two colliders with these layers may interact. Symmetric.
     #[must_use]
     pub const fn can_meet(&self, other: &Self) -> bool {
         self.memberships & other.filters != 0 && other.memberships & self.filters != 0
     }
 
-    /// The groups of the library.
+    /// Converts to groups of the library.
     pub(crate) fn groups(self) -> CollisionGroups {
         let groups = CollisionGroups::new().with_membership_by_mask(self.memberships);
         groups.with_whitelist_by_mask(self.filters)
@@ -84,11 +84,11 @@ impl Default for CollisionLayers {
     }
 }
 
-/// A marker: the collider reports what overlaps it, without contact points, and blocks no character.
+/// A marker: the collider reports overlaps, without contact points, and does not block characters.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sensor;
 
-/// A marker: the collider has no pairs with others that have it, so that the parts of a level cost nothing. It may
-/// still be moved.
+/// A marker: the collider has no pairs with others that have the marker, so that the parts of a level cost
+/// nothing. It may still be moved.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FixedCollider;

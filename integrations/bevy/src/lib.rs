@@ -1,11 +1,11 @@
 //! Collision detection for Bevy in 2D and 3D, without dynamics: the plugin of [`impinge`].
 //!
-//! Entities with a [`Collider`] are objects of a collision world. The plugin follows their transforms, their changes
-//! and their removal, updates the world once per step, and reports which pairs of entities began and ceased to touch:
-//! as messages, to observers, and in [`CollidingEntities`]. The resource [`Collisions`] answers rays, shape casts,
-//! overlaps, nearest points and contacts, and moves characters. There are no forces: you move your entities.
+//! Entities with a [`Collider`] are objects of a collision world. The plugin follows their transforms, changes and
+//! removal, updates the world once per step, and reports which pairs of entities started and stopped touching: as
+//! messages, to observers, and in [`CollidingEntities`]. The resource [`Collisions`] has rays, shape casts, overlaps,
+//! nearest points and contacts, and moves characters. There are no forces: you move your entities.
 //!
-//! [`d2`] and [`d3`] hold the names to type, with the dimension filled in; both may run in one app.
+//! [`d2`] and [`d3`] have all names with the dimension filled in; both can be used in one app.
 //!
 //! ```
 //! use bevy_app::prelude::*;
@@ -31,16 +31,16 @@
 //!
 //! # Frames and units
 //!
-//! Poses and answers are in Bevy's global frame, lengths in its units, `f32`. Constructors of colliders take full
+//! Poses and results are in Bevy's global frame, lengths in its units, `f32`. Constructors of colliders take full
 //! lengths, as those of Bevy's primitives do. In 2D the frame is the global x-y plane; the z coordinate of a
-//! translation has no effect. Normals are unit vectors; each method says from where to where.
+//! translation has no effect. Normals are unit vectors; each method documents their direction.
 //!
 //! # Errors
 //!
-//! Nothing panics on the data of components. A collider with bad sizes, a scale that its shape does not have exactly,
-//! a transform that is NaN or leaves the plane: the entity gets a [`ColliderProblem`] component with the typed error, a
-//! [`ColliderFailed`] message and a line in the log, once. An object that was in the world stays there, with the
-//! shape and pose it had last; the component is removed when the entity is valid again.
+//! Invalid data of components do not panic. For a collider with invalid sizes, a scale that its shape does not support
+//! exactly, or a transform that is NaN or leaves the plane, the entity gets a [`ColliderProblem`] component with the
+//! typed error, a [`ColliderFailed`] message and a line in the log, once. An object that was in the world stays there
+//! with its last shape and pose; the component is removed when the entity is valid again.
 #![forbid(unsafe_code)]
 #![warn(missing_docs, missing_debug_implementations)]
 
@@ -83,7 +83,7 @@ pub use slide::{Slide, SlideSettings};
 /// The collision library itself: shapes, worlds, queries.
 pub use impinge;
 
-/// The page of the crate and the chapter of the guide, run as tests.
+/// The page of the crate and the chapter of the guide, whose programs are run as tests.
 #[cfg(all(doctest, feature = "2d", feature = "3d"))]
 #[doc = include_str!("../README.md")]
 #[doc = include_str!("../../../guide/bevy.md")]

@@ -1,4 +1,4 @@
-//! Colliders from meshes that are drawn.
+//! Colliders from render meshes.
 
 use bevy_math::Vec3;
 use bevy_mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues};
@@ -7,10 +7,11 @@ use crate::ColliderError;
 use crate::d3::Collider;
 
 impl Collider {
-    /// The triangles of a mesh: a surface without an interior. Vertices at the same place are merged, so that the
-    /// surface has no seams where the mesh has other normals or texture coordinates.
+    /// Creates a triangle mesh collider: a surface without an interior. Vertices at one position are merged, so
+    /// that the surface has no seams where the mesh has different normals or texture coordinates.
     ///
-    /// Has an [error](Self::error) if the mesh has no readable positions or is no list or strip of triangles.
+    /// The collider has an [error](Self::error) if the mesh has no readable positions or is not a list or strip
+    /// of triangles.
     #[must_use]
     pub fn trimesh_from_mesh(mesh: &Mesh) -> Self {
         let (vertices, triangles) = match read(mesh) {
@@ -22,9 +23,9 @@ impl Collider {
         Self::made(mesh.map(|mesh| mesh.with_vertices_merged()))
     }
 
-    /// The convex hull of the vertices of a mesh.
+    /// Creates the convex hull of the vertices of a mesh.
     ///
-    /// Has an [error](Self::error) if the mesh has no readable positions, or no points.
+    /// The collider has an [error](Self::error) if the mesh has no readable positions, or no points.
     #[must_use]
     pub fn convex_hull_from_mesh(mesh: &Mesh) -> Self {
         match positions(mesh) {
@@ -41,7 +42,7 @@ fn read(mesh: &Mesh) -> Result<Triangles, ColliderError> {
     let indices: Vec<u32> = match mesh.try_indices_option() {
         Ok(Some(Indices::U16(indices))) => indices.iter().map(|&index| index.into()).collect(),
         Ok(Some(Indices::U32(indices))) => indices.clone(),
-        // Without indices each vertex is named once, in order.
+        // Without indices each vertex is used once, in order.
         Ok(None) => (0..).take(vertices.len()).collect(),
         Err(_) => return Err(ColliderError::NoTriangles("its data is on the GPU alone")),
     };
@@ -68,7 +69,7 @@ fn list(indices: &[u32]) -> Vec<[u32; 3]> {
     indices.chunks_exact(3).map(|corners| [corners[0], corners[1], corners[2]]).collect()
 }
 
-/// Every second triangle of a strip is turned over.
+/// Every second triangle of a strip is reversed.
 fn strip(indices: &[u32]) -> Vec<[u32; 3]> {
     let corners = indices.windows(3).enumerate();
     corners.map(|(n, c)| if n % 2 == 0 { [c[0], c[1], c[2]] } else { [c[1], c[0], c[2]] }).collect()

@@ -22,23 +22,22 @@ use crate::{
     FixedCollider, Sensor, WorldKey,
 };
 
-/// What the plugin does in its schedule, in this order, for all worlds.
+/// The stages of the plugin in its schedule, in this order, for all worlds.
 ///
 /// Move entities before [`Follow`](Self::Follow), read messages and contacts after [`Report`](Self::Report).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ImpingeSystems {
-    /// Global transforms of hierarchies are computed, as Bevy does at the end of a frame.
+    /// Computes global transforms of hierarchies, as Bevy does at the end of a frame.
     Propagate,
-    /// The world takes over what entities are and where.
+    /// Copies changes of entities to the world.
     Follow,
-    /// The world is updated.
+    /// Updates the world.
     Step,
-    /// Messages are written, observers run, [`CollidingEntities`](crate::CollidingEntities) change.
+    /// Writes messages, runs observers, updates [`CollidingEntities`](crate::CollidingEntities).
     Report,
 }
 
-/// Which pairs may exist at all, from what your systems' parameters know; see
-/// [`ImpingePlugin::with_filter`].
+/// A filter of pairs that uses system parameters; see [`ImpingePlugin::with_filter`].
 ///
 /// ```
 /// use bevy_app::prelude::*;
@@ -67,19 +66,20 @@ pub enum ImpingeSystems {
 /// assert_eq!(app.world().resource::<Collisions>().contact_pairs().count(), 2);
 /// ```
 pub trait PairFilter: SystemParam {
-    /// The two entities may have a pair. Asked after the layers allowed it, once when the boxes of the colliders begin
-    /// to overlap, and again after [`Collisions::refilter`]. The entity whose collider was added first comes first.
+    /// Whether the two entities may have a pair. Called after the layers allowed it, once when the boxes of the
+    /// colliders begin to overlap, and again after [`Collisions::refilter`]. The entity whose collider was added first
+    /// is `one`.
     fn allows(param: &mut SystemParamItem<'_, '_, Self>, one: Entity, other: Entity) -> bool;
 }
 
-/// All pairs may exist.
+/// Accepts all pairs.
 impl PairFilter for () {
     fn allows(_: &mut SystemParamItem<'_, '_, Self>, _: Entity, _: Entity) -> bool {
         true
     }
 }
 
-/// The plugin of one world of collisions.
+/// The plugin for one collision world.
 ///
 /// By default it runs in `FixedPostUpdate`, which needs Bevy's `TimePlugin`. Add one for each world:
 /// `ImpingePlugin::default().in_world::<Ghosts>()`.
@@ -102,33 +102,34 @@ impl<const D: usize> Default for ImpingePlugin<D> {
 }
 
 impl<const D: usize, W, F> ImpingePlugin<D, W, F> {
-    /// Runs in another schedule: in `PostUpdate`, say, once per frame.
+    /// Runs in another schedule, for instance in `PostUpdate`, once per frame.
     #[must_use]
     pub fn in_schedule(self, schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern(), ..self }
     }
 
-    /// The length by which boxes of the broad phase are larger than their colliders: 0.02 by default. About a fiftieth
-    /// of the size of a usual collider serves well, so in pixels take 1 or 2. It changes speed, never answers.
+    /// Sets the margin by which boxes of the broad phase are larger than their colliders: 0.02 by default. About a
+    /// fiftieth of the size of a typical collider is suitable, so 1 or 2 if the unit is a pixel. It changes speed,
+    /// never results.
     #[must_use]
     pub fn with_margin(self, margin: f32) -> Self {
         Self { margin, ..self }
     }
 
-    /// Contacts exist while colliders are at most twice this length apart; then [`CollisionStarted`] comes at that
-    /// distance. 0 by default: they touch or overlap.
+    /// Sets the prediction: contacts exist while colliders are at most twice this length apart; [`CollisionStarted`]
+    /// then comes at that distance. 0 by default: contacts exist while they touch or overlap.
     #[must_use]
     pub fn with_prediction(self, prediction: f32) -> Self {
         Self { prediction, ..self }
     }
 
-    /// The same for the world of a key.
+    /// Returns the plugin for the world of another key.
     #[must_use]
     pub fn in_world<V: WorldKey>(self) -> ImpingePlugin<D, V, F> {
         self.typed()
     }
 
-    /// The same with a filter of yours on pairs.
+    /// Returns the plugin with a filter of pairs.
     #[must_use]
     pub fn with_filter<G: PairFilter + 'static>(self) -> ImpingePlugin<D, W, G> {
         self.typed()
@@ -171,11 +172,11 @@ where
     }
 }
 
-/// The schedules that some world runs in.
+/// The schedules in which worlds run.
 #[derive(Resource, Default)]
 struct Schedules(Vec<InternedScheduleLabel>);
 
-/// Orders the sets of a schedule and has it compute global transforms, once for all worlds in it.
+/// Orders the sets of a schedule and adds the computation of global transforms, once for all worlds in it.
 fn order(app: &mut App, schedule: InternedScheduleLabel) {
     use ImpingeSystems::{Follow, Propagate, Report, Step};
 

@@ -1,4 +1,4 @@
-//! Questions about everything in a world: rays, points, shapes at rest and in motion.
+//! Queries about all entities of a world: rays, points, shapes at rest and in motion.
 
 use core::fmt;
 
@@ -13,7 +13,7 @@ use crate::collisions::Object;
 use crate::glam::{Glam, Pose, Vec_};
 use crate::{Collider, CollisionLayers, Collisions, WorldKey};
 
-/// Which entities a question is about: all, unless something leaves some out.
+/// The entities that a query considers: all, unless some are excluded.
 ///
 /// ```
 /// use bevy_ecs::prelude::*;
@@ -33,32 +33,32 @@ pub struct SpatialFilter<'a> {
 }
 
 impl<'a> SpatialFilter<'a> {
-    /// All entities.
+    /// Considers all entities.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Only entities that may meet a collider with these layers.
+    /// Considers only entities that may interact with a collider with these layers.
     #[must_use]
     pub fn layers(self, layers: CollisionLayers) -> Self {
         Self { layers: Some(layers), ..self }
     }
 
-    /// Not this entity, nor those excluded before: the one that asks, say.
+    /// Excludes an entity, for instance the one that runs the query, in addition to earlier ones.
     #[must_use]
     pub fn exclude(mut self, entity: Entity) -> Self {
         self.excluded.push(entity);
         self
     }
 
-    /// No sensors.
+    /// Excludes sensors.
     #[must_use]
     pub fn without_sensors(self) -> Self {
         Self { skips_sensors: true, ..self }
     }
 
-    /// Only entities for which this is true; in place of a predicate given before.
+    /// Considers only entities that satisfy a predicate, which replaces an earlier one.
     #[must_use]
     pub fn predicate(self, predicate: &'a dyn Fn(Entity) -> bool) -> Self {
         Self { predicate: Some(predicate), ..self }
@@ -75,7 +75,7 @@ impl<'a> SpatialFilter<'a> {
         self.predicate.is_none_or(|predicate| predicate(*object.data()))
     }
 
-    /// Asks a question with the library's filter.
+    /// Runs a query with the library's filter.
     pub(crate) fn ask<const D: usize, A>(
         &self,
         question: impl FnOnce(&QueryFilter<'_, f32, D, Entity>) -> A,
@@ -102,7 +102,7 @@ impl fmt::Debug for SpatialFilter<'_> {
     }
 }
 
-/// What a ray met.
+/// The hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit<const D: usize>
 where
@@ -114,11 +114,11 @@ where
     pub distance: f32,
     /// The point that was hit.
     pub point: Vec_<D>,
-    /// The unit vector out of the collider; zero if the ray starts in it.
+    /// The outward unit normal of the collider; zero if the ray starts in it.
     pub normal: Vec_<D>,
 }
 
-/// What a moving shape met.
+/// The hit of a moving shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHit<const D: usize>
 where
@@ -134,7 +134,7 @@ where
     pub normal: Vec_<D>,
 }
 
-/// The point of an entity that is nearest to a given one.
+/// The nearest point of an entity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointHit<const D: usize>
 where
@@ -146,7 +146,7 @@ where
     pub point: Vec_<D>,
     /// The distance; zero inside.
     pub distance: f32,
-    /// The given point lies in the collider or on its surface.
+    /// Whether the given point lies in the collider or on its surface.
     pub is_inside: bool,
 }
 
@@ -160,17 +160,17 @@ where
     pub entity: Entity,
     /// The distance; zero if they touch or overlap.
     pub distance: f32,
-    /// The nearest points, on the shape and on the entity; `None` if they overlap.
+    /// The closest points, on the shape and on the entity; `None` if they overlap.
     pub points: Option<[Vec_<D>; 2]>,
 }
 
-/// Questions about all entities. A shape with an error, and a pose or point that is not finite, meets nothing.
+/// Queries about all entities. A shape with an error, and a pose or point that is not finite, have no hits.
 impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// What a ray meets first, at most `max_distance` away; of several the entity that was added first. Colliders are
-    /// solid: a ray that starts in one meets it at distance 0. Costs the search of a tree.
+    /// Returns the first hit of a ray within `max_distance`; among equal ones the entity that was added first.
+    /// Colliders are solid: a ray that starts in one hits it at distance 0. Costs a search of a tree.
     #[must_use]
     pub fn cast_ray(
         &self,
@@ -184,7 +184,7 @@ where
         Some(ray_hit(*object.data(), &ray, &hit))
     }
 
-    /// All that a ray meets, nearest first, each entity once.
+    /// Returns all hits of a ray, nearest first, each entity once.
     #[must_use]
     pub fn cast_ray_all(
         &self,
@@ -197,8 +197,8 @@ where
         hits.into_iter().map(|(object, hit)| ray_hit(*object.data(), &ray, &hit)).collect()
     }
 
-    /// What a shape meets first that moves straight by `motion` without turning. What touches at the start counts only
-    /// if the motion leads into it.
+    /// Returns the first hit of a shape that moves straight by `motion` without rotating. A contact at the start
+    /// counts only if the motion leads into it.
     #[must_use]
     pub fn cast_shape<V: WorldKey>(
         &self,
@@ -210,7 +210,7 @@ where
         self.cast_with_skin(shape.shape().ok()?, &pose.into(), motion, 0.0, filter)
     }
 
-    /// [`Self::cast_shape`], but a distance of `skin` counts as touching.
+    /// [`Self::cast_shape`] in which a distance of `skin` counts as touching.
     pub(crate) fn cast_with_skin(
         &self,
         shape: &ShapeHandle<f32, D>,
@@ -226,7 +226,7 @@ where
         Some(shape_hit(*object.data(), &impact))
     }
 
-    /// All that a shape would meet on its way if nothing stopped it, the first first, each entity once.
+    /// Returns all hits of a shape along its path, in order, each entity once, as if nothing stopped it.
     #[must_use]
     pub fn cast_shape_all<V: WorldKey>(
         &self,
@@ -244,7 +244,7 @@ where
         hits.into_iter().map(|(object, impact)| shape_hit(*object.data(), &impact)).collect()
     }
 
-    /// The entities that hold a point, on their surface at least.
+    /// Returns the entities that contain a point, surface included.
     #[must_use]
     pub fn entities_at(&self, at: Vec_<D>, filter: &SpatialFilter<'_>) -> Vec<Entity> {
         filter.ask(|filter| {
@@ -253,7 +253,7 @@ where
         })
     }
 
-    /// The entities that touch or overlap a shape.
+    /// Returns the entities that touch or overlap a shape.
     #[must_use]
     pub fn overlapping<V: WorldKey>(
         &self,
@@ -282,7 +282,7 @@ where
         filter.ask(|filter| self.world.overlaps_any(&position, &**shape, filter))
     }
 
-    /// The nearest point of any entity, at most `max_distance` away. A point in a collider is its own nearest point.
+    /// Returns the nearest point of any entity within `max_distance`. A point in a collider is its own nearest point.
     #[must_use]
     pub fn nearest_point(
         &self,
@@ -302,7 +302,7 @@ where
         })
     }
 
-    /// The `count` entities nearest to a shape, at most `max_distance` away, nearest first.
+    /// Returns the `count` entities nearest to a shape within `max_distance`, nearest first.
     #[must_use]
     pub fn nearest_entities<V: WorldKey>(
         &self,

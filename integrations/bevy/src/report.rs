@@ -1,4 +1,4 @@
-//! From the world to entities: the step, and what came of it.
+//! Updates the world and reports its changes to entities.
 
 use core::marker::PhantomData;
 
@@ -17,7 +17,7 @@ use crate::{
     CollidingEntities, CollisionEnded, CollisionStarted, Collisions, PairFilter, WorldKey,
 };
 
-/// What happened to a pair in the last step.
+/// The event of a pair in the last step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PairEvent {
     is_start: bool,
@@ -45,7 +45,8 @@ impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// Lists the pairs that ended, then those that started: a pair that is both changed its kind.
+    /// Lists the pairs that ended, then those that started: a pair that is in both changed its
+    /// kind.
     fn read_events(&mut self) {
         let mut events = core::mem::take(&mut self.events);
         events.clear();
@@ -80,14 +81,14 @@ where
         Some(PairEvent { is_start, entity, other, is_sensor })
     }
 
-    /// The entity of an object, which may be removed if an event of the last step names it.
+    /// Returns the entity of an object, which may be removed if an event of the last step names it.
     fn entity_of(&self, handle: CollisionObjectHandle) -> Option<Entity> {
         let object = self.world.collision_object(handle);
         object.or_else(|| self.world.removed_object(handle)).map(|object| *object.data())
     }
 }
 
-/// Writes the messages and brings [`CollidingEntities`] up to date.
+/// Writes the messages and updates [`CollidingEntities`].
 pub(crate) fn report<const D: usize, W: WorldKey>(
     collisions: Res<'_, Collisions<D, W>>,
     mut started: MessageWriter<'_, CollisionStarted<D, W>>,
@@ -155,7 +156,7 @@ where
     }
 }
 
-/// Somebody observes an event.
+/// Whether there are observers of an event.
 fn has_observers<E: Event>(world: &World) -> bool {
     let key = world.event_key::<E>();
     key.and_then(|key| world.observers().try_get_observers(key)).is_some_and(|observers| {

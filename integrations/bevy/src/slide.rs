@@ -1,16 +1,16 @@
-//! Characters: a motion that stops at obstacles and goes on along them.
+//! Character motion that stops at obstacles and continues along them.
 
 use impinge::math::Vector;
 
 use crate::glam::{Glam, Pose, Vec_};
 use crate::{Collider, Collisions, ShapeHit, SpatialFilter, WorldKey};
 
-/// How [`Collisions::move_and_slide`] moves.
+/// The settings of [`Collisions::move_and_slide`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlideSettings {
     /// The distance kept from all obstacles: about a hundredth of the size of the character. 0.01 by default.
     pub skin: f32,
-    /// The largest number of obstacles met on the way: with 1 the motion is straight and ends at the first. 6 by default.
+    /// The largest number of hit obstacles: with 1 the motion is straight and ends at the first. 6 by default.
     pub max_hits: usize,
 }
 
@@ -21,46 +21,48 @@ impl Default for SlideSettings {
 }
 
 impl SlideSettings {
-    /// The usual settings with another skin.
+    /// Returns the default settings with another skin.
     #[must_use]
     pub fn with_skin(skin: f32) -> Self {
         Self { skin, ..Self::default() }
     }
 }
 
-/// Where a character got to.
+/// The result of a character motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide<const D: usize>
 where
     f32: Glam<D>,
 {
-    /// The motion that was possible: add it to the translation.
+    /// The possible motion: add it to the translation.
     pub motion: Vec_<D>,
-    /// The rest of the wish, without what leads into the obstacles met last: zero if it was all used up. Divided by the
-    /// time step and added to the speed of `motion`, it is the velocity to go on with.
+    /// The unused rest of the motion, without its part into the obstacles hit last; zero if all was used. Divided by
+    /// the time step and added to the speed of `motion`, it is the velocity for the next step.
     pub rest: Vec_<D>,
-    /// The obstacles in the order in which they were met, but those that the motion only grazed; their fractions are those of what was left of the motion.
+    /// The hit obstacles in order, without those that the motion only grazed; their fractions are of the motion that
+    /// remained before the hit.
     pub hits: Vec<ShapeHit<D>>,
 }
 
-/// A motion into a wall by less than this part of its length goes along it: the rounding of a distance of a skin.
+/// The largest part of its length by which a motion into a wall counts as along the wall: the rounding error of a
+/// distance of a skin.
 const GRAZE: f32 = 1e-3;
-/// The part of its length by which a motion along a wall leads off it, so that rounding does not lead it into the wall:
-/// the next cast would stop where it starts.
+/// The part of its length by which a motion along a wall is lifted off it, so that rounding does not lead it into the
+/// wall: the next cast would stop at its start.
 const LIFT: f32 = 1e-5;
-/// The largest number of walls that are grazed.
+/// The largest number of grazed walls.
 const MAX_GRAZES: usize = 4;
 
 impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// Moves a shape by `motion`, at most until it is `skin` away from an obstacle; what is left of the motion goes on
-    /// along the obstacle, in 3D between two of them along their edge. Sensors are no obstacles. A motion along a wall is led off
-    /// it by 1e-5 of its length, more than rounding. The shape does not turn,
-    /// and it is not pushed out of what it overlaps at the start: it goes no deeper.
+    /// Moves a shape by `motion`, at most until its distance from an obstacle is `skin`. The rest of the motion
+    /// continues along the obstacle, in 3D between two obstacles along their edge. Sensors are no obstacles. A motion
+    /// along a wall is lifted off it by 1e-5 of its length, more than rounding. The shape does not rotate. It is not
+    /// pushed out of obstacles that it overlaps at the start, but moves no deeper.
     ///
-    /// Exclude the character itself by the filter. The entities are where the last step saw them.
+    /// Exclude the character itself by the filter. The entities are at their poses of the last step.
     ///
     /// ```
     /// use bevy_app::prelude::*;
@@ -106,7 +108,7 @@ where
                 break;
             };
             done += rest * hit.fraction;
-            // Walls left behind no longer count.
+            // Walls that are left behind no longer count.
             if hit.fraction > 0.0 {
                 walls.clear();
             }
@@ -131,18 +133,18 @@ where
     f32::pose_of(&isometry)
 }
 
-/// A motion along walls, led off them by [`LIFT`].
+/// Returns a motion along walls, lifted off them by [`LIFT`].
 fn off<const D: usize>(motion: Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
     let lift = LIFT * motion.norm();
     walls.iter().fold(motion, |motion, wall| motion + wall * lift)
 }
 
-/// The part of a motion that leads into none of the walls, whose normals point at the character: along the last wall,
-/// else along the edge of the last and another, else zero.
+/// Returns the part of a motion that leads into none of the walls, whose normals point at the character: along the last
+/// wall, else along the edge of the last and another wall, else zero.
 fn along<const D: usize>(motion: &Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
     let zero = Vector::zeros();
     let Some((last, others)) = walls.split_last() else { return *motion };
-    // Rounding of a product of unit vectors, times the length of the motion.
+    // The rounding error of a product of unit vectors, times the length of the motion.
     let rounding = 1e-6 * motion.norm();
     let is_free = |v: &Vector<f32, D>| walls.iter().all(|wall| v.dot(wall) >= -rounding);
     let without = |v: &Vector<f32, D>, wall: &Vector<f32, D>| v - wall * v.dot(wall);
@@ -151,7 +153,7 @@ fn along<const D: usize>(motion: &Vector<f32, D>, walls: &[Vector<f32, D>]) -> V
         return flat;
     }
     let edge = |other: &Vector<f32, D>| {
-        // The direction of the other wall within the last one.
+        // The direction of the other wall, projected on the last one.
         let across = without(other, last).try_normalize(1e-6)?;
         Some(without(&flat, &across)).filter(is_free)
     };

@@ -1,8 +1,8 @@
-//! Which objects changed lately.
+//! The recent changes of objects.
 
 use std::collections::{BTreeSet, VecDeque};
 
-/// The most changes that are remembered: about more, everything is found anew in less time than change by change.
+/// The largest number of stored changes: beyond that, recomputing everything is faster than change by change.
 const KEPT: usize = 256;
 
 /// The changes of a crowd, numbered from its beginning.
@@ -14,7 +14,7 @@ pub(super) struct Changes {
 }
 
 impl Changes {
-    /// An object was added, moved or removed.
+    /// Records that an object was added, moved or removed.
     pub(super) fn note(&mut self, index: u32) {
         self.count += 1;
         if self.recent.len() == KEPT {
@@ -23,19 +23,20 @@ impl Changes {
         self.recent.push_back(index);
     }
 
-    /// How many changes there have been.
+    /// The number of changes so far.
     pub(super) const fn now(&self) -> u64 {
         self.count
     }
 
-    /// The objects that changed after the first `then` changes, each once; `None` if that is too long ago.
+    /// Returns the objects that changed after the first `then` changes, each once; `None` if that is too long
+    /// ago.
     pub(super) fn since(&self, then: u64) -> Option<BTreeSet<u32>> {
         let count = usize::try_from(self.count - then).ok()?;
         let begin = self.recent.len().checked_sub(count)?;
         Some(self.recent.range(begin..).copied().collect())
     }
 
-    /// The object may have changed after the first `then` changes.
+    /// Whether the object may have changed after the first `then` changes.
     pub(super) fn may_include(&self, index: u32, then: u64) -> bool {
         let count = usize::try_from(self.count - then).unwrap_or(usize::MAX);
         count > self.recent.len() || self.recent.iter().rev().take(count).any(|&one| one == index)

@@ -1,8 +1,8 @@
-//! The objects of a collision manager in a world of proximities: which of them touch, and which two are nearest.
+//! The objects of a collision manager in a world of proximities: the touching pairs, and the nearest pair.
 //!
-//! What was found is kept: [`Crowd::touching`] by the events of updates, the nearest pair with the number of the change
-//! after which it was found. A question costs what changed since. A few moves are left to the question, more are brought into
-//! the world as they come ([`EAGER`]).
+//! Results are cached: [`Crowd::touching`] by the events of updates, the nearest pair with the number of the change
+//! after which it was found. The cost of a query depends on the changes since. A few moves are applied by the query,
+//! more are applied to the world at once ([`EAGER`]).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,13 +20,13 @@ pub(super) type World = CollisionWorld<f64, 3, ()>;
 pub(super) type Object = CollisionObject<f64, 3, ()>;
 pub(super) type Solid = ShapeHandle<f64, 3>;
 
-/// After so many changes without a question the world is updated, so that a question finds few of them.
+/// After this many changes without a query the world is updated, so that a query has few of them to apply.
 const EAGER: u64 = 16;
 
-/// Two objects, the one of the lower handle first, or one of each crowd.
+/// Two objects, the one with the lower handle first, or one of each crowd.
 pub(super) type Pair = (Handle, Handle);
 
-/// Two objects and how far apart they are, negative where they overlap.
+/// Two objects and their distance, negative where they overlap.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     pub(super) pair: Pair,
@@ -41,21 +41,21 @@ struct Kept {
     then: u64,
 }
 
-/// Objects and what is known about them.
+/// Objects and cached results.
 #[derive(Debug)]
 pub(super) struct Crowd {
     world: World,
-    /// The handle that an index had last.
+    /// The last handle of each index.
     handles: Vec<Handle>,
     pub(super) changes: Changes,
-    /// The number of the last change that the last update of the world saw.
+    /// The number of the last change before the last update of the world.
     updated: u64,
-    /// The number of the last change before the last question.
+    /// The number of the last change before the last query.
     asked: u64,
     /// The pairs that touched at the last update.
     touching: BTreeSet<Pair>,
     kept: Option<Kept>,
-    /// The nearest pair with the object of an index.
+    /// For each index the nearest pair with its object.
     beside: BTreeMap<u32, Kept>,
     pub(super) reach: Reach,
 }
@@ -84,7 +84,7 @@ impl Crowd {
         self.world.collision_objects()
     }
 
-    /// The index of a new object.
+    /// Adds an object and returns its index.
     pub(super) fn add(
         &mut self,
         position: Isometry3<f64>,
@@ -117,22 +117,22 @@ impl Crowd {
         Ok(())
     }
 
-    /// The object of an index, which there is.
+    /// Returns the object of an index, which must exist.
     pub(super) fn object(&self, index: u32) -> Option<&Object> {
         self.world.collision_object(self.handle(index))
     }
 
-    /// The object of a handle, if there is one.
+    /// Returns the object of a handle, if it exists.
     pub(super) fn get(&self, handle: Handle) -> Option<&Object> {
         self.world.collision_object(handle)
     }
 
-    /// An object touches the solid.
+    /// Whether an object touches the solid.
     pub(super) fn meets_any(&self, position: &Isometry3<f64>, shape: &dyn Shape<f64, 3>) -> bool {
         self.world.overlaps_any(position, shape, &QueryFilter::new())
     }
 
-    /// The objects that touch the solid.
+    /// Returns the objects that touch the solid.
     pub(super) fn met_by(
         &self,
         position: &Isometry3<f64>,
@@ -141,7 +141,7 @@ impl Crowd {
         self.world.objects_overlapping(position, shape, &QueryFilter::new())
     }
 
-    /// The nearest object at most `limit` away, and how far it is, zero if they touch; the first of equals.
+    /// Returns the nearest object within `limit`, and its distance, zero if they touch; the first of equals.
     pub(super) fn nearest_to(
         &self,
         position: &Isometry3<f64>,
@@ -151,7 +151,7 @@ impl Crowd {
         self.nearest_of(position, shape, limit, &QueryFilter::new())
     }
 
-    /// The nearest object to the one of an index; it is kept.
+    /// Returns the object nearest to that of an index, and caches it.
     pub(super) fn nearest_beside(&mut self, index: u32) -> Option<Nearest> {
         let found = self.beside_changed(index).or_else(|| self.found_beside(index, f64::INFINITY));
         match found {
@@ -166,8 +166,8 @@ impl Crowd {
         found
     }
 
-    /// The nearest object to the one of an index, if that of the last time and the object itself have not changed: it, or one
-    /// that has.
+    /// Returns the object nearest to that of an index, if the cached one and the object itself have not changed: the
+    /// cached one, or one that has changed.
     fn beside_changed(&self, index: u32) -> Option<Nearest> {
         let kept = self.beside.get(&index)?;
         let changed = self.changes.since(kept.then)?;
@@ -191,7 +191,7 @@ impl Crowd {
         Some(best)
     }
 
-    /// The nearest object to the one of an index, at most `limit` away.
+    /// Returns the object nearest to that of an index within `limit`.
     fn found_beside(&self, index: u32, limit: f64) -> Option<Nearest> {
         let own = self.object(index)?;
         let others = QueryFilter::new().exclude(own.handle());
@@ -199,18 +199,18 @@ impl Crowd {
         self.signed(Nearest { pair: ordered(own.handle(), other), distance })
     }
 
-    /// A pair with minus its depth instead of no distance.
+    /// Returns the pair with minus its depth instead of the distance zero.
     fn signed(&self, nearest: Nearest) -> Option<Nearest> {
         if nearest.distance > 0.0 { Some(nearest) } else { self.depth_of(nearest.pair) }
     }
 
-    /// All pairs that touch.
+    /// Returns all touching pairs.
     pub(super) fn touching(&mut self) -> &BTreeSet<Pair> {
         self.update();
         &self.touching
     }
 
-    /// A pair that touches, if any does: the same one as long as it does.
+    /// Returns a touching pair, if there is one: the same one as long as it touches.
     pub(super) fn touching_pair(&mut self) -> Option<Pair> {
         self.asked = self.changes.now();
         let first = self.touching.first().copied();
@@ -221,7 +221,7 @@ impl Crowd {
         self.touching.first().copied()
     }
 
-    /// The nearest two objects; of several pairs that touch one, of other equals the first.
+    /// Returns the nearest pair; among touching pairs any, among other equals the first.
     pub(super) fn nearest_pair(&mut self) -> Option<Nearest> {
         self.asked = self.changes.now();
         let found = self.overlap().or_else(|| {
@@ -233,14 +233,14 @@ impl Crowd {
         found
     }
 
-    /// The first pair that touched at the last update, if it overlaps.
+    /// Returns the first pair that touched at the last update, if it overlaps.
     fn overlap(&self) -> Option<Nearest> {
         let pair = *self.touching.first()?;
         let nearest = self.kept_depth(pair).or_else(|| self.depth_of(pair))?;
         (nearest.distance <= 0.0).then_some(nearest)
     }
 
-    /// How deep a pair overlaps, if it was the last one and has not changed.
+    /// Returns the cached depth of a pair, if it was the last one and has not changed.
     fn kept_depth(&self, pair: Pair) -> Option<Nearest> {
         let kept = self.kept.as_ref().filter(|kept| kept.nearest.pair == pair)?;
         let has_changed =
@@ -253,7 +253,7 @@ impl Crowd {
         Some(Nearest { pair, distance: -depth(self.get(pair.0)?, self.get(pair.1)?) })
     }
 
-    /// The nearest pair, if that of the last time has not changed: it, or one of an object that has.
+    /// Returns the nearest pair, if the cached one has not changed: it, or one with a changed object.
     fn nearest_changed(&self) -> Option<Nearest> {
         let kept = self.kept.as_ref().filter(|kept| kept.nearest.distance > 0.0)?;
         let changed = self.changes.since(kept.then)?;
@@ -268,7 +268,8 @@ impl Crowd {
         Some(changed.iter().fold(kept.nearest, nearer))
     }
 
-    /// The nearest pair of all: each object looks for nearer ones behind it, up to the least distance yet.
+    /// Computes the nearest pair of all: each object searches for nearer ones with higher indices, up to the least
+    /// distance so far.
     fn nearest_of_all(&self) -> Option<Nearest> {
         let mut best = self.kept.as_ref().and_then(|kept| self.measured(kept.nearest.pair));
         for own in self.objects() {
@@ -297,18 +298,18 @@ impl Crowd {
         Some((found.object.handle(), found.distance))
     }
 
-    /// A pair of living objects and their distance now.
+    /// Returns a pair of existing objects with their current distance.
     fn measured(&self, pair: Pair) -> Option<Nearest> {
         let (one, other) = (self.get(pair.0)?, self.get(pair.1)?);
         Some(Nearest { pair, distance: between(one, other) })
     }
 
-    /// The object may have changed after so many changes.
+    /// Whether the object may have changed after the first `then` changes.
     pub(super) fn has_changed(&self, handle: Handle, then: u64) -> bool {
         self.changes.may_include(index_of(handle), then)
     }
 
-    /// A pair of the last update still touches.
+    /// Whether a pair of the last update still touches.
     fn still_touch(&self, (one, other): Pair) -> bool {
         let (Some(object1), Some(object2)) = (self.get(one), self.get(other)) else { return false };
         let has_changed = |handle| self.has_changed(handle, self.updated);
@@ -326,7 +327,7 @@ impl Crowd {
         }
     }
 
-    /// Brings [`Self::touching`] up to date.
+    /// Updates [`Self::touching`].
     fn update(&mut self) {
         if self.updated == self.changes.now() {
             return;
@@ -344,23 +345,23 @@ impl Crowd {
     }
 }
 
-/// The index of an object.
+/// Returns the index of an object.
 pub(super) fn index_of(handle: Handle) -> u32 {
     u32::try_from(handle.uid()).expect("a world has fewer than 2^32 objects")
 }
 
-/// Two objects touch.
+/// Whether two objects touch.
 pub(super) fn touch(one: &Object, other: &Object) -> bool {
     let (shape1, shape2) = (&**one.shape(), &**other.shape());
     proximity(one.position(), shape1, other.position(), shape2, 0.0) == Proximity::Intersecting
 }
 
-/// How deep two objects overlap that touch.
+/// Returns the depth of two touching objects.
 pub(super) fn depth(one: &Object, other: &Object) -> f64 {
     depth_at(one.position(), &**one.shape(), other)
 }
 
-/// How deep an object overlaps with a placed solid that it touches.
+/// Returns the depth of an object and a placed solid that it touches.
 pub(super) fn depth_at(
     position: &Isometry3<f64>,
     shape: &dyn Shape<f64, 3>,
@@ -370,7 +371,7 @@ pub(super) fn depth_at(
     found.map_or(0.0, |found| -found.distance)
 }
 
-/// How far two objects are apart.
+/// Returns the distance of two objects.
 pub(super) fn between(one: &Object, other: &Object) -> f64 {
     distance(one.position(), &**one.shape(), other.position(), &**other.shape())
 }

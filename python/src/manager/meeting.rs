@@ -1,4 +1,4 @@
-//! One crowd beside another: which objects of both touch, and which two are nearest.
+//! Results about two crowds: the touching pairs, and the nearest pair.
 
 use std::collections::BTreeSet;
 
@@ -6,16 +6,16 @@ use impinge::bounding_volume::BoundingVolume;
 
 use super::crowd::{Crowd, Nearest, Object, Pair, between, depth, index_of, touch};
 
-/// What is known of two crowds after changes of both.
+/// The cached results about two crowds, after given changes of both.
 #[derive(Debug)]
 pub(super) struct Meeting {
     /// The number of the other manager.
     pub(super) other: u64,
     /// The numbers of the last changes of both.
     then: [u64; 2],
-    /// The pairs that touched then.
+    /// The pairs that touched after these changes.
     pub(super) touching: BTreeSet<Pair>,
-    /// The nearest pair, and when it was.
+    /// The nearest pair, and the numbers of the changes.
     nearest: Option<(Nearest, [u64; 2])>,
 }
 
@@ -24,12 +24,12 @@ pub(super) struct Meeting {
 pub(super) struct Crowds<'a>(pub(super) &'a Crowd, pub(super) &'a Crowd);
 
 impl Meeting {
-    /// All pairs that touch.
+    /// Computes all touching pairs.
     pub(super) fn new(other: u64, crowds: Crowds<'_>) -> Self {
         Self { other, then: crowds.now(), touching: crowds.all_touching(), nearest: None }
     }
 
-    /// Finds out what the changes since then have led to.
+    /// Updates the touching pairs by the changes since.
     pub(super) fn update(&mut self, crowds: Crowds<'_>) {
         let then = core::mem::replace(&mut self.then, crowds.now());
         let Some([changed1, changed2]) = crowds.changed(then) else {
@@ -48,7 +48,7 @@ impl Meeting {
         }
     }
 
-    /// A pair that touched still does.
+    /// Returns a cached touching pair that still touches.
     pub(super) fn touching_pair(&self, Crowds(own, others): Crowds<'_>) -> Option<Pair> {
         let pair = *self.touching.first()?;
         let (one, other) = (own.get(pair.0)?, others.get(pair.1)?);
@@ -57,7 +57,7 @@ impl Meeting {
         (!has_changed || touch(one, other)).then_some(pair)
     }
 
-    /// The first pair that touched, if it overlaps now, and how deep.
+    /// Returns the first cached touching pair with its depth, if it overlaps now.
     pub(super) fn overlap(&mut self, crowds: Crowds<'_>) -> Option<Nearest> {
         let (Crowds(own, others), pair) = (crowds, *self.touching.first()?);
         let known = self.nearest.filter(|(nearest, then)| {
@@ -75,7 +75,7 @@ impl Meeting {
         Some(nearest)
     }
 
-    /// The nearest pair of two crowds that do not touch.
+    /// Returns the nearest pair of two crowds that do not touch.
     pub(super) fn nearest_pair(&mut self, crowds: Crowds<'_>) -> Option<Nearest> {
         let known = self.nearest.take();
         let apart = known.filter(|(nearest, _)| nearest.distance > 0.0);
@@ -91,12 +91,12 @@ impl Crowds<'_> {
         [self.0.changes.now(), self.1.changes.now()]
     }
 
-    /// The objects of both that changed after these changes; `None` if that is too long ago.
+    /// Returns the objects of both that changed after these changes; `None` if that is too long ago.
     fn changed(self, then: [u64; 2]) -> Option<[BTreeSet<u32>; 2]> {
         Some([self.0.changes.since(then[0])?, self.1.changes.since(then[1])?])
     }
 
-    /// The smaller crowd searches the larger one, as far as its objects are near the box around that.
+    /// Searches the larger crowd for each object of the smaller one that is near the box around the larger one.
     fn all_touching(self) -> BTreeSet<Pair> {
         let Crowds(own, others) = self;
         let is_smaller = own.len() <= others.len();
@@ -113,7 +113,7 @@ impl Crowds<'_> {
         pairs.map(|pair| if is_smaller { pair } else { (pair.1, pair.0) }).collect()
     }
 
-    /// The nearest pair, if that of then has not changed: it, or one of an object that has.
+    /// Returns the nearest pair, if the cached one has not changed: it, or one with a changed object.
     fn nearest_changed(self, (mut best, then): (Nearest, [u64; 2])) -> Option<Nearest> {
         let [changed1, changed2] = self.changed(then)?;
         let (one, other) = best.pair;
@@ -130,8 +130,9 @@ impl Crowds<'_> {
         Some(best)
     }
 
-    /// The nearest pair of all; `known` is one that was near. The object of the smaller crowd that is nearest to the box
-    /// around the other one goes first, and those are left out that are farther from it than the nearest pair yet.
+    /// Computes the nearest pair of all; `known` is one that was near. The object of the smaller crowd that is nearest
+    /// to the box around the other one goes first, and objects that are farther from the box than the nearest pair so
+    /// far are skipped.
     fn nearest_of_all(self, known: Option<Pair>) -> Option<Nearest> {
         let Crowds(own, others) = self;
         let mut best = known.and_then(|pair| {
@@ -164,7 +165,7 @@ impl Nearest {
     }
 }
 
-/// The pairs of an object and others that touch.
+/// Returns the touching pairs of an object and others.
 fn touching_of<'a>(
     object: &'a Object,
     own: &Crowd,
@@ -177,7 +178,7 @@ fn touching_of<'a>(
     met.into_iter().flatten().map(|other| (object.handle(), other.handle()))
 }
 
-/// The nearest of the others, if nearer than the best yet.
+/// Returns the nearest of the others, if it is nearer than the best so far.
 fn nearer(object: &Object, others: &Crowd, best: Option<Nearest>) -> Option<Nearest> {
     let limit = best.map_or(f64::INFINITY, |best| best.distance);
     let (other, distance) = others.nearest_to(object.position(), &**object.shape(), limit)?;

@@ -1,6 +1,6 @@
-//! The engine of `impinge.trimesh.CollisionManager`: objects by index, and who touches whom.
+//! The engine of `impinge.trimesh.CollisionManager`: objects by index, and their contacts.
 //!
-//! Names, triangles and data of contacts are Python's. Everything is in 3D and `f64`.
+//! Names, triangles and data of contacts are handled in Python. Everything is in 3D and `f64`.
 
 mod changes;
 mod crowd;
@@ -27,13 +27,13 @@ const KIND: Kind = Kind { is_double: true, is_spatial: true };
 /// Two indices and the distance of the objects, negative where they overlap.
 type Found = (u32, u32, f64);
 
-/// Objects with shapes and transforms, by index; an index is used again after its object is gone.
+/// Objects with shapes and transforms, by index; an index is reused after its object is removed.
 #[pyclass(module = "impinge._native")]
 pub(crate) struct Manager {
     crowd: Crowd,
-    /// No other manager has it.
+    /// A unique number.
     number: u64,
-    /// What is known about the last other manager.
+    /// The cached results about the last other manager.
     meeting: Option<Meeting>,
 }
 
@@ -46,7 +46,7 @@ impl Manager {
         Self { crowd: Crowd::new(), number, meeting: None }
     }
 
-    /// The index of a new object.
+    /// Adds an object and returns its index.
     fn add(&mut self, shape: &Shape, transform: &Bound<'_, PyAny>) -> PyResult<u32> {
         settle()?;
         self.crowd.add(position(transform)?, solid(shape)?.clone()).map_err(|error| refused(&error))
@@ -62,43 +62,43 @@ impl Manager {
         self.crowd.place(index, position(transform)?).map_err(|error| refused(&error))
     }
 
-    /// Where objects are: (n, 4, 4).
+    /// Returns the transforms of objects: (n, 4, 4).
     fn transforms<'py>(&self, py: Python<'py>, indices: Vec<u32>) -> PyResult<Bound<'py, PyAny>> {
         let objects = indices.iter().filter_map(|&index| self.crowd.object(index));
         into_array::<f64, 3>(py, objects.map(|object| <f64 as Space<3>>::pose(object.position())))
     }
 
-    /// Two objects touch.
+    /// Whether two objects touch.
     fn is_touching(&mut self) -> PyResult<bool> {
         settle()?;
         Ok(self.crowd.touching_pair().is_some())
     }
 
-    /// All pairs that touch.
+    /// Returns all touching pairs.
     fn touching(&mut self) -> PyResult<Vec<(u32, u32)>> {
         settle()?;
         Ok(self.crowd.touching().iter().map(indices).collect())
     }
 
-    /// The nearest two objects.
+    /// Returns the nearest pair.
     fn nearest(&mut self) -> PyResult<Option<Found>> {
         settle()?;
         Ok(self.crowd.nearest_pair().map(found))
     }
 
-    /// The nearest object to another one.
+    /// Returns the object nearest to another one.
     fn nearest_beside(&mut self, index: u32) -> PyResult<Option<Found>> {
         settle()?;
         Ok(self.crowd.nearest_beside(index).map(found))
     }
 
-    /// A shape that is no object touches one.
+    /// Whether a shape that is not an object touches an object.
     fn meets_any(&self, shape: &Shape, transform: &Bound<'_, PyAny>) -> PyResult<bool> {
         settle()?;
         Ok(self.crowd.meets_any(&position(transform)?, &**solid(shape)?))
     }
 
-    /// The objects that a shape touches.
+    /// Returns the objects that a shape touches.
     fn met_by(&self, shape: &Shape, transform: &Bound<'_, PyAny>) -> PyResult<Vec<u32>> {
         settle()?;
         let position = position(transform)?;
@@ -106,7 +106,7 @@ impl Manager {
         Ok(met.map(|object| index_of(object.handle())).collect())
     }
 
-    /// The nearest object to a shape, and how far it is; negative where they overlap.
+    /// Returns the object nearest to a shape, and its distance; negative where they overlap.
     fn nearest_to(
         &self,
         shape: &Shape,
@@ -123,20 +123,20 @@ impl Manager {
         }))
     }
 
-    /// An object touches one of another manager.
+    /// Whether an object touches one of another manager.
     fn is_touching_other(&mut self, other: &Self) -> PyResult<bool> {
         settle()?;
         Ok(self.touching_pair_with(other).is_some())
     }
 
-    /// All pairs of an object and one of another manager that touch.
+    /// Returns all touching pairs of an object and one of another manager.
     fn touching_other(&mut self, other: &Self) -> PyResult<Vec<(u32, u32)>> {
         settle()?;
         let meeting = self.meet(other);
         Ok(self.meeting.insert(meeting).touching.iter().map(indices).collect())
     }
 
-    /// The object and the one of another manager that are nearest.
+    /// Returns the nearest pair of an object and one of another manager.
     fn nearest_other(&mut self, other: &Self) -> PyResult<Option<Found>> {
         settle()?;
         let crowds = Crowds(&self.crowd, &other.crowd);
@@ -153,7 +153,7 @@ impl Manager {
 }
 
 impl Manager {
-    /// What is known about another manager, up to date; to be kept.
+    /// Returns the updated results about another manager, to be cached.
     fn meet(&mut self, other: &Self) -> Meeting {
         let crowds = Crowds(&self.crowd, &other.crowd);
         let known = self.meeting.take().filter(|meeting| meeting.other == other.number);
@@ -166,8 +166,8 @@ impl Manager {
         }
     }
 
-    /// A pair of an object and one of another manager that touch: the same one as long as it does. Without one,
-    /// the meeting is up to date.
+    /// Returns a touching pair of an object and one of another manager: the same one as long as it touches. If
+    /// there is none, the cached results are up to date.
     fn touching_pair_with(&mut self, other: &Self) -> Option<Pair> {
         let crowds = Crowds(&self.crowd, &other.crowd);
         let known = self.meeting.as_ref().filter(|meeting| meeting.other == other.number);

@@ -1,15 +1,15 @@
-//! Balls around objects and a box around all of them: what is far is known without a search.
+//! Bounding balls of objects and a box around all of them: they reject distant objects without a search.
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::math::{Isometry3, Point, Vector};
 use impinge::shape::{Shape, bounding_sphere};
 
-/// The ball around an object.
+/// The bounding ball of an object.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
-    /// In the frame of the shape.
+    /// The centre in the local frame of the shape.
     local: Point<f64, 3>,
-    /// In the world.
+    /// The centre in the world frame.
     center: Point<f64, 3>,
     radius: f64,
 }
@@ -20,12 +20,13 @@ pub(super) struct Reach {
     balls: Vec<Option<Ball>>,
     count: usize,
     around: Option<Aabb<f64, 3>>,
-    /// How often the box has grown since it was made. It is made anew when that is as often as there are objects.
+    /// The number of times that the box was enlarged since it was computed. It is recomputed when that equals the
+    /// number of objects.
     grown: usize,
 }
 
 impl Reach {
-    /// Gives an object of a shape its ball.
+    /// Adds the ball of an object.
     pub(super) fn add(&mut self, index: u32, shape: &dyn Shape<f64, 3>, position: &Isometry3<f64>) {
         let sphere = bounding_sphere(shape, &Isometry3::identity());
         let local = *sphere.center();
@@ -57,17 +58,17 @@ impl Reach {
         }
     }
 
-    /// A box around all objects; `None` without any.
+    /// Returns a box around all objects; `None` if there is none.
     pub(super) const fn around(&self) -> Option<&Aabb<f64, 3>> {
         self.around.as_ref()
     }
 
-    /// The ball of the object may meet the box.
+    /// Whether the ball of the object may overlap the box.
     pub(super) fn may_meet(&self, index: u32, aabb: &Aabb<f64, 3>) -> bool {
         self.balls[index as usize].is_some_and(|ball| distance_to(&ball, aabb) <= 0.0)
     }
 
-    /// Two objects may be less than `limit` apart.
+    /// Whether two objects may be less than `limit` apart.
     pub(super) fn may_be_within(&self, one: u32, other: u32, limit: f64) -> bool {
         let (Some(ball1), Some(ball2)) = (self.balls[one as usize], self.balls[other as usize])
         else {
@@ -76,32 +77,32 @@ impl Reach {
         (ball1.center - ball2.center).norm() < limit + roomy(&ball1) + roomy(&ball2)
     }
 
-    /// The objects at most `limit` from the box, by distances that they are not nearer than, in ascending order.
+    /// Returns the objects within `limit` of the box, sorted by lower bounds of their distances.
     pub(super) fn within(&self, aabb: &Aabb<f64, 3>, limit: f64) -> Vec<(f64, u32)> {
         let mut found: Vec<_> = self.distances(aabb).filter(|(far, _)| *far <= limit).collect();
         found.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
         found
     }
 
-    /// The first object of [`Self::within`].
+    /// Returns the first object of [`Self::within`].
     pub(super) fn first(&self, aabb: &Aabb<f64, 3>) -> Option<u32> {
         let nearer = |one: &(f64, u32), other: &(f64, u32)| one.0.total_cmp(&other.0);
         self.distances(aabb).min_by(nearer).map(|(_, index)| index)
     }
 
-    /// For each object a distance that it is not nearer to the box than.
+    /// Returns for each object a lower bound of its distance from the box.
     fn distances(&self, aabb: &Aabb<f64, 3>) -> impl Iterator<Item = (f64, u32)> {
         let balls = (0..).zip(&self.balls);
         balls.filter_map(|(index, ball)| Some((distance_to(&(*ball)?, aabb), index)))
     }
 }
 
-/// A distance that what is in the ball is not nearer to the box than.
+/// Returns a lower bound of the distance of the content of the ball from the box.
 fn distance_to(ball: &Ball, aabb: &Aabb<f64, 3>) -> f64 {
     (aabb.distance_to_point(&ball.center) - roomy(ball)).max(0.0)
 }
 
-/// The radius, and the rounding errors of the place.
+/// Returns the radius plus the rounding error of the position.
 fn roomy(ball: &Ball) -> f64 {
     ball.radius + 1e-12 * (ball.radius + ball.center.coords.amax())
 }

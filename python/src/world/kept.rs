@@ -1,4 +1,4 @@
-//! The world behind a world of Python: by itself, or inside a recorder while it is recorded.
+//! The world of a Python world: alone, or inside a recorder while it is recorded.
 
 use core::ops::Deref;
 
@@ -10,7 +10,8 @@ use impinge_record::{RecordError, Recorder, Registry};
 
 use crate::space::Numeric;
 
-/// A world, which is read through [`Deref`] and changed by the methods: a recorder hears of every change.
+/// A world that is read through [`Deref`] and changed by the methods, so that a recorder gets every
+/// change.
 pub(crate) enum KeptWorld<N: Numeric<D>, const D: usize> {
     Plain(Box<CollisionWorld<N, D, ()>>),
     Recorded(Box<Recorder<N, D, ()>>),
@@ -30,7 +31,7 @@ impl<N: Numeric<D>, const D: usize> Deref for KeptWorld<N, D> {
 /// The isometry type of a scalar and dimension.
 type Isometry<N, const D: usize> = <N as Space<D>>::Isometry;
 
-/// What an object is asked for.
+/// The query type of an object.
 type Query<N> = GeometricQueryType<N>;
 
 impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
@@ -104,7 +105,7 @@ impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
         }
     }
 
-    /// Begins to record, with an update; a world that is recorded goes on as it is.
+    /// Starts a recording, with an update; a world that is already recorded is unchanged.
     pub(crate) fn record(&mut self, margin: N) -> Result<(), RecordError> {
         let Self::Plain(world) = self else { return Ok(()) };
         let world = *std::mem::replace(world, Box::new(CollisionWorld::new(N::ZERO)));
@@ -118,7 +119,7 @@ impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
         Ok(())
     }
 
-    /// Ends to record: the bytes of the recording, if there is one.
+    /// Ends the recording; returns its bytes, if there is one.
     pub(crate) fn stop(&mut self) -> Option<Vec<u8>> {
         let none = Self::Plain(Box::new(CollisionWorld::new(N::ZERO)));
         match std::mem::replace(self, none) {

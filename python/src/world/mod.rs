@@ -1,7 +1,7 @@
 //! Worlds: one Python class for every scalar and dimension, with calls about many objects at once.
 //!
-//! A handle in Python is a number of 64 bits: the index of the object, and above it how often that index was used before.
-//! It never comes to mean another object of its world.
+//! A handle in Python is a number of 64 bits: the index of the object, and above it the number of earlier uses of that
+//! index. It is never reused for another object of its world.
 
 mod kept;
 mod queries;
@@ -25,10 +25,10 @@ use crate::space::{Kind, Numeric, Task, run_in};
 use crate::supervise::{Call, Threads};
 use crate::threads::settle;
 
-/// Columns as Python has them.
+/// Columns of Python arrays.
 pub(crate) type Arrays<'py> = PyResult<Vec<Bound<'py, PyAny>>>;
 
-/// A world of some scalar and dimension: what changes it and what reads it.
+/// A world of some scalar and dimension: its changes and its queries.
 pub(crate) trait AnyWorld: Send + Sync {
     fn add(
         &mut self,
@@ -51,7 +51,7 @@ pub(crate) trait AnyWorld: Send + Sync {
     fn record(&mut self) -> PyResult<()>;
     fn stop_recording(&mut self) -> Option<Vec<u8>>;
     fn is_recorded(&self) -> bool;
-    /// A world with the same objects as bytes, and how often each index was used.
+    /// Returns a world with the same objects as bytes, and the number of uses of each index.
     fn to_bytes(&self) -> PyResult<(Vec<u8>, Vec<u32>)>;
     /// Fills a new world.
     fn fill(&mut self, bytes: &[u8], ages: &[u32]) -> PyResult<()>;
@@ -66,14 +66,14 @@ pub(crate) trait AnyWorld: Send + Sync {
     fn queries(&self) -> &dyn WorldQueries;
 }
 
-/// A collision world; `impinge.World` has its texts.
+/// A collision world; `impinge.World` has its docstrings.
 #[pyclass(module = "impinge._native")]
 pub(crate) struct World {
     kind: Kind,
     world: Box<dyn AnyWorld>,
 }
 
-/// Makes a world with a margin.
+/// Creates a world with a margin.
 struct MakeWorld(f64);
 
 impl Task for MakeWorld {
@@ -146,14 +146,14 @@ impl World {
         self.world.update(py)
     }
 
-    /// A world with the same objects as bytes, and how often each index was used.
+    /// Returns a world with the same objects as bytes, and the number of uses of each index.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyBytes>, Vec<u32>)> {
         settle()?;
         let (bytes, ages) = self.world.to_bytes()?;
         Ok((PyBytes::new(py, &bytes), ages))
     }
 
-    /// Makes a new world that of `to_bytes`.
+    /// Fills a new world from the result of `to_bytes`.
     fn fill(&mut self, bytes: &[u8], ages: Vec<u32>) -> PyResult<()> {
         settle()?;
         self.world.fill(bytes, &ages)
@@ -211,7 +211,7 @@ impl World {
         self.world.proximities(py)
     }
 
-    /// Asks a question of [`Asking`] about the arrays of `given`.
+    /// Runs a query of [`Asking`] with the arrays of `given`.
     fn ask<'py>(
         &self,
         question: Asking,

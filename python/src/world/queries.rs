@@ -1,4 +1,4 @@
-//! Questions to worlds about many rays, points and shapes, with answers in columns or rows of handles.
+//! Queries of worlds with many rays, points and shapes; results in columns or rows of handles.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::na::convert;
@@ -23,25 +23,25 @@ use crate::world::Arrays;
 /// The handle of no object.
 const NO_OBJECT: u64 = u64::MAX;
 
-/// A question: its name is that of a function of this module.
+/// A query: its name is that of a function of this module.
 #[derive(FromPyObject)]
 pub(crate) struct Asking {
     name: String,
-    /// The longest time or distance.
+    /// The maximum time or distance.
     limit: f64,
-    /// What counts as a hit of a moving shape.
+    /// The distance at which a moving shape counts as touching.
     target_distance: f64,
-    /// Up to how many objects are wanted of each element; without, all.
+    /// The largest number of results for each element; without, all.
     wanted: Option<usize>,
     solid: bool,
-    /// Open surfaces are asked as such.
+    /// Whether open surfaces are treated as surfaces.
     surface: bool,
 }
 
-/// The questions that a world of any scalar and dimension answers.
+/// The queries that a world of any scalar and dimension supports.
 pub(crate) trait WorldQueries {
-    /// Answers a question about arrays. With one answer for each element: handles and what the question has beside
-    /// them. Else rows: starts first.
+    /// Runs a query for arrays. With one result for each element it returns handles and the other columns of the
+    /// query. Otherwise it returns rows: starts first.
     fn ask<'py>(
         &self,
         asking: &Asking,
@@ -51,7 +51,7 @@ pub(crate) trait WorldQueries {
     ) -> Arrays<'py>;
 }
 
-/// An object and what a question found about it.
+/// An object and the result of a query about it.
 #[derive(Clone, Copy)]
 struct Found<N, const D: usize> {
     handle: u64,
@@ -63,7 +63,7 @@ struct Found<N, const D: usize> {
 }
 
 impl<N: Numeric<D>, const D: usize> Found<N, D> {
-    /// Nothing was found of this object but itself; without an object, no answer.
+    /// Returns a result without data; without an object, no result.
     fn of(handle: u64) -> Self {
         let nowhere = [convert::<f64, N>(f64::NAN); D];
         let (number, points) = (N::INFINITY, [nowhere; 2]);
@@ -71,7 +71,7 @@ impl<N: Numeric<D>, const D: usize> Found<N, D> {
     }
 }
 
-/// What a question has beside handles.
+/// The columns of a query besides handles.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Beside {
     Nothing,
@@ -85,19 +85,19 @@ enum Beside {
     Projections,
 }
 
-/// Objects that a question is about.
+/// The objects that a query considers.
 struct Chosen {
     groups: Option<CollisionGroups>,
-    /// In order.
+    /// Sorted.
     excluded: Vec<CollisionObjectHandle>,
 }
 
-/// A question with its arrays read: what it finds about an element. Filters are not shared by threads, so each
+/// A query with its arrays read: returns the results for an element. Filters are not shared by threads, so each
 /// element has its own.
 struct Prepared<'a, N: Numeric<D>, const D: usize> {
     len: usize,
     beside: Beside,
-    /// All that is found of each element, not the first alone.
+    /// Whether all results of each element are returned, not only the first.
     in_rows: bool,
     find: Box<Find<'a, N, D>>,
 }
@@ -151,7 +151,7 @@ impl<N: Numeric<D>, const D: usize> WorldQueries for TypedWorld<N, D> {
     }
 }
 
-/// The arguments of a side.
+/// Returns the arguments of a side.
 const fn placed<'a, 'py>(
     shapes: &'a Bound<'py, PyAny>,
     poses: &'a Bound<'py, PyAny>,
@@ -160,7 +160,7 @@ const fn placed<'a, 'py>(
 }
 
 impl Chosen {
-    /// The object is among them.
+    /// Whether the object is considered.
     fn has<N: Numeric<D>, const D: usize>(&self, object: &CollisionObject<N, D, ()>) -> bool {
         let groups = object.collision_groups();
         self.groups.is_none_or(|own| own.can_interact_with_groups(groups))
@@ -263,7 +263,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Ok(Prepared { len, beside, in_rows: asking.in_rows(), find })
     }
 
-    /// The objects that hold a point, closed surfaces as what they bound.
+    /// Returns the objects that contain a point, with closed surfaces as solids.
     fn holding(&self, point: &Point<N, D>, filter: &QueryFilter<'_, N, D, ()>) -> Vec<Found<N, D>> {
         let Ok(here) = Aabb::try_new(*point, *point) else { return Vec::new() };
         let holds = |object: &&CollisionObject<N, D, ()>| {
@@ -272,7 +272,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         self.alone(self.world.objects_in_aabb(&here, filter).filter(holds))
     }
 
-    /// Refuses open surfaces among the objects that a question is about, by the least handle.
+    /// Returns an error for open surfaces among the considered objects, by the lowest handle.
     fn refuse_open(&self, chosen: &Chosen) -> PyResult<()> {
         for (&handle, &standing) in &self.surfaces {
             let object = self.world.collision_object(handle);
@@ -390,7 +390,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         }
     }
 
-    /// Objects without anything beside them.
+    /// Returns objects without further data.
     fn alone<'a>(
         &self,
         objects: impl Iterator<Item = &'a CollisionObject<N, D, ()>>,
@@ -409,12 +409,12 @@ impl Asking {
     }
 }
 
-/// The entry of an element in a list, which may have one for all.
+/// Returns the entry of an element in a list, which may have one for all.
 fn entry<T: Copy>(list: &[T], element: usize) -> T {
     list[if list.len() == 1 { 0 } else { element }]
 }
 
-/// Answers as columns; in rows with the starts before them, else one for each element.
+/// Converts results to columns; in rows with the starts before them, else one for each element.
 fn columns<N: Numeric<D>, const D: usize>(
     py: Python<'_>,
     mut found: Vec<Vec<Found<N, D>>>,

@@ -1,7 +1,7 @@
 //! Worlds as bytes: a recording of the calls that make a world with the same objects.
 //!
-//! A place of the memory that no object has at the moment has one while the recording is made, and is left by it: so indices
-//! are the same, and also which one is taken next. How often each was used is beside the bytes.
+//! An index without an object is occupied while the recording is made, and then freed: so the indices are the same, and
+//! also the next one to be used. The number of uses of each index is stored beside the bytes.
 
 use impinge::math::Pose;
 use impinge::narrow_phase::GeometricQueryType;
@@ -13,7 +13,7 @@ use super::typed::TypedWorld;
 use crate::space::Numeric;
 
 impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
-    /// The bytes, and how often each index was used.
+    /// Returns the bytes, and the number of uses of each index.
     pub(super) fn write(&self) -> Result<(Vec<u8>, Vec<u32>), RecordError> {
         let mut recorder = Recorder::<N, D, ()>::new(self.margin, Registry::new())?;
         let mut objects = self.world.collision_objects().peekable();
@@ -41,12 +41,12 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Ok((recorder.finish().bytes, ages))
     }
 
-    /// The indices without an object, in an order that leaves the one on top that is taken next.
+    /// Returns the indices without an object, in an order that leaves the next one to be used on top.
     fn vacant(&self) -> impl Iterator<Item = usize> {
         self.world.vacant_indices().filter(|index| *index < self.slots.len())
     }
 
-    /// Makes this world, which is new, that of the bytes.
+    /// Fills this new world from the bytes.
     pub(super) fn read(&mut self, bytes: &[u8], ages: &[u32]) -> Result<(), Damage> {
         let mut replay = Replay::open(bytes, &Registry::<N, D, ()>::new())?;
         replay.seek_end()?;
@@ -73,7 +73,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Ok(())
     }
 
-    /// Adds what an object is, or a placeholder.
+    /// Adds a copy of an object, or a placeholder.
     fn copy(
         &mut self,
         object: Option<&CollisionObject<N, D, ()>>,
@@ -91,12 +91,12 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
     }
 }
 
-/// Why bytes are not those of a world.
+/// The reason why bytes are not those of a world.
 #[derive(Debug)]
 pub(super) enum Damage {
     Read(ReadError),
     World(RecordError),
-    /// There are other objects than handles.
+    /// The numbers of objects and handles differ.
     Handles,
 }
 

@@ -30,9 +30,9 @@ use crate::world::{AnyWorld, Arrays};
 pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
     pub(crate) world: KeptWorld<N, D>,
     pub(super) margin: N,
-    /// For each index how often it was used, and the handle of the library that has it now.
+    /// For each index the number of its uses, and the current handle of the library.
     pub(super) slots: Vec<(u32, CollisionObjectHandle)>,
-    /// The objects that are surfaces or lines, or have some as children.
+    /// The objects that are surfaces or polylines, or have some as children.
     pub(super) surfaces: BTreeMap<CollisionObjectHandle, Standing>,
 }
 
@@ -41,7 +41,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Self { world, margin, slots: Vec::new(), surfaces: BTreeMap::new() }
     }
 
-    /// The handles of the library.
+    /// Returns the handles of the library.
     pub(crate) fn fresh(
         &self,
         handles: &[u64],
@@ -67,7 +67,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         self.world.contains(slot.1).then_some(slot.1)
     }
 
-    /// The handle in Python of an object that was just added.
+    /// Returns the handle in Python of an object that was just added.
     fn name(&mut self, handle: CollisionObjectHandle) -> u64 {
         let index = handle.uid();
         let age = match self.slots.get_mut(index) {
@@ -87,7 +87,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         u64::from(self.slots[handle.uid()].0) << 32 | handle.uid() as u64
     }
 
-    /// Gives objects other shapes, all or none.
+    /// Sets the shapes of objects, all or none.
     fn exchange(
         &mut self,
         handles: &[CollisionObjectHandle],
@@ -112,7 +112,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         Ok(())
     }
 
-    /// Notes what an object is that has this shape now.
+    /// Records the kind of an object's surface after its shape was set.
     pub(super) fn note_surface(
         &mut self,
         handle: CollisionObjectHandle,
@@ -124,7 +124,8 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
         };
     }
 
-    /// The shape of an object with other vertices; `None` if it is no mesh and no line of segments.
+    /// Returns the shape of an object with other vertices; `None` if it is neither a mesh nor a
+    /// polyline.
     fn deformed(
         shape: &ShapeHandle<N, D>,
         vertices: &[Point<N, D>],
@@ -157,7 +158,7 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
             match self.world.add(N::isometry(&pose), shape, groups, query) {
                 Ok(handle) => added.push(handle),
                 Err(refused) => {
-                    // Nothing is left of a call that fails.
+                    // A call that fails leaves no objects.
                     let removed = self.world.remove(&added);
                     debug_assert!(removed.is_ok(), "they were just added");
                     return Err(error::of_row(&refused, "poses", element));
@@ -226,7 +227,7 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
     }
 
     fn set_query_types(&mut self, handles: &[u64], query: &QueryOptions) -> PyResult<()> {
-        // All get the same: where it is refused, the first object refuses it.
+        // All get the same groups: if these are rejected, the first object rejects them.
         for handle in self.fresh(handles, "handles")? {
             let changed = self.world.set_query(handle, query.query_type());
             changed.map_err(|refused| error::of_call(&refused))?;
@@ -335,7 +336,7 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
     }
 }
 
-/// An argument has a row for each handle, or one for all.
+/// Checks that an argument has a row for each handle, or one for all.
 fn one_or_all(argument: &str, rows: usize, handles: usize) -> PyResult<()> {
     if rows == 1 || rows == handles {
         return Ok(());
@@ -343,7 +344,7 @@ fn one_or_all(argument: &str, rows: usize, handles: usize) -> PyResult<()> {
     Err(PyValueError::new_err(format!("{argument} has {rows} for {handles} handles")))
 }
 
-/// Rows of codes and two handles as columns.
+/// Converts rows of codes and two handles to columns.
 fn columns(py: Python<'_>, rows: impl Iterator<Item = (u8, u64, u64)>) -> Arrays<'_> {
     let (mut codes, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
     for (code, one, other) in rows {

@@ -7,10 +7,10 @@ use clap::Args;
 
 use super::{Format, NonNegative, NumberError, Numbers, SceneArgs};
 
-/// How far apart two objects are, and where.
+/// The distance of two objects, and the nearest points.
 ///
-/// Groups do not matter here. Where the objects overlap, the depth is the length of the shortest translation
-/// that parts them, and the normal its direction for the second.
+/// Groups are ignored. Where the objects overlap, the depth is the length of the shortest translation that
+/// separates them, and the normal is its direction for the second.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -24,19 +24,19 @@ pub(crate) struct DistanceArgs {
     pub(crate) scene: SceneArgs,
     /// The name of an object
     pub(crate) first: String,
-    /// The name of another
+    /// The name of the other object
     pub(crate) second: String,
-    /// Objects that are so far apart or nearer are called near
+    /// Objects whose distance is at most this are called near
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
     pub(crate) margin: NonNegative,
     #[command(flatten)]
     pub(crate) format: Format,
 }
 
-/// What a moving shape or object hits first.
+/// The first hit of a moving shape or object.
 ///
-/// It moves along a straight line and does not turn. An object of the scene interacts by its groups, a shape with
-/// everything. Time 0 is the start of its path and time 1 the end.
+/// It moves along a straight line and does not rotate. An object of the scene interacts by its groups, a shape
+/// with everything. Time 0 is the start of its path and time 1 the end.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -62,10 +62,10 @@ pub(crate) struct CastArgs {
         required_unless_present = "object"
     )]
     pub(crate) shape: Option<ShapeSpec>,
-    /// Where the shape starts
+    /// The start of the shape
     #[arg(long, value_name = "POINT", allow_hyphen_values = true, requires = "shape")]
     pub(crate) from: Option<Numbers>,
-    /// Where its path ends
+    /// The end of its path
     #[arg(long, value_name = "POINT", allow_hyphen_values = true, requires = "shape")]
     pub(crate) to: Option<Numbers>,
     /// An object of the scene to move, by its name
@@ -74,19 +74,19 @@ pub(crate) struct CastArgs {
     /// The translation of the object, from start to end
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, requires = "object")]
     pub(crate) by: Option<Numbers>,
-    /// Objects count as hit when they are so near
+    /// Objects count as hit at this distance
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
     pub(crate) distance: NonNegative,
-    /// Print everything on the path, not the first alone
+    /// Print all hits on the path, not only the first
     #[arg(long)]
     pub(crate) all: bool,
     #[command(flatten)]
     pub(crate) format: Format,
 }
 
-/// What a ray hits.
+/// The hits of a ray.
 ///
-/// A ray that starts inside a solid hits it at once, unless it is hollow.
+/// A ray that starts inside a solid hits it at time zero, unless `--hollow` is given.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -98,10 +98,10 @@ object), part. Exit code 1 if something is hit.")]
 pub(crate) struct RayArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// Where the ray starts
+    /// The start of the ray
     #[arg(long, value_name = "POINT", allow_hyphen_values = true)]
     pub(crate) from: Numbers,
-    /// Where it ends
+    /// The end of the ray
     #[arg(
         long,
         value_name = "POINT",
@@ -109,13 +109,13 @@ pub(crate) struct RayArgs {
         required_unless_present = "direction"
     )]
     pub(crate) to: Option<Numbers>,
-    /// Its direction, if it has no end
+    /// The direction of an unbounded ray
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, conflicts_with = "to")]
     pub(crate) direction: Option<Numbers>,
     /// Solids are hollow: a ray that starts inside hits where it leaves
     #[arg(long)]
     pub(crate) hollow: bool,
-    /// Print everything that is hit, not the first alone
+    /// Print all hits, not only the first
     #[arg(long)]
     pub(crate) all: bool,
     #[command(flatten)]
@@ -125,18 +125,18 @@ pub(crate) struct RayArgs {
 /// A shape: `ball:0.5`, `box:1,2,3`, `capsule:1,0.5`, the name of one in the scene, or JSON.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ShapeSpec {
-    /// In a few characters.
+    /// In short form.
     Short(ShortShape),
-    /// By its name in the scene, or in JSON as a scene has it.
+    /// The name of a shape in the scene, or JSON as in a scene.
     Scene(String),
 }
 
-/// A kind of shape with its sizes, which may be too many or too few.
+/// A kind of shape with its sizes, whose number is not checked yet.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShortShape {
-    /// Before the colon.
+    /// The text before the colon.
     pub(crate) kind: ShapeKind,
-    /// After it.
+    /// The numbers after it.
     pub(crate) sizes: Numbers,
 }
 
@@ -147,7 +147,7 @@ pub(crate) enum ShapeKind {
     Ball,
     /// Half extents along the axes.
     Cuboid,
-    /// Half the height of the axis along y, and a radius.
+    /// Half the height along y, and a radius.
     Capsule,
 }
 
@@ -164,7 +164,7 @@ impl ShapeKind {
     }
 }
 
-/// As on the command line.
+/// Writes the form of the command line.
 impl fmt::Display for ShortShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}", self.kind.name(), self.sizes)
@@ -179,7 +179,7 @@ impl FromStr for ShapeSpec {
             let kind = ShapeKind::ALL.into_iter().find(|kind| kind.name() == name)?;
             Some((kind, sizes))
         });
-        // JSON has colons too, but no kind before the first.
+        // JSON has colons too, but no kind before the first one.
         let Some((kind, sizes)) = short else { return Ok(Self::Scene(text.to_owned())) };
         Ok(Self::Short(ShortShape { kind, sizes: sizes.parse()? }))
     }

@@ -6,11 +6,11 @@ use clap::{Args, ValueHint};
 
 use super::{Format, NonNegative, Reading, SceneArgs, Stepping};
 
-/// Which objects touch, or come within a clearance.
+/// The objects that touch, or are within a clearance.
 ///
-/// Every pair of objects that may interact by their groups is checked; distant pairs are culled by the broad
-/// phase. `touch` means that the distance is zero: the depth is the length of the shortest translation that parts
-/// the two. `near` means that they are apart, by the clearance at most.
+/// Every pair of objects that may interact by their groups is checked; distant pairs are culled by the broad phase.
+/// `touch` means that the distance is zero; the depth is the length of the shortest translation that separates the two.
+/// `near` means that the distance is at most the clearance.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -25,23 +25,23 @@ part1, part2. Exit code 1 if a pair is reported.")]
 pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// Report pairs that are so far apart or nearer; 0 reports those that touch
+    /// Report pairs whose distance is at most this; 0 reports touching pairs
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
     pub(crate) clearance: NonNegative,
     /// Print all pairs
     #[arg(long, conflicts_with = "limit")]
     pub(crate) all: bool,
-    /// Print so many pairs at most, the deepest first
+    /// The largest number of printed pairs, the deepest first
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub(crate) limit: usize,
     #[command(flatten)]
     pub(crate) format: Format,
 }
 
-/// What is in a file, and what is wrong with its meshes.
+/// The content of a file, and the defects of its meshes.
 ///
-/// Of a scene or mesh: the objects with their shapes, and a report of each mesh. Of a recording: its version,
-/// its numbers and its steps.
+/// For a scene or mesh: the objects with their shapes, and a report of each mesh. For a recording: its version, its
+/// counts and its steps.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -59,10 +59,11 @@ pub(crate) struct InspectArgs {
     pub(crate) format: Format,
 }
 
-/// How long updates of a scene take.
+/// The time of updates of a scene.
 ///
-/// Objects move by their motions. Each run makes the world anew and updates it `--steps` times; times of updates
-/// are medians over all runs, with the quartiles. Times depend on the machine and its load: compare those of one machine.
+/// Objects move by their motions. Each run makes a new world and updates it `--steps` times; times of updates are
+/// medians over all runs, with the quartiles. Times depend on the machine and its load: compare only times of one
+/// machine.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -72,7 +73,7 @@ Examples:
 Fields of --json: scenes with name, objects, dimension, scalar, steps, runs, build_ms, first_update_ms, median_ms,
 lower_quartile_ms, upper_quartile_ms, pairs.")]
 pub(crate) struct BenchArgs {
-    /// A scene; without, a few that are part of the command
+    /// A scene; without, some that are part of the command
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: Option<PathBuf>,
     #[command(flatten)]

@@ -7,8 +7,8 @@ use super::{NonNegative, Numbers, OutputFile, SceneArgs, Size};
 /// Draw a scene or a step of a recording.
 ///
 /// A file that ends in .png shows surfaces, one that ends in .svg lines. 2D scenes are drawn to scale with y
-/// upwards. 3D scenes are seen from the front, above and right, or along `--look`; the camera frames all objects.
-/// No GPU is used: the same file gives the same bytes.
+/// upwards. The view of 3D scenes is from the front, above and right, or along `--look`; the camera frames all
+/// objects. No GPU is used: the same input gives the same bytes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -21,13 +21,13 @@ pub(crate) struct RenderArgs {
     pub(crate) scene: SceneArgs,
     #[command(flatten)]
     pub(crate) output: OutputFile,
-    /// Width and height in pixels, 8192 at most; the height of an SVG follows from the scene
+    /// Width and height in pixels, at most 8192; the height of an SVG follows from the scene
     #[arg(long, value_name = "WxH", default_value = "1200x900")]
     pub(crate) size: Size,
     /// The direction of view, in 3D
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, default_value = "-2,-1.5,-3")]
     pub(crate) look: Numbers,
-    /// The upper side of the picture, in 3D; what the scene says by default
+    /// The upper side of the picture, in 3D; by default the axis that the scene names
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true)]
     pub(crate) up: Option<Numbers>,
     /// The angle of view in degrees, in 3D, clamped to 143; 0 is without perspective
@@ -36,12 +36,12 @@ pub(crate) struct RenderArgs {
     /// The step of a recording; the last by default
     #[arg(long, value_name = "N")]
     pub(crate) step: Option<usize>,
-    /// What is drawn
+    /// The layers to draw
     #[arg(long, value_enum, value_delimiter = ',', default_value = "object,contacts")]
     pub(crate) layers: Vec<LayerName>,
 }
 
-/// Things that can be drawn.
+/// Layers of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum LayerName {
     /// The shapes of objects
@@ -52,7 +52,7 @@ pub(crate) enum LayerName {
     Manifolds,
     /// Lines between objects that are near each other
     Proximities,
-    /// Boxes around objects
+    /// Bounding boxes of objects
     TightBoxes,
     /// Boxes of the broad phase
     LoosenedBoxes,

@@ -1,6 +1,6 @@
-//! The command line: verbs, their arguments and what `--help` says.
+//! The command line: verbs, their arguments and the texts of `--help`.
 //!
-//! The examples of the help texts are run by a test in the folder `scenes`.
+//! A test runs the examples of the help texts in the folder `scenes`.
 
 mod ask;
 mod check;
@@ -25,19 +25,19 @@ pub(crate) use numbers::{NonNegative, NumberError, Numbers, Size};
 pub(crate) use pages::{ExportArgs, PageArgs, SamplesArgs, ViewArgs};
 pub(crate) use recordings::{RecordArgs, ReplayArgs, ValidateArgs};
 
-/// The colours of help texts: headings in bold, what is typed literally in cyan.
+/// The colours of help texts: headings in bold, literals in cyan.
 const STYLES: Styles = Styles::styled()
     .header(Style::new().bold())
     .usage(Style::new().bold())
     .literal(AnsiColor::Cyan.on_default())
     .placeholder(AnsiColor::Cyan.on_default().dimmed());
 
-/// Collision detection for scene files: which objects touch, how far apart they are, what a ray or a moving
-/// shape hits; pictures and recordings.
+/// Collision detection for scene files: touching objects, distances, hits of rays and moving shapes, pictures
+/// and recordings.
 #[derive(Debug, Parser)]
 #[command(name = "impinge", version, styles = STYLES, max_term_width = 100, after_help = EXIT_CODES)]
 pub(crate) struct Cli {
-    /// What to do.
+    /// The verb to run.
     #[command(subcommand)]
     pub(crate) verb: Verb,
 }
@@ -80,7 +80,7 @@ Examples:
     },
 }
 
-/// The file of a verb, and how it is read.
+/// The file of a verb, and the options for reading it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SceneArgs {
     /// A scene in JSON, a mesh (OBJ, STL, PLY, glTF) or a robot (URDF); `-` is standard input
@@ -90,47 +90,47 @@ pub(crate) struct SceneArgs {
     pub(crate) reading: Reading,
 }
 
-/// How a scene is read.
+/// The options for reading a scene.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct Reading {
-    /// Compute with numbers of this type, whatever the scene says
+    /// Compute with numbers of this type, instead of that of the scene
     #[arg(long, value_parser = scalar_parser())]
     pub(crate) scalar: Option<ScalarFile>,
     /// A folder with packages, for `package://` paths of robots; may be repeated
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) packages: Vec<PathBuf>,
-    /// The folder in which all files lie that the scene names; without, the folder of the scene
+    /// The folder that contains all files that the scene names; without, the folder of the scene
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) root: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
 }
 
-/// Limits of the memory that a scene takes: small files can ask for much.
+/// Limits of the memory of a scene: small files can request much.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct LimitArgs {
-    /// Read at most so many bytes of files
+    /// The largest number of bytes of files
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().bytes)]
     max_bytes: usize,
-    /// Make at most so many vertices and corners of triangles
+    /// The largest number of vertices and corners of triangles
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().elements)]
     max_elements: usize,
-    /// Cut polygons of at most so many corners into triangles
+    /// The largest number of corners of a polygon
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().corners)]
     max_corners: usize,
-    /// Make at most so many objects
+    /// The largest number of objects
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().objects)]
     max_objects: usize,
-    /// Give them names of at most so many bytes together
+    /// The largest number of bytes of all names
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().names)]
     max_names: usize,
-    /// Keep at most so many pairs of objects that are near each other
+    /// The largest number of pairs of objects that are near each other
     #[arg(long, value_name = "N", hide_short_help = true, default_value_t = 1 << 20)]
     pub(crate) max_pairs: usize,
 }
 
 impl LimitArgs {
-    /// The limits that readers of files keep.
+    /// Returns the limits for the readers of files.
     pub(crate) const fn of_files(&self) -> Limits {
         Limits {
             bytes: self.max_bytes,
@@ -143,7 +143,7 @@ impl LimitArgs {
 }
 
 impl Reading {
-    /// From where files are read, and how much of them.
+    /// Returns the options for the readers of files.
     pub(crate) fn options(&self) -> ReadOptions {
         let options = ReadOptions::new().with_limits(self.limits.of_files());
         let options = self.packages.iter().fold(options, ReadOptions::with_packages);
@@ -154,7 +154,7 @@ impl Reading {
     }
 }
 
-/// The scalars by the names that scene files have for them.
+/// Parses a scalar by its name in scene files.
 fn scalar_parser() -> impl TypedValueParser<Value = ScalarFile> {
     PossibleValuesParser::new(["f32", "f64"]).map(|name| match name.as_str() {
         "f32" => ScalarFile::F32,
@@ -179,7 +179,7 @@ pub(crate) struct TimeStep {
 /// The updates of a scene whose objects move.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Stepping {
-    /// How many updates
+    /// The number of updates
     #[arg(long, value_name = "N", default_value_t = 120, value_parser = value_parser!(u32).range(1..))]
     pub(crate) steps: u32,
     #[command(flatten)]
@@ -189,8 +189,8 @@ pub(crate) struct Stepping {
 /// The key frames of a recording.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct KeyFrames {
-    /// Write all objects anew every N updates, so that a player goes back by at most N updates; without, it goes
-    /// back to the start
+    /// Write all objects again every N updates, so that a player goes back by at most N updates; without, it
+    /// goes back to the start
     #[arg(long = "key-frames", value_name = "N")]
     pub(crate) every: Option<NonZeroU64>,
 }
@@ -203,7 +203,7 @@ pub(crate) struct OutputFile {
     pub(crate) path: PathBuf,
 }
 
-/// How the answer is printed.
+/// The format of the output.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct Format {
     /// Print one JSON document instead of text

@@ -5,9 +5,9 @@ use core::str::FromStr;
 
 use crate::number::significant;
 
-/// Finite numbers between commas: a point, a vector or the sizes of a shape.
+/// Finite numbers separated by commas: a point, a vector or the sizes of a shape.
 ///
-/// How many there have to be is known when the scene is.
+/// Their number is checked when the scene is known.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Numbers(pub(crate) Vec<f64>);
 
@@ -19,10 +19,10 @@ pub(crate) struct NonNegative(pub(crate) f64);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Size(pub(crate) [u32; 2]);
 
-/// Pictures clamp larger sides to this one: four bytes a pixel are 256 MiB.
+/// The largest side of a picture: with four bytes per pixel this is 256 MiB.
 const MAX_SIDE: u32 = 8192;
 
-/// Why a text is not what an argument takes.
+/// The reason why a text is invalid for an argument.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum NumberError {
     /// It does not parse as a number.
@@ -53,14 +53,14 @@ impl fmt::Display for NumberError {
 
 impl std::error::Error for NumberError {}
 
-/// One finite number.
+/// Parses one finite number.
 fn finite(text: &str) -> Result<f64, NumberError> {
     let number = text.trim().parse::<f64>();
     let number = number.map_err(|_| NumberError::NotANumber(text.to_owned()))?;
     if number.is_finite() { Ok(number) } else { Err(NumberError::NotFinite(text.to_owned())) }
 }
 
-/// As on the command line, with six digits.
+/// Writes the form of the command line, with six digits.
 impl fmt::Display for Numbers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let words: Vec<_> = self.0.iter().copied().map(significant).collect();

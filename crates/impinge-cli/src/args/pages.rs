@@ -6,10 +6,10 @@ use clap::{Args, ValueHint};
 
 use super::{Format, KeyFrames, OutputFile, SceneArgs, Size, Stepping, TimeStep};
 
-/// Where the page comes from.
+/// The source of the page.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct PageArgs {
-    /// A folder with `page.html`, `page.css`, `page.js` and `page.wasm.gz`, instead of the page built in
+    /// A folder with `page.html`, `page.css`, `page.js` and `page.wasm.gz`, instead of the embedded page
     #[arg(
         long = "page",
         value_name = "FOLDER",
@@ -20,10 +20,10 @@ pub(crate) struct PageArgs {
     pub(crate) folder: Option<PathBuf>,
 }
 
-/// One HTML file that shows a recording and answers questions about it.
+/// One HTML file that shows a recording and runs queries on it.
 ///
-/// The file carries the recording and the library: it opens from disk, without a network. A reader plays it, selects
-/// objects, asks why two of them touch or do not, casts rays and moves objects. A scene is recorded first, by
+/// The file contains the recording and the library: it opens from disk, without a network. A reader plays it, selects
+/// objects, sees why two of them touch or do not, casts rays and moves objects. A scene is recorded first, by
 /// `--steps`, `--dt` and `--key-frames`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -50,10 +50,10 @@ pub(crate) struct ExportArgs {
     pub(crate) format: Format,
 }
 
-/// Show a scene that runs, or a recording, in a browser on this machine.
+/// Show a running scene, or a recording, in a browser on this machine.
 ///
-/// The address that is printed is of a port of this machine alone. The objects of a scene move by its motions, once in
-/// `--dt` seconds, until the command is interrupted; the page follows, and keeps all steps to go back to.
+/// The printed address is a port of this machine only. The objects of a scene move by its motions, once in `--dt`
+/// seconds, until the command is interrupted; the page follows, and keeps all steps to go back to.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -62,10 +62,10 @@ Examples:
 pub(crate) struct ViewArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// The port; 0 takes one that is free
+    /// The port; 0 selects a free one
     #[arg(long, default_value_t = 0)]
     pub(crate) port: u16,
-    /// End after so many updates of a scene
+    /// End after this number of updates of a scene
     #[arg(long, value_name = "N")]
     pub(crate) steps: Option<u64>,
     #[command(flatten)]
@@ -76,9 +76,9 @@ pub(crate) struct ViewArgs {
     pub(crate) page: PageArgs,
 }
 
-/// The samples: a list, or a folder that any web server can serve.
+/// The samples: a list, or a folder for any web server.
 ///
-/// `index.html` in the folder has all of them, with controls; it opens from disk too. Beside it are small pictures.
+/// `index.html` in the folder has all of them, with controls; it also opens from disk. Thumbnails are beside it.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -90,7 +90,7 @@ pub(crate) struct SamplesArgs {
     /// The folder to write
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) output: Option<PathBuf>,
-    /// The size of the small pictures in pixels
+    /// The size of the thumbnails in pixels
     #[arg(long, value_name = "WxH", default_value = "320x200")]
     pub(crate) size: Size,
     #[command(flatten)]

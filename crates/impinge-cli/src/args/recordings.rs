@@ -8,8 +8,8 @@ use super::{Format, KeyFrames, OutputFile, SceneArgs, Stepping};
 
 /// Move the objects of a scene and record every step.
 ///
-/// Objects move by the motions of the scene. A recording holds each call that changed the world and the hashes
-/// of its results: `replay` and `validate` read it, on any machine.
+/// Objects move by the motions of the scene. A recording has each call that changed the world and the hashes of
+/// its results: `replay` and `validate` read it, on any machine.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -31,11 +31,11 @@ pub(crate) struct RecordArgs {
     pub(crate) format: Format,
 }
 
-/// What happened at the steps of a recording.
+/// The state at the steps of a recording.
 ///
-/// Without `--step` a line for each step; with it the objects and pairs after that step. Of a recording that lacks
-/// its end, because the program that wrote it died, or whose end is damaged, the steps before are replayed; a note
-/// on standard error says how many.
+/// Without `--step` a line for each step; with it the objects and pairs after that step. If the end of a recording
+/// is missing, because the program that wrote it crashed, or damaged, the earlier steps are replayed; a note on
+/// standard error gives their number.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -50,7 +50,7 @@ pub(crate) struct ReplayArgs {
     /// A recording; `-` is standard input
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) log: PathBuf,
-    /// The step to print: the number of updates before it
+    /// The step to print: the number of earlier updates
     #[arg(long, value_name = "N")]
     pub(crate) step: Option<usize>,
     #[command(flatten)]
@@ -59,8 +59,8 @@ pub(crate) struct ReplayArgs {
 
 /// Whether recordings replay to the same bits.
 ///
-/// Every call of a recording is made again, and its results are compared by their hashes: positions, pairs,
-/// contacts, proximities, events and answers of queries. A recording that lacks its end is refused.
+/// Every call of a recording is repeated, and its results are compared by their hashes: positions, pairs,
+/// contacts, proximities, events and results of queries. A recording without its end is an error.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

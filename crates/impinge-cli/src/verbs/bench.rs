@@ -1,4 +1,4 @@
-//! `impinge bench`: how long updates of a scene take.
+//! `impinge bench`: the time of updates of a scene.
 
 use core::fmt;
 use std::time::{Duration, Instant};
@@ -48,24 +48,24 @@ struct TimeUpdates<'a> {
     args: &'a BenchArgs,
 }
 
-/// The times of some scenes.
+/// The times of several scenes.
 #[derive(Debug, Serialize)]
 struct BenchReport {
     scenes: Vec<SceneTimes>,
 }
 
-/// The times of one, in milliseconds: medians over all runs, and the quartiles of updates.
+/// The times of a scene, in milliseconds: medians over all runs, and the quartiles of updates.
 #[derive(Debug, Serialize)]
 struct SceneTimes {
     name: String,
     #[serde(flatten)]
     kind: Kind,
     objects: usize,
-    /// That touch after the last step.
+    /// The number of pairs that touch after the last step.
     pairs: usize,
     steps: u32,
     runs: u32,
-    /// Shapes and objects; the boxes and pairs of a world are made by its first update.
+    /// Shapes and objects; the first update makes the boxes and pairs of a world.
     build_ms: f64,
     first_update_ms: f64,
     lower_quartile_ms: f64,
@@ -84,7 +84,7 @@ impl Task for TimeUpdates<'_> {
         let mut progress = Progress::new(args.runs as usize * steps as usize, "measuring");
         for _ in 0..args.runs {
             let mut world = builds.time(|| loaded.world::<N, D>())?;
-            // Computes the positions; its own updates, which are recorded, are not measured.
+            // Computes the positions; its own updates, which are recorded, are not timed.
             let mut mover = loaded.moving::<N, D>(KeyFrames { every: None })?;
             loaded.step(&mut mover, 0.0)?;
             firsts.time(|| world.update());
@@ -115,8 +115,8 @@ impl Task for TimeUpdates<'_> {
     }
 }
 
-/// The objects that have another position in the mover, which has the same objects in the same order, and that
-/// position.
+/// Returns the objects whose position differs from that in the mover, which has the same objects in the same
+/// order, with the new position.
 fn moved<N: Stage<D>, const D: usize>(
     world: &CollisionWorld<N, D, String>,
     mover: &SceneWorld<N, D>,
@@ -131,7 +131,7 @@ fn moved<N: Stage<D>, const D: usize>(
 struct Durations(Vec<Duration>);
 
 impl Durations {
-    /// Does some work and keeps its duration.
+    /// Runs some work and stores its duration.
     fn time<T>(&mut self, work: impl FnOnce() -> T) -> T {
         let begun = Instant::now();
         let done = work();
@@ -139,7 +139,7 @@ impl Durations {
         done
     }
 
-    /// The duration that so many quarters of all are shorter than, in milliseconds; 0 if there is none.
+    /// Returns a quartile of the durations in milliseconds; 0 if there is none.
     fn quartile(&mut self, quarters: usize) -> f64 {
         self.0.sort_unstable();
         let index = (self.0.len() * quarters / 4).min(self.0.len().saturating_sub(1));
@@ -162,7 +162,7 @@ impl fmt::Display for SceneTimes {
             "{NAME}{name}{NAME:#} {FAINT}({kind}){FAINT:#}: {objects} objects, {pairs} pairs touch at the end, \
              {steps} steps, {runs} runs"
         )?;
-        // Clocks count in nanoseconds, but times repeat to a tenth of a microsecond at best.
+        // Clocks have nanoseconds, but times are reproducible to a tenth of a microsecond at best.
         let shown = |time: f64| format!("{} ms", significant((time * 1e4).round() / 1e4));
         let [build, first] = [self.build_ms, self.first_update_ms].map(shown);
         writeln!(f, "  shapes and objects made in {build}, first update {first}")?;

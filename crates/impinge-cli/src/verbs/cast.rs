@@ -1,4 +1,4 @@
-//! `impinge cast`: what a moving shape or object hits first.
+//! `impinge cast`: the first hit of a moving shape or object.
 
 use impinge::math::{Pose, Vector};
 use impinge::query::ImpactOptions;
@@ -26,7 +26,7 @@ struct CastShape<'a> {
     args: &'a CastArgs,
 }
 
-/// A shape that moves from a start by a translation, and what it may hit.
+/// A shape that moves from a start by a translation, and a filter of the objects that it may hit.
 struct Sweep<N: Stage<D>, const D: usize> {
     shape: ShapeHandle<N, D>,
     start: N::Isometry,
@@ -47,7 +47,7 @@ impl Task for CastShape<'_> {
             .with_target_distance(scalar("--distance", args.distance.0)?);
         let mut found = world.cast_shape_all(&start, &translation, &*shape, &options, &filter);
         found.truncate(if args.all { usize::MAX } else { 1 });
-        // The shape does not turn: its origin is its position.
+        // The shape does not rotate: its origin is its position.
         let (origin, length) = (N::translation(&start), translation.norm());
         let hits = found.into_iter().map(|(object, impact)| CastHit {
             object: object.data().clone(),
@@ -63,7 +63,8 @@ impl Task for CastShape<'_> {
 }
 
 impl CastShape<'_> {
-    /// The object that the arguments name, which hits what it interacts with, or their shape, which hits all.
+    /// Returns the sweep of the named object, which hits the objects that it interacts with, or of a shape,
+    /// which hits all.
     fn sweep<N: Stage<D>, const D: usize>(
         &self,
         world: &CollisionWorld<N, D, String>,
@@ -93,7 +94,7 @@ impl CastShape<'_> {
         })
     }
 
-    /// The shape of a few characters, of the scene, or in JSON.
+    /// Makes a shape from its short form, from the scene, or from JSON.
     fn shape<N: Stage<D>, const D: usize>(
         &self,
         spec: &ShapeSpec,
@@ -105,7 +106,7 @@ impl CastShape<'_> {
     }
 }
 
-/// The shape of a kind with its sizes.
+/// Makes the shape of a kind with its sizes.
 fn made<N: Stage<D>, const D: usize>(short: &ShortShape) -> Result<ShapeHandle<N, D>, CliError> {
     let refused = |reason: String| CliError::argument("--shape", short, reason);
     let sizes = short.sizes.0.iter().map(|size| scalar::<N>("--shape", *size));
@@ -123,7 +124,7 @@ fn made<N: Stage<D>, const D: usize>(short: &ShortShape) -> Result<ShapeHandle<N
     made.map_err(|error| refused(error.to_string()))
 }
 
-/// Which sizes a kind of shape has.
+/// Describes the sizes of a kind of shape.
 fn sizes_of<const D: usize>(kind: ShapeKind) -> String {
     match kind {
         ShapeKind::Ball => "a ball has a radius".to_owned(),

@@ -1,4 +1,4 @@
-//! `impinge check`: which objects of a scene touch, or come within a clearance.
+//! `impinge check`: the objects of a scene that touch, or are within a clearance.
 
 use core::cell::RefCell;
 use core::cmp::Ordering;
@@ -39,10 +39,10 @@ struct CheckReport<'a, N: Stage<D>, const D: usize> {
     subject: Subject,
     clearance: Number,
     objects: usize,
-    /// Pairs that touch, and pairs that are near: also those that are omitted.
+    /// The numbers of touching and of near pairs, including the omitted ones.
     touching: usize,
     near: usize,
-    /// Pairs beyond the limit.
+    /// The number of pairs beyond the limit.
     omitted: usize,
     pairs: Pairs<'a, N, D>,
 }
@@ -76,32 +76,31 @@ impl Task for CheckPairs<'_> {
 
 /// Measures the pairs of a world that are at most a clearance apart and may interact.
 ///
-/// The boxes of the objects cull. What is left is measured pair by pair, so that the memory does not grow with the
-/// pairs, of which n objects at one place have n (n - 1) / 2.
+/// Bounding boxes cull pairs. The others are measured one by one, so that the memory does not grow with the number of
+/// pairs: n objects at one position have n (n - 1) / 2.
 struct Measure<'a, N: Stage<D>, const D: usize> {
     boxed: Boxed<'a, N, D, String>,
     clearance: N,
 }
 
-/// How many pairs touch and are near, and the deepest of them in their order.
+/// The numbers of touching and near pairs, and the deepest of them in order.
 struct Found {
     touching: usize,
     near: usize,
     deepest: Vec<Near>,
 }
 
-/// A pair that touches or is near: what orders it, and the numbers of its objects.
+/// A pair that touches or is near: its sort key, and the numbers of its objects.
 #[derive(Clone, Copy)]
 struct Near {
-    /// The signed distance; negative infinity for what overlaps without bound.
+    /// The signed distance; negative infinity for an unbounded overlap.
     distance: f64,
     state: State,
     objects: [u32; 2],
 }
 
 impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
-    /// All pairs, of which the deepest are kept, but not more than `most`. If `all` are wanted, it ends when there are
-    /// more.
+    /// Finds all pairs, and keeps the `most` deepest. With `all` it ends when there are more.
     fn found(&self, most: usize, all: bool) -> Found {
         let found = RefCell::new(Found { touching: 0, near: 0, deepest: Vec::new() });
         let progress = RefCell::new(Progress::new(self.boxed.len(), "measuring pairs"));
@@ -128,23 +127,23 @@ impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
         found
     }
 
-    /// Sorts pairs, and drops those beyond the first.
+    /// Sorts pairs, and drops those beyond the limit.
     fn keep_deepest(&self, pairs: &mut Vec<Near>, most: usize) {
         pairs.sort_by(|one, other| self.order(one, other));
         pairs.truncate(most);
     }
 
-    /// The deepest first, then the nearest. Names decide between equals.
+    /// Orders the deepest first, then the nearest; ties by name.
     fn order(&self, one: &Near, other: &Near) -> Ordering {
         let names = |near: &Near| near.objects.map(|object| self.boxed.object(object).data());
         let by_distance = one.distance.total_cmp(&other.distance);
         by_distance.then_with(|| names(one).cmp(&names(other)))
     }
 
-    /// A pair, if it touches or is near.
+    /// Returns a pair, if it touches or is near.
     fn near(&self, objects: [u32; 2]) -> Option<Near> {
         let [object1, object2] = objects.map(|object| self.boxed.object(object));
-        // Proximity decides what touches: its answer is that of a world, the signed distance is rounded.
+        // Proximity decides touching: it agrees with a world, while the signed distance is rounded.
         let state = match N::proximity(object1, object2, self.clearance) {
             Proximity::Disjoint => return None,
             Proximity::Intersecting => State::Touch,
@@ -155,7 +154,7 @@ impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
         Some(Near { distance, state, objects })
     }
 
-    /// The numbers of a pair.
+    /// Returns the fields of a pair.
     fn separation(&self, &Near { state, objects, .. }: &Near) -> Separation {
         let [object1, object2] = objects.map(|object| self.boxed.object(object));
         let names = [object1.data().clone(), object2.data().clone()];
@@ -168,7 +167,7 @@ impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
     }
 }
 
-/// The pairs of a report, whose numbers are computed when they are written.
+/// The pairs of a report, whose fields are computed when they are written.
 struct Pairs<'a, N: Stage<D>, const D: usize> {
     measure: Measure<'a, N, D>,
     deepest: Vec<Near>,

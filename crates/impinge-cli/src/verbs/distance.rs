@@ -1,4 +1,4 @@
-//! `impinge distance`: how far apart two objects are, and where.
+//! `impinge distance`: the distance of two objects, and the nearest points.
 
 use core::fmt;
 
@@ -26,7 +26,7 @@ struct Measure<'a> {
     args: &'a DistanceArgs,
 }
 
-/// How far apart two objects of a scene are.
+/// The distance of two objects of a scene.
 #[derive(Debug, Serialize)]
 struct DistanceReport {
     #[serde(flatten)]

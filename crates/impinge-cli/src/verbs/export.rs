@@ -28,7 +28,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Outcome, CliError> {
             (loaded.name(), bytes)
         }
     };
-    // Packed here, though `export` would do it too: the report has the number of bytes.
+    // Packed here, though `export` would do so too, because the report has the number of bytes.
     let packed = impinge_record::pack(&bytes).map_err(in_file(&args.scene.scene))?;
     let page = impinge_html::export(&assets, &packed, args.title.as_ref().unwrap_or(&file))?;
     output::write(&args.output.path, page.as_bytes())?;
@@ -37,14 +37,14 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Outcome, CliError> {
     finish(&report, args.format)
 }
 
-/// What was written.
+/// The written file.
 #[derive(Debug, Serialize)]
 struct ExportReport {
     file: String,
     output: String,
-    /// Of the page.
+    /// The number of bytes of the page.
     bytes: usize,
-    /// Bytes of the packed recording in it, before its letters are those of base64.
+    /// The number of bytes of its packed recording, before the base64 encoding.
     recording: usize,
 }
 

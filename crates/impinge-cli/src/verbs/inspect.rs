@@ -1,4 +1,4 @@
-//! `impinge inspect`: what is in a file, and what is wrong with its meshes.
+//! `impinge inspect`: the content of a file, and the defects of its meshes.
 
 use core::fmt;
 
@@ -28,7 +28,7 @@ struct InspectScene<'a>(&'a Loaded);
 /// Reads the header and the steps of a recording.
 struct InspectLog<'a>(&'a Log);
 
-/// What is in a scene.
+/// The content of a scene.
 #[derive(Debug, Serialize)]
 struct SceneReport {
     #[serde(flatten)]
@@ -40,7 +40,7 @@ struct SceneReport {
     joints_beyond_limits: Vec<String>,
 }
 
-/// An object and the box around it; null where it has no bound.
+/// An object and its bounding box; null where it is unbounded.
 #[derive(Debug, Serialize)]
 struct ObjectFields {
     name: String,
@@ -58,28 +58,28 @@ struct MeshFields {
     triangles: usize,
     /// Connected components.
     pieces: usize,
-    /// Each edge has two triangles or more.
+    /// Whether each edge has two triangles or more.
     closed: bool,
-    /// Closed, with two triangles at each edge that agree about the front.
+    /// Whether it is closed, with two triangles at each edge that agree about the front.
     solid: bool,
-    /// Of a solid; negative if it is inside out.
+    /// The volume of a solid; negative if it is inside out.
     volume: Option<f64>,
     /// Edges with one triangle.
     boundary_edges: usize,
-    /// All of these as text.
+    /// All counts as text.
     #[serde(skip)]
     numbers: String,
-    /// A line for each kind of defect, with where the first ones are.
+    /// A line for each kind of defect, with the positions of the first ones.
     problems: Vec<String>,
 }
 
-/// What is in a recording.
+/// The content of a recording.
 #[derive(Debug, Serialize)]
 struct LogReport {
     #[serde(flatten)]
     subject: Subject,
     kind: &'static str,
-    /// Of the format.
+    /// The version of the format.
     version: u32,
     /// The program that wrote it, with its version.
     writer: String,
@@ -125,7 +125,7 @@ fn fields(file: &str, name: &str, report: &MeshReport) -> MeshFields {
         solid: report.is_solid(),
         volume: report.volume,
         boundary_edges: report.boundary_edges.count,
-        // The first line; the others are the problems.
+        // The first line; the others are the defects.
         numbers: report.to_string().lines().next().unwrap_or_default().to_owned(),
         problems: report.problems(),
     }

@@ -1,4 +1,4 @@
-//! `impinge ray`: what a ray hits.
+//! `impinge ray`: the hits of a ray.
 
 use impinge::math::Point;
 use impinge::query::Ray;
@@ -48,7 +48,7 @@ impl Task for CastRay<'_> {
 }
 
 impl CastRay<'_> {
-    /// The ray and the time at which it ends: 1 at the point of `--to`, never along `--direction`.
+    /// Returns the ray and its maximum time: 1 for `--to`, infinite for `--direction`.
     fn ray<N: Stage<D>, const D: usize>(&self) -> Result<(Ray<N, D>, N), CliError> {
         let args = self.args;
         let origin = vector::<N, D>("--from", &args.from)?;

@@ -1,4 +1,4 @@
-//! `impinge record`: the objects of a scene move, and every step is recorded.
+//! `impinge record`: moves the objects of a scene and records every step.
 
 use core::fmt;
 
@@ -30,17 +30,17 @@ pub(crate) fn run(args: &RecordArgs) -> Result<Outcome, CliError> {
     finish(&report, args.format)
 }
 
-/// What was recorded.
+/// The written recording.
 #[derive(Debug, Serialize)]
 struct RecordReport {
     #[serde(flatten)]
     subject: Subject,
     output: String,
     steps: u32,
-    /// How many bytes the recording has, unpacked.
+    /// The number of bytes of the recording, unpacked.
     bytes: usize,
     objects: usize,
-    /// After how many steps something touched.
+    /// The number of steps after which something touched.
     touched: usize,
 }
 

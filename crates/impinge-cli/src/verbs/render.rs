@@ -33,7 +33,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<Outcome, CliError> {
     Ok(Outcome::Clear)
 }
 
-/// What a picture is made of: the format of its file.
+/// The kind of a picture: the format of its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PictureFormat {
     /// Surfaces.
@@ -43,7 +43,7 @@ enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// By the end of a file's name.
+    /// Returns the format by the extension of a file.
     fn of(path: &Path) -> Result<Self, CliError> {
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         if extension == "png" {
@@ -94,24 +94,24 @@ impl Task for DrawStep<'_> {
     }
 }
 
-/// How a world is drawn.
+/// The style of the drawing.
 struct PictureStyle<'a> {
     args: &'a RenderArgs,
     format: PictureFormat,
-    /// The upper side of the picture, unless the user says otherwise.
+    /// The upper side of the picture, unless the user gives another.
     up: Vector<f64>,
     title: String,
 }
 
 impl PictureStyle<'_> {
-    /// The bytes of a picture of a world.
+    /// Returns the bytes of a picture of a world.
     fn picture<N: Stage<D>, const D: usize, T>(
         &self,
         world: &CollisionWorld<N, D, T>,
     ) -> Result<Vec<u8>, CliError> {
         let camera = N::camera(self.camera()?);
         let mut drawing = world_drawing(world, options(&self.args.layers));
-        // The formats are different types, which only this trait has in common.
+        // The formats are different types, with only this trait in common.
         let mut draw = |picture: &mut dyn DebugRender<N, D>| drawing.world(world, picture);
         let size @ [width, _] = self.args.size.0;
         Ok(match self.format {
@@ -129,7 +129,7 @@ impl PictureStyle<'_> {
         })
     }
 
-    /// The camera of a 3D scene.
+    /// Returns the camera of a 3D scene.
     fn camera(&self) -> Result<Camera, CliError> {
         let look = direction::<f64, 3>("--look", &self.args.look)?;
         let up = self.args.up.as_ref().map(|up| direction::<f64, 3>("--up", up)).transpose()?;
@@ -139,7 +139,7 @@ impl PictureStyle<'_> {
     }
 }
 
-/// The layers that are drawn, in sizes for objects of length 1.
+/// Returns the styles of the drawn layers, in sizes for objects of length 1.
 fn options<N: Real>(layers: &[LayerName]) -> DebugOptions<N> {
     let (all, mut options) = (DebugOptions::all(), DebugOptions::none());
     for layer in layers {

@@ -1,4 +1,4 @@
-//! `impinge replay`: what happened at the steps of a recording.
+//! `impinge replay`: the state at the steps of a recording.
 
 use core::fmt;
 
@@ -37,12 +37,12 @@ struct PlayTo<'a> {
     step: usize,
 }
 
-/// What happened in a recording.
+/// The states of a recording.
 #[derive(Debug, Serialize)]
 struct ReplayReport {
     #[serde(flatten)]
     subject: Subject,
-    /// All steps from 1 on, or the one of `--step`.
+    /// All steps from 1 on, or that of `--step`.
     steps: Vec<StepSummary>,
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     detail: Option<StepDetail>,
@@ -88,7 +88,7 @@ impl Task for PlayTo<'_> {
     }
 }
 
-/// All objects and near pairs of a world, in order of the handles.
+/// Returns all objects and near pairs of a world, in order of the handles.
 fn detail<N: Stage<D>, const D: usize>(world: &CollisionWorld<N, D, Label>) -> StepDetail {
     let objects = world.collision_objects();
     let positions = objects.map(|object| {
@@ -103,7 +103,7 @@ fn detail<N: Stage<D>, const D: usize>(world: &CollisionWorld<N, D, Label>) -> S
 impl fmt::Display for ReplayReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.subject)?;
-        // Each name ends where the numbers of its column end.
+        // Each name is right-aligned with the numbers of its column.
         writeln!(
             f,
             "{FAINT}  step  objects  touching   near  contacts  started  stopped{FAINT:#}"

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &SamplesArgs) -> Result<Outcome, CliError> {
 /// All samples.
 #[derive(Debug, Serialize)]
 struct SamplesReport {
-    /// The folder that was written, if one was.
+    /// The written folder, if there is one.
     output: Option<String>,
     samples: Vec<Listed>,
 }
@@ -68,13 +68,13 @@ impl fmt::Display for SamplesReport {
 
 impl Report for SamplesReport {}
 
-/// A picture shows a sample after so many steps: most have contacts by then.
+/// The number of steps before the thumbnail of a sample: most have contacts by then.
 const STEPS: usize = 45;
 
-/// Contacts of more pairs than this would hide the objects of a small picture.
+/// Contacts of more pairs than this would hide the objects of a thumbnail.
 const MAX_PAIRS: usize = 1000;
 
-/// Writes a small picture of each sample.
+/// Writes a thumbnail of each sample.
 fn thumbnails(folder: &Path, size: Size) -> Result<(), CliError> {
     let folder = folder.join("thumbnails");
     fs::create_dir_all(&folder).map_err(|error| CliError::Write { path: folder.clone(), error })?;
@@ -90,7 +90,7 @@ fn thumbnails(folder: &Path, size: Size) -> Result<(), CliError> {
     Ok(())
 }
 
-/// A picture of a sample after some steps.
+/// Returns a picture of a sample after some steps.
 fn thumbnail<const D: usize>(
     entry: &Entry,
     sample: Box<dyn Sample<D>>,

@@ -37,26 +37,26 @@ struct ValidateReport {
     recordings: Vec<Validated>,
 }
 
-/// Whether one does.
+/// The result for one recording.
 #[derive(Debug, Serialize)]
 struct Validated {
     file: String,
     steps: usize,
-    /// There is no difference.
+    /// Whether there is no difference.
     same: bool,
     difference: Option<FirstDifference>,
 }
 
-/// Where a replay first differs.
+/// The first difference of a replay.
 #[derive(Debug, Serialize)]
 struct FirstDifference {
     /// The number of updates before the call that differs.
     step: usize,
-    /// Where its record is.
+    /// The offset of its record.
     byte: usize,
-    /// The object, if one differs.
+    /// The object, if an object differs.
     object: Option<String>,
-    /// What of it, or of the step.
+    /// The differing field of the object, or of the step.
     field: &'static str,
 }
 
@@ -84,7 +84,7 @@ impl Task for CompareHashes<'_> {
     }
 }
 
-/// A difference with the name that its object has in the world after the step.
+/// Describes a difference, with the name that its object has in the world after the step.
 fn described<N: Stage<D>, const D: usize>(
     found: Divergence,
     world: &CollisionWorld<N, D, Label>,
@@ -103,7 +103,7 @@ fn described<N: Stage<D>, const D: usize>(
     FirstDifference { step: found.step, byte: found.offset, object, field }
 }
 
-/// What a hash of an object covers.
+/// Returns the name of the field that a hash of an object covers.
 const fn field_name(field: ObjectField) -> &'static str {
     match field {
         ObjectField::Description => "position, groups or query type",

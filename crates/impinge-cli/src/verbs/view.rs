@@ -1,4 +1,4 @@
-//! `impinge view`: a scene that runs, or a recording, in a browser.
+//! `impinge view`: a running scene, or a recording, in a browser.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use crate::space::{Stage, Task, run_in};
 
 /// Runs the verb.
 pub(crate) fn run(args: &ViewArgs) -> Result<Outcome, CliError> {
-    // An address is printed only when there is something to show.
+    // The address is printed only if there is something to show.
     match Input::open(&args.scene)? {
         Input::Recording(log) => {
             let bytes = log.into_page_bytes()?;
@@ -46,7 +46,7 @@ fn wait_for_interrupt() -> ! {
     }
 }
 
-/// Moves the objects of a scene by the clock.
+/// Moves the objects of a scene in real time.
 struct Show<'a> {
     loaded: &'a Loaded,
     args: &'a ViewArgs,

@@ -1,8 +1,9 @@
-//! Bad input of each kind: exit code 2, nothing on standard output, an error that names file and value.
+//! Invalid input of each kind: exit code 2, nothing on standard output, an error that names file and
+//! value.
 
 use crate::support::Desk;
 
-/// Asserts that a command is refused with words of its error.
+/// Asserts that a command fails with these words in its error.
 fn refused(desk: &Desk, arguments: &str, words: &[&str]) {
     let ran = desk.run(arguments);
     assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{arguments}: {ran:?}");

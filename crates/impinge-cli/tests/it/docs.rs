@@ -1,4 +1,4 @@
-//! The examples of the help texts and of `README.md` run.
+//! Runs the examples of the help texts and of `README.md`.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use snapbox::assert_data_eq;
 
 use crate::support::{Desk, Ran, root};
 
-/// The verbs, as `impinge --help` lists them.
+/// Returns the verbs, as `impinge --help` lists them.
 fn verbs(desk: &Desk) -> Vec<String> {
     let help = desk.run("--help").out;
     let list = help.split("Commands:\n").nth(1).expect("a list").split("\n\n").next();
@@ -35,7 +35,7 @@ fn every_verb_has_examples_that_run() {
         let help = desk.run(&format!("{verb} --help"));
         assert_eq!((help.code, help.err.as_str()), (0, ""), "{verb}");
         let lines = help.out.lines().filter_map(|line| line.strip_prefix("  impinge "));
-        // A description follows after two blanks.
+        // A description follows after two spaces.
         let commands = lines.filter_map(|line| line.split("  ").next());
         let mut count = 0;
         for command in commands {
@@ -77,7 +77,7 @@ fn the_fields_of_json_are_documented() {
     }
 }
 
-/// The names of all members, at any depth.
+/// Returns the names of all members, at any depth.
 fn keys(value: &serde_json::Value) -> Vec<String> {
     match value {
         serde_json::Value::Object(members) => {

@@ -1,4 +1,4 @@
-//! Files that ask for much, name what is not theirs, or speak to the terminal.
+//! Files that request much memory, name foreign files, or contain control characters.
 
 use std::fs;
 use std::process::Command;
@@ -7,14 +7,14 @@ use serde_json::json;
 
 use crate::support::{Desk, Ran};
 
-/// A scene of so many balls at one place.
+/// Returns a scene of `count` balls at one position.
 fn coincident(count: usize) -> String {
     let repeat = json!({"count": [count, 1, 1], "spacing": [0, 0, 0]});
     let ball = json!({"name": "b", "shape": {"ball": {"radius": 1}}, "repeat": repeat});
     json!({"dimension": 3, "objects": [ball]}).to_string()
 }
 
-/// Nothing but line feeds is there for a terminal to obey, and it is not flooded.
+/// Asserts that the output has no control characters but line feeds, and is not long.
 fn assert_printable(ran: &Ran) {
     for text in [&ran.out, &ran.err] {
         let obeyed =
@@ -72,7 +72,8 @@ fn objects_that_meet_later_have_the_limit_too() {
     assert_eq!(desk.run(&format!("{record} 1225")).code, 0);
 }
 
-/// The address space may have this many kilobytes: the command itself takes a tenth, a million pairs all together twice.
+/// The address space is limited to this many kilobytes: the command itself takes a tenth, a million pairs all together
+/// twice as much.
 #[cfg(unix)]
 #[test]
 fn the_memory_of_a_check_does_not_grow_with_the_pairs() {

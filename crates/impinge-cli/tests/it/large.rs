@@ -8,7 +8,7 @@ use crate::support::Desk;
 
 /// Parts along each side of the square.
 const SIDE: usize = 100;
-/// The sides of a cube: the corner that a side begins at and its two directions, counter-clockwise from outside.
+/// The sides of a cube: the first corner of a side and its two directions, counter-clockwise from outside.
 const SIDES: [[[usize; 3]; 3]; 6] = [
     [[0, 0, 0], [0, 1, 0], [1, 0, 0]],
     [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
@@ -18,7 +18,7 @@ const SIDES: [[[usize; 3]; 3]; 6] = [
     [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
 ];
 
-/// Writes a unit cube of 12 triangles with its lowest corner at a point; returns how many vertices it has.
+/// Writes a unit cube of 12 triangles with its lowest corner at a point; returns the number of its vertices.
 fn write_cube(text: &mut String, at: [f64; 3], first: usize) -> usize {
     let mut vertices = 0;
     for [start, along, up] in SIDES {

@@ -1,4 +1,4 @@
-//! The command, run as a user runs it, in a folder with the scenes of `scenes`.
+//! Runs the command as a user does, in a folder with the scenes of `scenes`.
 
 mod bad_input;
 mod docs;

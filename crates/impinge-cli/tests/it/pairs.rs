@@ -1,4 +1,4 @@
-//! `check` and `distance` on scenes whose distances are known in closed form.
+//! `check` and `distance` on scenes with distances in closed form.
 
 use serde_json::{Value, json};
 
@@ -111,7 +111,7 @@ fn groups_are_respected_and_the_deepest_is_first() {
     let pairs = &report["pairs"];
     assert!(is_close(&pairs[0]["depth"], 0.1), "{report}");
     assert!(is_close(&pairs[1]["distance"], 0.25), "{report}");
-    // Groups do not matter to a distance.
+    // Groups do not affect a distance.
     let measured = desk.json("distance boxes.json box ghost", 1);
     assert!(is_close(&measured["depth"], 0.75), "{measured}");
 }

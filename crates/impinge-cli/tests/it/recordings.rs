@@ -71,7 +71,7 @@ fn what_was_recorded_replays_to_the_same_bits() {
 fn a_changed_number_is_found_with_its_step_and_object() {
     let desk = Desk::recorded();
     let mut bytes = fs::read(desk.path("balls.implog")).expect("a recording");
-    // The place of the right ball, which does not move, as the library writes it.
+    // The position of the right ball, which does not move, as the library writes it.
     let at = bytes.windows(8).position(|window| window == 1.25_f64.to_le_bytes());
     let at = at.expect("it is there");
     bytes[at..at + 8].copy_from_slice(&1.5_f64.to_le_bytes());
@@ -138,7 +138,7 @@ fn what_follows_damage_is_left_out() {
     assert!(ran.code == 2 && ran.err.contains("there is no step 29"), "{ran:?}");
 }
 
-/// A shape of a user's own, which a recording has by name.
+/// A shape of a user type, which a recording has by name.
 #[derive(Debug)]
 struct Pebble(Ball<f64>);
 

@@ -1,4 +1,4 @@
-//! `inspect`, `bench`, `schema`, `completions`, and how text is printed.
+//! `inspect`, `bench`, `schema`, `completions`, and the formatting of text.
 
 use std::process::Stdio;
 
@@ -27,7 +27,7 @@ fn a_sound_mesh_and_one_with_a_hole() {
     let mesh = &sound["meshes"][0];
     assert_eq!((&mesh["name"], &mesh["problems"]), (&json!("base"), &json!([])));
     assert_eq!((&mesh["solid"], &mesh["volume"]), (&json!(true), &json!(1.0)), "a unit cube");
-    // A cube of which a face is missing.
+    // A cube without one face.
     let whole = std::fs::read_to_string(desk.path("parts.obj")).expect("a mesh");
     desk.write("open.obj", whole.replacen("f 1 3 4 2\n", "", 1));
     let open = &desk.json("inspect open.obj", 0)["meshes"][0];
@@ -37,7 +37,7 @@ fn a_sound_mesh_and_one_with_a_hole() {
     let flat = desk.json("inspect flat.obj", 1);
     let problem = flat["meshes"][0]["problems"][0].as_str().expect("a problem");
     assert!(problem.contains("degenerate") && problem.contains("line 17"), "{problem}");
-    // Faces whose corners are in the other order.
+    // Faces with reversed corners.
     let turned = whole.lines().map(|line| match line.strip_prefix("f ") {
         Some(corners) => {
             let corners: Vec<_> = corners.rsplit(' ').collect();

@@ -1,4 +1,4 @@
-//! A folder to run the command in, and what it answers.
+//! A folder for runs of the command, and their output.
 
 use std::fs;
 use std::io::Write as _;
@@ -11,7 +11,7 @@ use tempfile::TempDir;
 /// A folder with a copy of the scenes.
 pub(crate) struct Desk(TempDir);
 
-/// A page of a line for each part; the command has the real one with the feature `page` alone.
+/// A page with one line for each part; the command has the real one with the feature `page` only.
 const PAGE: [(&str, &str); 4] = [
     ("page.html", "{{TITLE}}\n{{SCENE}}\n{{RECORDING}}\n{{STYLE}}\n{{SCRIPT}}\n{{WASM}}\n"),
     ("page.css", "style"),
@@ -19,7 +19,7 @@ const PAGE: [(&str, &str); 4] = [
     ("page.wasm.gz", "module"),
 ];
 
-/// What a run of the command left.
+/// The output of a run of the command.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) code: i32,
@@ -43,9 +43,10 @@ impl Desk {
         desk
     }
 
-    /// With the recording `balls.implog` of 30 steps of `balls.json`.
+    /// Creates the recording `balls.implog` of 30 steps of `balls.json`.
     ///
-    /// The left ball moves by 2 a second; the gap of 0.5 is closed after a quarter of a second: 15 steps.
+    /// The left ball moves by 2 per second; the gap of 0.5 is closed after a quarter of a second: 15
+    /// steps.
     pub(crate) fn recorded() -> Self {
         let desk = Self::new();
         let ran = desk.run("record balls.json -o balls.implog --steps 30");
@@ -61,12 +62,12 @@ impl Desk {
         fs::write(self.path(name), text).expect("a file");
     }
 
-    /// Runs `impinge` with arguments between blanks.
+    /// Runs `impinge` with arguments separated by spaces.
     pub(crate) fn run(&self, arguments: &str) -> Ran {
         self.run_with(arguments, b"")
     }
 
-    /// Runs it with something on standard input.
+    /// Runs it with bytes on standard input.
     pub(crate) fn run_with(&self, arguments: &str, input: &[u8]) -> Ran {
         let mut command = self.command();
         let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -105,13 +106,13 @@ fn scenes() -> PathBuf {
     root().join("scenes")
 }
 
-/// The numbers of a list.
+/// Returns the numbers of a list.
 pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     let list = value.as_array().expect("a list");
     list.iter().map(|number| number.as_f64().expect("a number")).collect()
 }
 
-/// Whether a number is another up to a few units in the last place of an `f64` of size 1.
+/// Whether a number equals another up to a few units in the last place of an `f64` of size 1.
 pub(crate) fn is_close(value: &Value, expected: f64) -> bool {
     value.as_f64().is_some_and(|value| (value - expected).abs() < 1e-14)
 }

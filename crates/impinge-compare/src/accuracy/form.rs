@@ -1,4 +1,4 @@
-//! Solids and placements as plain numbers, which every contender and the reference are given.
+//! Solids and placements as plain numbers, which every contender and the reference get.
 
 use impinge_reference::geometry::vector::{dot, norm, scale, sub};
 use impinge_reference::precise::{Quad, Solid};
@@ -21,7 +21,7 @@ impl Scalar {
         }
     }
 
-    /// The nearest number of the scalar.
+    /// Rounds to the nearest number of the scalar.
     pub fn rounded(self, x: f64) -> f64 {
         match self {
             Self::F32 => f64::from(x as f32),
@@ -40,8 +40,8 @@ impl Scalar {
         }
     }
 
-    /// A vector of the scalar whose length is 1 to within a hundredth of its rounding: one of those
-    /// that `draw` gives, rounded.
+    /// Returns a vector of the scalar whose length is 1 to within a hundredth of its rounding
+    /// error: the first such vector that `draw` returns, rounded.
     pub fn unit<const D: usize>(self, mut draw: impl FnMut() -> [f64; D]) -> [f64; D] {
         const TRIES: usize = 100_000;
         for _ in 0..TRIES {
@@ -117,7 +117,7 @@ impl Kind {
         }
     }
 
-    /// A solid of this kind, its lengths between 0.1 and 1.6.
+    /// Returns a random solid of this kind, with lengths between 0.1 and 1.6.
     pub fn draw<const D: usize>(self, random: &mut Random, scalar: Scalar) -> Form<D> {
         let mut size = || scalar.rounded(random.magnitude(0.1, 4));
         let (half_height, radius) = (size(), size());
@@ -151,7 +151,7 @@ fn apart<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 2] {
     }
 }
 
-/// Three points that are not nearly on a line, counter-clockwise in the plane.
+/// Returns three points that are not nearly on a line, counter-clockwise in 2D.
 fn wide<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 3] {
     loop {
         let limit = random.magnitude(0.1, 4);
@@ -165,7 +165,7 @@ fn wide<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 3] {
     }
 }
 
-/// Corners on an ellipsoid: none is inside the hull of the others.
+/// Returns corners on an ellipsoid: none is inside the hull of the others.
 fn around<const D: usize>(random: &mut Random, scalar: Scalar) -> Vec<[f64; D]> {
     let axes: [f64; D] = std::array::from_fn(|_| random.magnitude(0.2, 3));
     let count = if D == 2 { 3 + random.below(6) } else { 4 + random.below(9) };
@@ -208,7 +208,7 @@ pub enum Form<const D: usize> {
     Ellipsoid {
         half_axes: [f64; D],
     },
-    /// A ball at minus the half height along the second axis, then one at plus that.
+    /// A ball at minus the half height along the second axis, and one at plus the half height.
     Tapered {
         half_height: f64,
         radii: [f64; 2],
@@ -223,7 +223,7 @@ pub enum Form<const D: usize> {
 }
 
 impl<const D: usize> Form<D> {
-    /// The solid of the reference; `None` for kinds that are particular to a dimension.
+    /// Returns the solid of the reference; `None` for kinds that exist in one dimension only.
     pub fn solid(&self) -> Option<Solid<D>> {
         Some(match self {
             Self::Ball { radius } => Solid::ball(*radius),
@@ -253,11 +253,11 @@ fn up<const D: usize>(length: f64) -> [f64; D] {
     std::array::from_fn(|i| if i == 1 { length } else { 0.0 })
 }
 
-/// Where a solid stands.
+/// The pose of a solid.
 #[derive(Clone, Copy, Debug)]
 pub struct Placement<const D: usize> {
     pub translation: [f64; D],
-    /// The quaternion `[x, y, z, w]`, or `[cosine, sine, 0, 0]` in the plane.
+    /// The quaternion `[x, y, z, w]`, or `[cosine, sine, 0, 0]` in 2D.
     pub rotation: [f64; 4],
 }
 
@@ -268,12 +268,12 @@ pub struct Sample<const D: usize> {
     pub placements: [Placement<D>; 2],
 }
 
-/// What a contender says about a sample.
+/// The result of a contender for a sample.
 #[derive(Clone, Copy, Debug)]
 pub enum Outcome<const D: usize> {
     /// It has no algorithm for the pair.
     Unsupported,
-    /// It has, but finds no contact, however far it may look.
+    /// It has an algorithm, but finds no contact at any prediction.
     Nothing {
         /// Its distance.
         distance: f64,
@@ -289,5 +289,5 @@ pub enum Outcome<const D: usize> {
     },
 }
 
-/// Asks a contender for the distance, and for the contact within a prediction.
+/// Runs a contender's query for the distance, and for the contact within a prediction.
 pub type Ask<const D: usize> = fn(&Sample<D>, f64) -> Outcome<D>;

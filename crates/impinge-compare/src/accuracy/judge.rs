@@ -1,4 +1,4 @@
-//! How far answers are from the truth.
+//! Errors of results.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -8,41 +8,42 @@ use impinge_reference::precise::{Quad, separation_along};
 use super::form::{Ask, Outcome};
 use super::sample::Known;
 
-/// A normal that is as good as the best one up to this many units of rounding, although it points
-/// elsewhere, is no error: several normals are right.
+/// A normal that separates as well as the best one up to this many units of rounding, but points in
+/// another direction, is no error: several normals are correct.
 const AS_GOOD: f64 = 16.0;
-/// What pointing elsewhere means, in radians.
+/// The smallest angle to the best normal that counts as another direction, in radians.
 const ELSEWHERE: f64 = 0.05;
-/// Answers on the wrong side of zero by more than this many units are counted.
+/// Results on the wrong side of zero by more than this many units are counted.
 const WRONG_SIDE: f64 = 64.0;
 
 /// The errors of one contender in the samples of one row.
 #[derive(Clone, Debug, Default)]
 pub struct Errors {
-    /// How many samples were asked.
+    /// The number of samples.
     pub asked: usize,
     /// There is no algorithm for the pair.
     pub unsupported: usize,
-    /// No contact was found, although the distance is less than the prediction; or it panicked.
+    /// No contact was found, although the distance is less than the prediction; or the contender
+    /// panicked.
     pub missing: usize,
-    /// Apart where the truth is overlap, or the reverse, by more than rounding.
+    /// The result is apart where the truth is overlap, or the reverse, by more than rounding.
     pub wrong_sign: usize,
-    /// Normals that point elsewhere and are as good.
+    /// Normals in other directions that separate as well.
     pub ties: usize,
-    /// Of the distance where the solids are apart, else of the depth; in units of rounding of the
-    /// size of the scene.
+    /// The error of the distance where the solids are apart, else of the depth; in units of
+    /// rounding of the size of the scene.
     pub units: Vec<f64>,
-    /// The same, relative to the distance or depth.
+    /// The error relative to the distance or depth.
     pub relative: Vec<f64>,
     /// The angle between the normals, in radians, without ties.
     pub angle: Vec<f64>,
-    /// By how much the solids are separated less along the normal than they could be, in units of
+    /// The difference between the largest separation and that along the normal, in units of
     /// rounding of the size of the scene.
     pub loss: Vec<f64>,
 }
 
 impl Errors {
-    /// Asks for one sample and takes down how wrong the answer is.
+    /// Runs one sample and records the errors of the result.
     pub fn ask<const D: usize>(&mut self, ask: Ask<D>, known: &Known<D>, epsilon: f64) {
         let prediction = 2.0 * known.truth.size;
         let outcome = catch_unwind(AssertUnwindSafe(|| ask(&known.sample, prediction)))
@@ -95,7 +96,7 @@ impl Errors {
         }
     }
 
-    /// Adds what was taken down elsewhere.
+    /// Adds the errors that another thread recorded.
     pub fn extend(&mut self, other: &Self) {
         self.asked += other.asked;
         self.unsupported += other.unsupported;
@@ -109,7 +110,7 @@ impl Errors {
     }
 }
 
-/// The largest error and that which one in a thousand exceeds; `None` for no errors.
+/// Returns the largest error and the 99.9th percentile; `None` without errors.
 pub fn extremes(errors: &[f64]) -> Option<[f64; 2]> {
     let mut sorted = errors.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);

@@ -1,11 +1,12 @@
-//! How accurate the answers are: `impinge-compare accuracy [samples]`.
+//! The accuracy of results: `impinge-compare accuracy [samples]`.
 //!
-//! For every pair of kinds, scalar and regime, that many random samples are drawn, and the distance,
-//! depth and normal of each contender are held against the reference of `impinge_reference::precise`,
-//! which knows some 25 digits. The numbers of a sample are numbers of the scalar, and its rotations
-//! are unit to within a hundredth of rounding: so what is measured is the contenders' own rounding,
-//! that of turning rotations into matrices included, and nothing that the input has lost already.
-//! Samples for which the reference cannot prove its answer well enough are counted and left out.
+//! For every pair of kinds, scalar and regime, `samples` random samples are drawn, and the distance,
+//! depth and normal of each contender are compared with the reference of
+//! `impinge_reference::precise`, which has about 25 digits. The numbers of a sample are numbers of
+//! the scalar, and its rotations are unit to within a hundredth of rounding. So the errors are those
+//! of the contenders alone, including the conversion of rotations to matrices, and no error of the
+//! input. Samples for which the reference cannot prove its result well enough are counted and
+//! omitted.
 
 mod form;
 mod judge;
@@ -33,14 +34,14 @@ pub struct Row {
     scalar: Scalar,
     kinds: [Kind; 2],
     regime: Regime,
-    /// Samples that the reference was not sure of.
+    /// Samples without a proved reference.
     dropped: usize,
     errors: [Errors; 2],
 }
 
 /// Draws the samples, prints a line per pair, and writes the tables.
 pub fn run(samples: usize) {
-    // A contender that panics is counted; what it says thereby is of no interest.
+    // A contender that panics is counted; its message is suppressed.
     std::panic::set_hook(Box::new(|_| {}));
     let mut rows = Vec::new();
     let plane32: [Ask<2>; 2] = [ours::plane::<f32>, parry::plane32::ask];
@@ -56,13 +57,13 @@ pub fn run(samples: usize) {
     }
 }
 
-/// What one thread works on at a time.
+/// A unit of work for a thread.
 struct Task {
     scalar: Scalar,
     kinds: [Kind; 2],
 }
 
-/// All pairs of some kinds, shared out among threads; the rows are the same for any number of them.
+/// Computes all pairs of some kinds on several threads; the rows are the same for any number of them.
 fn rows_of<const D: usize>(
     dimension: Dimension<D>,
     kinds: &[Kind],
@@ -109,7 +110,7 @@ fn tasks(kinds: &[Kind]) -> Vec<Task> {
     tasks
 }
 
-/// The samples of one row, which depend on nothing but the row.
+/// Draws the samples of one row, which depend on the row alone.
 fn row<const D: usize>(
     dimension: Dimension<D>,
     task: &Task,
@@ -144,7 +145,7 @@ fn row<const D: usize>(
 }
 
 impl<const D: usize> Known<D> {
-    /// The same sample with its solids swapped.
+    /// Returns the sample with its solids swapped.
     fn swapped(mut self) -> Self {
         self.sample.forms.swap(0, 1);
         self.sample.placements.swap(0, 1);
@@ -154,7 +155,7 @@ impl<const D: usize> Known<D> {
         self
     }
 
-    /// Only one normal can be right.
+    /// Whether a half-space is involved, so that only one normal is correct.
     fn is_of_half_space(&self) -> bool {
         self.sample.forms.iter().any(|form| matches!(form, form::Form::HalfSpace { .. }))
     }

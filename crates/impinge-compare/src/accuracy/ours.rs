@@ -1,4 +1,4 @@
-//! impinge's answers.
+//! Results of impinge.
 
 use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Space, Vector};
@@ -10,7 +10,7 @@ use impinge::shape::{
 
 use super::form::{Form, Outcome, Placement, Sample};
 
-/// Asks in the plane.
+/// Runs a 2D sample.
 pub fn plane<N: Space<2>>(sample: &Sample<2>, prediction: f64) -> Outcome<2> {
     let particular = |form: &Form<2>| match form {
         Form::Convex(points) => ShapeHandle::new(ConvexPolygon::from_points(&hull::<N, 2>(points))),
@@ -24,7 +24,7 @@ pub fn plane<N: Space<2>>(sample: &Sample<2>, prediction: f64) -> Outcome<2> {
     ask(sample, prediction, particular, isometry)
 }
 
-/// Asks in space.
+/// Runs a 3D sample.
 pub fn space<N: Space<3>>(sample: &Sample<3>, prediction: f64) -> Outcome<3> {
     let particular = |form: &Form<3>| match form {
         Form::Convex(points) => ShapeHandle::new(ConvexHull::from_points(&hull::<N, 3>(points))),
@@ -71,7 +71,7 @@ fn hull<N: Space<D>, const D: usize>(points: &[[f64; D]]) -> Vec<Point<N, D>> {
     points.iter().map(point).collect()
 }
 
-/// The shapes that exist in every dimension.
+/// Returns the shapes of both dimensions.
 fn common<N: Space<D>, const D: usize>(form: &Form<D>) -> Option<ShapeHandle<N, D>> {
     let vector = |v: &[f64; D]| Vector::<N, D>::from(v.map(N::lit));
     Some(match form {

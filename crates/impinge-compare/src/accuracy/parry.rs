@@ -1,8 +1,8 @@
-//! parry's answers: its four crates differ in nothing but their names, and so do the modules here.
+//! Results of parry: its four crates differ in their names only, and so do the modules here.
 
 use super::form::{Form, Outcome, Placement, Sample};
 
-/// parry in the plane, in `f32`.
+/// parry in 2D, in `f32`.
 pub mod plane32 {
     use ::parry2d as parry;
     type Real = f32;
@@ -10,7 +10,7 @@ pub mod plane32 {
     include!("parry_common.rs");
 }
 
-/// parry in the plane, in `f64`.
+/// parry in 2D, in `f64`.
 pub mod plane64 {
     use ::parry2d_f64 as parry;
     type Real = f64;
@@ -18,7 +18,7 @@ pub mod plane64 {
     include!("parry_common.rs");
 }
 
-/// parry in space, in `f32`.
+/// parry in 3D, in `f32`.
 pub mod space32 {
     use ::parry3d as parry;
     type Real = f32;
@@ -26,7 +26,7 @@ pub mod space32 {
     include!("parry_common.rs");
 }
 
-/// parry in space, in `f64`.
+/// parry in 3D, in `f64`.
 pub mod space64 {
     use ::parry3d_f64 as parry;
     type Real = f64;

@@ -1,4 +1,4 @@
-//! Random pairs at a distance of choice, and the truth about them.
+//! Random pairs at a chosen distance, and their exact results.
 
 use impinge_reference::geometry::vector::{add, norm, scale};
 use impinge_reference::precise::vector::rounded;
@@ -7,18 +7,18 @@ use impinge_reference::random::Random;
 
 use super::form::{Form, Kind, Placement, Sample, Scalar};
 
-/// How far apart the solids of a sample are; `R` is the sum of their bounding radii.
+/// The distance of the solids of a sample; `R` is the sum of their bounding radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Regime {
-    /// 1 to 8 R.
+    /// At 1 to 8 R.
     Far,
-    /// 1e-4 to 1e-1 R.
+    /// At 1e-4 to 1e-1 R.
     Near,
     /// Zero up to rounding of the position.
     Touching,
-    /// 1e-4 to 1e-1 R deep.
+    /// Overlapping by 1e-4 to 1e-1 R.
     Shallow,
-    /// One about in the middle of the other.
+    /// One approximately at the centre of the other.
     Deep,
 }
 
@@ -40,7 +40,7 @@ impl Regime {
         matches!(self, Self::Shallow | Self::Deep)
     }
 
-    /// The signed distance to strive for, in parts of R.
+    /// Returns the intended signed distance, as a fraction of R.
     fn target(self, random: &mut Random) -> f64 {
         let mut part = || random.magnitude(1e-4, 10);
         match self {
@@ -52,7 +52,7 @@ impl Regime {
         }
     }
 
-    /// Whether the truth is what was striven for; `reach` is R.
+    /// Whether the exact distance is in the regime; `reach` is R.
     fn holds(self, truth: f64, size: f64, reach: f64, epsilon: f64) -> bool {
         match self {
             Self::Far => truth > 0.5 * reach,
@@ -64,19 +64,19 @@ impl Regime {
     }
 }
 
-/// What is particular to a dimension.
+/// The functions that differ by dimension.
 #[derive(Clone, Copy)]
 pub struct Dimension<const D: usize> {
-    /// The solids of the reference for the kinds that are particular to it.
+    /// Returns the solids of the reference for the kinds of this dimension only.
     pub particular: fn(&Form<D>) -> Solid<D>,
-    /// The pose of the reference.
+    /// Returns the pose of the reference.
     pub pose: fn(&Placement<D>) -> Pose<D>,
-    /// A rotation that is known to the last digit: of any angle, of quarter turns, or by a small
-    /// angle.
+    /// Returns a rotation that is exact to the last digit: of any angle, of quarter turns, or by a
+    /// small angle.
     pub rotation: fn(&mut Random, Scalar, Turn) -> [f64; 4],
 }
 
-/// What kind of rotation.
+/// The kind of a rotation.
 #[derive(Clone, Copy, Debug)]
 pub enum Turn {
     /// Any.
@@ -87,7 +87,7 @@ pub enum Turn {
     Slight,
 }
 
-/// A sample whose truth is known.
+/// A sample with an exact result.
 pub struct Known<const D: usize> {
     pub sample: Sample<D>,
     pub solids: [Solid<D>; 2],
@@ -95,11 +95,11 @@ pub struct Known<const D: usize> {
     pub truth: Precise<D>,
 }
 
-/// How often a pair is drawn anew until its regime holds.
+/// The largest number of draws of a pair until its regime holds.
 const TRIES: usize = 12;
 
-/// A pair of these kinds in a regime; `None` if there seems to be none, as of the depth of two
-/// segments in space.
+/// Draws a pair of these kinds in a regime; `None` if there seems to be none, as for the depth of
+/// two segments in 3D.
 pub fn draw<const D: usize>(
     dimension: Dimension<D>,
     kinds: [Kind; 2],
@@ -130,7 +130,7 @@ fn attempt<const D: usize>(
     let at1 = scalar.vector(&random.vector(1.0));
     let is_deep =
         regime == Regime::Deep && kinds[0] != Kind::HalfSpace && kinds[1] != Kind::HalfSpace;
-    // Apart or touching, or one in the middle of the other.
+    // Apart or touching, or one in the centre of the other.
     let away = if is_deep { random.range(0.0, 0.3) * radii[0].min(radii[1]) } else { reach };
     let at2 = scalar.vector(&add(&at1, &scale(&random.unit_vector(), away)));
     let placed = |at2: [f64; D]| -> Known<D> {
@@ -153,7 +153,7 @@ fn attempt<const D: usize>(
     regime.holds(truth, known.truth.size, reach, scalar.epsilon()).then_some(known)
 }
 
-/// Most pairs are turned at random; some have parallel axes, exactly or nearly.
+/// Most pairs are rotated at random; some have parallel axes, exactly or nearly.
 fn turns(random: &mut Random) -> [Turn; 2] {
     match random.below(10) {
         0 => [Turn::Aligned, Turn::Aligned],
@@ -162,7 +162,7 @@ fn turns(random: &mut Random) -> [Turn; 2] {
     }
 }
 
-/// The plane.
+/// 2D.
 pub const PLANE: Dimension<2> = Dimension {
     particular: |form| unreachable!("{form:?} is of space"),
     pose: |placement| {
@@ -182,7 +182,7 @@ pub const PLANE: Dimension<2> = Dimension {
     },
 };
 
-/// Space.
+/// 3D.
 pub const SPACE: Dimension<3> = Dimension {
     particular: |form| match form {
         Form::Cylinder { half_height, radius } => Solid::cylinder(*half_height, *radius),
@@ -192,7 +192,7 @@ pub const SPACE: Dimension<3> = Dimension {
     pose: |placement| Pose::from_quaternion(placement.translation, placement.rotation),
     rotation: |random, scalar, turn| match turn {
         Turn::Free => scalar.unit(|| random.quaternion()),
-        // The quaternions of length one whose components are numbers of few bits.
+        // The quaternions of length one whose components are numbers with few bits.
         Turn::Aligned if random.chance(0.5) => {
             std::array::from_fn(|_| if random.chance(0.5) { 0.5 } else { -0.5 })
         }
@@ -210,7 +210,7 @@ pub const SPACE: Dimension<3> = Dimension {
     },
 };
 
-/// The unit vector that ends with these small numbers.
+/// Returns the unit vector that ends with these small numbers.
 fn slight<const FEW: usize, const MANY: usize>(small: [f64; FEW]) -> [f64; MANY] {
     let length = norm(&small);
     let first = (1.0 - length * length).sqrt();

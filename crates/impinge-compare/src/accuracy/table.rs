@@ -1,4 +1,4 @@
-//! The tables: every row as a line of a CSV file, every pair as a line of a page to read.
+//! Tables: every row as a line of a CSV file, every pair as a line of a page.
 
 use std::fmt::Write;
 use std::fs;
@@ -98,7 +98,7 @@ fn page(rows: &[Row], samples: usize) -> String {
     text
 }
 
-/// The line of a pair: its regimes together.
+/// Returns the line of a pair: all its regimes.
 fn line(rows: &[Row]) -> String {
     let together = |contender: usize, keep: &dyn Fn(&Row) -> bool| {
         let mut all = Errors::default();
@@ -129,12 +129,12 @@ fn line(rows: &[Row]) -> String {
     )
 }
 
-/// The 99.9th percentile and the largest of some errors.
+/// Formats the 99.9th percentile and the largest of some errors.
 fn cell(errors: &[f64]) -> String {
     extremes(errors).map_or("–".to_owned(), |[p, most]| format!("{} / {}", short(p), short(most)))
 }
 
-/// Two digits.
+/// Formats with two digits.
 fn short(x: f64) -> String {
     match x {
         _ if x == 0.0 => "0".to_owned(),

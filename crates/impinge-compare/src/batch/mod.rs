@@ -1,8 +1,8 @@
-//! The suite of batches: one question about many placed pairs in one call, and one call for each pair. Both are impinge,
+//! The suite of batches: one query about many placed pairs in one call, and one call for each pair. Both are impinge,
 //! in `f64` and 3D, on one thread; the times are nanoseconds for each pair.
 //!
-//! The answers are compared to the bit. One shape stands at the origin, those of the other side around it: the pairs
-//! overlap, are near and are far in about equal parts.
+//! The results are compared to the bit. One shape is at the origin, those of the other side around it: about equally
+//! many pairs overlap, are near and are far.
 
 mod question;
 
@@ -16,7 +16,7 @@ use crate::measure::in_turn;
 use crate::table::{Row, Table};
 use question::{QUESTIONS, Question};
 
-/// What is asked, and where.
+/// The two sides of a batch.
 pub struct Batch {
     /// The shape at the origin, and the one of the other side.
     pub shapes: [ShapeHandle<f64>; 2],
@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     vec![table]
 }
 
-/// The pairs by name.
+/// Returns the pairs by name.
 fn batches(count: usize) -> Vec<(String, Batch)> {
     let shapes: [(&str, ShapeHandle<f64>, usize); 6] = [
         ("ball", ShapeHandle::new(Ball::new(0.5)), count),
@@ -65,18 +65,18 @@ fn batches(count: usize) -> Vec<(String, Batch)> {
     batches
 }
 
-/// A hull of many corners on a ball.
+/// Returns a hull with many corners on a ball.
 fn round_hull(subdivisions: u32) -> ConvexHull<f64> {
     ConvexHull::from_points(&procedural::ball(&Ball::new(0.5), subdivisions).vertices)
 }
 
-/// The surface of a ball, as triangles.
+/// Returns the surface of a ball, as triangles.
 fn surface(subdivisions: u32) -> TriMesh<f64> {
     let surface = procedural::ball(&Ball::new(0.5), subdivisions);
     TriMesh::try_from(surface).expect("a surface of triangles")
 }
 
-/// Places up to two units away from the origin, turned in all ways; the same on every run.
+/// Returns poses up to two units away from the origin, with all rotations; the same on every run.
 fn places(count: usize) -> Vec<Isometry<f64>> {
     let mut state = 1_u64;
     let mut next = || {
@@ -89,7 +89,7 @@ fn places(count: usize) -> Vec<Isometry<f64>> {
     (0..count).map(&mut place).collect()
 }
 
-/// Asks in one call and pair by pair, in turn.
+/// Times one call and single calls, in turn.
 fn race(case: &str, batch: &Batch, question: &Question, arguments: &Arguments) -> Vec<Row> {
     let here = OnePose(Isometry::identity());
     let [shape1, shape2] = &batch.shapes;
@@ -114,7 +114,7 @@ fn race(case: &str, batch: &Batch, question: &Question, arguments: &Arguments) -
     ["batch", "one by one"].into_iter().zip(times).map(row).collect()
 }
 
-/// All pairs of one set within a distance: nanoseconds for each element.
+/// Times all pairs of one set within a distance: nanoseconds for each element.
 fn near_pairs(arguments: &Arguments, table: &mut Table) {
     let shape = ShapeHandle::new(Cuboid::new(Vector::new(0.5, 0.4, 0.3)));
     let case = "box: all pairs within a distance";

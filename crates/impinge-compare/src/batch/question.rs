@@ -1,4 +1,4 @@
-//! What is asked of a batch, in one call and pair by pair. Each fills a column with a number for each pair.
+//! Queries of a batch, in one call and pair by pair. Each fills a column with a number for each pair.
 
 use impinge::dim3::batch::{
     ClosestColumns, ContactColumns, Control, ImpactColumns, ManifoldRows, PairBatch,
@@ -14,15 +14,15 @@ use impinge::dim3::query::{
 
 use super::Batch;
 
-/// How near counts.
+/// The limit of the distance.
 const LIMIT: f64 = 0.25;
 
-/// How the second shape moves.
+/// The velocity of the second shape.
 const VELOCITY: [f64; 3] = [-1.0, -0.5, 0.25];
 
-/// A question by name.
+/// A query with its name.
 pub struct Question {
-    /// What is asked.
+    /// The name.
     pub name: &'static str,
     /// In one call.
     pub in_batch: fn(&PairBatch<'_, f64>, &mut Vec<f64>),
@@ -74,7 +74,7 @@ fn manifolds(pairs: &PairBatch<'_, f64>, out: &mut Vec<f64>) {
     out.extend((0..rows.num_pairs()).map(last));
 }
 
-/// Fills a column with an answer for each pose.
+/// Fills a column with a result for each pose.
 fn each(batch: &Batch, out: &mut Vec<f64>, answer: impl FnMut(&Isometry<f64>) -> f64) {
     out.clear();
     out.extend(batch.poses.iter().map(answer));
@@ -124,7 +124,7 @@ fn manifolds_singly(batch: &Batch, out: &mut Vec<f64>) {
     });
 }
 
-/// Infinite for NaN.
+/// Maps NaN to infinity.
 fn number(value: f64) -> f64 {
     if value.is_nan() { f64::INFINITY } else { value }
 }

@@ -1,4 +1,4 @@
-//! What is asked of each contender, and the race.
+//! The interface of the contenders, and the race.
 
 use std::collections::HashSet;
 
@@ -6,7 +6,7 @@ use super::swarm::{Cell, Change, Swarm};
 use crate::measure::{Times, timed};
 use crate::table::Row;
 
-/// By how much all contenders loosen boxes, so that a box that moves little costs little.
+/// The margin by which all contenders enlarge boxes, so that a box that moves little costs little.
 pub const MARGIN: f32 = 0.05;
 
 /// A broad phase that is compared with another.
@@ -14,21 +14,20 @@ pub trait Contender<const D: usize> {
     /// The name in the table.
     fn name(&self) -> &'static str;
 
-    /// Hands over the boxes that moved, vanished and appeared, updates, and collects the events;
-    /// timed.
+    /// Applies the moved, removed and added boxes, updates, and collects the events; timed.
     fn step(&mut self, change: &Change<D>);
 
-    /// Follows the events of the step; not timed.
+    /// Processes the events of the step; not timed.
     fn settle(&mut self, _change: &Change<D>) {}
 
-    /// All pairs, by [`key`]; not timed.
+    /// Returns all pairs, by [`key`]; not timed.
     fn pairs(&mut self) -> Vec<u64>;
 }
 
 /// The contenders of a case, the first of which is impinge.
 pub type Contenders<const D: usize> = Vec<Box<dyn Contender<D>>>;
 
-/// Two numbers as one, in either order.
+/// Combines two numbers to one, in either order.
 pub fn key(a: u32, b: u32) -> u64 {
     u64::from(a.min(b)) << 32 | u64::from(a.max(b))
 }
@@ -36,12 +35,12 @@ pub fn key(a: u32, b: u32) -> u64 {
 /// A pair that started (`true`) or stopped.
 pub type Event = (u32, u32, bool);
 
-/// The pairs that follow from events.
+/// The pairs after a sequence of events.
 #[derive(Clone, Debug, Default)]
 pub struct Held(HashSet<u64>);
 
 impl Held {
-    /// Takes the events in.
+    /// Applies events.
     pub fn apply(&mut self, events: impl IntoIterator<Item = Event>) {
         for (a, b, started) in events {
             if started {
@@ -52,7 +51,7 @@ impl Held {
         }
     }
 
-    /// Drops the pairs of what vanished, for those who do not report them.
+    /// Drops the pairs of removed boxes, for contenders that do not report them.
     pub fn forget<const D: usize>(&mut self, change: &Change<D>) {
         let gone: HashSet<u32> = change.replaced.iter().map(|(n, _)| *n).collect();
         if !gone.is_empty() {
@@ -63,13 +62,13 @@ impl Held {
         }
     }
 
-    /// All of them.
+    /// Returns all pairs.
     pub fn pairs(&self) -> Vec<u64> {
         self.0.iter().copied().collect()
     }
 }
 
-/// How one contender did, in milliseconds per step.
+/// The results of one contender, in milliseconds per step.
 #[derive(Clone, Debug, Default)]
 struct Lane {
     times: Times,
@@ -77,10 +76,10 @@ struct Lane {
     differ: usize,
 }
 
-/// Steps the contenders alternately; who goes first alternates too. The first step, in which
-/// everything is new, is not in the times, and neither are those after it, half as many as are: at first
-/// all boxes are in the middle of their loosened ones, and later they leave at different times. The pairs
-/// are compared before the times are taken, after every tenth and after the last.
+/// Steps the contenders alternately, in an alternating order. The first step, in which everything is new,
+/// is not timed, and neither are half as many steps after it as are timed: at first all boxes are in the
+/// middle of their fat AABBs, and later they leave at different times. The pairs are compared before the
+/// times are taken, after every tenth step and after the last.
 pub fn race<const D: usize>(
     case: &str,
     swarm: &mut Swarm<D>,
@@ -113,11 +112,11 @@ pub fn race<const D: usize>(
     rows.collect()
 }
 
-/// Notes how many answers of each are wrong, in the worst of the steps compared.
+/// Counts the wrong results of each contender, in the worst of the compared steps.
 ///
-/// Every two boxes that overlap must be a pair: what one contender lacks and another has counts. Boxes
-/// that are near may be one, depending on when they were loosened last. A loosened box reaches at most
-/// two margins beyond the box within, so pairs with a gap of more than four are stale, and count too.
+/// Every two boxes that overlap must be a pair: one that a contender lacks and another has counts. Boxes
+/// that are near may be a pair, depending on when they were enlarged last. A fat AABB extends at most two
+/// margins beyond the box within, so pairs with a gap of more than four margins are stale, and count too.
 fn compare<const D: usize>(cells: &[Cell<D>], contenders: &mut Contenders<D>, lanes: &mut [Lane]) {
     let gap = |key: &u64| cells[(key >> 32) as usize].gap(&cells[(key & 0xffff_ffff) as usize]);
     let mut overlapping = Vec::new();

@@ -1,9 +1,9 @@
-//! The suite of broad phases: every contender is told the new boxes of what moved, updates, and lists what
-//! changed; this is timed, in milliseconds per step. Boxes are loosened by 0.05 by all who loosen.
+//! The suite of broad phases: every contender gets the new boxes of moved objects, updates, and lists the
+//! changes; this is timed, in milliseconds per step. All contenders with fat AABBs use a margin of 0.05.
 //!
-//! The number of answers is that of the pairs held, most of which are near rather than overlapping, and
-//! differs by the rules by which boxes are loosened. What counts as different is said at `compare`. Those
-//! who name no events do less than the others: nobody could tell from them which pairs started and stopped.
+//! The number of results is that of the pairs, most of which are near rather than overlapping. It depends
+//! on the rules by which boxes are enlarged. `compare` defines which results count as different. Contenders
+//! without events do less than the others: they do not report which pairs started and stopped.
 
 mod contender;
 mod obvhs_tree;
@@ -27,14 +27,14 @@ pub use rebuilt::leaves;
 pub use space::{Ncollide, Parry, Rapier};
 use swarm::{Cell, Kind, Plan, Swarm};
 
-/// The usual plan: alike, all moving fast, no order.
+/// The default plan: equal sizes, all moving fast, no order.
 pub const FAST: Plan =
     Plan { kind: Kind::Alike, count: 0, stride: 1, pace: 0.05, is_sorted: false, replaced: 0 };
 
-/// The slow rivals take part where there are at most so many boxes.
+/// The largest number of boxes for which the slow rivals run.
 const FEW: usize = 10_000;
 
-/// Runs all cases of at most so many boxes.
+/// Runs all cases up to the requested number of boxes.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("broad", "ms");
     let fits = |plan: &Plan| arguments.includes(plan.count);
@@ -98,7 +98,7 @@ fn run_case<const D: usize>(
     table.add(race(case, &mut swarm, &mut contenders, steps));
 }
 
-/// Large cases take few steps, unless there is only one contender.
+/// Large cases run few steps, unless there is only one contender.
 fn steps(count: usize, is_alone: bool) -> u32 {
     match count {
         _ if is_alone => u32::MAX,

@@ -1,4 +1,4 @@
-//! ncollide's broad phase, whose interface is the model of ours.
+//! The broad phase of ncollide, whose interface is the model of ours.
 
 use super::ncollide::bounding_volume::{AABB, BoundingVolume};
 use super::ncollide::math::Point;
@@ -36,10 +36,10 @@ impl BroadPhaseInterferenceHandler<u32> for Events {
 }
 
 impl Ncollide {
-    /// A broad phase that has been told of the boxes.
+    /// Creates a broad phase with the boxes.
     pub fn new(cells: &[Cell<D>]) -> Self {
         let mut phase = DBVTBroadPhase::new(MARGIN);
-        // Created boxes are not loosened, changed ones are.
+        // New boxes are not enlarged, changed ones are.
         let create = |(n, cell)| phase.create_proxy(aabb(cell).loosened(MARGIN), n);
         let handles = (0..).zip(cells).map(create).collect();
         Self { phase, handles, events: Events(Vec::new()), held: Held::default() }

@@ -1,6 +1,6 @@
-//! obvhs, used as its example of a broad phase does: boxes are loosened; if few left their loosened ones,
-//! their leaves are moved within the tree, otherwise it is made anew; then it is asked about the boxes that
-//! left. It knows no events. It is of space: the plane is one of its slices.
+//! obvhs, used as in its example of a broad phase: boxes are enlarged. If few left their fat AABBs, their
+//! leaves are moved within the tree, otherwise it is rebuilt; then it is searched for the boxes that left.
+//! It has no events. It is 3D only: 2D is one of its slices.
 
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -19,7 +19,7 @@ pub struct Obvhs {
 }
 
 impl Obvhs {
-    /// A tree of the boxes.
+    /// Builds a tree of the boxes.
     pub fn new<const D: usize>(cells: &[Cell<D>]) -> Self {
         let loosened: Vec<_> = cells.iter().map(|cell| aabb(cell, MARGIN)).collect();
         let mut obvhs = Self {
@@ -62,7 +62,7 @@ impl Obvhs {
     }
 }
 
-/// The box of obvhs.
+/// Returns the box of obvhs.
 pub fn aabb<const D: usize>(cell: &Cell<D>, margin: f32) -> Aabb {
     let corner = |x: [f32; D]| [0, 1, 2].map(|axis| x.get(axis).copied().unwrap_or(0.0));
     let mins = corner(cell.mins().map(|x| x - margin));

@@ -22,7 +22,7 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    /// A broad phase that has been told of the boxes.
+    /// Creates a broad phase with the boxes.
     pub fn new(cells: &[Cell<D>]) -> Self {
         let mut phase = DBVTBroadPhase::new(MARGIN);
         let create = |(n, cell)| phase.create_proxy(aabb(cell), n);
@@ -31,7 +31,7 @@ where
     }
 }
 
-/// The box of impinge.
+/// Returns the box of impinge.
 pub fn aabb<const D: usize>(cell: &Cell<D>) -> Aabb<f32, D>
 where
     f32: Space<D>,

@@ -1,6 +1,6 @@
-//! parry's tree alone, used as rapier uses it: leaves are loosened, the tree is improved a little at each
-//! step and refitted, and the pairs are listed of which one box left its loosened one. What follows from
-//! that, the pairs that started and stopped, is not worked out.
+//! The tree of parry alone, used as in rapier: leaves are enlarged, the tree is optimized a little at
+//! each step and refitted, and pairs are listed if one of their boxes left its fat AABB. The pairs that
+//! started and stopped are not derived from that.
 
 use super::parry::bounding_volume::Aabb;
 use super::parry::math::Vector;
@@ -18,7 +18,7 @@ pub struct Parry {
 }
 
 impl Parry {
-    /// A tree of the boxes.
+    /// Builds a tree of the boxes.
     pub fn new(cells: &[Cell<D>]) -> Self {
         let leaves: Vec<_> = cells.iter().map(|cell| aabb(cell, MARGIN)).collect();
         Self {
@@ -52,7 +52,7 @@ impl Contender<D> for Parry {
             let status = tree.insert_or_update_partially(aabb(cell, 0.0), *n, MARGIN);
             updated += usize::from(status != BvhLeafUpdateStatus::Unchanged);
         }
-        // rapier does without where few boxes leave; it then has other ways to keep the tree good.
+        // rapier skips this if few boxes leave; it then has other ways to keep the quality of the tree.
         if updated * 16 >= tree.leaf_count() as usize {
             tree.optimize_incremental(workspace);
         }

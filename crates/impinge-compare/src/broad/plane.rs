@@ -1,4 +1,4 @@
-//! The plane: the rivals that are one crate per dimension.
+//! 2D: the rivals with one crate per dimension.
 //!
 //! Such crates have the same source for both dimensions, and so have their contenders here.
 

@@ -1,7 +1,7 @@
-//! rapier's broad phase, driven as its `CollisionPipeline` does it: colliders without bodies are moved,
-//! the broad phase gets the list of those, and answers with events.
+//! The broad phase of rapier, used as in its `CollisionPipeline`: colliders without bodies are moved,
+//! the broad phase gets the list of these, and returns events.
 //!
-//! What only the pipeline can do, to clear the flags of changes, is got around in rapier's favour: the
+//! Only the pipeline can clear the flags of changes. This is worked around in favour of rapier: the
 //! colliders are copies of one whose flags are clear, and from then on only their positions change.
 
 use super::rapier::prelude::*;
@@ -23,12 +23,12 @@ pub struct Rapier {
     /// By index of the handle, which is part of the handle.
     numbers: Vec<u32>,
     held: Held,
-    /// Whether boxes are told directly, without colliders that have to be looked at.
+    /// Whether boxes are passed directly, without a look-up of colliders.
     is_direct: bool,
 }
 
 impl Rapier {
-    /// A broad phase that has been told of the boxes.
+    /// Creates a broad phase with the boxes.
     pub fn new(cells: &[Cell<D>], is_direct: bool) -> Self {
         // The margin is 0.04 times the unit of length.
         let params = IntegrationParameters {
@@ -70,8 +70,8 @@ impl Rapier {
         // Insertion sets all flags.
         self.colliders[handle] = collider;
         self.colliders.take_modified();
-        // New ones are not told directly: the update would take the box for that of the collider whose
-        // index they inherit, and remove it.
+        // New boxes are not passed directly: the update would take the box for that of the collider
+        // whose index they inherit, and remove it.
         self.modified.push(handle);
         handle
     }
@@ -101,7 +101,8 @@ impl Rapier {
     }
 }
 
-/// A collider whose flags of changes a pipeline has cleared; fixed ones ignore one another otherwise.
+/// Returns a collider whose flags of changes a pipeline has cleared; fixed ones would ignore each
+/// other.
 fn template() -> Collider {
     let mut colliders = ColliderSet::new();
     let ball = ColliderBuilder::ball(1.0).active_collision_types(ActiveCollisionTypes::all());

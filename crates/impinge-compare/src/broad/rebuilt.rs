@@ -1,5 +1,5 @@
-//! Trees that are made anew at each step and asked about every box: rstar and bvh. They answer with all
-//! pairs of boxes as they are, not loosened, and know no events.
+//! Trees that are rebuilt at each step and searched for every box: rstar and bvh. They return all pairs
+//! of exact boxes, not enlarged, and have no events.
 
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
@@ -18,7 +18,7 @@ pub struct Leaf<const D: usize> {
     cell: Cell<D>,
 }
 
-/// The boxes, numbered.
+/// Returns the boxes with their numbers.
 pub fn leaves<const D: usize>(cells: &[Cell<D>]) -> Vec<Leaf<D>> {
     (0..).zip(cells).map(|(number, cell)| Leaf { number, node: 0, cell: *cell }).collect()
 }

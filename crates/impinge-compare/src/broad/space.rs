@@ -1,4 +1,4 @@
-//! Space: the rivals that are one crate per dimension.
+//! 3D: the rivals with one crate per dimension.
 //!
 //! Such crates have the same source for both dimensions, and so have their contenders here.
 

@@ -1,4 +1,4 @@
-//! Boxes that fly about, as data: at each step a list of what moved, the same for every contender.
+//! Moving boxes, as data: at each step a list of the moved ones, the same for every contender.
 
 use impinge_reference::random::Random;
 
@@ -30,8 +30,8 @@ impl<const D: usize> Cell<D> {
     }
 }
 
-/// Whether rounding decides if two boxes are within a distance of each other. Contenders compute with
-/// `f32` too, each in its own order: where the numbers round differently, so may the answers.
+/// Whether rounding decides if two boxes are within a distance of each other. Contenders compute in
+/// `f32` too, each in its own order: where the numbers round differently, the results may differ.
 pub fn is_borderline<const D: usize>(a: &Cell<D>, b: &Cell<D>, distance: f64) -> bool {
     let apart = (0..D).map(|axis| {
         let between = f64::from(a.center[axis]) - f64::from(b.center[axis]);
@@ -42,47 +42,47 @@ pub fn is_borderline<const D: usize>(a: &Cell<D>, b: &Cell<D>, distance: f64) ->
     (apart - distance).abs() <= 4.0 * f64::from(f32::EPSILON * size)
 }
 
-/// How large the boxes are, and where.
+/// The sizes and positions of the boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Half extents 0.35 to 0.65, three neighbours each.
+    /// Half extents 0.35 to 0.65, about three neighbours each.
     Alike,
-    /// The same, times 1 + 99·X¹⁰ (bepuphysics' benchmark), three neighbours each.
+    /// These, times 1 + 99·X¹⁰ (bepuphysics' benchmark), about three neighbours each.
     Mixed,
-    /// Half extents 0.55 on a grid of spacing 1, in which each stays within 0.1 of its place.
+    /// Half extents 0.55 on a grid of spacing 1; each stays within 0.1 of its grid point.
     Pile,
 }
 
-/// What a swarm is made of.
+/// The parameters of a swarm.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// How large the boxes are.
+    /// The sizes of the boxes.
     pub kind: Kind,
-    /// How many there are.
+    /// The number of boxes.
     pub count: usize,
-    /// Each so many-th box moves.
+    /// Every `stride`-th box moves.
     pub stride: usize,
-    /// The mean way of a moving box in a step.
+    /// The mean distance of a moving box in a step.
     pub pace: f64,
     /// Whether boxes that are close in space have close numbers.
     pub is_sorted: bool,
-    /// How many boxes vanish in a step, each followed by a new one elsewhere.
+    /// The number of boxes that are removed in a step, each replaced by a new one elsewhere.
     pub replaced: usize,
 }
 
-/// What happens in a step.
+/// The changes of a step.
 #[derive(Clone, Debug, Default)]
 pub struct Change<const D: usize> {
     /// The boxes that moved.
     pub moved: Vec<(u32, Cell<D>)>,
-    /// The boxes that vanished, and those that take their numbers.
+    /// The removed boxes, with the new ones that take their numbers.
     pub replaced: Vec<(u32, Cell<D>)>,
 }
 
 /// Boxes and their velocities; walls reflect them.
 #[derive(Clone, Debug)]
 pub struct Swarm<const D: usize> {
-    /// The boxes as they are now.
+    /// The current boxes.
     pub cells: Vec<Cell<D>>,
     velocities: Vec<[f32; D]>,
     walls: Vec<[[f32; D]; 2]>,
@@ -93,7 +93,7 @@ pub struct Swarm<const D: usize> {
 }
 
 impl<const D: usize> Swarm<D> {
-    /// The swarm as it is before the first step.
+    /// Creates the swarm before the first step.
     pub fn new(plan: Plan) -> Self {
         let mut random = Random::new(1);
         let halves: Vec<_> = (0..plan.count).map(|_| half(plan.kind, &mut random)).collect();
@@ -114,7 +114,7 @@ impl<const D: usize> Swarm<D> {
         Self { cells, velocities, walls, plan, edge, next: 0, random }
     }
 
-    /// Moves what moves, and says what did.
+    /// Moves the boxes, and returns the changes.
     pub fn step(&mut self) -> Change<D> {
         let mut change = Change::default();
         for _ in 0..self.plan.replaced {
@@ -133,7 +133,7 @@ impl<const D: usize> Swarm<D> {
         change
     }
 
-    /// Whether a box is among those that just appeared: the last before the next to vanish.
+    /// Whether a box was just added: the last one before the next to be removed.
     fn is_new(&self, n: usize) -> bool {
         let age = (self.next + self.plan.count - 1 - n) % self.plan.count;
         age < self.plan.replaced
@@ -165,9 +165,10 @@ fn half<const D: usize>(kind: Kind, random: &mut Random) -> [f32; D] {
     [0.0; D].map(|_: f32| (size * random.range(0.35, 0.65)) as f32)
 }
 
-/// The edge of the space in which boxes have three neighbours in the mean: two boxes overlap where
-/// their centres are within the sum of their half extents, so the space is a third of the mean of the
-/// boxes with these sums as half extents. The mean is that of as many pairs as there are boxes.
+/// Returns the edge of the space in which boxes have three neighbours on average. Two boxes overlap
+/// if their centres are within the sum of their half extents, so the volume is a third of the mean
+/// volume of boxes with these sums as half extents, times their number. The mean is estimated from as
+/// many pairs as there are boxes.
 fn edge<const D: usize>(halves: &[[f32; D]], random: &mut Random) -> f64 {
     let mut any = || halves[random.below(halves.len())].map(f64::from);
     let sum: f64 = (0..halves.len())
@@ -183,7 +184,7 @@ fn anywhere<const D: usize>(edge: f64, random: &mut Random) -> [f32; D] {
     [0.0; D].map(|_: f32| random.range(0.0, edge) as f32)
 }
 
-/// Puts the boxes on a grid, in random order.
+/// Places the boxes on a grid, in random order.
 fn stack<const D: usize>(cells: &mut [Cell<D>], random: &mut Random) {
     let side = (cells.len() as f64).powf(1.0 / D as f64).ceil() as usize;
     let mut places: Vec<usize> = (0..cells.len()).collect();
@@ -206,20 +207,20 @@ fn walls<const D: usize>(kind: Kind, center: &[f32; D], edge: f64) -> [[f32; D];
     }
 }
 
-/// A random direction, 0.2 to 1.8 times the pace long.
+/// Returns a random direction, scaled by 0.2 to 1.8 times the pace.
 fn velocity<const D: usize>(pace: f64, random: &mut Random) -> [f32; D] {
     let speed = pace * random.range(0.2, 1.8);
     loop {
         let v: [f64; D] = [0.0; D].map(|_: f64| random.range(-1.0, 1.0));
         let squared: f64 = v.iter().map(|x| x * x).sum();
-        // At least half of the trials end here.
+        // At least half of the trials succeed here.
         if (0.01..=1.0).contains(&squared) {
             return v.map(|x| (x * speed / squared.sqrt()) as f32);
         }
     }
 }
 
-/// The place of a point of the unit cube along Morton's curve.
+/// Returns the position of a point of the unit cube along Morton's curve.
 fn morton<const D: usize>(point: &[f64; D]) -> u64 {
     let bits = point.map(|x| (x.clamp(0.0, 1.0) * 65535.0) as u64);
     let levels = (0..16).rev();

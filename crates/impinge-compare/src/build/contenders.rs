@@ -1,4 +1,4 @@
-//! Who makes trees of boxes, broad phases and worlds.
+//! Contenders that build trees of boxes, broad phases and worlds.
 
 use bvh::aabb::Aabb as BvhAabb;
 use bvh::bvh::Bvh;
@@ -15,18 +15,18 @@ use super::world::{self, World, certainly_touching};
 use crate::broad::swarm::{Cell, Change};
 use crate::broad::{Contender, Impinge, Ncollide, Rapier, aabb, leaves, obvhs_aabb};
 
-/// How many boxes trees are asked about.
+/// The number of searches of a tree.
 const QUESTIONS: usize = 1000;
 
-/// Boxes to ask about: some of those in the tree, a little larger.
+/// Returns boxes to search for: some of those in the tree, slightly enlarged.
 pub fn questions(cells: &[Cell<3>]) -> Vec<Cell<3>> {
     let mut random = Random::new(9);
     let any = (0..QUESTIONS).map(|_| cells[random.below(cells.len())]);
     any.map(|cell| Cell { half: cell.half.map(|x| x * 1.5), ..cell }).collect()
 }
 
-/// Asks a tree about each question. What it proposes is held against the boxes themselves: trees may
-/// propose more.
+/// Searches a tree for each box. Its proposals are compared with the boxes themselves, since trees
+/// may propose more.
 pub fn ask<'a>(
     cells: &'a [Cell<3>],
     mut propose: impl FnMut(&Cell<3>, &mut Vec<u32>) + 'a,
@@ -43,12 +43,12 @@ pub fn ask<'a>(
     })
 }
 
-/// The box of parry.
+/// Returns the box of parry.
 pub fn parry_aabb(cell: &Cell<3>) -> parry3d::bounding_volume::Aabb {
     parry3d::bounding_volume::Aabb::new(cell.mins().into(), cell.maxs().into())
 }
 
-/// Trees of boxes. Those of some crates are made fast or good.
+/// Builds trees of boxes. Some crates have a fast and a good build.
 pub fn boxes(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     let mut makers = vec![
         Maker::new("impinge BoxTree", || ours(cells)),
@@ -112,7 +112,7 @@ fn rstar(cells: &[Cell<3>]) -> Answer<'_> {
     })
 }
 
-/// Broad phases, with all pairs found.
+/// Builds broad phases, with all pairs found.
 pub fn phases(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     let mut makers = vec![
         Maker::new("impinge", || phase(cells, Impinge::new(cells))),
@@ -124,7 +124,7 @@ pub fn phases(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     makers
 }
 
-/// Answers with the pairs that overlap.
+/// Returns the overlapping pairs.
 fn phase<'a>(cells: &'a [Cell<3>], mut phase: impl Contender<3> + 'a) -> Answer<'a> {
     phase.step(&Change::default());
     Box::new(move || {
@@ -136,7 +136,7 @@ fn phase<'a>(cells: &'a [Cell<3>], mut phase: impl Contender<3> + 'a) -> Answer<
     })
 }
 
-/// Worlds, with all contacts found.
+/// Builds worlds, with all contacts found.
 pub fn worlds(cells: &[Cell<3>]) -> Vec<Maker<'_>> {
     let mut makers = vec![
         Maker::new("impinge", || filled(cells, world::Ours::new())),

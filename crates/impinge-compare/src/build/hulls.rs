@@ -1,4 +1,4 @@
-//! Who makes convex hulls: of points on a ball, each of which is a corner.
+//! Contenders that build convex hulls: of points on a ball, each of which is a corner.
 
 use impinge::math::Point;
 use impinge::shape::ConvexHull;
@@ -8,27 +8,27 @@ use parry3d::shape::ConvexPolyhedron;
 
 use super::measure::{Answer, Maker};
 
-/// All hulls of a case together have as many points.
+/// The number of points of all hulls of a case together.
 const POINTS: usize = 20_000;
 
 /// Sets of points on the unit ball.
 pub struct Clouds(Vec<Vec<[f32; 3]>>);
 
 impl Clouds {
-    /// Sets of so many points.
+    /// Creates `count` sets of points.
     pub fn new(count: usize) -> Self {
         let mut random = Random::new(11);
         let mut point = || random.unit_vector::<3>().map(|x| x as f32);
         Self((0..POINTS / count).map(|_| (0..count).map(|_| point()).collect()).collect())
     }
 
-    /// How many sets there are.
+    /// The number of sets.
     pub const fn len(&self) -> usize {
         self.0.len()
     }
 }
 
-/// Hulls of all sets, one after the other. The answers are the corners.
+/// Builds the hulls of all sets, one after the other. The results are the corners.
 pub fn makers(clouds: &Clouds) -> Vec<Maker<'_>> {
     let (ours, theirs) = (clouds.0.iter().map(|cloud| points(cloud)), clouds.0.iter());
     let (ours, theirs): (Vec<_>, Vec<_>) =
@@ -49,7 +49,7 @@ fn vectors(cloud: &[[f32; 3]]) -> Vec<Vector> {
     cloud.iter().map(|point| Vector::from_array(*point)).collect()
 }
 
-/// The coordinates of the corners of hulls, in bits.
+/// The coordinates of the corners of hulls, as bits.
 type Corners = Vec<[u32; 3]>;
 
 fn made(clouds: &[Vec<Point<f32, 3>>]) -> Corners {

@@ -1,32 +1,32 @@
-//! Making things, and asking them: how long it takes, or how many bytes remain.
+//! Measures the time of building structures, or the bytes that remain, and compares their results.
 
 use crate::measure::Times;
 #[cfg(not(feature = "bytes"))]
 use crate::measure::timed;
 use crate::table::Row;
 
-/// What is asked of a thing that was made: all of its answers, each as a number.
+/// The results of a structure, each as a number.
 pub type Answer<'a> = Box<dyn FnMut() -> Vec<u64> + 'a>;
 
-/// A contender: its name, and how it makes a thing.
+/// A contender: its name, and its constructor.
 pub struct Maker<'a> {
     /// The name in the table.
     pub name: &'static str,
-    /// Makes the thing; this is measured.
+    /// Builds the structure; this is measured.
     pub make: Box<dyn Fn() -> Answer<'a> + 'a>,
 }
 
 impl<'a> Maker<'a> {
-    /// A contender.
+    /// Creates a contender.
     pub fn new(name: &'static str, make: impl Fn() -> Answer<'a> + 'a) -> Self {
         Self { name, make: Box::new(make) }
     }
 }
 
-/// What is measured.
+/// The measured quantity.
 #[cfg(not(feature = "bytes"))]
 pub const UNIT: &str = "ms";
-/// What is measured.
+/// The measured quantity.
 #[cfg(feature = "bytes")]
 pub const UNIT: &str = "bytes_per_object";
 
@@ -45,8 +45,8 @@ fn measured<R>(count: usize, work: impl FnOnce() -> R) -> (f64, R) {
     (bytes / count as f64, result)
 }
 
-/// Lets each contender make its thing, in turn and several times, and compares the answers of the first
-/// round with those of the first contender.
+/// Runs the constructor of each contender, in turn and several times, and compares the results of the
+/// first round with those of the first contender.
 pub fn measure(case: &str, count: usize, makers: &[Maker<'_>]) -> Vec<Row> {
     let rounds = match count {
         _ if UNIT != "ms" => 1,
@@ -57,7 +57,7 @@ pub fn measure(case: &str, count: usize, makers: &[Maker<'_>]) -> Vec<Row> {
     let mut rows: Vec<Row> = makers.iter().map(|maker| row(case, maker)).collect();
     let mut first: Vec<u64> = Vec::new();
     for round in 0..rounds {
-        // The first contender goes first in the first round, when answers are compared.
+        // The first contender goes first in the first round, when results are compared.
         for n in (0..makers.len()).map(|n| (n + round) % makers.len()) {
             let (value, mut answer) = measured(count, || (makers[n].make)());
             rows[n].times.push(value);
@@ -84,7 +84,7 @@ fn sorted(mut answers: Vec<u64>) -> Vec<u64> {
     answers
 }
 
-/// How many of the second list are not in the first.
+/// Returns the number of elements of `of` that are not in `from`.
 fn missing(from: &[u64], of: &[u64]) -> usize {
     of.iter().filter(|answer| from.binary_search(answer).is_err()).count()
 }

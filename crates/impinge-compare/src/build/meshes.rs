@@ -1,5 +1,5 @@
-//! Who makes meshes. Some find out more than where the triangles are: impinge which triangles join at
-//! which edges and corners, parry that if it is asked to, ncollide always.
+//! Contenders that build meshes. Some compute more than the positions of triangles: impinge always
+//! computes adjacency, parry optionally, ncollide always.
 
 use impinge::math::Point;
 use impinge::shape::{CompositeShape, TriMesh};
@@ -22,7 +22,7 @@ pub struct Terrain {
 }
 
 impl Terrain {
-    /// A terrain of so many squares along each side, two triangles each.
+    /// Creates a terrain with `side` squares along each side, two triangles each.
     pub fn new(side: u32) -> Self {
         let (mut random, row) = (Random::new(4), side + 1);
         let vertices: Vec<_> = (0..row * row)
@@ -49,7 +49,7 @@ fn around(vertices: &[[f32; 3]], corners: &[u32; 3]) -> Cell<3> {
     }
 }
 
-/// Meshes, and trees of the boxes of their triangles.
+/// Builds meshes, and trees of the boxes of their triangles.
 pub fn makers(terrain: &Terrain) -> Vec<Maker<'_>> {
     let fixed = TriMeshFlags::FIX_INTERNAL_EDGES;
     let mut makers = vec![

@@ -1,10 +1,10 @@
-//! The suite of what is made once: trees of boxes, meshes, hulls, broad phases and worlds with everything new.
-//! Each contender makes its own from the same boxes, triangles or points; this is timed, in milliseconds. Then all
-//! are asked the same, and the answers compared.
+//! The suite of construction: trees of boxes, meshes, hulls, broad phases and worlds with everything new. Each
+//! contender builds its own from the same boxes, triangles or points; this is timed, in milliseconds. Then all run
+//! the same queries, and the results are compared.
 //!
-//! With the feature `bytes` memory is counted instead: what is left allocated, per object, when all is
-//! made. The events of the first step, which whoever asks for pairs keeps, are in it: 12 to 24 bytes per
-//! pair. What is only lent to a contender is not.
+//! With the feature `bytes` memory is counted instead: the bytes that stay allocated after construction, per
+//! object. They include the events of the first step, which a caller that wants pairs keeps: 12 to 24 bytes per
+//! pair. Memory that a contender borrows is not counted.
 
 mod contenders;
 mod hulls;
@@ -19,7 +19,7 @@ use crate::table::Table;
 use contenders::{boxes, phases, worlds};
 use measure::{Maker, UNIT, measure};
 
-/// Runs all cases of at most so many objects.
+/// Runs all cases up to the requested number of objects.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new(if UNIT == "ms" { "build" } else { "bytes" }, UNIT);
     let fits = |count: &usize| arguments.includes(*count);

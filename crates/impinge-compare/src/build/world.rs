@@ -1,4 +1,4 @@
-//! Whole worlds of boxes that are not turned: impinge, rapier and ncollide. Made, moved and read.
+//! Worlds of axis-aligned boxes: impinge, rapier and ncollide. Built, moved and read.
 
 use impinge::math::Isometry3;
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -20,14 +20,14 @@ pub trait World: Send {
     /// Moves some boxes and updates.
     fn step(&mut self, moved: &[(u32, Cell<3>)]);
 
-    /// Reads every contact point: how many there are, and the sum of their depths.
+    /// Reads every contact point: their number, and the sum of their depths.
     fn read(&self) -> (usize, f32);
 
-    /// The pairs with contact points, by [`key`].
+    /// Returns the pairs with contact points, by [`key`].
     fn touching(&self) -> Vec<u64>;
 }
 
-/// The touching pairs of a world, sorted, but for those of which rounding decides whether they touch.
+/// Returns the touching pairs of a world, sorted, except those for which rounding decides.
 pub fn certainly_touching(world: &dyn World, cells: &[Cell<3>]) -> Vec<u64> {
     let mut pairs = world.touching();
     let ends = |key: &u64| [key >> 32, key & 0xffff_ffff].map(|n| &cells[n as usize]);
@@ -47,7 +47,7 @@ pub struct Ours {
 }
 
 impl Ours {
-    /// A world without boxes.
+    /// Creates a world without boxes.
     pub fn new() -> Self {
         Self { world: CollisionWorld::new(MARGIN), handles: Vec::new() }
     }
@@ -84,7 +84,7 @@ impl World for Ours {
     }
 }
 
-/// Colliders without bodies, which cost it the least.
+/// Colliders without bodies, which cost rapier the least.
 impl World for Rapier {
     fn add(&mut self, cell: &Cell<3>) {
         let [x, y, z] = cell.half;
@@ -117,7 +117,7 @@ pub struct Ncollide {
 }
 
 impl Ncollide {
-    /// A world without boxes.
+    /// Creates a world without boxes.
     pub fn new() -> Self {
         Self { world: ncollide::CollisionWorld::new(MARGIN), handles: Vec::new() }
     }

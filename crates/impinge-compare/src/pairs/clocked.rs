@@ -1,4 +1,4 @@
-//! A narrow phase with a clock.
+//! A narrow phase that times its updates.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -14,7 +14,7 @@ use impinge::world::{
 
 use crate::measure::timed;
 
-/// The default narrow phase, and how long its last update took.
+/// The default narrow phase, with the time of its last update.
 #[derive(Clone)]
 pub struct Clocked<const D: usize>
 where
@@ -24,12 +24,12 @@ where
     time: Clock,
 }
 
-/// A time in nanoseconds that a narrow phase tells.
+/// The time of a narrow phase, in nanoseconds.
 #[derive(Clone, Debug, Default)]
 pub struct Clock(Arc<AtomicU64>);
 
 impl Clock {
-    /// The time of the last update.
+    /// Returns the time of the last update.
     pub fn read(&self) -> f64 {
         f64::from_bits(self.0.load(Ordering::Relaxed))
     }
@@ -44,7 +44,7 @@ where
     }
 }
 
-/// Whatever is not the update is handed on.
+/// Everything but the update is delegated.
 type Objects<const D: usize, T> = CollisionObjects<f32, D, T>;
 
 impl<const D: usize, T> NarrowPhase<f32, D, T> for Clocked<D>

@@ -1,8 +1,8 @@
-//! Coal's queries, in `f64`: it has no others.
+//! Queries of Coal, in `f64`, its only scalar here.
 //!
-//! All pairs of a round are asked for in one call, with functors that know the two shapes; a contact is
-//! one of `collide` within the security margin, which of a mesh are as many as there are, and a manifold
-//! has the polygons of `ComputeContactPatch` besides.
+//! All pairs of a round are computed in one call, with functors for the two shapes. A contact is one of
+//! `collide` within the security margin; for a mesh all of its contacts are computed. A manifold also
+//! has the polygons of `ComputeContactPatch`.
 
 use impinge_compare_c::{CoalPairs, CoalPose, CoalSolid};
 
@@ -11,8 +11,8 @@ use super::placement::Placement;
 use super::question::{Answer, Contender, PREDICTION, Question, Stand, stand};
 use super::regime::{Pair, Poses};
 
-/// A solid of Coal; `None` for what it has not, has in another frame (height fields), or only as a part
-/// of meshes (triangles).
+/// Returns a solid of Coal; `None` for shapes that it lacks, that it has in another frame (height
+/// fields), or only as parts of meshes (triangles).
 fn solid(form: &Form<3>) -> Option<CoalSolid> {
     Some(match form {
         Form::Ball(radius) => CoalSolid::ball(*radius),
@@ -34,7 +34,7 @@ fn pose(Placement { translation: [x, y, z], rotation: [i, j, k, w] }: &Placement
     [*x, *y, *z, *i, *j, *k, *w]
 }
 
-/// The pairs of a case; the two sets come first, then those that are a little moved.
+/// The pairs of a case; the two sets come first, then the slightly moved ones.
 pub struct Coal {
     pairs: CoalPairs,
     found: Vec<f32>,
@@ -42,7 +42,7 @@ pub struct Coal {
 }
 
 impl Coal {
-    /// `None` where it does not have one of the shapes.
+    /// `None` if it lacks one of the shapes.
     pub fn new(pair: &Pair<3>, poses: &Poses<3>) -> Option<Self> {
         let [first, second] = pair.forms().map(solid);
         let all = |set: &Vec<Placement<3>>| set.iter().map(pose).collect::<Vec<_>>();

@@ -1,9 +1,9 @@
-//! The solids of the suite as plain data: each about 1 across, around the origin of its frame.
+//! The solids of the suite as plain data: each of size about 1, around the origin of its frame.
 
 use impinge_reference::geometry::vector::{dot, norm, perpendicular, scale, sub};
 use impinge_reference::random::Random;
 
-/// A solid in its own frame; heights and axes go along the second coordinate.
+/// A solid in its local frame; heights and axes are along the second coordinate.
 #[derive(Clone, Debug)]
 pub enum Form<const D: usize> {
     Ball(f64),
@@ -21,25 +21,25 @@ pub enum Form<const D: usize> {
     Polyline(Terrain),
 }
 
-/// Hills over a square of cells, or over a row of them in the plane, around the origin.
+/// Hills over a square of cells, or over a row of cells in 2D, around the origin.
 #[derive(Clone, Copy, Debug)]
 pub struct Terrain {
-    /// How many cells there are along each axis.
+    /// The number of cells along each axis.
     pub cells: u32,
     /// The side of a cell.
     pub side: f64,
-    /// How high the hills rise, and how deep the valleys are.
+    /// The height of the hills and depth of the valleys.
     pub height: f64,
 }
 
-/// A solid by name.
+/// A solid with its name.
 #[derive(Clone, Debug)]
 pub struct Solid<const D: usize> {
     pub name: &'static str,
     pub form: Form<D>,
-    /// Directions to lay it flat by: outward normals of faces, or across an axis.
+    /// Directions for laying it flat: outward normals of faces, or perpendicular to an axis.
     pub flats: Vec<[f64; D]>,
-    /// The same about 1 across, for a ground that meets another.
+    /// A version of size about 1, for a ground that is paired with another ground.
     pub patch: Option<Form<D>>,
 }
 
@@ -48,7 +48,7 @@ impl<const D: usize> Solid<D> {
         Self { name, form, flats, patch: None }
     }
 
-    /// Wider than high: it stays where it is, and many solids meet the same one.
+    /// Whether it is wider than high: it is not moved, and many solids are paired with the same one.
     pub fn is_ground(&self) -> bool {
         matches!(self.form, Form::HalfSpace) || self.patch.is_some()
     }
@@ -66,12 +66,12 @@ impl Terrain {
         f64::from(self.cells) * self.side
     }
 
-    /// The height of a vertex by its numbers; waves of several lengths, without trigonometry.
+    /// Returns the height of a vertex by its indices: waves of several lengths, without trigonometry.
     pub fn height(&self, [x, z]: [u32; 2]) -> f64 {
         self.height * (wave(x, 11) + wave(z, 13) + wave(x + 2 * z, 17)) / 3.0
     }
 
-    /// The height over a point, to within the bend of a cell.
+    /// Returns the height over a point, up to the curvature within a cell.
     pub fn height_at(&self, [x, z]: [f64; 2]) -> f64 {
         let number = |x: f64| ((x + self.extent() / 2.0) / self.side).round() as u32;
         self.height([number(x), number(z)])
@@ -81,13 +81,13 @@ impl Terrain {
         f64::from(number) * self.side - self.extent() / 2.0
     }
 
-    /// The vertices, row by row: x grows within a row, z from row to row.
+    /// Returns the vertices, row by row: x grows within a row, z from row to row.
     pub fn vertices(&self) -> Vec<[f64; 3]> {
         let vertex = |[x, z]: [u32; 2]| [self.along(x), self.height([x, z]), self.along(z)];
         self.numbers().map(vertex).collect()
     }
 
-    /// The heights of the vertices, row by row.
+    /// Returns the heights of the vertices, row by row.
     pub fn heights(&self) -> Vec<f64> {
         self.numbers().map(|at| self.height(at)).collect()
     }
@@ -97,21 +97,21 @@ impl Terrain {
         (0..count).flat_map(move |z| (0..count).map(move |x| [x, z]))
     }
 
-    /// Two triangles for each cell, counter-clockwise seen from above.
+    /// Returns two triangles for each cell, counter-clockwise seen from above.
     pub fn triangles(&self) -> Vec<[u32; 3]> {
         let (cells, row) = (self.cells, self.cells + 1);
         let corners = (0..cells).flat_map(|z| (0..cells).map(move |x| z * row + x));
         corners.flat_map(|a| [[a, a + row, a + row + 1], [a, a + row + 1, a + 1]]).collect()
     }
 
-    /// The vertices of a line in the plane, from right to left: its front is above.
+    /// Returns the vertices of a polyline in 2D, from right to left: its front is above.
     pub fn line(&self) -> Vec<[f64; 2]> {
         let vertex = |x: u32| [self.along(x), self.height([x, 0])];
         (0..=self.cells).rev().map(vertex).collect()
     }
 }
 
-/// A smooth wave of a period, between −1 and 1: parabolas up and down.
+/// A smooth wave of a period, between −1 and 1: alternating parabolas.
 fn wave(n: u32, period: u32) -> f64 {
     let phase = f64::from(n % period) / f64::from(period) * 2.0;
     let (sign, share) = if phase < 1.0 { (1.0, phase) } else { (-1.0, phase - 1.0) };
@@ -127,12 +127,12 @@ fn axis<const D: usize>(which: usize, sign: f64) -> [f64; D] {
     std::array::from_fn(|i| if i == which { sign } else { 0.0 })
 }
 
-/// Both directions of the axes named.
+/// Returns both directions of the given axes.
 fn axes<const D: usize>(which: &[usize]) -> Vec<[f64; D]> {
     which.iter().flat_map(|&i| [axis(i, 1.0), axis(i, -1.0)]).collect()
 }
 
-/// The solids of the plane, grounds last.
+/// Returns the solids of 2D, grounds last.
 pub fn plane() -> Vec<Solid<2>> {
     let octagon = around_origin(8, 0.55, 0.35);
     let triangle = [[-0.5, -0.35], [0.5, -0.3], [0.0, 0.65]];
@@ -148,7 +148,7 @@ pub fn plane() -> Vec<Solid<2>> {
     ]
 }
 
-/// The solids of space, grounds last.
+/// Returns the solids of 3D, grounds last.
 pub fn space() -> Vec<Solid<3>> {
     let segment = [[-0.5, -0.1, -0.2], [0.5, 0.1, 0.2]];
     let triangle = [[-0.5, -0.1, -0.35], [0.5, 0.1, -0.3], [0.0, 0.0, 0.65]];
@@ -171,7 +171,8 @@ pub fn space() -> Vec<Solid<3>> {
     ]
 }
 
-/// Points on a sphere, so that none is inside the hull of the others, at least `apart` from another.
+/// Returns points on a sphere, so that none is inside the hull of the others, at least `apart` from
+/// each other.
 fn around_origin<const D: usize>(count: usize, radius: f64, apart: f64) -> Vec<[f64; D]> {
     let mut random = Random::new(count as u64);
     let mut points: Vec<[f64; D]> = Vec::new();
@@ -184,7 +185,7 @@ fn around_origin<const D: usize>(count: usize, radius: f64, apart: f64) -> Vec<[
     points
 }
 
-/// Two directions across a segment.
+/// Returns two directions perpendicular to a segment.
 fn across_segment<const D: usize>([a, b]: &[[f64; D]; 2]) -> Vec<[f64; D]> {
     let along = scale(&sub(b, a), 1.0 / norm(&sub(b, a)));
     let across = sub(&up(), &scale(&along, dot(&along, &up())));
@@ -192,7 +193,8 @@ fn across_segment<const D: usize>([a, b]: &[[f64; D]; 2]) -> Vec<[f64; D]> {
     vec![across, scale(&across, -1.0)]
 }
 
-/// The outward normals of the hull of a few points: of every D of them, those with all others behind.
+/// Returns the outward normals of the hull of a few points: of every D points with all others behind
+/// them.
 fn face_normals<const D: usize>(points: &[[f64; D]]) -> Vec<[f64; D]> {
     let mut normals = Vec::new();
     for (i, a) in points.iter().enumerate() {
@@ -206,13 +208,13 @@ fn face_normals<const D: usize>(points: &[[f64; D]]) -> Vec<[f64; D]> {
     normals
 }
 
-/// The normal of a line through the first two points, or of a plane through all three.
+/// Returns the normal of the line through the first two points, or of the plane through all three.
 fn normal_of<const D: usize>(a: &[f64; D], b: &[f64; D], c: &[f64; D]) -> [f64; D] {
     let normal = perpendicular(&[sub(b, a), sub(c, a)][..D - 1]);
     scale(&normal, 1.0 / norm(&normal))
 }
 
-/// The sides of a plane through `on` that no point is on.
+/// Returns the sides of the plane through `on` without points.
 fn outward<const D: usize>(points: &[[f64; D]], on: &[f64; D], normal: &[f64; D]) -> Vec<[f64; D]> {
     let is_behind = |side: &[f64; D]| points.iter().all(|p| dot(&sub(p, on), side) < 1e-9);
     [*normal, scale(normal, -1.0)].into_iter().filter(is_behind).collect()

@@ -3,7 +3,7 @@
 use super::question::{Contender, Question};
 use super::regime::PAIRS;
 
-/// Runs the contender of this name in so many rounds of a case, and says how many calls that were. The
+/// Runs the contender of this name for `rounds` rounds of a case, and prints the number of calls. The
 /// first round is not counted.
 pub fn count(
     case: &str,
@@ -23,7 +23,7 @@ pub fn count(
     }
 }
 
-/// The one function whose instructions count.
+/// The one function whose instructions are counted.
 #[inline(never)]
 fn counted(contender: &mut dyn Contender, question: Question) {
     contender.ask(question);

@@ -1,12 +1,12 @@
-//! The suite of pairs: two solids at a time, in all ways to be near, asked everything that there is to
-//! ask. `f32`, one thread; times are nanoseconds per pair.
+//! The suite of pairs: two solids at a time, at all distances, with all queries. `f32`, one thread; times are
+//! nanoseconds per pair.
 //!
-//! Cases are each two of [`form::plane`] and of [`form::space`] in each [`regime::Regime`], 256
-//! random placements of them. They are found with impinge: the second solid is moved along a direction
-//! until the distance is that of the regime. Regimes that a pair cannot be in are left out, such as a
-//! segment deep in another. Of two grounds the second is a patch of it, about 1 across.
+//! Cases are each two of [`form::plane`] and of [`form::space`] in each [`regime::Regime`], with 256 random placements.
+//! They are found with impinge: the second solid is moved along a direction until the distance is that of the regime.
+//! Impossible regimes are omitted, such as a segment deep in another. For two grounds the second one is a patch of it,
+//! about 1 across.
 //!
-//! What a time covers:
+//! The calls that a time covers:
 //!
 //! | question | impinge | parry | ncollide |
 //! |---|---|---|---|
@@ -16,42 +16,37 @@
 //! | time of impact | `impact` within 10 | `cast_shapes` | `time_of_impact` |
 //! | manifold | `PairManifoldGenerator` | `contact_manifolds` | a generator of `DefaultContactDispatcher` |
 //!
-//! With the feature `coal` Coal runs in space as well, in `f64`: `ComputeDistance` for distances,
-//! `ComputeCollision` with a security margin for contacts and proximity, `ComputeContactPatch` after it
-//! for manifolds, all pairs in one call from C++. Warm searches begin with the last direction. It has no
-//! time of impact, and throws for triangles.
+//! With the feature `coal` Coal runs in 3D as well, in `f64`: `ComputeDistance` for distances, `ComputeCollision` with
+//! a security margin for contacts and proximity, `ComputeContactPatch` after it for manifolds, all pairs in one call
+//! from C++. Warm searches begin with the last direction. It has no time of impact, and throws for triangles.
 //!
-//! Left out: FCL, whose wheel can be asked for one pair at a time from Python alone, at a microsecond for
-//! each call, and from whose library Coal came.
+//! FCL, the origin of the code of Coal, is omitted: its wheel computes one pair at a time from Python, at a microsecond
+//! for each call.
 //!
-//! Single calls are given both placements, in the world; parry's manifold is given the second one in
-//! the frame of the first, and making it is part of the time. "impinge" is that call; its manifold is
-//! kept as it is found, and made in the world's frame, with all that belongs to a contact, when it is read, which no
-//! time covers. "impinge world" is the batch: a world
-//! of all 256 pairs, far from one another, is told the placements of the second solids and updated, and
-//! the time is a 256th of that. It includes the broad phase, whose boxes are so loose that
-//! all pairs stay pairs in all regimes; it does not include reading the manifolds, which are as the
-//! narrow phase keeps them until they are read. "impinge narrow phase" is the part of the same updates that
-//! the narrow phase takes. "impinge reusing" is a world in which pairs keep their contacts while they have
-//! moved by less than a twentieth of the prediction (warm solids alone are asked), as parry's do within
-//! a degree and a thousandth; "impinge alone reusing" is a `PairManifoldGenerator` that does so; all else computes
-//! everything anew.
+//! Single calls get both placements in the world frame. The manifold of parry gets the second one in the frame of the
+//! first, and computing it is part of the time. "impinge" is the single call; its manifold is stored in its internal
+//! form, and built in the world frame, with all data of a contact, when it is read, which is not timed. "impinge world"
+//! is the batch: a world of all 256 pairs, far from each other, gets the placements of the second solids and is
+//! updated, and the time is a 256th of that. It includes the broad phase, whose boxes are so large that all pairs stay
+//! pairs in all regimes; it does not include reading the manifolds. "impinge narrow phase" is the part of the same
+//! updates that the narrow phase takes. "impinge reusing" is a world in which pairs keep their contacts while they have
+//! moved by less than a twentieth of the prediction (warm solids only), as those of parry do within a degree and a
+//! thousandth; "impinge alone reusing" is a `PairManifoldGenerator` that does so. All others recompute everything.
 //!
-//! Manifolds are *cold* if nothing that was kept is of use: alone, each call begins with a new generator
-//! (or an empty list of manifolds); in a world, all second solids jump between two sets of placements
-//! that have nothing to do with each other. *Warm* solids move by a thousandth and turn by as many
-//! radians at most between calls; *undisturbed* ones are told the same placement again.
+//! Manifolds are *cold* if no stored state is useful: alone, each call begins with a new generator (or an empty list of
+//! manifolds); in a world, all second solids jump between two unrelated sets of placements. *Warm* solids move by at
+//! most a thousandth and rotate by as many radians between calls; *undisturbed* ones get the same placement again.
 //!
-//! Answers are compared before a time is printed: distances, signed distances of contacts (in manifolds
-//! of the deepest one), times of impact, each within 0.002, and whether solids touch unless they just
-//! do. Rows are left out where a contender has no algorithm for a pair, or takes milliseconds for each; whoever
-//! answers otherwise for more than half of the pairs is in the table, but no rival. Where there is a
-//! target its row says what it is on this machine, which is compared by what the manifold of two balls
-//! takes parry. In the end come the cases where impinge takes more than half of the time of its best rival.
+//! Results are compared before a time is printed: distances, signed distances of contacts (in manifolds of the deepest
+//! one), times of impact, each within 0.002, and whether solids touch unless they just touch. Rows are omitted if a
+//! contender has no algorithm for a pair, or takes milliseconds for each. A contender with other results for more than
+//! half of the pairs is in the table, but is no rival. If there is a target its row has the target for this machine,
+//! scaled by the time of parry's manifold of two balls. At the end come the cases where impinge takes more than half of
+//! the time of its best rival.
 //!
-//! `kernels` runs so many rounds (`--steps`) of one contender (`--only`, its whole name) in the cases
-//! selected, for instruction counters and profilers. Instructions per call are those collected divided
-//! by the calls that it prints (see `bench/callgrind.md`):
+//! `kernels` runs `--steps` rounds of one contender (`--only`, its whole name) in the selected cases, for instruction
+//! counters and profilers. Instructions per call are those collected divided by the printed number of calls (see
+//! `bench/callgrind.md`):
 //!
 //! ```text
 //! valgrind --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect='*kernels*counted*' target/release/impinge-compare kernels --steps 8 --case '3D cuboid, cuboid, stacked: manifold warm' --only 'impinge world'
@@ -101,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     vec![table]
 }
 
-/// Runs, for an instruction counter, what is selected.
+/// Runs the selected cases for an instruction counter.
 pub fn count(arguments: &Arguments) {
     each(&arguments.case, &mut |case, question, _, contenders| {
         let rounds = arguments.steps as usize;
@@ -109,7 +104,7 @@ pub fn count(arguments: &Arguments) {
     });
 }
 
-/// What is done with each case of a question.
+/// The action for each case of a question.
 type Visit<'a> = &'a mut dyn FnMut(&str, Question, Regime, &mut Vec<Box<dyn Contender>>);
 
 /// All cases whose name contains the text.
@@ -118,7 +113,7 @@ fn each(text: &str, visit: Visit<'_>) {
     each_of(&form::space(), text, contest_in_space, visit);
 }
 
-/// What it takes to hold a contest between two solids.
+/// A constructor of the contenders for two solids.
 type Contest<const D: usize> = fn(&Pair<D>, Regime) -> Option<Vec<Box<dyn Contender>>>;
 
 fn each_of<const D: usize>(solids: &[Solid<D>], text: &str, contest: Contest<D>, visit: Visit<'_>) {
@@ -174,7 +169,7 @@ fn boxed<C: Contender + 'static>(contender: Option<C>) -> Option<Box<dyn Contend
     contender.map(|contender| Box::new(contender) as Box<dyn Contender>)
 }
 
-/// The placements of a case; says so if there are none.
+/// Returns the placements of a case; prints a message if there are none.
 fn poses<const D: usize>(pair: &Pair<D>, regime: Regime, judge: Judge<'_, D>) -> Option<Poses<D>> {
     let poses = regime::poses(pair, regime, judge);
     if poses.is_none() {
@@ -183,7 +178,7 @@ fn poses<const D: usize>(pair: &Pair<D>, regime: Regime, judge: Judge<'_, D>) ->
     poses
 }
 
-/// How much slower this machine is than that of the targets.
+/// Returns how much slower this machine is than that of the targets.
 fn scale_of_this_machine() -> f64 {
     const ROUNDS: usize = 100;
     let mut scale = f64::NAN;

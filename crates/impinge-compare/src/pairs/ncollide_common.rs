@@ -1,4 +1,4 @@
-// The rest, for both crates; included by `ncollide.rs`.
+// Common code of both crates; included by `ncollide.rs`.
 
 use std::time::{Duration, Instant};
 
@@ -20,16 +20,17 @@ use super::super::question::{
 };
 use super::super::regime::{Pair, Poses};
 
-/// A round of single questions that takes longer is given up: of two grounds ncollide takes minutes for some.
+/// A round of single queries that takes longer is aborted: for two grounds ncollide takes minutes in some
+/// cases.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// So many pairs are told from one look at the clock to the next, but for the first.
+/// The number of pairs between two checks of the clock, except the first.
 const AT_A_LOOK: usize = 16;
 
-/// A solid and where it is.
+/// A solid with its position.
 type Placed<'a> = (&'a Isometry<f32>, &'a dyn Shape<f32>);
 
-/// What ncollide keeps of a pair.
+/// The state that ncollide keeps for a pair.
 struct Kept {
     algorithm: ContactAlgorithm<f32>,
     manifold: ContactManifold<f32>,
@@ -68,7 +69,7 @@ fn shape(form: &Form<DIM>) -> Option<ShapeHandle<f32>> {
     })
 }
 
-/// An algorithm and an empty manifold, as its own narrow phase makes them.
+/// Returns an algorithm and an empty manifold, as its own narrow phase makes them.
 fn fresh(shape1: &dyn Shape<f32>, shape2: &dyn Shape<f32>) -> Option<Kept> {
     let algorithm = DefaultContactDispatcher::new().get_contact_algorithm(shape1, shape2)?;
     let manifold = algorithm.init_manifold();
@@ -76,7 +77,7 @@ fn fresh(shape1: &dyn Shape<f32>, shape2: &dyn Shape<f32>) -> Option<Kept> {
 }
 
 impl Ncollide {
-    /// `None` where it does not have one of the shapes.
+    /// `None` if it lacks one of the shapes.
     pub fn new(pair: &Pair<DIM>, poses: &Poses<DIM>) -> Option<Self> {
         let [first, second] = pair.forms().map(shape);
         let all = |set: &Vec<Placement<DIM>>| set.iter().map(isometry).collect::<Vec<_>>();
@@ -92,7 +93,7 @@ impl Ncollide {
         })
     }
 
-    /// The answers about all pairs by their numbers, unless that takes so long that it is given up.
+    /// Computes the results of all pairs, unless that takes so long that it is aborted.
     fn ask_all(&mut self, ask: impl Fn(&Self, usize) -> Answer) {
         let (begun, all) = (Instant::now(), self.first.len());
         let mut next = 1;
@@ -107,7 +108,7 @@ impl Ncollide {
         self.answers.resize(all, Answer::UNSUPPORTED);
     }
 
-    /// A question about where two solids are.
+    /// Runs a query that depends on the positions of two solids only.
     fn ask_of_places(&mut self, ask: impl Fn(&Placed<'_>, &Placed<'_>) -> Answer) {
         self.ask_all(|own, n| {
             let [shape1, shape2] = &own.shapes;

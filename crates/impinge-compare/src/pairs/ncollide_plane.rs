@@ -1,4 +1,4 @@
-// What differs between the plane and space; included by `ncollide.rs`.
+// Code for 2D; included by `ncollide.rs`.
 
 use ncollide::na::UnitComplex;
 use ncollide::shape::{ConvexPolygon, Polyline};

@@ -1,4 +1,4 @@
-// What differs between the plane and space; included by `ncollide.rs`.
+// Code for 3D; included by `ncollide.rs`.
 
 use ncollide::na::{DMatrix, Point3, Quaternion, UnitQuaternion};
 use ncollide::shape::{ConvexHull, HeightField, TriMesh, Triangle};
@@ -15,7 +15,7 @@ fn isometry(placement: &Placement<3>) -> Isometry<f32> {
     Isometry::from_parts(Translation::from(vector(&placement.translation)), rotation)
 }
 
-/// Its cylinders and cones are no shapes yet: nothing can be asked about them.
+/// Its cylinders and cones do not implement its trait of shapes, so that no query accepts them.
 fn particular(form: &Form<3>) -> Option<ShapeHandle<f32>> {
     Some(match form {
         Form::Triangle([a, b, c]) => ShapeHandle::new(Triangle::new(point(a), point(b), point(c))),

@@ -21,13 +21,13 @@ use super::regime::{Pair, Poses};
 use super::target::{ALONE, ALONE_REUSING, PART, REUSING_PART};
 use crate::measure::Times;
 
-/// How far boxes are loosened: all pairs stay pairs, whatever their regime.
+/// The margin of boxes: all pairs stay pairs, in all regimes.
 const MARGIN: f32 = 2.5;
 
-/// How far solids may move, beside one another, and keep their contacts, where that is allowed.
+/// The relative motion within which pairs keep their contacts, where that is enabled.
 const TOLERANCE: f32 = PREDICTION / 20.0;
 
-/// What is particular to a dimension.
+/// The functions that differ by dimension.
 pub trait Dimension<const D: usize>: AbstractRotation<f32, D> + Copy + 'static {
     fn isometry(placement: &Placement<D>) -> Isometry<f32, Self, D>;
     fn particular(form: &Form<D>) -> ShapeHandle<f32, D>;
@@ -74,7 +74,7 @@ impl Dimension<3> for UnitQuaternion<f32> {
                 let extent = terrain.extent() as f32;
                 let scale = Vector::<f32, 3>::new(extent, 1.0, extent);
                 let field = HeightField::<f32, 3>::new(row, row, heights, scale);
-                // The rivals' cells are divided so.
+                // The cells of the rivals have these diagonals.
                 ShapeHandle::new(field.with_diagonals(Diagonals::Backward))
             }
             other => unreachable!("{other:?} is not of space"),
@@ -111,7 +111,7 @@ where
     }
 }
 
-/// The signed distance, of which the placements of all contenders are made.
+/// Returns the signed distance, from which the placements for all contenders are made.
 pub fn judge<R: Dimension<D>, const D: usize>(
     pair: &Pair<D>,
 ) -> impl Fn(&Placement<D>, &Placement<D>) -> f64 + use<R, D>
@@ -164,7 +164,7 @@ where
 /// The queries, and the manifolds of a pair alone.
 pub struct Alone<R: Dimension<D>, const D: usize> {
     data: Data<R, D>,
-    /// A generator that holds nothing.
+    /// An empty generator.
     fresh: PairManifoldGenerator<f32, D>,
     is_reusing: bool,
     generators: Vec<PairManifoldGenerator<f32, D>>,
@@ -189,7 +189,7 @@ where
         }
     }
 
-    /// The same, where pairs that have hardly moved keep their contacts.
+    /// Creates the contender in which pairs that have hardly moved keep their contacts.
     pub fn reusing(pair: &Pair<D>, poses: &Poses<D>) -> Self {
         let fresh = PairManifoldGenerator::default().reusing(TOLERANCE);
         Self { fresh, is_reusing: true, ..Self::new(pair, poses) }
@@ -294,7 +294,7 @@ where
     second: Vec<CollisionObjectHandle>,
     is_reusing: bool,
     round: usize,
-    /// Tells what the narrow phase takes, and what it took in each round.
+    /// The time of the narrow phase in each round.
     clock: Clock,
     narrow: Times,
 }
@@ -311,13 +311,14 @@ where
         Self { data, world, second, is_reusing: false, round: 0, clock, narrow }
     }
 
-    /// The same, where pairs that have hardly moved keep their contacts.
+    /// Creates the contender in which pairs that have hardly moved keep their contacts.
     pub fn reusing(pair: &Pair<D>, poses: &Poses<D>) -> Self {
         Self { is_reusing: true, ..Self::new(pair, poses) }
     }
 }
 
-/// A world with all objects of the first set. First objects meet second ones, and nothing else.
+/// Returns a world with all objects of the first set. First objects have pairs with second ones
+/// only.
 fn filled<R: Dimension<D>, const D: usize>(
     data: &Data<R, D>,
     clock: &Clock,

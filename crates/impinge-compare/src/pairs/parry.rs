@@ -1,13 +1,13 @@
-//! parry's answers: its two crates differ in nothing but their names, and so do the modules here.
+//! Results of parry: its two crates differ in their names only, and so do the modules here.
 
-/// parry in the plane.
+/// parry in 2D.
 pub mod plane {
     use ::parry2d as parry;
     include!("parry_plane.rs");
     include!("parry_common.rs");
 }
 
-/// parry in space.
+/// parry in 3D.
 pub mod space {
     use ::parry3d as parry;
     include!("parry_space.rs");

@@ -1,4 +1,4 @@
-// The rest, for both crates; included by `parry.rs`.
+// Common code of both crates; included by `parry.rs`.
 
 use parry::math::{Pose, Rotation, Vector};
 use parry::query::details::ShapeCastOptions;
@@ -15,7 +15,7 @@ use super::super::question::{
 };
 use super::super::regime::{Pair, Poses};
 
-/// What parry keeps of a pair.
+/// The state that parry keeps for a pair.
 #[derive(Default)]
 struct Kept {
     manifolds: Vec<ContactManifold<(), ()>>,
@@ -56,7 +56,7 @@ fn shape(form: &Form<DIM>) -> Option<SharedShape> {
 }
 
 impl Parry {
-    /// `None` where it does not have one of the shapes.
+    /// `None` if it lacks one of the shapes.
     pub fn new(pair: &Pair<DIM>, poses: &Poses<DIM>) -> Option<Self> {
         let [first, second] = pair.forms().map(shape);
         let all = |set: &Vec<Placement<DIM>>| set.iter().map(pose).collect::<Vec<_>>();

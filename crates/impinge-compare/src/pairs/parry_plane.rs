@@ -1,4 +1,4 @@
-// What differs between the plane and space; included by `parry.rs`.
+// Code for 2D; included by `parry.rs`.
 
 const DIM: usize = 2;
 

@@ -1,4 +1,4 @@
-// What differs between the plane and space; included by `parry.rs`.
+// Code for 3D; included by `parry.rs`.
 
 const DIM: usize = 3;
 
@@ -27,7 +27,7 @@ fn particular(form: &Form<3>) -> Option<SharedShape> {
             SharedShape::trimesh(cloud(&terrain.vertices()), terrain.triangles()).ok()?
         }
         Form::HeightField(terrain) => {
-            // Its heights go down columns first: along z.
+            // Its heights are column by column: along z.
             let row = terrain.cells + 1;
             let at = |n: u32| terrain.height([n / row, n % row]) as f32;
             let heights = (0..row * row).map(at).collect();

@@ -1,4 +1,4 @@
-//! Where solids stand, as plain numbers that every contender is given.
+//! Placements of solids, as plain numbers that every contender gets.
 
 use impinge_reference::geometry::vector::{add, dot, norm, scale, sub};
 use impinge_reference::random::Random;
@@ -7,11 +7,11 @@ use impinge_reference::random::Random;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<const D: usize> {
     pub translation: [f64; D],
-    /// The quaternion `[x, y, z, w]`; in the plane a turn about the third axis.
+    /// The quaternion `[x, y, z, w]`; in 2D a rotation about the third axis.
     pub rotation: [f64; 4],
 }
 
-/// No turn.
+/// The identity.
 pub const UNTURNED: [f64; 4] = [0.0, 0.0, 0.0, 1.0];
 
 impl<const D: usize> Placement<D> {
@@ -19,13 +19,14 @@ impl<const D: usize> Placement<D> {
         Self { translation, rotation }
     }
 
-    /// The cosine and the sine of a turn in the plane.
+    /// Returns the cosine and the sine of a rotation in 2D.
     pub fn complex(&self) -> [f64; 2] {
         let [_, _, z, w] = self.rotation;
         [w * w - z * z, 2.0 * z * w]
     }
 
-    /// As it is after a small move and a small turn: neither by more than `size`.
+    /// Returns the placement after a small translation and a small rotation: neither by more than
+    /// `size`.
     pub fn perturbed(&self, random: &mut Random, size: f64) -> Self {
         let step: [f64; D] = random.unit_vector();
         let angle = random.range(-size, size) / 2.0;
@@ -39,7 +40,7 @@ impl<const D: usize> Placement<D> {
     }
 }
 
-/// Any rotation of the plane or of space.
+/// Returns any rotation in 2D or 3D.
 pub fn any_rotation<const D: usize>(random: &mut Random) -> [f64; 4] {
     if D == 2 {
         let [z, w] = random.unit_vector();
@@ -48,7 +49,7 @@ pub fn any_rotation<const D: usize>(random: &mut Random) -> [f64; 4] {
     random.quaternion()
 }
 
-/// The shortest rotation that takes one direction to another.
+/// Returns the shortest rotation that maps one direction to another.
 pub fn turning<const D: usize>(from: &[f64; D], to: &[f64; D]) -> [f64; 4] {
     let (from, to) = (in_space(from), in_space(to));
     let cosine = dot(&from, &to);
@@ -60,7 +61,7 @@ pub fn turning<const D: usize>(from: &[f64; D], to: &[f64; D]) -> [f64; 4] {
     unit([x, y, z, 1.0 + cosine])
 }
 
-/// A direction across another, across the plane too where the other lies in it.
+/// Returns a perpendicular direction; for a vector in the x-y plane one out of that plane.
 fn perpendicular_to(direction: &[f64; 3]) -> [f64; 3] {
     let axis = if direction[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
     sub(&axis, &scale(direction, dot(direction, &axis)))
@@ -82,7 +83,7 @@ fn cross([a, b, c]: &[f64; 3], [x, y, z]: &[f64; 3]) -> [f64; 3] {
     [b * z - c * y, c * x - a * z, a * y - b * x]
 }
 
-/// The rotation `q`, then the rotation `p`.
+/// Composes rotations: `q`, then `p`.
 fn product(p: [f64; 4], q: [f64; 4]) -> [f64; 4] {
     let ([px, py, pz, pw], [qx, qy, qz, qw]) = (p, q);
     let (u, v) = ([px, py, pz], [qx, qy, qz]);

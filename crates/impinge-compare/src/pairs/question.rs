@@ -1,8 +1,8 @@
-//! What is asked, and what is answered.
+//! Queries and results.
 
 use crate::measure::Times;
 
-/// What is asked of every pair of a case.
+/// The query for every pair of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
     Distance,
@@ -14,13 +14,13 @@ pub enum Question {
     ManifoldUndisturbed,
 }
 
-/// How far ahead contacts are wanted.
+/// The prediction of contacts.
 pub const PREDICTION: f32 = 0.1;
 
-/// Impacts after this time are not wanted.
+/// The maximum time of impacts.
 pub const LONGEST_TIME: f32 = 10.0;
 
-/// Two answers differ if they are farther apart than this; solids are about 1 across.
+/// Two results differ if their difference exceeds this; solids are of size about 1.
 const TOLERANCE: f32 = 2e-3;
 
 impl Question {
@@ -50,7 +50,7 @@ impl Question {
         matches!(self, Self::ManifoldCold | Self::ManifoldWarm | Self::ManifoldUndisturbed)
     }
 
-    /// By how many two lists of answers differ, to pairs at a distance.
+    /// Returns the number of differences between two lists of results, for pairs at a distance.
     pub fn differences(self, ours: &[Answer], theirs: &[Answer], distance: f64) -> usize {
         let is_undecided = self == Self::Proximity && distance.abs() <= f64::from(TOLERANCE);
         if is_undecided {
@@ -60,14 +60,14 @@ impl Question {
     }
 }
 
-/// One number that says it all: the distance; the signed distance of the contact, or of the deepest
-/// contact of all manifolds; zero for solids that touch and one for others; the time of impact.
-/// Infinite for none, NaN for a question that the contender cannot answer.
+/// A number that represents a result: the distance; the signed distance of the contact, or of the deepest
+/// contact of all manifolds; zero for touching solids and one for others; the time of impact. Infinite for no
+/// result, NaN for a query that the contender does not support.
 #[derive(Clone, Copy, Debug)]
 pub struct Answer(pub f32);
 
 impl Answer {
-    /// There is none.
+    /// No result.
     pub const NONE: Self = Self(f32::INFINITY);
     /// The contender has no algorithm for the pair.
     pub const UNSUPPORTED: Self = Self(f32::NAN);
@@ -77,7 +77,7 @@ impl Answer {
         Self(if is_touching { 0.0 } else { 1.0 })
     }
 
-    /// That of the deepest contact not farther than the prediction, of signed distances.
+    /// Returns the smallest of the signed distances within the prediction.
     pub fn deepest(distances: impl Iterator<Item = f32>) -> Self {
         let least = distances.fold(f32::INFINITY, f32::min);
         if least <= PREDICTION { Self(least) } else { Self::NONE }
@@ -87,7 +87,7 @@ impl Answer {
         !self.0.is_nan()
     }
 
-    /// It says that there is something.
+    /// Whether there is a result.
     pub fn is_some(self) -> bool {
         self.0.is_finite()
     }
@@ -98,41 +98,41 @@ impl Answer {
     }
 }
 
-/// One of those who answer.
+/// A contender.
 pub trait Contender {
     /// The name in the table.
     fn name(&self) -> &'static str;
 
-    /// Whether it is one for this question.
+    /// Whether it supports this question.
     fn treats(&self, question: Question) -> bool;
 
-    /// Forgets what it kept of earlier rounds, and gets ready for a question; not timed.
+    /// Drops the state of earlier rounds, and prepares a question; not timed.
     fn reset(&mut self, question: Question);
 
-    /// The next round: answers the question once for every pair; timed.
+    /// Runs the next round: the question once for every pair; timed.
     fn ask(&mut self, question: Question);
 
-    /// The answers of the last round, one for each pair; not timed.
+    /// Returns the results of the last round, one for each pair; not timed.
     fn answers(&self, question: Question) -> Vec<Answer>;
 
-    /// A part of what it does that has a row of its own: its name, and its times per pair in the rounds since
-    /// it began anew but the first.
+    /// Returns a part of its work that has a row of its own: its name, and its times per pair in all rounds
+    /// since the reset except the first.
     fn part(&self) -> Option<(&'static str, Times)> {
         None
     }
 }
 
-/// Which placements of the second solids a round is about.
+/// The placements of the second solids in a round.
 #[derive(Clone, Copy, Debug)]
 pub enum Stand {
     /// One of the two sets.
     Set(usize),
-    /// One of the sets that are a little moved.
+    /// One of the slightly moved sets.
     Moved(usize),
 }
 
-/// Where the second solids stand in a round: cold ones jump from set to set, warm ones move a little,
-/// all others stay.
+/// Returns the placements of the second solids in a round: cold ones jump from set to set, warm ones move
+/// slightly, all others stay.
 pub fn stand(question: Question, round: usize) -> Stand {
     match question {
         Question::ManifoldCold => Stand::Set(round % 2),

@@ -1,4 +1,4 @@
-//! The race of one question, and what the suite finds out about it.
+//! The race of one question, and its results.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -7,14 +7,14 @@ use super::regime::{PAIRS, Regime};
 use crate::measure::{Times, in_turn, timed};
 use crate::table::Row;
 
-/// No contender takes longer than about so many nanoseconds for all rounds of a question.
+/// The approximate limit for all rounds of a question, in nanoseconds.
 const LONGEST: f64 = 3e7;
 
-/// The fewest rounds that are measured.
+/// The smallest number of timed rounds.
 const FEWEST: usize = 2;
 
-/// Asks all contenders, and gives a row for each that has an answer for every pair. The first one is
-/// the measure of the others.
+/// Runs all contenders, and returns a row for each that has a result for every pair. Others are
+/// compared with the first one.
 pub fn race(
     case: &str,
     question: Question,
@@ -56,8 +56,8 @@ pub fn race(
     named.flat_map(rows).collect()
 }
 
-/// How long a contender takes for the first round; `None` if it has no algorithm for the pair, or
-/// gives up in panic. It begins anew afterwards.
+/// Returns the time of the first round of a contender; `None` if it has no algorithm for the pair,
+/// or panics. It is reset afterwards.
 fn tried(contender: &mut dyn Contender, question: Question) -> Option<f64> {
     let attempt = AssertUnwindSafe(|| {
         contender.reset(question);

@@ -1,4 +1,4 @@
-//! How near the two solids of a pair are, and placements that are so.
+//! The distance of the two solids of a pair, and placements at this distance.
 
 use impinge_reference::geometry::vector::{add, negate, scale};
 use impinge_reference::random::Random;
@@ -6,19 +6,20 @@ use impinge_reference::random::Random;
 use super::form::{Form, Solid, up};
 use super::placement::{Placement, UNTURNED, any_rotation, turning};
 
-/// How many pairs there are in a case.
+/// The number of pairs in a case.
 pub const PAIRS: usize = 256;
 
-/// How many sets of slightly moved solids there are.
+/// The number of sets of slightly moved solids.
 const MOVED_SETS: usize = 4;
 
-/// By how much a solid moves and turns from one warm update to the next, at most.
+/// The largest translation and rotation of a solid between two warm updates.
 const MOVE: f64 = 1e-3;
 
-/// Draws per pair before a regime counts as impossible: that of crossing segments, say.
+/// The number of draws per pair before a regime counts as impossible, for instance deep for crossing
+/// segments.
 const DRAWS: usize = 20;
 
-/// How near two solids are.
+/// The regime of the distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Regime {
     Far,
@@ -45,7 +46,7 @@ impl Regime {
         }
     }
 
-    /// The distance of the solids; negative where they overlap.
+    /// Returns the distance of the solids; negative if they overlap.
     pub fn distance(self) -> f64 {
         match self {
             Self::Far => 2.0,
@@ -61,21 +62,21 @@ impl Regime {
 /// The placements of all pairs of a case.
 #[derive(Clone, Debug)]
 pub struct Poses<const D: usize> {
-    /// There is one first solid, which stands still at the origin, for all pairs.
+    /// Whether there is a single first solid, fixed at the origin, for all pairs.
     pub is_ground: bool,
     pub first: Vec<Placement<D>>,
-    /// Two sets in the regime, which have nothing to do with one another.
+    /// Two unrelated sets in the regime.
     pub second: [Vec<Placement<D>>; 2],
-    /// The first of these sets, a little moved: other moves in each.
+    /// The first of these sets, slightly moved, differently in each.
     pub moved: Vec<Vec<Placement<D>>>,
-    /// Velocities of the second solids of the first set: towards the first, a little to the side.
+    /// Velocities of the second solids of the first set: towards the first, slightly to the side.
     pub velocities: Vec<[f64; D]>,
 }
 
 /// The signed distance of two solids in two placements.
 pub type Judge<'a, const D: usize> = &'a dyn Fn(&Placement<D>, &Placement<D>) -> f64;
 
-/// The two solids of a case, by name and as they are.
+/// The two solids of a case, with their names.
 #[derive(Clone, Debug)]
 pub struct Pair<const D: usize> {
     pub name: String,
@@ -88,7 +89,8 @@ impl<const D: usize> Pair<D> {
     }
 }
 
-/// All unordered pairs, a ground first; of two grounds the second is a patch. Two half-spaces are none.
+/// Returns all unordered pairs, a ground first; for two grounds the second is a patch. Two half-spaces
+/// are omitted.
 pub fn pairs<const D: usize>(solids: &[Solid<D>]) -> Vec<Pair<D>> {
     let two = (0..solids.len()).flat_map(|i| (i..solids.len()).map(move |j| [i, j]));
     two.filter_map(|[i, j]| pair(&solids[i], &solids[j])).collect()
@@ -109,7 +111,7 @@ fn patch_of<const D: usize>(solid: &Solid<D>) -> Option<Solid<D>> {
     Some(Solid { form, patch: None, ..solid.clone() })
 }
 
-/// Placements in the regime; `None` where there are none.
+/// Returns placements in the regime; `None` if there are none.
 pub fn poses<const D: usize>(
     pair: &Pair<D>,
     regime: Regime,
@@ -144,8 +146,8 @@ fn moved<const D: usize>(set: &[Placement<D>], random: &mut Random) -> Vec<Vec<P
     (0..MOVED_SETS).map(|_| moved()).collect()
 }
 
-/// Where a pair has its place: on a ground in a grid of its own, else as far from all others as its
-/// loosened boxes need.
+/// Returns the position of a pair: on a ground in a grid of its own, else as far from all others as its
+/// fat AABBs require.
 fn cell<const D: usize>(is_ground: bool, index: usize) -> [f64; D] {
     const APART: f64 = 12.0;
     const APART_ON_GROUND: f64 = 4.0;
@@ -176,13 +178,13 @@ impl<const D: usize> Search<'_, D> {
         }
     }
 
-    /// A rotation that turns a flat side of one of the solids to a direction.
+    /// Returns a rotation that turns a flat side of one of the solids to a direction.
     fn laid(&mut self, which: usize, to: &[f64; D]) -> [f64; 4] {
         let flat = self.random.pick(&self.pair.solids[which].flats);
         turning(flat, to)
     }
 
-    /// A placement of the second solid in the regime, and the direction to it.
+    /// Returns a placement of the second solid in the regime, and the direction to it.
     fn second(&mut self, first: &Placement<D>) -> Option<(Placement<D>, [f64; D])> {
         (0..DRAWS).find_map(|_| self.draw(first))
     }
@@ -200,14 +202,15 @@ impl<const D: usize> Search<'_, D> {
         Some((placed(share), direction))
     }
 
-    /// Where a search upwards begins: not quite over the middle of the first solid.
+    /// Returns the start of a search upwards: not exactly over the centre of the first solid.
     fn beside(&mut self) -> [f64; D] {
         let aside: [f64; D] = self.random.vector(0.25);
         let at = add(&self.cell, &aside);
         std::array::from_fn(|i| if i == 1 { self.floor(&at) } else { at[i] })
     }
 
-    /// How high a search upwards begins: inside a ground, a little below its surface.
+    /// Returns the height at which a search upwards begins: inside a ground, slightly below its
+    /// surface.
     fn floor(&self, at: &[f64; D]) -> f64 {
         match &self.pair.solids[0].form {
             Form::Mesh(terrain) | Form::HeightField(terrain) | Form::Polyline(terrain) => {
@@ -218,8 +221,8 @@ impl<const D: usize> Search<'_, D> {
         }
     }
 
-    /// How far along the direction the distance is that of the regime, by halving: near its end the
-    /// solids are apart. `None` where the distance jumps over it.
+    /// Returns the fraction of the direction at which the distance is that of the regime, by bisection:
+    /// at its end the solids are apart. `None` if the distance jumps over it.
     fn share(&self, distance: &dyn Fn(f64) -> f64) -> Option<f64> {
         const LONGEST: f64 = 6.0;
         const HALVINGS: usize = 24;

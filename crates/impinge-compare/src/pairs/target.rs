@@ -1,4 +1,4 @@
-//! The times that impinge is to reach, and whether it does.
+//! The target times of impinge, and the comparison with them.
 
 use std::collections::BTreeMap;
 
@@ -7,22 +7,22 @@ use super::regime::PAIRS;
 use crate::measure::Times;
 use crate::table::Row;
 
-/// The manifold of two balls takes parry so many nanoseconds on the machine that targets are for.
+/// The time of parry's manifold of two balls on the machine of the targets, in nanoseconds.
 const PARRY_THERE: f64 = 41.0;
 
-/// What the narrow phase takes of an update; its rivals have no such part.
+/// The part of an update in the narrow phase; the rivals have no such part.
 pub const PART: &str = "impinge narrow phase";
 
-/// The same where pairs that have hardly moved keep their contacts.
+/// This part, where pairs that have hardly moved keep their contacts.
 pub const REUSING_PART: &str = "impinge reusing narrow phase";
 
 /// Generators of pairs alone, and single queries.
 pub const ALONE: &str = "impinge";
 
-/// Generators of pairs alone that keep contacts so.
+/// Generators of single pairs that keep contacts in this way.
 pub const ALONE_REUSING: &str = "impinge alone reusing";
 
-/// A case by its beginning, a question, and the most nanoseconds per pair of the world's update.
+/// The beginning of a case, a question, and the target in nanoseconds per pair of the update of a world.
 const TARGETS: &[(&str, Question, f64)] = &[
     ("3D ball, ball,", Question::ManifoldWarm, 8.0),
     ("3D ball, cuboid,", Question::ManifoldWarm, 8.0),
@@ -38,18 +38,18 @@ const TARGETS: &[(&str, Question, f64)] = &[
     ("3D cuboid, mesh,", Question::ManifoldWarm, 1000.0),
 ];
 
-/// How the suite went.
+/// The overall results of the suite.
 #[derive(Debug, Default)]
 pub struct Verdicts {
-    /// By question, and once more for contacts that are kept: how many times as fast as the best rival.
+    /// By question, and once more for kept contacts: the speed relative to the best rival.
     speeds: BTreeMap<String, Vec<f64>>,
-    /// Cases where impinge took more than half of the time of its best rival: how much more, the two
-    /// times, and the rival.
+    /// Cases where impinge took more than half of the time of its best rival: the ratio, the two times, and
+    /// the rival.
     slower: Vec<(f64, [f64; 2], Row)>,
     cases: usize,
 }
 
-/// The row of a target, if there is one for the case; `scale` is how much slower this machine is.
+/// Returns the row of a target, if there is one for the case; `scale` is how much slower this machine is.
 pub fn target(case: &str, question: Question, scale: f64) -> Option<Row> {
     let is_meant =
         |(start, of, _): &&(&str, Question, f64)| case.starts_with(start) && *of == question;
@@ -60,8 +60,8 @@ pub fn target(case: &str, question: Question, scale: f64) -> Option<Row> {
     Some(Row { case: case.to_owned(), contender, answers: 0, differ: 0, times })
 }
 
-/// How much slower this machine is than that of the targets, by what the manifold of two balls takes
-/// parry here.
+/// Returns how much slower this machine is than that of the targets, by the time of parry's manifold of two
+/// balls here.
 pub fn machine_scale(parry: f64) -> f64 {
     parry / PARRY_THERE
 }
@@ -70,8 +70,8 @@ fn is_ours(row: &Row) -> bool {
     row.contender.starts_with("impinge")
 }
 
-/// Whether it is somebody else's, who answers as we do for at least half of the pairs: nothing at all is
-/// quickly found.
+/// Whether the row belongs to a rival, whose results agree with ours for at least half of the pairs:
+/// finding nothing is fast.
 fn is_rival(row: &&Row) -> bool {
     !is_ours(row) && row.contender != "target" && 2 * row.differ <= PAIRS
 }
@@ -81,8 +81,8 @@ fn least<'a>(rows: impl Iterator<Item = &'a Row>) -> Option<&'a Row> {
 }
 
 impl Verdicts {
-    /// Looks at the rows of one case. Manifolds of a world are held against rivals by what its narrow phase
-    /// takes.
+    /// Adds the rows of one case. Manifolds of a world are compared with rivals by the time of its narrow
+    /// phase.
     pub fn add(&mut self, question: Question, rows: &[Row]) {
         let Some(rival) = least(rows.iter().filter(is_rival)) else { return };
         let named = |name: &str| rows.iter().find(|row| row.contender == name);
@@ -107,7 +107,7 @@ impl Verdicts {
         }
     }
 
-    /// Prints how the questions went, and the cases where impinge is not twice as fast as its best rival,
+    /// Prints the results by question, and the cases where impinge is not twice as fast as its best rival,
     /// worst first.
     pub fn print(&mut self) {
         println!("\ntimes as fast as the best rival, over all cases of a question");

@@ -1,4 +1,4 @@
-//! Rays against one mesh: hills of triangles in no order.
+//! Rays against one mesh: hills of triangles in random order.
 
 use std::time::Duration;
 
@@ -27,13 +27,13 @@ use super::{TOLERANCE, ours, rounds, wanted};
 use crate::Arguments;
 use crate::table::Row;
 
-/// Rays of each kind.
+/// The number of rays of each kind.
 const RAYS: usize = 20_000;
 
-/// How far the hills reach above and below zero; cells are squares of edge 1.
+/// The height of the hills above and below zero; cells are squares of edge 1.
 const HEIGHT: f64 = 6.0;
 
-/// The mesh, as all get it.
+/// The mesh that all contenders get.
 struct Hills {
     edge: usize,
     vertices: Vec<[f32; 3]>,
@@ -76,7 +76,7 @@ impl Hills {
         Self { edge, vertices: vertices.collect(), triangles }
     }
 
-    /// From above everything, at up to 17 degrees from the vertical.
+    /// Returns rays from above all hills, at up to 17 degrees from the vertical.
     fn down(&self) -> Vec<Ray<3>> {
         self.rays(3.0 * HEIGHT, |random| {
             let [x, z] = random.direction::<2>().map(|x| 0.3 * x);
@@ -84,7 +84,8 @@ impl Hills {
         })
     }
 
-    /// From above everything, at 1 to 10 degrees from the horizontal: they pass over some hills.
+    /// Returns rays from above all hills, at 1 to 10 degrees from the horizontal: they pass over
+    /// some hills.
     fn grazing(&self) -> Vec<Ray<3>> {
         self.rays(1.1 * HEIGHT, |random| {
             let [x, z] = random.direction::<2>();
@@ -104,19 +105,19 @@ impl Hills {
     }
 }
 
-/// Long hills and short ones.
+/// Returns the height: long hills and short ones.
 fn height(x: f64, z: f64) -> f64 {
     let long = (0.05 * x).sin() * (0.043 * z).cos();
     HEIGHT * (0.7 * long + 0.25 * (0.31 * x + 0.2 * z).sin() + 0.05 * (1.9 * x - 1.3 * z).sin())
 }
 
-/// The triangles of a cell, whose fronts are above.
+/// Returns the triangles of a cell, whose fronts are above.
 fn cell(x: usize, z: usize, edge: usize) -> [[u32; 3]; 2] {
     let corner = |dx: usize, dz: usize| ((z + dz) * (edge + 1) + x + dx) as u32;
     [[corner(0, 0), corner(0, 1), corner(1, 0)], [corner(1, 0), corner(0, 1), corner(1, 1)]]
 }
 
-/// The mesh in everybody's own terms.
+/// The mesh in the form of each contender.
 struct Worlds {
     ours: TriMesh<f32, 3>,
     world: CollisionWorld<f32, 3, u32>,
@@ -171,7 +172,7 @@ impl Worlds {
         Self { ours, world, parry, wide, wide_triangles, tree, leaves }
     }
 
-    /// A batch interface of ours, where there is one, goes second, as [`Contender::batch`].
+    /// Our batch interface, where there is one, goes second, as [`Contender::batch`].
     fn contenders(&self, rays: &[Ray<3>]) -> Vec<Contender<'_>> {
         let own: Vec<_> = rays.iter().map(ours::ray).collect();
         let (mesh, world, parry) = (&self.ours, &self.world, &self.parry);
@@ -201,7 +202,7 @@ impl Worlds {
         })
     }
 
-    /// It hands out boxes from near to far; what is behind the best hit need not be looked at.
+    /// It returns boxes from near to far; those behind the best hit can be skipped.
     fn bvh(&self, rays: &[Ray<3>]) -> Contender<'_> {
         let (tree, leaves) = (&self.tree, self.leaves.as_slice());
         let ray = |(from, to): &Ray<3>| bvh::ray::Ray::new(Point::from(*from), (*to).into());
@@ -223,7 +224,7 @@ impl Worlds {
     }
 }
 
-/// The tree of `obvhs`, and the triangles in its order.
+/// Returns the tree of `obvhs`, and the triangles in its order.
 fn wide(hills: &Hills) -> (CwBvh, Vec<RtTriangle>) {
     let corners = |triangle: &[u32; 3]| triangle.map(|n| Vec3A::from(hills.vertices[n as usize]));
     let triangle = |triangle: &[u32; 3]| {

@@ -1,12 +1,12 @@
-//! The suite of queries: rays, moving solids, points and boxes against many objects, and rays against
-//! one mesh.
+//! The suite of queries: rays, moving solids, points and boxes against many objects, and rays against one
+//! mesh.
 //!
-//! Two scenes, each in the plane and in space: a dense one, in which rays are short, and one with a fifth
-//! of the density, in which they go far. The queries of the first kinds meet solids, and whole worlds
-//! answer, or a tree with the solids of parry; those of the others meet nothing but boxes, and trees
-//! answer. Every contender has the same numbers, and its own copy of the queries before the clock runs.
-//! Rivals have their best build (`medium` of `obvhs`) and, where they advise it, the primitives in the
-//! order of the tree. All give the normal where there is one.
+//! Two scenes, each in 2D and 3D: a dense one with short rays, and one with a fifth of the density and
+//! long rays. The queries of the first kinds are about solids, and run on whole worlds, or on a tree with
+//! the solids of parry; the others are about boxes only, and run on trees. Every contender has the same
+//! numbers, and its own copy of the queries before the clock runs. Rivals use their best build (`medium`
+//! of `obvhs`) and, where recommended, the primitives in the order of the tree. All return the normal
+//! where there is one.
 
 mod mesh;
 mod ncollide;
@@ -23,16 +23,16 @@ use scene::{Library, Questions, Scene};
 use crate::Arguments;
 use crate::table::Table;
 
-/// Times and distances that differ by less, as a share of themselves, are the same.
+/// Relative differences of times and distances below this are ignored.
 const TOLERANCE: f32 = 1e-4;
 
-/// Times of moving solids are found by iteration, to a tolerance of each library's own.
+/// Times of moving solids are found by iteration, with a different tolerance in each library.
 const CAST_TOLERANCE: f32 = 1e-3;
 
-/// How many triangles the meshes have: twice the square of these.
+/// Meshes have twice the square of these numbers of triangles.
 const MESHES: [usize; 2] = [100, 708];
 
-/// Runs all cases. The larger mesh belongs to runs with a hundred thousand objects.
+/// Runs all cases. The larger mesh is part of runs with a hundred thousand objects.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("queries", "ns");
     let objects = arguments.objects;
@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     vec![table]
 }
 
-/// A tenth of the steps asked for.
+/// A tenth of the requested steps.
 fn rounds(arguments: &Arguments) -> usize {
     (arguments.steps as usize / 10).max(1)
 }
@@ -67,7 +67,8 @@ fn space(scene: &Scene<3>, arguments: &Arguments, table: &mut Table) {
     ask_all(scene, &all, arguments, table);
 }
 
-/// A world of two thousand objects, some of which moved since the last update, beside itself.
+/// Runs a world of two thousand objects, some of which moved since the last update, beside the updated
+/// world.
 fn between_updates(arguments: &Arguments, table: &mut Table) {
     let scene = Scene::<3>::new("moved", 2000, 0.075, f32::MAX);
     let counts = [("none moved", 0), ("100 moved", 100), ("1500 moved", 1500)];
@@ -97,7 +98,7 @@ fn plane(scene: &Scene<2>, arguments: &Arguments, table: &mut Table) {
     ask_all(scene, &all, arguments, table);
 }
 
-/// Races all who answer, kind by kind.
+/// Runs all contenders, kind by kind.
 fn ask_all<const D: usize>(
     scene: &Scene<D>,
     libraries: &[&dyn Library<D>],
@@ -117,7 +118,7 @@ fn ask_all<const D: usize>(
     }
 }
 
-/// Those who are to run.
+/// Selects the contenders that are to run.
 fn wanted<'a>(
     contenders: impl IntoIterator<Item = Contender<'a>>,
     arguments: &Arguments,
@@ -126,7 +127,7 @@ fn wanted<'a>(
     contenders.into_iter().filter(is_wanted).collect()
 }
 
-/// How answers are compared, and how many queries there are.
+/// Returns the rule for comparing results, and the number of queries.
 fn rule<const D: usize>(questions: &Questions<D>) -> (Rule, usize) {
     match questions {
         Questions::Rays(rays, _) | Questions::BoxRays(rays, _) => {

@@ -1,11 +1,11 @@
-//! ncollide's dynamic tree over nothing but boxes.
+//! The dynamic tree of ncollide over boxes only.
 //!
-//! The crates for the plane and for space differ in nothing but their names, and so do the modules here.
+//! The crates for 2D and 3D differ in their names only, and so do the modules here.
 
 use super::race::Contender;
 use super::scene::{Corners, Library, Questions, Scene};
 
-/// In the plane.
+/// 2D.
 pub mod plane {
     use super::*;
     use ::ncollide2d as ncollide;
@@ -13,7 +13,7 @@ pub mod plane {
     include!("ncollide_common.rs");
 }
 
-/// In space.
+/// 3D.
 pub mod space {
     use super::*;
     use ::ncollide3d as ncollide;

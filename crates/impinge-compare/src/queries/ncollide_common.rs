@@ -1,4 +1,4 @@
-// Both dimensions; included by `ncollide.rs`.
+// Common code of both dimensions; included by `ncollide.rs`.
 
 use ncollide::bounding_volume::AABB;
 use ncollide::math::{Isometry, Point, Vector};
@@ -14,7 +14,7 @@ pub struct Ncollide {
 }
 
 impl Ncollide {
-    /// Over the boxes of a scene, which go in one by one: there is no other way.
+    /// Builds the tree over the boxes of a scene, which must be inserted one by one.
     pub fn new(scene: &Scene<DIM>) -> Self {
         let mut tree = DBVT::new();
         for (n, corners) in (0..).zip(&scene.boxes) {
@@ -28,7 +28,7 @@ fn aabb((low, high): &Corners<DIM>) -> AABB<f32> {
     AABB::new(Point::from(*low), Point::from(*high))
 }
 
-/// Costs boxes by a time or a distance.
+/// Orders boxes by a time or a distance.
 struct Cheapest<F>(F);
 
 impl<F: Fn(&AABB<f32>) -> Option<f32>> BestFirstVisitor<f32, u32, AABB<f32>> for Cheapest<F> {

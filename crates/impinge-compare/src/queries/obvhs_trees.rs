@@ -1,4 +1,4 @@
-//! The trees of `obvhs`, in space: eight boxes to a compressed node, and two.
+//! The trees of `obvhs`, in 3D: eight boxes in a compressed node, and two.
 
 use std::time::Duration;
 
@@ -22,12 +22,12 @@ pub struct Obvhs<'p> {
     wide_boxes: Vec<Aabb>,
     narrow: Bvh2,
     narrow_boxes: Vec<Aabb>,
-    /// Has the solids, for which `obvhs` relies on others.
+    /// The solids, which `obvhs` itself does not have.
     solids: &'p Parry,
 }
 
 impl<'p> Obvhs<'p> {
-    /// Over the boxes of a scene, with the effort that suits trees that live long.
+    /// Builds the trees over the boxes of a scene, with the effort for long-lived trees.
     pub fn new(scene: &Scene<3>, solids: &'p Parry) -> Self {
         let boxes: Vec<_> = scene.boxes.iter().map(aabb).collect();
         let (effort, mut time) = (BvhBuildParams::medium_build(), Duration::default());
@@ -44,12 +44,12 @@ fn aabb((low, high): &Corners<3>) -> Aabb {
     Aabb::new(Vec3A::from(*low), Vec3A::from(*high))
 }
 
-/// A ray as `obvhs` has it.
+/// Converts a ray to that of `obvhs`.
 pub fn ray((from, to): &([f32; 3], [f32; 3]), reach: f32) -> Ray {
     Ray::new(Vec3A::from(*from), Vec3A::from(*to), 0.0, reach)
 }
 
-/// What was hit, by the order of the primitives.
+/// Returns the hit, by the order of the primitives.
 pub fn answer(hit: &RayHit, is_hit: bool, order: &[u32]) -> Option<(u32, f32)> {
     is_hit.then(|| (order[hit.primitive_id as usize], hit.t))
 }

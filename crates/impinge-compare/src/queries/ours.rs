@@ -15,13 +15,13 @@ use super::scene::{Corners, Library, Questions, Scene, Solid};
 
 type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 
-/// How a dimension turns things.
+/// Converts a placement to an isometry of a dimension.
 type Turn<const D: usize> = fn(&Placement<D>) -> Isometry<D>;
 
-/// Updates until everything has come to rest and the trees are in the order that they keep.
+/// The number of updates after which nothing moves and the trees have their final order.
 const UPDATES: usize = 128;
 
-/// All that impinge answers with.
+/// The structures of impinge: world and tree.
 pub struct Impinge<const D: usize>
 where
     f32: Space<D>,
@@ -32,7 +32,7 @@ where
     tree: BoxTree<f32, D>,
 }
 
-/// In the plane.
+/// Creates the 2D contender.
 pub fn plane(scene: &Scene<2>) -> Impinge<2> {
     Impinge::new("impinge", scene, 0, |placement| {
         let [cosine, sine] = placement.complex().map(|x| x as f32);
@@ -41,12 +41,12 @@ pub fn plane(scene: &Scene<2>) -> Impinge<2> {
     })
 }
 
-/// In space.
+/// Creates the 3D contender.
 pub fn space(scene: &Scene<3>) -> Impinge<3> {
     moved("impinge", scene, 0)
 }
 
-/// In space; the first so many objects have come where they are since the last update.
+/// Creates the 3D contender in which the first `count` objects have moved since the last update.
 pub fn moved(name: &'static str, scene: &Scene<3>, count: usize) -> Impinge<3> {
     Impinge::new(name, scene, count, |placement| {
         let [i, j, k, w] = placement.quaternion().map(|x| x as f32);
@@ -59,8 +59,8 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    /// The objects interact with nobody: that leaves queries as they are and pairs out. The first `moved` of
-    /// them come from a place half a unit away.
+    /// The objects interact with none, so that there are queries but no pairs. The first `moved` of them
+    /// come from a position half a unit away.
     fn new(name: &'static str, scene: &Scene<D>, moved: usize, isometry: Turn<D>) -> Self {
         let mut world = CollisionWorld::new(0.02);
         let mut nobody = CollisionGroups::new();
@@ -102,7 +102,7 @@ fn aabb<const D: usize>((low, high): &Corners<D>) -> Aabb<f32, D> {
     Aabb::new(Point::from(*low), Point::from(*high))
 }
 
-/// A ray as impinge has it.
+/// Converts a ray to that of impinge.
 pub fn ray<const D: usize>((from, to): &super::scene::Ray<D>) -> Ray<f32, D> {
     Ray::new(Point::from(*from), Vector::<f32, D>::from(*to))
 }
@@ -115,8 +115,8 @@ impl<const D: usize> Library<D> for Impinge<D>
 where
     f32: Space<D>,
 {
-    /// The first is what the others are compared with. A batch interface, where there is one, follows
-    /// as [`Contender::batch`].
+    /// The others are compared with the first one. A batch interface, where there is one, follows as
+    /// [`Contender::batch`].
     fn contenders<'a>(&'a self, questions: &Questions<D>) -> Vec<Contender<'a>> {
         match questions {
             Questions::Rays(..) | Questions::Casts(..) => self.on_the_way(questions),

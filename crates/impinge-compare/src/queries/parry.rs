@@ -1,12 +1,12 @@
-//! rapier's query pipeline, and parry's tree alone, with parry's solids and over nothing but boxes.
+//! The query pipeline of rapier, and the tree of parry alone, with parry's solids and over boxes only.
 //!
-//! The crates for the plane and for space differ in nothing but their names, and so do the modules here.
+//! The crates for 2D and 3D differ in their names only, and so do the modules here.
 
 use super::race::Contender;
 use super::scene::{Corners, Library, Questions, Scene, Solid};
 use impinge_scenes::{Placement, SceneShape};
 
-/// In the plane.
+/// 2D.
 pub mod plane {
     use super::*;
     use ::rapier2d as rapier;
@@ -21,7 +21,7 @@ pub mod plane {
     include!("parry_common.rs");
 }
 
-/// In space.
+/// 3D.
 pub mod space {
     use super::*;
     use ::rapier3d as rapier;

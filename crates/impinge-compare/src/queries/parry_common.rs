@@ -1,4 +1,4 @@
-// The rest, for both dimensions; included by `parry.rs`.
+// Common code of both dimensions; included by `parry.rs`.
 
 use rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use rapier::parry::partitioning::{Bvh, BvhBuildStrategy};
@@ -6,10 +6,10 @@ use rapier::parry::query::{DefaultQueryDispatcher, PointQuery, Ray, RayCast, Sha
 use rapier::parry::shape::{Ball, Cuboid, SharedShape};
 use rapier::prelude::*;
 
-/// Steps until the tree has been improved as far as it will be.
+/// The number of steps until the tree is fully optimized.
 const STEPS: usize = 80;
 
-/// A world of rapier: colliders without bodies, which ignore one another.
+/// A world of rapier: colliders without bodies, which ignore each other.
 pub struct Rapier {
     broad_phase: BroadPhaseBvh,
     bodies: RigidBodySet,
@@ -17,7 +17,7 @@ pub struct Rapier {
 }
 
 impl Rapier {
-    /// With all objects of a scene.
+    /// Creates a world with all objects of a scene.
     pub fn new(scene: &Scene<DIM>) -> Self {
         let (mut colliders, bodies) = (ColliderSet::new(), RigidBodySet::new());
         for (n, (shape, placement)) in scene.objects.iter().enumerate() {
@@ -75,7 +75,7 @@ fn vector(v: &[f32; DIM]) -> Vector {
     Vector::from(*v)
 }
 
-/// A ray as parry has it.
+/// Converts a ray to that of parry.
 pub fn ray((from, to): &crate::queries::scene::Ray<DIM>) -> Ray {
     Ray::new(vector(from), vector(to))
 }
@@ -99,7 +99,7 @@ impl Library<DIM> for Rapier {
             Questions::Rays(rays, reach) => {
                 let (rays, reach) = (rays.iter().map(ray).collect(), *reach);
                 Contender::best(name, rays, move |ray| {
-                    // With the normal, which the others give too.
+                    // With the normal, which the others return too.
                     let (handle, hit) = pipeline.cast_ray_and_get_normal(ray, reach, true)?;
                     Some((self.index(handle), hit.time_of_impact))
                 })
@@ -130,7 +130,7 @@ impl Library<DIM> for Rapier {
                     touching.for_each(|(_, it)| found(index_of(it)));
                 })
             }
-            // Its boxes are larger than those of the shapes, so theirs are asked too.
+            // Its boxes are larger than those of the shapes, which are therefore tested too.
             Questions::BoxOverlapping(boxes) => {
                 let boxes = boxes.iter().map(aabb).collect();
                 Contender::all("rapier world", boxes, move |aabb: &Aabb, found| {
@@ -147,14 +147,14 @@ impl Library<DIM> for Rapier {
 
 /// parry's tree over boxes, and the solids in them.
 pub struct Parry {
-    /// Where the solids are.
+    /// The solids with their poses.
     pub solids: Vec<(Pose, SharedShape)>,
     tree: Bvh,
     boxes: Vec<Aabb>,
 }
 
 impl Parry {
-    /// With all objects of a scene; of both ways to build its tree the one that makes the better one.
+    /// Creates a tree with all objects of a scene, by the better of its two build methods.
     pub fn new(scene: &Scene<DIM>) -> Self {
         let boxes: Vec<_> = scene.boxes.iter().map(aabb).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);

@@ -1,23 +1,23 @@
-//! Answers that can be compared, and the race.
+//! Comparable results, and the race.
 
 use crate::measure::{Times, in_turn};
 use crate::table::Row;
 
-/// One thing found: by a query for the first or the nearest at most one, by the others any number.
+/// One result: at most one for a query for the first or the nearest, any number for others.
 #[derive(Clone, Copy, Debug)]
 pub struct Answer {
-    /// Which of the queries.
+    /// The index of the query.
     pub query: u32,
     /// The object or the triangle.
     pub id: u32,
-    /// The time or the distance; zero where there is none.
+    /// The time or the distance; zero if there is none.
     pub key: f32,
 }
 
-/// What a contender found, the queries in ascending order.
+/// The results of a contender, with queries in ascending order.
 pub type Answers = Vec<Answer>;
 
-/// Somebody who asks all queries of a case.
+/// A contender that runs all queries of a case.
 pub struct Contender<'a> {
     name: &'static str,
     ask: Box<dyn FnMut(&mut Answers) + 'a>,
@@ -29,12 +29,12 @@ impl<'a> Contender<'a> {
         self.name
     }
 
-    /// One that is asked everything at once, by a batch interface.
+    /// Creates a contender with a batch interface.
     pub fn batch(name: &'static str, ask: impl FnMut(&mut Answers) + 'a) -> Self {
         Self { name, ask: Box::new(ask) }
     }
 
-    /// One that is asked for the best thing, query by query: its number and its key.
+    /// Creates a contender for the best result of each query: its number and its key.
     pub fn best<Q>(
         name: &'static str,
         queries: Vec<Q>,
@@ -52,7 +52,7 @@ impl<'a> Contender<'a> {
         })
     }
 
-    /// One that is asked for all things of a kind, query by query; it calls back with their numbers.
+    /// Creates a contender for all results of each query; it calls back with their numbers.
     pub fn all<Q>(
         name: &'static str,
         queries: Vec<Q>,
@@ -69,17 +69,17 @@ impl<'a> Contender<'a> {
     }
 }
 
-/// How answers of one case are compared.
+/// The rule for comparing results of one case.
 #[derive(Clone, Copy, Debug)]
 pub enum Rule {
-    /// One answer or none to each query. Keys agree within this share of themselves, or of 1 if they
-    /// are less; another object at an equal key is as good.
+    /// At most one result for each query. Keys agree within this relative tolerance (absolute below
+    /// 1); another object at an equal key is accepted.
     Best(f32),
-    /// Sets of objects, which have to be the same.
+    /// Sets of objects, which must be equal.
     All,
 }
 
-/// Asks each contender once and compares its answers with those of the first, then times them in turn.
+/// Runs each contender once and compares its results with those of the first, then times them in turn.
 /// Times are in nanoseconds per query.
 pub fn race(
     case: &str,
@@ -114,7 +114,7 @@ fn timed_in_turn(
     count: usize,
     asks: &mut [Box<dyn FnMut(&mut Answers) + '_>],
 ) -> Vec<Times> {
-    // Of one vector of answers for all, none pays for the growth.
+    // One vector of results for all contenders, so that none pays for its growth.
     let answers = std::cell::RefCell::new(Answers::new());
     let mut runs: Vec<_> = asks
         .iter_mut()
@@ -131,7 +131,7 @@ fn timed_in_turn(
     in_turn(rounds, count, &mut runs)
 }
 
-/// By how many answers two contenders differ.
+/// Returns the number of differing results of two contenders.
 fn differing(rule: Rule, first: &[Answer], other: &[Answer]) -> usize {
     let (mut left, mut right, mut agreed) = (0, 0, 0);
     while left < first.len() && right < other.len() {
@@ -144,7 +144,7 @@ fn differing(rule: Rule, first: &[Answer], other: &[Answer]) -> usize {
         left += usize::from(at <= bt);
         right += usize::from(bt <= at);
     }
-    // An answer that both give but differently is one difference, not two.
+    // A result that both have with different values is one difference, not two.
     match rule {
         Rule::Best(_) => first.len().max(other.len()) - agreed,
         Rule::All => first.len() + other.len() - 2 * agreed,

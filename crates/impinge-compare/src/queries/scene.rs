@@ -1,70 +1,69 @@
-//! The objects, and what is asked about them.
+//! The objects and the queries.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Space};
 use impinge::partitioning::BoxTree;
 use impinge_scenes::{Placement, SceneShape};
 
-/// Half an edge of the average object.
+/// Half of the edge of the average object.
 const HALF: f64 = 0.5;
 
-/// Balls and turned boxes in a cube, one of fifty three times as large as the others.
+/// Balls and rotated boxes in a cube, one of fifty three times as large as the others.
 #[derive(Clone, Debug)]
 pub struct Scene<const D: usize> {
-    /// For the table.
+    /// The name in the table.
     pub name: &'static str,
-    /// What is there, and where.
+    /// The objects and their placements.
     pub objects: Vec<(SceneShape<D>, Placement<D>)>,
-    /// The boxes of the objects; the trees have nothing else.
+    /// The boxes of the objects, which are the only content of the trees.
     pub boxes: Vec<Corners<D>>,
     /// An edge of the cube.
     edge: f64,
-    /// How long rays are and how far solids are cast.
+    /// The length of rays and shape casts.
     pub reach: f32,
 }
 
 /// The least and the greatest corner of a box.
 pub type Corners<const D: usize> = ([f32; D], [f32; D]);
 
-/// From where, and the unit vector whereto.
+/// The origin and the unit direction.
 pub type Ray<const D: usize> = ([f32; D], [f32; D]);
 
-/// A solid.
+/// A solid with its placement.
 pub type Solid<const D: usize> = (SceneShape<D>, Placement<D>);
 
-/// The queries of one case; those of the first kinds are about solids, those of the others about
-/// nothing but boxes.
+/// The queries of one case; those of the first kinds are about solids, the others about boxes only.
 #[derive(Clone, Debug)]
 pub enum Questions<const D: usize> {
-    /// Which solid a ray meets first, and when; none starts in the box of one.
+    /// The first solid that a ray hits, and the time; no ray starts in the box of one.
     Rays(Vec<Ray<D>>, f32),
-    /// Which solid a moving one meets first, and when; it starts apart from all boxes, and moves
-    /// along the unit vector.
+    /// The first solid that a moving one hits, and the time; it starts apart from all boxes, and
+    /// moves along the unit vector.
     Casts(Vec<(Solid<D>, [f32; D])>, f32),
-    /// Which solid is nearest to a point, and how far; no point is in a box.
+    /// The solid nearest to a point, and its distance; no point is in a box.
     Nearest(Vec<[f32; D]>),
-    /// Which solids hold a point.
+    /// The solids that contain a point.
     Containing(Vec<[f32; D]>),
-    /// Which solids a solid touches.
+    /// The solids that touch a solid.
     Overlapping(Vec<Solid<D>>),
-    /// Which box a ray meets first, and when.
+    /// The first box that a ray hits, and the time.
     BoxRays(Vec<Ray<D>>, f32),
-    /// Which box is nearest to a point, and how far.
+    /// The box nearest to a point, and its distance.
     BoxNearest(Vec<[f32; D]>),
-    /// Which boxes hold a point.
+    /// The boxes that contain a point.
     BoxContaining(Vec<[f32; D]>),
-    /// Which boxes meet a box.
+    /// The boxes that overlap a box.
     BoxOverlapping(Vec<Corners<D>>),
 }
 
-/// A library that answers some kinds of queries, in one way or several.
+/// A library that supports some kinds of queries, in one way or several.
 pub trait Library<const D: usize> {
-    /// Those who answer; the queries are converted already.
+    /// Returns the contenders; the queries are converted already.
     fn contenders<'a>(&'a self, questions: &Questions<D>) -> Vec<super::race::Contender<'a>>;
 }
 
 impl<const D: usize> Scene<D> {
-    /// `objects` of them that fill `share` of the cube.
+    /// Creates `objects` objects that fill `share` of the cube.
     pub fn new(name: &'static str, objects: usize, share: f64, reach: f32) -> Self {
         let mut random = Random(0x5eed + D as u64);
         let edge = (objects as f64 / share).powf(1.0 / D as f64) * 2.0 * HALF;
@@ -74,7 +73,7 @@ impl<const D: usize> Scene<D> {
         Self { name, objects, boxes, edge, reach }
     }
 
-    /// Every kind of queries, `count` of each but for the dear ones, for which it is a fifth.
+    /// Returns every kind of queries, `count` of each; a fifth of that for expensive ones.
     pub fn questions(&self, count: usize) -> Vec<(&'static str, Questions<D>)>
     where
         f32: Space<D>,
@@ -125,13 +124,13 @@ impl Random {
         mixed ^ (mixed >> 31)
     }
 
-    /// From `low` up to `high`.
+    /// Returns a number from `low` up to `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         let unit = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
         low + (high - low) * unit
     }
 
-    /// A number less than `bound`.
+    /// Returns a number less than `bound`.
     pub fn below(&mut self, bound: usize) -> usize {
         (self.bits() % bound as u64) as usize
     }
@@ -140,7 +139,8 @@ impl Random {
         std::array::from_fn(|_| self.between(0.0, edge) as f32)
     }
 
-    /// A unit vector, all equally likely: of points in the cube those in the ball.
+    /// Returns a uniformly distributed unit vector, by rejection of points of the cube outside the
+    /// ball.
     pub fn direction<const D: usize>(&mut self) -> [f64; D] {
         loop {
             let v: [f64; D] = std::array::from_fn(|_| self.between(-1.0, 1.0));
@@ -151,12 +151,12 @@ impl Random {
         }
     }
 
-    /// A direction as the queries have it.
+    /// Returns a direction in the form of the queries.
     fn heading<const D: usize>(&mut self) -> [f32; D] {
         self.direction().map(|x| x as f32)
     }
 
-    /// So many of what is drawn and wanted.
+    /// Draws until `count` values are accepted.
     fn many<T>(
         &mut self,
         count: usize,
@@ -166,7 +166,7 @@ impl Random {
         std::iter::repeat_with(|| draw(self)).filter(is_wanted).take(count).collect()
     }
 
-    /// A ball or a turned box somewhere in the cube.
+    /// Returns a ball or a rotated box at a random position in the cube.
     fn solid<const D: usize>(&mut self, edge: f64, scale: f64) -> Solid<D> {
         let mut half = || scale * self.between(0.6 * HALF, 1.4 * HALF);
         let (radius, half_extents) = (half(), std::array::from_fn(|_| half()));

@@ -1,4 +1,4 @@
-//! Trees over boxes that serve both dimensions: those of the crates `bvh` and `rstar`.
+//! Trees over boxes of crates that support both dimensions: `bvh` and `rstar`.
 
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
@@ -19,7 +19,7 @@ pub struct BvhTree<const D: usize> {
     tree: Bvh<f32, D>,
 }
 
-/// A box that knows its place.
+/// A box with its number.
 #[derive(Clone, Debug)]
 struct Leaf<const D: usize> {
     id: u32,
@@ -54,7 +54,7 @@ fn bounds<const D: usize>((low, high): &Corners<D>) -> Aabb<f32, D> {
 }
 
 impl<const D: usize> BvhTree<D> {
-    /// Over the boxes of a scene.
+    /// Builds the tree over the boxes of a scene.
     pub fn new(scene: &Scene<D>) -> Self {
         let leaf = |(id, corners)| Leaf { id, aabb: bounds(corners), node: 0 };
         let mut boxes: Vec<_> = (0..).zip(&scene.boxes).map(leaf).collect();
@@ -102,13 +102,13 @@ impl<const D: usize> Library<D> for BvhTree<D> {
     }
 }
 
-/// The tree of `rstar`, which has no rays.
+/// The tree of `rstar`, which has no ray queries.
 pub struct RstarTree<const D: usize> {
     tree: RTree<GeomWithData<Rectangle<[f32; D]>, u32>>,
 }
 
 impl<const D: usize> RstarTree<D> {
-    /// Over the boxes of a scene.
+    /// Builds the tree over the boxes of a scene.
     pub fn new(scene: &Scene<D>) -> Self {
         let leaf = |(id, (low, high)): (u32, &Corners<D>)| {
             GeomWithData::new(Rectangle::from_corners(*low, *high), id)

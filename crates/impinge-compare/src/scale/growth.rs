@@ -1,4 +1,4 @@
-//! How times grow with the number of boxes: lines of numbers, and a drawing with logarithmic axes.
+//! Growth of times with the number of boxes: lines of numbers, and a drawing with logarithmic axes.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -7,10 +7,10 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
-/// The size of the drawing in pixels; each subject has its share of the width.
+/// The size of the drawing in pixels; the width is shared by the subjects.
 const SIZE: (u32, u32) = (1200, 520);
 
-/// The times of one contender with so many boxes, in milliseconds.
+/// The times of one contender with a number of boxes, in milliseconds.
 #[derive(Clone, Debug)]
 pub struct Measured {
     pub subject: String,
@@ -54,7 +54,7 @@ fn draw(measured: &[Measured], path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Both axes reach over all that was measured.
+/// Both axes cover all measurements.
 fn chart<B: DrawingBackend>(
     subject: &str,
     curves: &Curves<'_>,
@@ -90,7 +90,7 @@ where
     Ok(())
 }
 
-/// The same in all charts.
+/// Returns the colour of a contender, the same in all charts.
 fn colour(contender: &str) -> RGBColor {
     match contender {
         "impinge" => RGBColor(200, 30, 40),

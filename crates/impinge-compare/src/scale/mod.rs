@@ -1,9 +1,9 @@
-//! The suite of growth: the time of a step against the number of boxes, for broad phases and for whole
+//! The suite of growth: the time of a step as a function of the number of boxes, for broad phases and for whole
 //! worlds, all boxes moving. Beside the table it writes `scale-series.csv` and `scale.svg`, which draws it with
 //! logarithmic axes, below `bench/<machine>/`.
 //!
-//! With the feature `parallel` it also compares one thread with two, by the clock on the wall. Without
-//! it all contenders have one thread, and times are those of the processor.
+//! With the feature `parallel` it also compares one thread with two, in wall time. Without it all contenders
+//! have one thread, and times are processor times.
 
 mod growth;
 #[cfg(feature = "parallel")]
@@ -19,7 +19,7 @@ use crate::measure::{Times, timed};
 use crate::table::{Row, Table};
 use growth::Measured;
 
-/// Runs all sizes up to so many boxes.
+/// Runs all sizes up to the requested number of boxes.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("scale", "ms");
     let mut measured = Vec::new();
@@ -52,7 +52,7 @@ fn growth(subject: &str, boxes: usize, row: &Row) -> Measured {
     Measured { subject, contender, boxes, median, minimum }
 }
 
-/// Few steps of many boxes, many of few.
+/// Few steps for many boxes, many for few.
 fn steps(count: usize, arguments: &Arguments) -> u32 {
     let most = u32::try_from(1_000_000 / count).expect("it is less than a million");
     arguments.steps.min(most.max(6))
@@ -84,11 +84,11 @@ fn whole_world(count: usize, arguments: &Arguments) -> Vec<Row> {
     race_worlds(&format!("world, {count}"), count, lanes, steps(count, arguments))
 }
 
-/// A world, and how it did.
+/// A world, and its results.
 struct Lane {
     name: &'static str,
     world: Box<dyn World>,
-    /// Runs work in the threads of the lane and says how many nanoseconds it took.
+    /// Runs work in the threads of the lane and returns the nanoseconds that it took.
     clock: Box<dyn Fn(&mut (dyn FnMut() + Send)) -> f64>,
     times: Times,
     touching: usize,
@@ -96,7 +96,7 @@ struct Lane {
 }
 
 impl Lane {
-    /// A lane on this thread.
+    /// Creates a lane on this thread.
     fn new(name: &'static str, world: impl World + 'static) -> Self {
         Self {
             name,
@@ -108,7 +108,7 @@ impl Lane {
         }
     }
 
-    /// A step and the reading of all contact points, in milliseconds.
+    /// Times a step and the reading of all contact points, in milliseconds.
     fn step(&mut self, moved: &[(u32, Cell<3>)]) -> f64 {
         let (world, mut reading) = (&mut self.world, (0, 0.0));
         let time = (self.clock)(&mut || {
@@ -120,7 +120,7 @@ impl Lane {
     }
 }
 
-/// Steps worlds alternately, as [`race`] does broad phases.
+/// Steps worlds alternately, as [`race`] does for broad phases.
 fn race_worlds(case: &str, count: usize, mut lanes: Vec<Lane>, steps: u32) -> Vec<Row> {
     let mut swarm = Swarm::<3>::new(Plan { count, ..FAST });
     for lane in &mut lanes {
@@ -148,7 +148,7 @@ fn race_worlds(case: &str, count: usize, mut lanes: Vec<Lane>, steps: u32) -> Ve
     lanes.into_iter().map(row).collect()
 }
 
-/// Notes by how many touching pairs each differs from the first.
+/// Counts the touching pairs of each that differ from the first.
 fn compare(cells: &[Cell<3>], lanes: &mut [Lane]) {
     let mut first = Vec::new();
     for (n, lane) in lanes.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! One thread against two, by the clock on the wall: whole worlds of impinge and of rapier, each in its
+//! One thread compared with two, in wall time: whole worlds of impinge and of rapier, each in its own
 //! pool. All contacts are read, those of impinge in pieces by all threads.
 
 use std::time::Instant;
@@ -15,10 +15,10 @@ use crate::world::ours;
 use crate::world::rapier::{plane, space};
 use crate::world::stages::asking_for_contacts;
 
-/// The boxes of the pile; those that drift apart are ten times as many.
+/// The number of boxes of the pile; there are ten times as many drifting boxes.
 const PILE: usize = 10_000;
 
-/// Runs all sizes up to so many boxes, and of the scenes those that are not larger.
+/// Runs all sizes up to the requested number of boxes, and the scenes that are not larger.
 pub fn run(arguments: &Arguments) -> Table {
     let mut table = Table::new("threads", "ms");
     for stage in stages::<2>(arguments) {
@@ -39,16 +39,16 @@ pub fn run(arguments: &Arguments) -> Table {
     table
 }
 
-/// A scene by name, how it is made, and of how many boxes.
+/// The name of a scene, its constructor, and the number of boxes.
 type Stage<const D: usize> = (&'static str, fn(usize) -> Scene<D>, usize);
 
-/// Those that are asked for.
+/// Returns the requested scenes.
 fn stages<const D: usize>(arguments: &Arguments) -> impl Iterator<Item = Stage<D>> {
     let all: [Stage<D>; 2] = [("pile", pile, PILE), ("sparse drift", sparse_drift, 10 * PILE)];
     all.into_iter().filter(|(_, _, count)| arguments.includes(*count))
 }
 
-/// Races the contenders of a scene, with one thread and with two.
+/// Runs the contenders of a scene, with one thread and with two.
 fn run_scene<const D: usize>(
     (name, make, count): Stage<D>,
     arguments: &Arguments,
@@ -73,7 +73,7 @@ fn run_scene<const D: usize>(
     table.add(race(&scene, entrants, arguments.steps, &cases));
 }
 
-/// Boxes that drift, of any number.
+/// Runs drifting boxes, of any number.
 fn run_drift(count: usize, arguments: &Arguments, table: &mut Table) {
     let mut lanes = vec![
         lane("impinge, 1 thread", 1, world::Ours::new()),
@@ -87,13 +87,13 @@ fn run_drift(count: usize, arguments: &Arguments, table: &mut Table) {
     table.add(race_worlds(&format!("world, {count}"), count, lanes, steps));
 }
 
-/// So many threads.
+/// Creates a pool of `threads` threads.
 fn pool(threads: usize) -> ThreadPool {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("a thread or two can be had")
 }
 
-/// Runs work in a pool, and says how many nanoseconds went by on the wall.
+/// Runs work in a pool, and returns the wall time in nanoseconds.
 fn clocked<R: Send>(pool: &ThreadPool, work: impl FnOnce() -> R + Send) -> (f64, R) {
     pool.install(|| {
         let start = Instant::now();

@@ -1,12 +1,13 @@
-//! The suite of stacks: whether one solver stands on the contacts of either library, and whether contacts last.
+//! The suite of stacks: the stability of one solver on the contacts of either library, and the persistence of
+//! contacts.
 //!
-//! The scenes, the solver and what is measured are those of `impinge-stacks`: 600 steps of 1/60 s, 10 iterations, warm
-//! starts. impinge's contacts are found again by their ids. parry carries the data of a point over to the next
-//! manifold itself, by the pairs of features or by place, as it does for rapier: here the data is a number, which is
-//! the id. Its broad phase here is a comparison of all boxes, which is quick for as few solids.
+//! The scenes, the solver and the measurements are those of `impinge-stacks`: 600 steps of 1/60 s, 10 iterations, warm
+//! starts. Contacts of impinge are matched by their ids. parry transfers the data of a point to the next manifold
+//! itself, by the pairs of features or by position, as it does for rapier: here the data is a number, which is the id.
+//! Its broad phase here is a comparison of all boxes, which is fast for so few solids.
 //!
-//! The second table shakes the upper of two solids, a thousand times. Beside the screen both are written to
-//! `bench/<machine>/stacks.csv` and `stacks-shaken.csv`. `--case` chooses scenes by name, `--only` a contender.
+//! The second table shakes the upper of two solids, a thousand times. Both are also written to
+//! `bench/<machine>/stacks.csv` and `stacks-shaken.csv`. `--case` selects scenes by name, `--only` a contender.
 
 mod parry;
 
@@ -21,13 +22,13 @@ use impinge_stacks::{
 use crate::Arguments;
 use crate::table::Table;
 
-/// How many steps of a scene are played.
+/// The number of steps of a scene.
 const STEPS: usize = 600;
-/// How often, and by how much, the upper of two solids is shaken.
+/// The number of shakes of the upper of two solids, and their amplitude.
 const SHAKES: usize = 1000;
 const WAYS: [f64; 3] = [1e-5, 1e-4, 1e-3];
 
-/// Prints and writes both tables, whose numbers are no times.
+/// Prints and writes both tables, whose numbers are not times.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut rest = Lines::new("scene", &Outcome::default().columns());
     for stack in stacks3().iter().filter(|stack| arguments.wants_case(stack.name)) {
@@ -109,7 +110,7 @@ impl Lines {
         self.0.push(format!("\"{case}\",{contender}{}", numbers.collect::<String>()));
     }
 
-    /// Writes `bench/<machine>/<name>.csv`, if nothing was left out.
+    /// Writes `bench/<machine>/<name>.csv`, if the table is complete.
     fn write(&self, arguments: &Arguments, name: &str) {
         if !arguments.is_whole() {
             return;

@@ -1,4 +1,4 @@
-// The rest, for both crates; included by `parry.rs`.
+// Common code of both crates; included by `parry.rs`.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use parry::query::{
 };
 use parry::shape::SharedShape;
 
-/// Shapes, and the manifolds of those that are near each other.
+/// Shapes, and the manifolds of near pairs.
 pub struct Parry {
     shapes: Vec<SharedShape>,
     pairs: BTreeMap<[usize; 2], Pair>,
@@ -25,7 +25,7 @@ struct Pair {
 }
 
 impl Parry {
-    /// The objects of a scene.
+    /// Creates the objects of a scene.
     pub fn new(stack: &Stack<DIM>) -> Self {
         let shapes = stack.items.iter().map(|item| match &item.solid {
             Solid::One(shape) => builder(shape).shape,
@@ -37,7 +37,7 @@ impl Parry {
         Self { shapes: shapes.collect(), pairs: BTreeMap::new(), newest: 0 }
     }
 
-    /// The pairs of bodies whose boxes meet, not both of which are fixed.
+    /// Returns the pairs of bodies whose boxes overlap, without pairs of two fixed bodies.
     fn near(&self, bodies: &[Body<f32, DIM>], poses: &[Pose]) -> Vec<[usize; 2]> {
         let margin = PREDICTION as f32 / 2.0;
         let boxes = self.shapes.iter().zip(poses).map(|(shape, pose)| {
@@ -77,7 +77,7 @@ impl ContactSource<f32, DIM> for Parry {
     }
 }
 
-/// The points of a manifold within the prediction, as rapier takes them; new ones get numbers.
+/// Reads the points of a manifold within the prediction, as rapier does; new ones get numbers.
 fn read(
     manifold: &mut ContactManifold<(), u64>,
     bodies: [usize; 2],

@@ -1,4 +1,4 @@
-//! What is asked of each contender, and the race.
+//! The interface of the contenders, and the race.
 
 use impinge_scenes::{Placement, Scene};
 
@@ -10,39 +10,39 @@ pub trait Contender<const D: usize> {
     /// Converts the new placements of some objects; not timed.
     fn prepare(&mut self, change: &Change<D>);
 
-    /// Removes and adds objects, hands over the new poses and updates; timed.
+    /// Removes and adds objects, sets the new poses and updates; timed.
     fn step(&mut self);
 
     /// Reads every contact point; timed.
     fn read(&self) -> Reading;
 
-    /// A step, and how many nanoseconds it took.
+    /// Runs a step, and returns its time in nanoseconds.
     fn timed_step(&mut self) -> f64 {
         timed(|| self.step()).0
     }
 
-    /// The same of reading, and what was read.
+    /// Reads, and returns the time in nanoseconds with the result.
     fn timed_read(&self) -> (f64, Reading) {
         timed(|| self.read())
     }
 
-    /// The pairs with a contact point, smaller index first, sorted; not timed.
+    /// Returns the pairs with a contact point, smaller index first, sorted; not timed.
     fn touching(&self) -> Vec<(usize, usize)>;
 }
 
-/// What happens to the objects of a scene between a step and the next.
+/// The changes of the objects of a scene between two steps.
 #[derive(Clone, Debug, Default)]
 pub struct Change<const D: usize> {
-    /// Those that are there no more.
+    /// The removed objects.
     pub gone: Vec<usize>,
-    /// Those that are new, and where.
+    /// The added objects, with their placements.
     pub born: Vec<(usize, Placement<D>)>,
-    /// Those that are elsewhere, and where.
+    /// The moved objects, with their placements.
     pub moved: Vec<(usize, Placement<D>)>,
 }
 
 impl<const D: usize> Change<D> {
-    /// What is not at a step as at the step before; nothing at step 0, where the worlds are made.
+    /// Returns the changes from the previous step; nothing at step 0, where the worlds are made.
     fn at(scene: &Scene<D>, step: u32) -> Self {
         let mut change = Self::default();
         let Some(before) = step.checked_sub(1) else { return change };
@@ -67,16 +67,16 @@ pub struct Entrant<const D: usize> {
     pub world: Box<dyn Contender<D>>,
 }
 
-/// What is timed, in the order of the three cases of a scene.
+/// The timed parts, in the order of the three cases of a scene.
 pub const KINDS: [&str; 3] = ["step and reading", "step alone", "reading alone"];
 
-/// The kind whose answers are points, those of the last step, instead of pairs.
+/// The kind whose results are points, those of the last step, instead of pairs.
 const READING: usize = 2;
 
-/// A digest of all contact points: they have to be read, and should be about the same.
+/// A digest of all contact points: they must be read, and should be about the same.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reading {
-    /// How many points there are.
+    /// The number of points.
     pub points: usize,
     /// The sum of their depths.
     pub depth: f64,
@@ -84,13 +84,13 @@ pub struct Reading {
 
 #[cfg(feature = "parallel")]
 impl Reading {
-    /// Both together.
+    /// Returns the sum of both.
     pub fn plus(self, other: Self) -> Self {
         Self { points: self.points + other.points, depth: self.depth + other.depth }
     }
 }
 
-/// How one contender did, in milliseconds per step.
+/// The results of one contender, in milliseconds per step.
 #[derive(Clone, Debug, Default)]
 struct Lane {
     /// By the kinds of [`KINDS`].
@@ -100,8 +100,8 @@ struct Lane {
     differ: usize,
 }
 
-/// Steps the contenders alternately; who goes first alternates too. The first step, in which
-/// everything is new, is not in the times. Each contender gives a row for each case.
+/// Steps the contenders alternately, in an alternating order. The first step, in which everything is
+/// new, is not timed. Each contender has a row for each case.
 pub fn race<const D: usize>(
     scene: &Scene<D>,
     mut entrants: Vec<Entrant<D>>,
@@ -155,7 +155,7 @@ impl Lane {
     }
 }
 
-/// Notes by how many touching pairs each differs from the first, in the worst of the steps compared.
+/// Counts the touching pairs of each that differ from the first, in the worst of the compared steps.
 fn compare<const D: usize>(entrants: &[Entrant<D>], lanes: &mut [Lane]) {
     let pairs: Vec<_> = entrants.iter().map(|entrant| entrant.world.touching()).collect();
     let missing = |from: &[(usize, usize)], of: &[(usize, usize)]| {

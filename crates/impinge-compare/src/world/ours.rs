@@ -1,4 +1,4 @@
-//! impinge, in the plane and in space.
+//! impinge, in 2D and 3D.
 //!
 //! The library is `super::impinge`, so that this file can be compiled once for each of two versions of it.
 
@@ -28,20 +28,20 @@ where
     world: CollisionWorld<f32, D, usize>,
     isometry: fn(&Placement<D>) -> Isometry<D>,
     parts: Vec<Part<D>>,
-    /// By number; none of objects that are not there.
+    /// By number; `None` for objects that do not exist.
     handles: Vec<Option<CollisionObjectHandle>>,
     gone: Vec<CollisionObjectHandle>,
     born: Vec<(usize, Isometry<D>)>,
     moved: Vec<(CollisionObjectHandle, Isometry<D>)>,
 }
 
-/// What an object is wherever it is.
+/// The constant properties of an object.
 struct Part<const D: usize> {
     shape: ShapeHandle<f32, D>,
     query: GeometricQueryType<f32>,
 }
 
-/// A world in the plane with the objects of a scene as they are at step 0.
+/// Creates a 2D world with the objects of a scene at step 0.
 pub fn plane(scene: &Scene<2>) -> Impinge<2> {
     let particular = |shape: &SceneShape<2>| match shape {
         SceneShape::Convex { points } => {
@@ -61,7 +61,7 @@ pub fn plane(scene: &Scene<2>) -> Impinge<2> {
     })
 }
 
-/// A world in space with the objects of a scene as they are at step 0.
+/// Creates a 3D world with the objects of a scene at step 0.
 pub fn space(scene: &Scene<3>) -> Impinge<3> {
     let particular = |shape: &SceneShape<3>| match shape {
         SceneShape::Convex { points } => {
@@ -94,7 +94,7 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    /// `particular` makes the shapes that are particular to a dimension.
+    /// `particular` makes the shapes that exist in one dimension only.
     fn new(
         scene: &Scene<D>,
         particular: fn(&SceneShape<D>) -> ShapeHandle<f32, D>,
@@ -132,7 +132,7 @@ where
         self.handles[number] = Some(handle);
     }
 
-    /// The same, where pairs keep their contacts until they have moved by half of the prediction.
+    /// Makes pairs keep their contacts until they have moved by half of the prediction.
     pub fn reusing(mut self) -> Self {
         let narrow_phase = DefaultNarrowPhase::new().reusing(PREDICTION / 2.0);
         self.world.set_narrow_phase(Box::new(narrow_phase));
@@ -156,7 +156,7 @@ fn points_of<const D: usize>(points: &[[f64; D]]) -> Vec<Point<f32, D>> {
     points.iter().map(point).collect()
 }
 
-/// The shapes that exist in every dimension.
+/// Returns the shapes of both dimensions.
 fn common<const D: usize>(shape: &SceneShape<D>) -> Option<ShapeHandle<f32, D>> {
     Some(match shape {
         SceneShape::Ball { radius } => ShapeHandle::new(Ball::new(*radius as f32)),

@@ -1,4 +1,4 @@
-// The rest, for both crates; included by `parry_tree.rs`.
+// Common code of both crates; included by `parry_tree.rs`.
 
 use parry::bounding_volume::Aabb;
 use parry::math::{Pose, Vector};
@@ -15,11 +15,11 @@ struct Object {
     shape: SharedShape,
     pose: Pose,
     is_sensor: bool,
-    /// The step in which it was moved, added or removed last.
+    /// The step in which it was last moved, added or removed.
     changed: u32,
 }
 
-/// What is kept of two objects whose loosened boxes meet.
+/// The state of two objects whose fat AABBs overlap.
 #[derive(Default)]
 struct Pair {
     manifolds: Vec<ContactManifold<(), ()>>,
@@ -27,18 +27,18 @@ struct Pair {
     is_touching: bool,
 }
 
-/// A tree, pairs, and where objects go next.
+/// A tree, pairs, and the next positions of objects.
 pub struct ParryTree {
     objects: Vec<Object>,
     tree: Bvh,
     workspace: BvhWorkspace,
     pairs: HashMap<(u32, u32), Pair>,
-    /// The pairs that began to touch, and those that ended to.
+    /// The pairs that started touching, and those that stopped.
     events: Vec<((u32, u32), bool)>,
     step: u32,
-    /// The loosening of the boxes.
+    /// The margin of the boxes.
     margin: f32,
-    /// The leaves that were marked as changed when the tree was refitted last, and the time before.
+    /// The leaves that were marked as changed at the last refit of the tree, and at the previous one.
     changed: [Vec<u32>; 2],
     gone: Vec<u32>,
     born: Vec<(u32, Pose)>,
@@ -46,7 +46,7 @@ pub struct ParryTree {
 }
 
 impl ParryTree {
-    /// A world with the objects of a scene as they are at step 0.
+    /// Creates a world with the objects of a scene at step 0.
     pub fn new(scene: &Scene<DIM>) -> Self {
         let objects = scene.objects.iter().enumerate().map(|(n, object)| Object {
             shape: builder(&object.shape).shape,
@@ -76,7 +76,7 @@ impl ParryTree {
             moved,
         };
         let Self { tree, workspace, pairs, .. } = &mut made;
-        // The second time takes the marks of new leaves away.
+        // The second refit clears the marks of new leaves.
         tree.refit(workspace);
         tree.refit(workspace);
         let mut begin = |a, b| {
@@ -86,7 +86,7 @@ impl ParryTree {
         made
     }
 
-    /// Sets poses and brings the tree up to date; the pairs that it lists begin.
+    /// Sets poses and updates the tree; the pairs that it lists begin.
     fn update_tree(&mut self) {
         let Self { objects, tree, workspace, pairs, changed: [changed, before], .. } = self;
         std::mem::swap(changed, before);
@@ -95,7 +95,7 @@ impl ParryTree {
             tree.remove(*n);
             objects[*n as usize].changed = self.step;
         }
-        // The tree loosens boxes itself where it replaces old ones.
+        // The tree enlarges boxes itself where it replaces old ones.
         let born = self.born.iter().map(|placed| (placed, self.margin));
         let moved = self.moved.iter().map(|placed| (placed, 0.0));
         for ((n, pose), margin) in born.chain(moved) {
@@ -107,7 +107,7 @@ impl ParryTree {
                 changed.push(*n);
             }
         }
-        // The bounds are rapier's; it, too, refits all after a removal.
+        // The bounds are those of rapier, which also refits all after a removal.
         let few = (before.len() + changed.len()) * 16 < tree.leaf_count() as usize;
         if few && self.gone.is_empty() {
             tree.refit_partial(before, changed);
@@ -123,7 +123,7 @@ impl ParryTree {
         }
     }
 
-    /// Ends the pairs whose boxes have parted and computes the others anew, but for those that have not
+    /// Ends the pairs whose boxes are apart and recomputes the others, except those that have not
     /// moved.
     fn update_pairs(&mut self) {
         let Self { objects, tree, pairs, events, step, .. } = self;
@@ -146,14 +146,14 @@ impl ParryTree {
 }
 
 impl Object {
-    /// Boxes of objects as near as the prediction meet.
+    /// Boxes of objects within the prediction overlap.
     fn aabb(&self) -> Aabb {
         loosened(&self.shape.compute_aabb(&self.pose), PREDICTION / 2.0)
     }
 }
 
 impl Pair {
-    /// Whether two objects touch, by points or otherwise.
+    /// Whether two objects touch, by contact points or by intersection.
     fn update(&mut self, one: &Object, two: &Object) -> bool {
         let pose12 = one.pose.inv_mul(&two.pose);
         let (shape1, shape2) = (&*one.shape, &*two.shape);

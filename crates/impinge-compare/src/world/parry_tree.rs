@@ -1,20 +1,19 @@
-//! parry's tree and parry's manifolds, and what one writes oneself to have a world of them.
+//! A world made of the tree and the manifolds of parry, with the rest as a user would write it.
 //!
-//! The tree is driven much as rapier drives it: leaves are loosened, the tree is refitted where boxes have
-//! left theirs, improved a little where many have, and lists the pairs of which one box did. Pairs are in parry's map, with
-//! manifolds and workspace, which parry wants back the next time. A pair of which neither object has moved
-//! is left as it is; of two that moved, parry keeps the points as long as they have hardly slid. Pairs that
-//! begin and end to touch are listed, as our events are.
+//! The tree is used much as in rapier: leaves are enlarged, the tree is refitted where boxes have left their fat AABBs,
+//! optimized a little where many have, and lists the pairs with such a box. Pairs are in a map of parry, with manifolds
+//! and the workspace that parry requires for the next call. A pair of which neither object has moved is skipped; for
+//! two that moved, parry keeps the points as long as they have hardly slid. Pairs that start and stop touching are
+//! listed, as our events are.
 //!
-//! An object that asks for proximity has its pairs asked for intersection alone; its margin is not to be
-//! had.
+//! Pairs of an object with a proximity query are tested for intersection only; a margin is not supported.
 
 use impinge_scenes::{Placement, Scene, SceneQuery};
 
 use super::contender::{Change, Contender, Reading};
 use super::{PREDICTION, rapier};
 
-/// parry in the plane.
+/// parry in 2D.
 pub mod plane {
     use super::rapier::plane::{DIM, builder, pose};
     use super::*;
@@ -22,7 +21,7 @@ pub mod plane {
     include!("parry_common.rs");
 }
 
-/// parry in space.
+/// parry in 3D.
 pub mod space {
     use super::rapier::space::{DIM, builder, pose};
     use super::*;

@@ -1,6 +1,6 @@
-// The rest, for both crates; included by `rapier.rs`.
+// Common code of both crates; included by `rapier.rs`.
 
-/// Colliders without bodies, numbered as they come, and the pipeline they go through.
+/// Colliders without bodies, numbered in the order of their addition, and their pipeline.
 pub struct Colliders {
     islands: IslandManager,
     broad_phase: BroadPhaseBvh,
@@ -12,7 +12,7 @@ pub struct Colliders {
 }
 
 impl Colliders {
-    /// None.
+    /// Creates an empty set.
     pub fn new() -> Self {
         Self {
             islands: IslandManager::new(),
@@ -25,36 +25,36 @@ impl Colliders {
         }
     }
 
-    /// One more, which may touch every other.
+    /// Adds a collider, which may touch every other.
     pub fn add(&mut self, collider: ColliderBuilder) {
         let number = self.handles.len();
         self.handles.push(ColliderHandle::invalid());
         self.put(number, numbered(collider, number));
     }
 
-    /// A number for one that is not there yet.
+    /// Reserves the number of a collider that does not exist yet.
     pub fn skip(&mut self) {
         self.handles.push(ColliderHandle::invalid());
     }
 
-    /// One that was [`numbered`], under its number.
+    /// Inserts a collider that was [`numbered`], under its number.
     pub fn put(&mut self, number: usize, collider: Collider) {
         self.handles[number] = self.colliders.insert(collider);
     }
 
-    /// One of them less.
+    /// Removes a collider.
     pub fn remove(&mut self, number: usize) {
         let handle = std::mem::replace(&mut self.handles[number], ColliderHandle::invalid());
         let Self { islands, bodies, colliders, .. } = self;
         colliders.remove(handle, islands, bodies, &mut SoftBodySet::new(), false);
     }
 
-    /// One of them, to be moved.
+    /// Returns a collider, to be moved.
     pub fn get_mut(&mut self, number: usize) -> &mut Collider {
         &mut self.colliders[self.handles[number]]
     }
 
-    /// Finds what touches what.
+    /// Computes all contacts.
     pub fn step(&mut self) {
         self.pipeline.step(
             PREDICTION,
@@ -79,7 +79,7 @@ impl Colliders {
         reading
     }
 
-    /// The numbers of those that touch, the smaller first, in order.
+    /// Returns the numbers of touching colliders, the smaller first, in order.
     pub fn touching(&self) -> Vec<(usize, usize)> {
         let near = |pair: &&ContactPair| {
             let mut points = pair.manifolds().iter().flat_map(|manifold| &manifold.points);
@@ -105,12 +105,12 @@ impl Colliders {
     }
 }
 
-/// A collider that may touch every other and knows its number.
+/// Returns a collider that may touch every other and stores its number.
 fn numbered(collider: ColliderBuilder, number: usize) -> Collider {
     collider.active_collision_types(ActiveCollisionTypes::all()).user_data(number as u128).build()
 }
 
-/// The objects of a scene, and where they go next.
+/// The objects of a scene, and their next positions.
 pub struct Rapier {
     colliders: Colliders,
     builders: Vec<ColliderBuilder>,
@@ -120,8 +120,8 @@ pub struct Rapier {
 }
 
 impl Rapier {
-    /// A world with the objects of a scene as they are at step 0. Those that ask for proximity are
-    /// sensors; their margin is not to be had.
+    /// Creates a world with the objects of a scene at step 0. Those with proximity queries are
+    /// sensors; a margin is not supported.
     pub fn new(scene: &Scene<DIM>) -> Self {
         let (mut colliders, mut builders) = (Colliders::new(), Vec::new());
         for (n, object) in scene.objects.iter().enumerate() {

@@ -1,9 +1,9 @@
-// The constructors of the plane; included by `rapier.rs`.
+// The constructors of 2D; included by `rapier.rs`.
 
 /// The number of dimensions.
 pub const DIM: usize = 2;
 
-/// A shape of a scene.
+/// Converts a shape of a scene.
 pub fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
     match shape {
         SceneShape::Ball { radius } => ColliderBuilder::ball(*radius as f32),
@@ -38,7 +38,7 @@ pub fn builder(shape: &SceneShape<2>) -> ColliderBuilder {
     }
 }
 
-/// The order that rapier counts on: of a clockwise triangle it misses contacts.
+/// Returns the order that rapier requires: it misses contacts of a clockwise triangle.
 fn counter_clockwise([a, b, c]: [[f64; 2]; 3]) -> [[f64; 2]; 3] {
     let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     if turn < 0.0 { [a, c, b] } else { [a, b, c] }
@@ -48,7 +48,7 @@ fn vector(v: &[f64; 2]) -> Vector {
     Vector::from(v.map(|x| x as f32))
 }
 
-/// A placement of a scene.
+/// Converts a placement of a scene.
 pub fn pose(placement: &Placement<2>) -> Pose {
     let [x, y] = placement.translation.map(|x| x as f32);
     let [cosine, sine] = placement.complex().map(|x| x as f32);

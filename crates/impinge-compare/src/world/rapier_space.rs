@@ -1,9 +1,9 @@
-// The constructors of space; included by `rapier.rs`.
+// The constructors of 3D; included by `rapier.rs`.
 
 /// The number of dimensions.
 pub const DIM: usize = 3;
 
-/// A shape of a scene.
+/// Converts a shape of a scene.
 pub fn builder(shape: &SceneShape<3>) -> ColliderBuilder {
     match shape {
         SceneShape::Ball { radius } => ColliderBuilder::ball(*radius as f32),
@@ -41,7 +41,7 @@ pub fn builder(shape: &SceneShape<3>) -> ColliderBuilder {
     }
 }
 
-/// Cells whose bit is set have the diagonal that those of the scene have.
+/// Cells whose bit is set have the diagonal of those of the scene.
 fn field([rows, columns]: [usize; 2], heights: &[f64], extents: &[f64; 3]) -> HeightField {
     let by_column = (0..columns)
         .flat_map(|column| (0..rows).map(move |row| heights[row * columns + column] as f32));
@@ -57,7 +57,7 @@ fn vector(v: &[f64; 3]) -> Vector {
     Vector::from(v.map(|x| x as f32))
 }
 
-/// A placement of a scene.
+/// Converts a placement of a scene.
 pub fn pose(placement: &Placement<3>) -> Pose {
     let [x, y, z] = placement.translation.map(|x| x as f32);
     let [i, j, k, w] = placement.quaternion().map(|x| x as f32);

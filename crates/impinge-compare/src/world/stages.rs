@@ -1,4 +1,4 @@
-//! The scenes of the suite, and the size of each.
+//! The scenes of the suite, and their sizes.
 
 use impinge_scenes::{
     Motion, Scene, SceneQuery, SolidKind, aligned_pile, asteroids, few_asteroids_moving,
@@ -7,52 +7,51 @@ use impinge_scenes::{
     trembling_vehicles_field, trembling_vehicles_mesh, turned_pile, vehicles_field, vehicles_mesh,
 };
 
-/// Two objects whose distance is at most this have contact points: the sum of what the objects of
-/// the scenes ask for.
+/// The distance up to which two objects have contact points: the sum of the predictions of both.
 pub const PREDICTION: f32 = 0.002;
 
-/// How far a shaken scene displaces each object at each step, to either side along each axis.
+/// The largest displacement of each object at each step of a shaken scene, along each axis.
 const SHAKE: f64 = 0.001;
 
 /// A scene of the suite.
 pub struct Stage<const D: usize> {
     /// The name in the table.
     pub name: &'static str,
-    /// Makes it, of so many objects.
+    /// The constructor, for a number of objects.
     make: fn(usize) -> Scene<D>,
-    /// How many objects it has where so many are asked for.
+    /// The number of objects as a function of the requested number.
     count: fn(usize) -> usize,
-    /// Whether those of its objects that ask for proximity still do; elsewhere all ask for contacts.
+    /// Whether proximity queries are kept; in other scenes all objects have contacts.
     has_sensors: bool,
 }
 
 impl<const D: usize> Stage<D> {
-    /// As many objects as are asked for, all of which ask for contacts.
+    /// Creates a stage with the requested number of objects, all with contacts.
     pub const fn new(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
         Self { name, make, count: |objects| objects, has_sensors: false }
     }
 
-    /// Ten times the objects that are asked for.
+    /// Creates a stage with ten times the requested number of objects.
     const fn many(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
         Self { count: |objects| 10 * objects, ..Self::new(name, make) }
     }
 
-    /// A twentieth of the objects that are asked for, at least one.
+    /// Creates a stage with a twentieth of the requested number of objects, at least one.
     const fn large(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
         Self { count: |objects| objects.div_ceil(20), ..Self::new(name, make) }
     }
 
-    /// A hundredth of the objects that are asked for, at least one.
+    /// Creates a stage with a hundredth of the requested number of objects, at least one.
     const fn huge(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
         Self { count: |objects| objects.div_ceil(100), ..Self::new(name, make) }
     }
 
-    /// How many objects the scene has where `objects` are asked for.
+    /// Returns the number of objects for a requested number.
     pub fn count(&self, objects: usize) -> usize {
         (self.count)(objects)
     }
 
-    /// Makes the scene for `objects` objects asked for; `angular` is the sum over a pair of the angular
+    /// Makes the scene for a requested number of objects; `angular` is the sum over a pair of the angular
     /// predictions in radians.
     pub fn scene(&self, objects: usize, angular: f64) -> Scene<D> {
         let scene = (self.make)(self.count(objects));
@@ -64,8 +63,7 @@ impl<const D: usize> Stage<D> {
     }
 }
 
-/// The scenes of both dimensions, all of which ask for contacts with the same prediction: rapier has one
-/// for all.
+/// Returns the scenes of both dimensions, all with the same prediction: rapier has one for all objects.
 pub fn stages<const D: usize>() -> Vec<Stage<D>> {
     let mut stages = vec![
         Stage::new("pile", pile),
@@ -94,7 +92,7 @@ pub fn stages<const D: usize>() -> Vec<Stage<D>> {
     stages
 }
 
-/// Boxes in other piles, and scenes in which every step displaces every object at random.
+/// Returns boxes in other piles, and scenes in which every step displaces every object at random.
 fn shaken_stages<const D: usize>() -> [Stage<D>; 8] {
     [
         Stage::new("aligned pile", aligned_pile),
@@ -108,7 +106,7 @@ fn shaken_stages<const D: usize>() -> [Stage<D>; 8] {
     ]
 }
 
-/// Solids in free space, of several kinds and of each kind alone.
+/// Returns solids in free space, of several kinds and of each kind alone.
 fn alone<const D: usize>() -> [Stage<D>; 6] {
     use SolidKind::{Ball, Capsule, Cuboid, Hull};
     [
@@ -121,8 +119,8 @@ fn alone<const D: usize>() -> [Stage<D>; 6] {
     ]
 }
 
-/// Solids on a rough plain: plates of half extents from 0.5 to 8, and others of half extent 1 that move by
-/// 0.1 per step.
+/// Returns solids on a rough plain: plates of half extents from 0.5 to 8, and others of half extent 1 that
+/// move by 0.1 per step.
 fn on_plain<const D: usize>() -> [Stage<D>; 14] {
     use SolidKind::{Ball, Capsule, Cuboid, Hull};
     [
@@ -143,17 +141,17 @@ fn on_plain<const D: usize>() -> [Stage<D>; 14] {
     ]
 }
 
-/// The scenes of the plane alone.
+/// Returns the scenes of 2D only.
 pub fn plane_stages() -> [Stage<2>; 1] {
     [Stage::new("crowd", impinge_scenes::crowd)]
 }
 
-/// The scenes of space alone.
+/// Returns the scenes of 3D only.
 pub fn space_stages() -> [Stage<3>; 1] {
     [Stage::new("cylinders alone", |count| solids(count, &[SolidKind::Cylinder], 1.3))]
 }
 
-/// The same scene a hundred times as slow, about as things move that come to rest.
+/// Returns the scene slowed down a hundred times, about as objects move that come to rest.
 fn trembling<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     for Motion { place, tangent, .. } in scene.objects.iter_mut().map(|object| &mut object.motion) {
         place.iter_mut().chain([tangent]).for_each(|wave| wave.speed /= 100.0);
@@ -161,7 +159,7 @@ fn trembling<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     scene
 }
 
-/// The same scene, all of whose objects ask for contacts, with these predictions.
+/// Returns the scene with contacts for all objects, with these predictions.
 pub fn asking_for_contacts<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
     for object in &mut scene.objects {
         object.query = SceneQuery::Contacts { linear: 0.0, angular: 0.0 };
@@ -169,8 +167,8 @@ pub fn asking_for_contacts<const D: usize>(mut scene: Scene<D>, angular: f64) ->
     predicting(scene, angular)
 }
 
-/// The same scene, in which the sums over a pair of what is asked for are the prediction and an angle in
-/// radians, where contacts are asked for.
+/// Returns the scene in which the sums over a pair are the prediction and an angle in radians, for pairs
+/// with contacts.
 fn predicting<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
     let linear = f64::from(PREDICTION) / 2.0;
     for object in &mut scene.objects {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 
-/// The map; a key that occurs twice is an error instead of the last one being taken.
+/// Deserializes a map; a key that occurs twice is an error (serde would take the last one).
 pub(super) fn unique_keys<'de, D, V>(deserializer: D) -> Result<BTreeMap<String, V>, D::Error>
 where
     D: Deserializer<'de>,

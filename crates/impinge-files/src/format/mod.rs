@@ -26,11 +26,11 @@ pub use shape::{
 
 use map::unique_keys;
 
-/// A scene: shapes, the objects that have them, and how these move.
+/// A scene: shapes, the objects that use them, and their motions.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Where editors find the schema; it means nothing to the loader.
+    /// The path of the schema, for editors; ignored by the loader.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// The number of dimensions: 2 or 3.
@@ -38,10 +38,10 @@ pub struct SceneFile {
     /// The scalar of the world.
     #[serde(default)]
     pub scalar: ScalarFile,
-    /// By how much boxes of objects are fattened: a length, finite and not negative.
+    /// The margin by which the boxes of objects are enlarged: a length, finite and not negative.
     #[serde(default = "default_margin")]
     pub margin: f64,
-    /// The axis that points up in pictures. It means nothing to the world.
+    /// The axis that points up in pictures; ignored by the world.
     #[serde(default)]
     pub up: UpAxis,
     /// Shapes by name, for objects and for shapes within shapes.
@@ -77,7 +77,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// The number.
+    /// The number of dimensions as an integer.
     #[must_use]
     pub const fn number(self) -> usize {
         match self {
@@ -130,7 +130,7 @@ pub enum UpAxis {
 }
 
 impl SceneFile {
-    /// A scene of this dimension without objects: `f64`, a margin of 0.02, y upwards.
+    /// Returns a scene of this dimension without objects: `f64`, a margin of 0.02, y upwards.
     #[must_use]
     pub const fn new(dimension: Dimension) -> Self {
         Self {
@@ -147,7 +147,7 @@ impl SceneFile {
         }
     }
 
-    /// The JSON schema of scene files, which `scene.schema.json` holds.
+    /// Returns the JSON schema of scene files, which `scene.schema.json` contains.
     ///
     /// ```
     /// let schema = impinge_files::SceneFile::schema();

@@ -1,10 +1,11 @@
-//! A number, or three.
+//! Deserialization of a number or three numbers.
 
 use core::fmt;
 
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 
-/// A number, or a list of three. By hand, since an untagged enum loses the place of an error.
+/// A number, or a list of three. Deserialized by hand, since an untagged enum loses the position of
+/// an error.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum OneOrThree {
     One(f64),

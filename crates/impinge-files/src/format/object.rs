@@ -12,20 +12,20 @@ use super::{MeshKind, ScaleFile, ShapeRef};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectFile {
-    /// The name; no two objects have the same. With `repeat`, indices in brackets follow: `box[2,0,1]`.
+    /// The name, which must be unique. With `repeat`, indices in brackets follow: `box[2,0,1]`.
     pub name: String,
     /// The shape.
     pub shape: ShapeRef,
-    /// Where it is at the beginning.
+    /// The initial position.
     #[serde(default)]
     pub position: PoseFile,
     /// Its collision groups.
     #[serde(default)]
     pub groups: GroupsFile,
-    /// What is computed for its pairs.
+    /// The query type of its pairs: contacts or proximity.
     #[serde(default)]
     pub query: QueryTypeFile,
-    /// How it moves.
+    /// The motion.
     #[serde(default)]
     pub motion: MotionFile,
     /// Makes a grid of such objects.
@@ -38,7 +38,7 @@ pub struct ObjectFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshesFile {
-    /// What the names of the objects begin with; without, they are those of the parts.
+    /// The prefix of the names of the objects; without, the names are those of the parts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// The file: .obj, .stl, .ply, .gltf or .glb, relative to the folder of the scene.
@@ -46,25 +46,25 @@ pub struct MeshesFile {
     /// A factor for all coordinates, or one for each axis; not 0.
     #[serde(default)]
     pub scale: ScaleFile,
-    /// What the triangles stand for.
+    /// The kind of shape that is made of the triangles.
     #[serde(default, rename = "as")]
     pub kind: MeshKind,
-    /// Where the frame of the file is.
+    /// The position of the frame of the file.
     #[serde(default)]
     pub position: PoseFile,
     /// The collision groups of the objects.
     #[serde(default)]
     pub groups: GroupsFile,
-    /// What is computed for their pairs.
+    /// The query type of their pairs: contacts or proximity.
     #[serde(default)]
     pub query: QueryTypeFile,
-    /// How they move.
+    /// The motion of the objects.
     #[serde(default)]
     pub motion: MotionFile,
 }
 
 impl MeshesFile {
-    /// The parts of a file as they are: at the origin, at rest, in all groups.
+    /// Returns the parts of a file unchanged: at the origin, at rest, in all groups.
     #[must_use]
     pub fn new(path: &Path) -> Self {
         Self {
@@ -84,29 +84,29 @@ impl MeshesFile {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PoseFile {
-    /// Where the origin goes; without, it stays.
+    /// The translation; without, zero.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub translation: Option<Vec<f64>>,
-    /// The rotation; without, there is none.
+    /// The rotation; without, the identity.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<RotationFile>,
 }
 
-/// A rotation: an object with one member. `degrees` and `radians` are of 2D, the others of 3D.
+/// A rotation: an object with one member. `degrees` and `radians` are for 2D, the others for 3D.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RotationFile {
     /// A quaternion x, y, z, w of any length but 0.
     Quaternion([f64; 4]),
-    /// Three turns about the axes.
+    /// Three rotations about the axes.
     Euler {
-        /// The axes in the order of the turns: lower case about the fixed axes of the parent, upper case about the
-        /// axes that turn along. Roll, pitch and yaw are `xyz`.
+        /// The axes in the order of the rotations: lower case for the fixed axes of the parent, upper case for the
+        /// rotated axes. Roll, pitch and yaw are `xyz`.
         order: RotationOrder,
         /// The angles, in that order.
         degrees: [f64; 3],
     },
-    /// A turn about an axis.
+    /// A rotation about an axis.
     AxisAngle {
         /// The axis, of any length but 0.
         axis: [f64; 3],
@@ -119,7 +119,7 @@ pub enum RotationFile {
     Radians(f64),
 }
 
-/// An order of turns about axes.
+/// An order of rotations about axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 #[expect(missing_docs, reason = "the names are the axes")]
@@ -145,8 +145,8 @@ pub enum RotationOrder {
 }
 
 impl RotationOrder {
-    /// The axes in the order in which fixed axes are turned about, and whether that is the reverse of the order
-    /// written.
+    /// Returns the axes in the order of rotations about fixed axes, and whether it is the reverse of the written
+    /// order.
     #[must_use]
     pub const fn fixed_axes(self) -> ([usize; 3], bool) {
         match self {
@@ -174,31 +174,32 @@ pub struct GroupsFile {
     /// The groups that it is a member of; without, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub membership: Option<Vec<usize>>,
-    /// The groups that it accepts; without, all.
+    /// The groups that it interacts with; without, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub whitelist: Option<Vec<usize>>,
-    /// The groups that it refuses.
+    /// The groups that it does not interact with.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blacklist: Vec<usize>,
-    /// It is tested against itself.
+    /// Whether it is tested against itself.
     #[serde(default)]
     pub self_collision: bool,
 }
 
-/// What is computed for the pairs of an object.
+/// The query type of the pairs of an object.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum QueryTypeFile {
     /// Contacts.
     Contacts {
-        /// The object's share of the distance up to which there are contact points.
+        /// The object's share of the prediction, the distance up to which there are contact points.
         #[serde(default)]
         linear: f64,
-        /// Its share of the angle, in radians, by which the solids may turn until they are that near.
+        /// The object's share of the angular prediction: the angle, in radians, by which the solids may rotate until
+        /// they are that near.
         #[serde(default)]
         angular: f64,
     },
-    /// Whether others are near: the object's share of the distance up to which they are.
+    /// Proximity instead of contacts: the object's share of the margin.
     Proximity(f64),
 }
 
@@ -212,15 +213,15 @@ impl Default for QueryTypeFile {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionFile {
-    /// The velocity of the origin of the object, in lengths a second.
+    /// The velocity of the origin of the object, in lengths per second.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<Vec<f64>>,
-    /// The angular velocity about the origin of the object, in radians a second.
+    /// The angular velocity about the origin of the object, in radians per second.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angular_velocity: Option<AngularVelocity>,
 }
 
-/// An angular velocity in radians a second: a number in 2D, a vector along the axis in 3D.
+/// An angular velocity in radians per second: a number in 2D, a vector along the axis in 3D.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum AngularVelocity {
@@ -243,8 +244,8 @@ impl<'de> Deserialize<'de> for AngularVelocity {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RepeatFile {
-    /// How many along each axis, 1 or more.
+    /// The number of objects along each axis, 1 or more.
     pub count: Vec<usize>,
-    /// The distance from one to the next along each axis of the world.
+    /// The distance between neighbours along each axis of the world.
     pub spacing: Vec<f64>,
 }

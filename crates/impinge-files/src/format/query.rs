@@ -11,7 +11,7 @@ use super::{PoseFile, ShapeRef};
 pub enum QueryFile {
     /// The objects on a half-line.
     Ray(RayFile),
-    /// The objects that a moving shape meets.
+    /// The objects that a moving shape hits.
     Cast(CastFile),
 }
 
@@ -19,14 +19,14 @@ pub enum QueryFile {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RayFile {
-    /// Where it begins.
+    /// The origin.
     pub origin: Vec<f64>,
-    /// Its direction; times are multiples of its length.
+    /// The direction; times are multiples of its length.
     pub direction: Vec<f64>,
-    /// The largest time of a hit; without, there is none.
+    /// The maximum time of a hit; without, there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_time: Option<f64>,
-    /// All hits are wanted, not the first alone.
+    /// Whether all hits are returned, not only the first.
     #[serde(default)]
     pub all: bool,
 }
@@ -37,15 +37,15 @@ pub struct RayFile {
 pub struct CastFile {
     /// The shape.
     pub shape: ShapeRef,
-    /// Where it starts.
+    /// The position at time zero.
     #[serde(default)]
     pub position: PoseFile,
     /// Its velocity.
     pub velocity: Vec<f64>,
-    /// The largest time of an impact; without, there is none.
+    /// The maximum time of an impact; without, there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_time: Option<f64>,
-    /// All impacts are wanted, not the first alone.
+    /// Whether all impacts are returned, not only the first.
     #[serde(default)]
     pub all: bool,
 }

@@ -13,7 +13,7 @@ use super::{GroupsFile, MeshKind, PoseFile, QueryTypeFile};
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RobotFile {
-    /// What the names of the objects begin with; without, the name of the robot in the file.
+    /// The prefix of the names of the objects; without, the name of the robot in the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// The URDF file, relative to the folder of the scene.
@@ -21,28 +21,29 @@ pub struct RobotFile {
     /// An SRDF file: its `disable_collisions` pairs of links have no contacts, and neither have links that a joint connects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub srdf: Option<PathBuf>,
-    /// Folders in which the packages of `package://` paths are looked for, relative to the folder of the scene.
+    /// Folders in which the packages of `package://` paths are searched, relative to the folder of the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub packages: Vec<PathBuf>,
-    /// The values of joints by name: radians or lengths, others are 0. Values beyond the limits of a joint are no error.
+    /// The values of joints by name, in radians or lengths; others are 0. Values beyond the limits of a joint are no
+    /// error.
     #[serde(default, deserialize_with = "unique_keys", skip_serializing_if = "BTreeMap::is_empty")]
     pub joints: BTreeMap<String, f64>,
-    /// Where the root link is.
+    /// The position of the root link.
     #[serde(default)]
     pub position: PoseFile,
-    /// What the triangles of its meshes stand for.
+    /// The kind of shape that is made of the triangles of its meshes.
     #[serde(default, rename = "as")]
     pub kind: MeshKind,
-    /// The collision groups of the links, for other objects; pairs of links are disabled by groups of their own.
+    /// The collision groups of the links, for other objects; pairs of links are disabled by additional groups.
     #[serde(default)]
     pub groups: GroupsFile,
-    /// What is computed for their pairs.
+    /// The query type of their pairs: contacts or proximity.
     #[serde(default)]
     pub query: QueryTypeFile,
 }
 
 impl RobotFile {
-    /// The robot of a URDF file at the origin, with all joints at 0 and in all groups.
+    /// Returns the robot of a URDF file at the origin, with all joints at 0 and in all groups.
     #[must_use]
     pub fn new(urdf: &Path) -> Self {
         Self {

@@ -11,17 +11,17 @@ use serde::{Deserialize, Serialize};
 use super::PoseFile;
 use super::numbers::OneOrThree;
 
-/// A shape: by its name in `shapes`, or itself.
+/// A shape: the name of one in `shapes`, or an inline shape.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ShapeRef {
     /// The name of a shape in `shapes`.
     Name(String),
-    /// The shape itself.
+    /// An inline shape.
     Inline(Box<ShapeFile>),
 }
 
-/// By hand, since an untagged enum loses the place of an error.
+/// Deserialized by hand, since an untagged enum loses the position of an error.
 impl<'de> Deserialize<'de> for ShapeRef {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(RefVisitor)
@@ -47,8 +47,8 @@ impl<'de> Visitor<'de> for RefVisitor {
     }
 }
 
-/// A shape: an object with one member, whose name is the kind of the shape. Lengths and coordinates are in the
-/// frame of the shape; points and vectors have as many numbers as the scene has dimensions.
+/// A shape: an object with one member, whose name is the kind of the shape. Lengths and coordinates are in the frame
+/// of the shape. Points and vectors have as many numbers as the scene has dimensions.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ShapeFile {
@@ -94,14 +94,14 @@ pub enum ShapeFile {
         /// The corners.
         corners: [Vec<f64>; 3],
     },
-    /// A stretched ball around the origin.
+    /// A ball around the origin, scaled along the axes.
     Ellipsoid {
         /// Half the extent along each axis, 0 or more.
         half_axes: Vec<f64>,
     },
-    /// All that is behind the plane (the line, in 2D) through the origin.
+    /// All points behind the plane (in 2D, the line) through the origin.
     HalfSpace {
-        /// Outwards; any length but 0.
+        /// The outward normal; any length but 0.
         normal: Vec<f64>,
     },
     /// The points within a radius of another convex shape.
@@ -118,7 +118,7 @@ pub enum ShapeFile {
         /// The radius, 0 or more.
         radius: f64,
     },
-    /// 3D only: a cone along the y axis, whose tip is above the origin by half the height.
+    /// 3D only: a cone along the y axis, around the origin, with its apex at half the height.
     Cone {
         /// Half the height, 0 or more.
         half_height: f64,
@@ -140,33 +140,33 @@ pub enum ShapeFile {
         /// The corners, counter-clockwise.
         points: Vec<Vec<f64>>,
     },
-    /// A line of segments from vertex to vertex, or between given vertices.
+    /// A chain of segments from vertex to vertex, or segments between given vertices.
     Polyline {
         /// The vertices.
         vertices: Vec<Vec<f64>>,
         /// The two vertices of each segment, counted from 0; without, from each vertex to the next.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         segments: Option<Vec<[u32; 2]>>,
-        /// A last segment goes from the last vertex to the first; not together with `segments`.
+        /// Whether a last segment goes from the last vertex to the first; not together with `segments`.
         #[serde(default)]
         closed: bool,
-        /// 2D only: nothing touches it from behind, which is the left side of each segment.
+        /// 2D only: no contacts from behind, which is the left side of each segment.
         #[serde(default)]
         one_sided: bool,
     },
-    /// A mesh of triangles, written out.
+    /// A mesh of given triangles.
     Mesh {
         /// The vertices.
         vertices: Vec<Vec<f64>>,
         /// The three vertices of each triangle, counted from 0; counter-clockwise seen from the front.
         triangles: Vec<[u32; 3]>,
-        /// 3D only: nothing touches it from behind.
+        /// 3D only: no contacts from behind.
         #[serde(default)]
         one_sided: bool,
     },
-    /// A surface (a line, in 2D) by its heights over a grid, around the y axis.
+    /// A surface (in 2D, a polyline) given by its heights over a grid, around the y axis.
     HeightField(HeightFieldFile),
-    /// Shapes side by side, as one.
+    /// Several shapes, as one.
     Compound {
         /// The shapes.
         children: Vec<ChildFile>,
@@ -175,29 +175,29 @@ pub enum ShapeFile {
     MeshFile(MeshSource),
 }
 
-/// A surface (a line, in 2D) by its heights over a grid, around the y axis.
+/// A surface (in 2D, a polyline) given by its heights over a grid, around the y axis.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HeightFieldFile {
     /// The heights, row by row: columns along x, rows along z.
     pub heights: Vec<f64>,
-    /// 3D only, and needed there: how many heights a row has.
+    /// 3D only, and required there: the number of heights in a row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub columns: Option<usize>,
-    /// The extents of the whole field, and as y component the factor of the heights.
+    /// The extents of the whole field; the y component is the factor of the heights.
     pub scale: Vec<f64>,
     /// Cells without surface, counted from 0, row by row.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub holes: Vec<usize>,
-    /// 3D only: which way cells are cut into two triangles.
+    /// 3D only: the diagonals along which cells are cut into two triangles.
     #[serde(default)]
     pub diagonals: DiagonalsFile,
-    /// Nothing touches it from behind: from below, if the factor of the heights is positive.
+    /// No contacts from behind: from below, if the factor of the heights is positive.
     #[serde(default)]
     pub one_sided: bool,
 }
 
-/// Which way the cells of a height field are cut into triangles.
+/// The diagonals along which the cells of a height field are cut into triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DiagonalsFile {
@@ -206,7 +206,7 @@ pub enum DiagonalsFile {
     Forward,
     /// From the corner of the lower row and the higher column.
     Backward,
-    /// By turns, forward where row and column are both even or both odd.
+    /// Alternating, forward where row and column are both even or both odd.
     Alternating,
 }
 
@@ -216,7 +216,7 @@ pub enum DiagonalsFile {
 pub struct ChildFile {
     /// The shape.
     pub shape: ShapeRef,
-    /// Where it is in the frame of the compound.
+    /// The position in the frame of the compound.
     #[serde(default)]
     pub position: PoseFile,
 }
@@ -227,28 +227,28 @@ pub struct ChildFile {
 pub struct MeshSource {
     /// The file: .obj, .stl, .ply, .gltf or .glb, relative to the folder of the scene.
     pub path: PathBuf,
-    /// The name of one part of the file: without, all parts together.
+    /// The name of one part of the file; without, all parts together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub part: Option<String>,
     /// A factor for all coordinates, or one for each axis; not 0.
     #[serde(default)]
     pub scale: ScaleFile,
-    /// What the triangles stand for.
+    /// The kind of shape that is made of the triangles.
     #[serde(default, rename = "as")]
     pub kind: MeshKind,
 }
 
-/// What the triangles of a file stand for.
+/// The kind of shape that is made of the triangles of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MeshKind {
-    /// A surface with two sides.
+    /// A two-sided surface.
     #[default]
     Surface,
-    /// A surface that nothing touches from behind.
+    /// A one-sided surface, without contacts from behind.
     OneSided,
-    /// The boundary of a body, to which what is inside belongs: an error if the surface is not closed or its triangles
-    /// do not agree about the outside. Where all of them point inwards, they are turned.
+    /// The boundary of a solid body, which contains its interior: an error if the surface is not closed or its
+    /// triangles do not agree about the outside. If all of them point inwards, they are reversed.
     Solid,
     /// The convex hull of all vertices.
     ConvexHull,
@@ -260,9 +260,9 @@ pub enum MeshKind {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ScaleFile {
-    /// The same along all axes.
+    /// The factor of all axes.
     Uniform(f64),
-    /// Along each axis.
+    /// The factor of each axis.
     Axes([f64; 3]),
 }
 
@@ -273,7 +273,7 @@ impl Default for ScaleFile {
 }
 
 impl ScaleFile {
-    /// The factor along each axis.
+    /// The factors along x, y and z.
     #[must_use]
     pub const fn factors(&self) -> [f64; 3] {
         match self {

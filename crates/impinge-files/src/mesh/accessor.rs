@@ -1,6 +1,7 @@
-//! Accessors of glTF: whether their numbers are of a type and lie within the buffers.
+//! Accessors of glTF: checks their types, and that their data lie within the buffers.
 //!
-//! The crate `gltf` trusts both, and the indices of sparse accessors: it reads what was checked here.
+//! The crate `gltf` trusts both, and the indices of sparse accessors. It reads only accessors that were
+//! checked here.
 
 use gltf::accessor::sparse::Sparse;
 use gltf::accessor::{DataType, Dimensions};
@@ -8,20 +9,20 @@ use gltf::{Accessor, buffer};
 
 use super::raw::FormatError;
 
-/// The numbers that an accessor must have.
+/// The type and component type that an accessor must have.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layout<'a> {
     pub(super) types: &'a [DataType],
     pub(super) dimensions: Dimensions,
 }
 
-/// Equal numbers of bytes at equal distances in a view of a buffer.
+/// Elements of equal size at equal distances in a view of a buffer.
 struct Block<'a> {
     view: buffer::View<'a>,
-    /// Where the first begins in the view.
+    /// The offset of the first element in the view.
     offset: usize,
     count: usize,
-    /// The bytes of each.
+    /// The bytes of each element.
     size: usize,
 }
 
@@ -46,14 +47,14 @@ fn check_numbers(
         return Err("numbers of another type are needed");
     }
     let (count, size) = (accessor.count(), accessor.size());
-    // Without a view all numbers are 0 but the sparse ones. How many a file may have is the caller's to know.
+    // Without a view all elements are 0 except the sparse ones. The caller limits their number.
     if let Some(view) = accessor.view() {
         Block { view, offset: accessor.offset(), count, size }.bytes(buffers)?;
     }
     accessor.sparse().map_or(Ok(()), |sparse| check_sparse(&sparse, accessor, buffers))
 }
 
-/// Checks the elements that replace others: there is one for each index, and the indices increase.
+/// Checks the elements that replace others: one for each index, with increasing indices.
 fn check_sparse(
     sparse: &Sparse<'_>,
     accessor: &Accessor<'_>,
@@ -70,19 +71,20 @@ fn check_sparse(
         low_to_high.fold(0_usize, |number, byte| number << 8 | usize::from(*byte))
     });
     let numbers: Vec<usize> = numbers.collect();
-    // The crate applies none that follow one out of order.
+    // The crate ignores an element after one with a larger index.
     let is_increasing = numbers.is_sorted_by(|one, next| one < next);
     let is_in_range = numbers.last().is_some_and(|last| *last < accessor.count());
     if is_increasing && is_in_range { Ok(()) } else { Err("its sparse indices are out of order") }
 }
 
 impl Block<'_> {
-    /// From the beginning of one to that of the next.
+    /// The distance between the beginnings of two consecutive elements.
     fn stride(&self) -> usize {
         self.view.stride().unwrap_or(self.size)
     }
 
-    /// The bytes from the first to the end of the last, if the view and its buffer have them.
+    /// Returns the bytes from the first element to the end of the last; an error if the view or its buffer is
+    /// shorter.
     fn bytes<'b>(&self, buffers: &[&'b [u8]]) -> Result<&'b [u8], &'static str> {
         let steps = self.count.checked_sub(1).ok_or("it is empty")?;
         if self.stride() < self.size {

@@ -1,4 +1,4 @@
-//! The buffers of glTF files: within the file, in data URIs, and in files beside it, each read once.
+//! The buffers of glTF files: in the file, in data URIs, and in files beside it; each is read once.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,14 +14,14 @@ use crate::Problem;
 use crate::files::Files;
 use crate::text::Quoted;
 
-/// The bytes of all buffers. Buffers with the same bytes share them.
+/// The bytes of all buffers. Buffers from one file share their bytes.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
     /// The bytes of buffers that are not part of the document.
     read: Vec<Vec<u8>>,
-    /// By buffer: which of `read`; `None` for the binary chunk of the document.
+    /// For each buffer, its index in `read`; `None` for the binary chunk of the document.
     places: Vec<Option<usize>>,
-    /// Which of `read` has the bytes of a file, by its path without symbolic links.
+    /// For each file, by its path without symbolic links, the index in `read`.
     files: BTreeMap<PathBuf, usize>,
 }
 
@@ -49,7 +49,7 @@ impl Buffers {
         Ok(buffers)
     }
 
-    /// The bytes of each buffer.
+    /// Returns the bytes of each buffer.
     pub(super) fn slices<'a>(&'a self, document: &'a Gltf) -> Vec<&'a [u8]> {
         self.places.iter().map(|place| self.bytes(*place, document)).collect()
     }
@@ -61,7 +61,7 @@ impl Buffers {
         }
     }
 
-    /// Reads what a URI names, if it was not read before.
+    /// Returns the index of the bytes of a URI, which are read at the first use.
     fn resource(
         &mut self,
         uri: &str,

@@ -1,7 +1,7 @@
-//! glTF, text and binary, by `gltf`: each mesh of a node becomes a part, in the frame of the scene.
+//! glTF, text and binary, by the crate `gltf`: each mesh of a node becomes a part, in the frame of the scene.
 //!
-//! The crate checks the JSON. What it trusts is checked before: the tree of nodes, the lengths of buffers, the
-//! accessors of positions, and in `accessor.rs` the ranges of accessors.
+//! The crate checks the JSON. It trusts the tree of nodes, the lengths of buffers and the accessors of positions,
+//! which are checked here first, and the ranges of accessors, which `accessor.rs` checks.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -20,7 +20,7 @@ use crate::files::Files;
 /// The bytes of the header of a binary file.
 const HEADER: u32 = 12;
 
-/// The meshes of the nodes of the default scene, or of all nodes.
+/// Reads the meshes of the nodes of the default scene, or of all nodes.
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
@@ -39,12 +39,12 @@ pub(super) fn read(
     parts(&document, &mut Loader { buffers, files, checked: BTreeSet::new() })
 }
 
-/// The parts of all nodes.
+/// Returns the parts of all nodes.
 fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, FormatError> {
     let mut parts = Vec::new();
     let mut seen = BTreeSet::new();
     let mut open: Vec<Placed<'_>> = roots(document);
-    // Ends: no node is visited twice.
+    // Terminates: no node is visited twice.
     while let Some(Placed { node, frame }) = open.pop() {
         if !seen.insert(node.index()) {
             let message = format!("node {} has two parents, or is its own", node.index());
@@ -61,14 +61,14 @@ fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, Forma
             }
             parts.push(part.raw);
         }
-        // The last is visited first: so they come in the order of the file.
+        // The last is visited first: so they are in the order of the file.
         let children: Vec<_> = node.children().map(|node| Placed { node, frame }).collect();
         open.extend(children.into_iter().rev());
     }
     Ok(parts)
 }
 
-/// The positions of all primitives have an accessor: the crate's own checks index with theirs.
+/// Checks that the positions of all primitives have an accessor: the crate's own checks index with it.
 fn check_positions(bytes: &[u8]) -> Result<(), FormatError> {
     let document = Gltf::from_slice_without_validation(bytes);
     let document = document.map_err(|error| syntax_error(&error))?;
@@ -84,7 +84,7 @@ fn check_positions(bytes: &[u8]) -> Result<(), FormatError> {
     }
 }
 
-/// A node in the frame of its parent, which has this one.
+/// A node with the frame of its parent in the scene.
 struct Placed<'a> {
     node: Node<'a>,
     frame: Matrix4<f64>,
@@ -109,7 +109,7 @@ fn matrix(node: &Node<'_>) -> Matrix4<f64> {
     Matrix4::from_fn(|row, column| f64::from(columns[column][row]))
 }
 
-/// The error with the line, where the text of the JSON has one.
+/// Returns the error with its line, if the parser of the JSON reports one.
 fn syntax_error(error: &gltf::Error) -> FormatError {
     let line = match error {
         gltf::Error::Deserialize(error) => Some(error.line()).filter(|line| *line > 0),
@@ -118,12 +118,12 @@ fn syntax_error(error: &gltf::Error) -> FormatError {
     FormatError::syntax(line, error)
 }
 
-/// The part of a node.
+/// The part of a node, while it is built.
 struct NodePart {
     raw: RawPart,
     /// From the frame of the mesh to that of the scene.
     frame: Matrix4<f64>,
-    /// The first vertex of an accessor, and how many it has: primitives share their vertices.
+    /// For each accessor, the first vertex and the number of vertices: primitives share their vertices.
     first: BTreeMap<usize, [u32; 2]>,
 }
 
@@ -131,7 +131,7 @@ struct NodePart {
 struct Loader<'a> {
     buffers: &'a [&'a [u8]],
     files: &'a mut Files,
-    /// The accessors that were checked, as positions or as indices.
+    /// The accessors that were checked, each as positions (`true`) or as indices.
     checked: BTreeSet<(usize, bool)>,
 }
 
@@ -143,10 +143,10 @@ impl Loader<'_> {
             return Ok(());
         }
         let [first, count] = self.vertices(primitive, part)?;
-        // An index beyond the vertices of the primitive must not become one of the next.
+        // An index beyond the vertices of this primitive must not become a vertex of the next one.
         let corner = |corner: u32| if corner < count { first + corner } else { u32::MAX };
         let corners: Vec<u32> = self.corners(primitive, count)?.into_iter().map(corner).collect();
-        // A mirrored frame turns triangles over.
+        // A mirroring frame reverses triangles.
         let is_mirrored = part.frame.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
         for [a, b, c] in triangles(&corners, mode) {
             part.raw.face(if is_mirrored { [a, c, b] } else { [a, b, c] });
@@ -154,8 +154,8 @@ impl Loader<'_> {
         Ok(())
     }
 
-    /// The first vertex of a primitive in its part, and how many there are; they are added if no primitive before had
-    /// them.
+    /// Returns the first vertex of a primitive in its part, and the number of its vertices. Adds them if no earlier
+    /// primitive has them.
     fn vertices(
         &mut self,
         primitive: &Primitive<'_>,
@@ -181,7 +181,7 @@ impl Loader<'_> {
         Ok(range)
     }
 
-    /// The indices of a primitive; without an accessor of its own each of its `count` vertices in turn.
+    /// Returns the indices of a primitive; without an accessor of indices, its `count` vertices in order.
     fn corners(&mut self, primitive: &Primitive<'_>, count: u32) -> Result<Vec<u32>, FormatError> {
         let accessor = primitive.indices();
         if let Some(accessor) = &accessor {
@@ -213,7 +213,7 @@ impl Loader<'_> {
     }
 }
 
-/// The corners of each triangle; those of strips turn every other time.
+/// Returns the corners of each triangle; every other triangle of a strip is reversed.
 fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     let windows = corners.windows(3).enumerate();
     match mode {

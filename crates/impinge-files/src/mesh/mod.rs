@@ -1,4 +1,4 @@
-//! Mesh files: their parts, and what is wrong with them.
+//! Mesh files: their parts, and the defects of these.
 
 mod accessor;
 mod buffers;
@@ -38,30 +38,30 @@ use crate::{FileError, Problem, ReadOptions};
 #[derive(Clone, Debug)]
 pub struct MeshFile {
     parts: Vec<MeshPart>,
-    /// Which part has a name.
+    /// The index of the part of each name.
     names: BTreeMap<String, usize>,
 }
 
-/// A part of a mesh file: triangles with finite vertices, which neighbors share.
+/// A part of a mesh file: triangles with finite, shared vertices.
 #[derive(Clone, Debug)]
 pub struct MeshPart {
-    /// The name in the file; `part`, with a number from the second on, without one or where it occurs before.
+    /// The name in the file, or `part` if there is none; with a number if it occurs before.
     pub name: String,
     /// The vertices, in the frame of the file. No two are equal.
     pub vertices: Vec<[f64; 3]>,
-    /// The vertices of each triangle, counter-clockwise seen from the front; none without area.
+    /// The vertices of each triangle, counter-clockwise seen from the front; no triangle has zero area.
     pub triangles: Vec<[u32; 3]>,
-    /// What is wrong with it, and what was done.
+    /// The defects, and their repairs.
     pub report: MeshReport,
 }
 
 impl MeshFile {
-    /// Reads a file by the ending of its name: .obj, .stl, .ply, .gltf or .glb. Buffers of a glTF file are read
-    /// from its folder.
+    /// Reads a file by its extension: .obj, .stl, .ply, .gltf or .glb. Buffers of a glTF file are read from its
+    /// folder.
     ///
     /// Vertices at one position are welded, polygons triangulated, and triangles dropped that are degenerate,
-    /// double or without vertices; [`MeshPart::report`] counts these. Numbers are those of the file: meters,
-    /// mostly, and y or z upwards. Time and memory are O(n log n) and O(n) in the bytes of the file, and in the
+    /// duplicate or without vertices; [`MeshPart::report`] counts these. Coordinates are those of the file: usually
+    /// in meters, with y or z upwards. Time is O(n log n) and memory O(n) in the bytes of the file, and in the
     /// vertices and corners that the nodes of a glTF file make of them.
     ///
     /// # Errors
@@ -82,8 +82,8 @@ impl MeshFile {
         Self::of_bytes(path, &bytes, &mut files)
     }
 
-    /// Reads the bytes of a file with this name: its ending gives the format, its folder holds the buffers of a
-    /// glTF file.
+    /// Parses the bytes of a file with this name: its extension gives the format, its folder contains the buffers of
+    /// a glTF file.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -93,7 +93,7 @@ impl MeshFile {
         Self::of_bytes(path, bytes, &mut files)
     }
 
-    /// Reads the bytes of a file, and the files that it names.
+    /// Parses the bytes of a file, and reads the files that it names.
     pub(crate) fn of_bytes(
         path: &Path,
         bytes: &[u8],
@@ -120,7 +120,7 @@ impl MeshFile {
         Ok(Self { parts, names })
     }
 
-    /// The format with this ending can be read.
+    /// Whether the format with this extension is supported.
     pub(crate) fn has_format(extension: &str) -> bool {
         reader(extension).is_some()
     }
@@ -131,17 +131,17 @@ impl MeshFile {
         &self.parts
     }
 
-    /// The part of a name.
+    /// Returns the part of a name.
     #[must_use]
     pub fn part(&self, name: &str) -> Option<&MeshPart> {
         self.names.get(name).map(|index| &self.parts[*index])
     }
 }
 
-/// Reads the faces of a file, of which the path is given too, and of the files that it names.
+/// A function that reads the faces of a file, given its path and bytes, and of the files that it names.
 type Reader = fn(&Path, &[u8], &mut Files) -> Result<Vec<RawPart>, FormatError>;
 
-/// The reader of the format with an ending.
+/// Returns the reader of the format with an extension.
 fn reader(extension: &str) -> Option<Reader> {
     Some(match extension {
         "obj" => |_, bytes, _| obj::read(bytes),
@@ -153,16 +153,16 @@ fn reader(extension: &str) -> Option<Reader> {
 }
 
 impl MeshPart {
-    /// Neither triangles nor anything that a report would say.
+    /// Whether there are neither triangles nor defects.
     fn is_empty(&self) -> bool {
         self.triangles.is_empty() && self.report.is_clean()
     }
 }
 
-/// Gives each part a name of its own; the index of the part of each name. O(n log n).
+/// Makes the names of parts unique; returns the index of the part of each name. O(n log n).
 fn unique_names(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
     let mut names = BTreeMap::new();
-    // The number that the next part of a name gets: those below it are taken.
+    // For each name, the next number to try: smaller ones are taken.
     let mut next: BTreeMap<String, usize> = BTreeMap::new();
     for (index, part) in parts.iter_mut().enumerate() {
         if part.name.is_empty() {
@@ -171,7 +171,7 @@ fn unique_names(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
         if names.contains_key(&part.name) {
             let stem = core::mem::take(&mut part.name);
             let number = next.entry(stem.clone()).or_insert(2);
-            // Ends: there are fewer names taken than numbers.
+            // Terminates: there are fewer taken names than numbers.
             part.name = loop {
                 let name = format!("{stem}.{number}");
                 *number += 1;

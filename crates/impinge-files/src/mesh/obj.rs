@@ -1,13 +1,13 @@
-//! Wavefront OBJ: groups and objects become parts. Materials, texture coordinates, normals, lines and points mean
-//! nothing to collisions and are not looked at.
+//! Wavefront OBJ: groups and objects become parts. Materials, texture coordinates, normals, lines and points are
+//! ignored.
 
 use super::RawPart;
 use super::raw::{FormatError, number, words};
 
-/// The vertex has no number in the present part.
+/// The vertex has no number in the current part.
 const NONE: u32 = u32::MAX;
 
-/// The parts of an OBJ file. O(n) in its bytes.
+/// Returns the parts of an OBJ file. O(n) in its bytes.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     let text = String::from_utf8_lossy(bytes);
     let mut reader = Reader::new(vertices(&text)?);
@@ -23,13 +23,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     Ok(reader.finish())
 }
 
-/// The vertices of the whole file: faces may name those that follow them.
+/// Returns the vertices of the whole file: faces may name vertices on later lines.
 fn vertices(text: &str) -> Result<Vec<[f64; 3]>, FormatError> {
     let lines = (1..).zip(text.lines().map(words)).filter(|(_, (keyword, _))| *keyword == "v");
     lines.map(|(line, (_, rest))| vertex(rest, line)).collect()
 }
 
-/// Three coordinates; a fourth number divides them, and three more are a colour.
+/// Parses three coordinates; a fourth number divides them, and three more are a colour, which is ignored.
 fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     let mut words = text.split_whitespace();
     let mut position = [0.0; 3];
@@ -46,16 +46,16 @@ fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     }))
 }
 
-/// The parts so far. The corners of a part are vertices of its own, numbered as its faces name them first.
+/// The parts so far. The corners of a part are its own vertices, numbered in the order of their first use.
 struct Reader {
     vertices: Vec<[f64; 3]>,
-    /// The number of each vertex in the present part.
+    /// For each vertex of the file, its number in the current part.
     own: Vec<u32>,
-    /// The vertices of the file that the present part has, in its order.
+    /// The vertices of the file that the current part uses, in its order.
     used: Vec<usize>,
     part: RawPart,
     parts: Vec<RawPart>,
-    /// Vertices on the lines before.
+    /// The number of vertices on earlier lines.
     seen: usize,
     out_of_range: Vec<usize>,
 }
@@ -73,7 +73,7 @@ impl Reader {
         }
     }
 
-    /// A group or object begins. One without faces is no part.
+    /// Begins a group or object. One without faces makes no part.
     fn begin(&mut self, name: &str) {
         self.end();
         self.part.name = name.to_owned();
@@ -88,8 +88,8 @@ impl Reader {
         self.parts.push(core::mem::take(&mut self.part));
     }
 
-    /// Adds a face, or notes its line if it names a vertex that does not exist. What has less than three corners is
-    /// none.
+    /// Adds a face, or records its line if it names a vertex that does not exist. A face with fewer than three
+    /// corners is ignored.
     fn face(&mut self, text: &str, line: usize) -> Result<(), FormatError> {
         let mut corners = Vec::new();
         for word in text.split_whitespace() {
@@ -108,7 +108,7 @@ impl Reader {
         Ok(())
     }
 
-    /// The vertex of an index: from 1 upwards, or from -1 downwards from the last one before the line.
+    /// Returns the vertex of an index: from 1 upwards, or from -1 downwards from the last vertex before the line.
     fn vertex(&self, index: i64) -> Option<usize> {
         let distance = usize::try_from(index.unsigned_abs()).ok()?;
         let vertex =
@@ -116,7 +116,7 @@ impl Reader {
         vertex.filter(|vertex| *vertex < self.vertices.len())
     }
 
-    /// The number of a vertex in the present part.
+    /// Returns the number of a vertex in the current part.
     fn corner(&mut self, vertex: usize) -> u32 {
         if self.own[vertex] == NONE {
             self.own[vertex] = u32::try_from(self.used.len()).unwrap_or(NONE);

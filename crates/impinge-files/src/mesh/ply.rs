@@ -9,7 +9,7 @@ use super::RawPart;
 use super::raw::FormatError;
 use crate::Problem;
 
-/// An element of any kind: a vertex, a face, or one that is skipped.
+/// An element of any kind: a vertex, a face, or an ignored one.
 #[derive(Debug, Default)]
 struct Element {
     position: [f64; 3],
@@ -29,7 +29,7 @@ impl PropertyAccess for Element {
             return PropertyAccessResult::Set;
         }
         if name == "vertex_indices" || name == "vertex_index" {
-            // A negative index is out of range, as this one is.
+            // A negative index becomes an index out of range.
             self.corners = value.to_u32_list().unwrap_or_else(|| vec![u32::MAX]);
             return PropertyAccessResult::Set;
         }
@@ -37,7 +37,7 @@ impl PropertyAccess for Element {
     }
 }
 
-/// A scalar of any type.
+/// Converts a scalar of any type.
 fn number_of(value: &Property) -> Option<f64> {
     Some(match value {
         Property::Char(x) => f64::from(*x),
@@ -52,7 +52,7 @@ fn number_of(value: &Property) -> Option<f64> {
     })
 }
 
-/// The one part of a PLY file.
+/// Returns the single part of a PLY file.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     let parser = Parser::<Element>::new();
     let mut reader = Reader::new(Cursor::new(bytes));
@@ -86,12 +86,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     Ok(vec![part])
 }
 
-/// The elements of a header are not more than the bytes of the file can hold, all kinds together: a header must not
-/// ask for more time and memory than the file explains.
+/// Checks that the elements of a header, all kinds together, fit into the bytes of the file: a header must not
+/// request more time and memory than the size of the file allows.
 fn check_counts(header: &Header, bytes: usize) -> Result<(), FormatError> {
     let mut needed: usize = 0;
     for (_, element) in &header.elements {
-        // Each property takes a byte at least, as does the end of a line.
+        // Each property takes at least one byte, and so does the end of a line.
         let least = element.properties.len().max(1);
         needed = needed.saturating_add(element.count.saturating_mul(least));
         if needed > bytes {

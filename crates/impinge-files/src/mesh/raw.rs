@@ -1,11 +1,11 @@
-//! Faces as a file has them, before anything is checked.
+//! Faces as in the file, before any check.
 
 use core::fmt;
 use core::str::FromStr;
 
 use crate::{Limit, Problem};
 
-/// Why a format cannot be read.
+/// The reason why a format cannot be read.
 #[derive(Debug)]
 pub(super) struct FormatError {
     pub(super) line: Option<usize>,
@@ -13,7 +13,7 @@ pub(super) struct FormatError {
 }
 
 impl FormatError {
-    /// An error in the words of a parser.
+    /// Returns an error with the message of a parser.
     pub(super) fn syntax(line: Option<usize>, message: impl fmt::Display) -> Self {
         Self { line, problem: Problem::syntax(message) }
     }
@@ -25,13 +25,13 @@ impl From<Problem> for FormatError {
     }
 }
 
-/// The first word of a line, and what follows.
+/// Splits a line into its first word and the rest.
 pub(super) fn words(line: &str) -> (&str, &str) {
     let line = line.trim_start();
     line.split_at(line.find(char::is_whitespace).unwrap_or(line.len()))
 }
 
-/// The number that a word is.
+/// Parses a word as a number.
 pub(super) fn number<T: FromStr>(word: Option<&str>, line: usize) -> Result<T, FormatError> {
     let word = word.ok_or_else(|| FormatError::syntax(Some(line), "a number is missing"))?;
     word.parse().map_err(|_| FormatError::syntax(Some(line), format!("{word:?} is no number")))
@@ -44,23 +44,23 @@ pub(super) struct RawPart {
     pub(super) vertices: Vec<[f64; 3]>,
     /// The corners of all faces, face by face.
     pub(super) corners: Vec<u32>,
-    /// Where the corners of each face end.
+    /// For each face, the end of its range in `corners`.
     ends: Vec<usize>,
     /// The line of each face; empty for binary formats.
     pub(super) lines: Vec<usize>,
-    /// The lines of faces that the parser could not take over, since they name vertices that do not exist.
+    /// The lines of faces that the parser dropped because they name vertices that do not exist.
     pub(super) out_of_range: Vec<usize>,
-    /// The format has no indices: each triangle brings vertices of its own.
+    /// Whether the format has no indices: each triangle has its own vertices.
     pub(super) is_soup: bool,
 }
 
 impl RawPart {
-    /// A part without faces.
+    /// Creates a part without faces.
     pub(super) fn new(name: impl Into<String>) -> Self {
         Self { name: name.into(), ..Self::default() }
     }
 
-    /// A part of a format without indices.
+    /// Creates a part of a format without indices.
     pub(super) fn soup(name: impl Into<String>) -> Self {
         Self { is_soup: true, ..Self::new(name) }
     }
@@ -71,20 +71,20 @@ impl RawPart {
         self.ends.push(self.corners.len());
     }
 
-    /// Adds a triangle with vertices of its own.
+    /// Adds a triangle with its own vertices.
     pub(super) fn triangle(&mut self, vertices: [[f64; 3]; 3]) {
         let first = u32::try_from(self.vertices.len()).unwrap_or(u32::MAX);
         self.vertices.extend(vertices);
         self.face((0..3).map(|corner| first.saturating_add(corner)));
     }
 
-    /// The corners of each face.
+    /// Returns the corners of each face.
     pub(super) fn faces(&self) -> impl Iterator<Item = &[u32]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, end)| &self.corners[start..*end])
     }
 
-    /// No face has more corners than this.
+    /// Checks that no face has more corners than `allowed`.
     pub(super) fn check_corners(&self, allowed: usize) -> Result<(), FormatError> {
         match self.faces().position(|face| face.len() > allowed) {
             None => Ok(()),

@@ -1,4 +1,4 @@
-//! From the faces of a file to triangles that a mesh can be made of.
+//! Converts the faces of a file to the triangles of a valid mesh.
 
 use impinge::math::na::Vector3;
 
@@ -8,10 +8,10 @@ use super::report::MeshReport;
 use super::topology::examine;
 use super::triangulate::Triangulator;
 
-/// No vertex has this number after welding.
+/// The number of a vertex that does not survive welding.
 const NONE: u32 = u32::MAX;
 
-/// A triangle, and the face of the file that it is from.
+/// A triangle, and the index of its face in the file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     pub(super) corners: [u32; 3],
@@ -31,12 +31,12 @@ pub(super) fn repaired(raw: RawPart) -> MeshPart {
     MeshPart { name: raw.name, vertices, triangles, report }
 }
 
-/// For each vertex the first at its position; [`NONE`] for one that is not finite.
+/// Returns, for each vertex, the first vertex at its position; [`NONE`] for one that is not finite.
 fn weld(raw: &RawPart, report: &mut MeshReport) -> Vec<u32> {
     let mut welded = vec![NONE; raw.vertices.len()];
     let is_finite = |index: &u32| raw.vertices[*index as usize].iter().all(|x| x.is_finite());
     let mut order: Vec<u32> = (0..NONE).take(raw.vertices.len()).filter(is_finite).collect();
-    // Adding zero makes zeros positive: the two are one position.
+    // Adding zero makes zeros positive, so that both zeros are one position.
     let key = |index: &u32| raw.vertices[*index as usize].map(|x| x + 0.0);
     order.sort_unstable_by(|a, b| {
         let [a_key, b_key] = [key(a), key(b)];
@@ -57,7 +57,7 @@ fn weld(raw: &RawPart, report: &mut MeshReport) -> Vec<u32> {
     welded
 }
 
-/// The triangles with area of all faces.
+/// Returns the triangles with positive area of all faces.
 fn pieces(raw: &RawPart, welded: &[u32], report: &mut MeshReport) -> Vec<Piece> {
     let mut triangulator = Triangulator::new();
     let mut pieces = Vec::new();
@@ -94,7 +94,7 @@ fn pieces(raw: &RawPart, welded: &[u32], report: &mut MeshReport) -> Vec<Piece> 
     pieces
 }
 
-/// The corners are not on one line.
+/// Whether the corners are not on one line.
 fn has_area(corners: [u32; 3], vertices: &[[f64; 3]]) -> bool {
     let [a, b, c] = corners.map(|corner| Vector3::from(vertices[corner as usize]));
     // Scaling by the largest side keeps squares of tiny and of huge triangles in range.
@@ -104,7 +104,7 @@ fn has_area(corners: [u32; 3], vertices: &[[f64; 3]]) -> bool {
     cross.amax() > f64::EPSILON && cross.iter().all(|x| x.is_finite())
 }
 
-/// Drops triangles with the corners of an earlier one, in the same direction.
+/// Drops triangles with the corners of an earlier triangle in the same orientation.
 fn drop_duplicates(raw: &RawPart, pieces: &mut Vec<Piece>, report: &mut MeshReport) {
     let mut order: Vec<usize> = (0..pieces.len()).collect();
     let key = |index: &usize| rotated(pieces[*index].corners);
@@ -123,7 +123,7 @@ fn drop_duplicates(raw: &RawPart, pieces: &mut Vec<Piece>, report: &mut MeshRepo
     });
 }
 
-/// The corners with the least first.
+/// Rotates the corners so that the smallest comes first.
 fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     if a <= b && a <= c {
         [a, b, c]
@@ -134,7 +134,7 @@ fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-/// The vertices that are used, in their order, and the triangles among these.
+/// Returns the used vertices, in their order, and the triangles among these.
 fn compact(raw: &RawPart, pieces: &[Piece]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let mut number = vec![NONE; raw.vertices.len()];
     pieces.iter().flat_map(|piece| piece.corners).for_each(|corner| number[corner as usize] = 0);

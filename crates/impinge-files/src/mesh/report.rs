@@ -1,41 +1,41 @@
-//! What is wrong with a mesh, and where.
+//! Defects of a mesh, and their positions in the file.
 
 use core::fmt;
 
-/// So many defects of each kind are listed; all are counted.
+/// The largest number of listed defects of each kind; all are counted.
 pub const MAX_DEFECTS: usize = 8;
 
-/// What is wrong with the triangles of a part, and what was done about it.
+/// Defects of the triangles of a part, and their repairs.
 ///
 /// Vertices are welded first: edges and triangles are compared by the positions of their corners. Indices count
 /// from 0 in the order of the file, within the part.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshReport {
-    /// How many vertices there are, as loaded.
+    /// The number of vertices, as loaded.
     pub vertices: usize,
-    /// How many triangles there are, as loaded.
+    /// The number of triangles, as loaded.
     pub triangles: usize,
-    /// How many faces with more than three corners were triangulated.
+    /// The number of faces with more than three corners, which were triangulated.
     pub polygons: usize,
     /// Vertices with a coordinate that is NaN or infinite; the faces at them were dropped.
     pub non_finite_vertices: Defects,
     /// Faces that name a vertex that does not exist; they were dropped.
     pub out_of_range: Defects,
-    /// Faces without area, or with fewer than three corners; they were dropped. A polygon is one if it has no
-    /// triangle with an area.
+    /// Faces with zero area, or with fewer than three corners; they were dropped. A polygon counts if it has no
+    /// triangle with positive area.
     pub degenerate: Defects,
-    /// Vertices at the position of an earlier one; they were welded. In formats without indices there are none, as
-    /// each triangle brings its vertices.
+    /// Vertices at the position of an earlier one; they were welded. In formats without indices none are counted, as
+    /// each triangle has its own vertices.
     pub duplicate_vertices: Defects,
-    /// Triangles with the corners of an earlier one, in the same direction; they were dropped.
+    /// Triangles with the corners of an earlier one in the same orientation; they were dropped.
     pub duplicate_triangles: Defects,
-    /// Edges of one triangle: the surface is open there. They are named by the face.
+    /// Edges with one triangle, named by its face: the surface is open there.
     pub boundary_edges: Defects,
-    /// Edges of more than two triangles, named by the first face.
+    /// Edges with more than two triangles, named by the first face.
     pub non_manifold_edges: Defects,
     /// Edges whose two triangles disagree about the front, named by the first face.
     pub inconsistent_edges: Defects,
-    /// How many pieces do not hang together by edges.
+    /// The number of components that are connected by edges.
     pub components: usize,
     /// The volume enclosed by a surface that is closed and consistent; negative if it is inside out.
     pub volume: Option<f64>,
@@ -44,9 +44,9 @@ pub struct MeshReport {
 /// Defects of one kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Defects {
-    /// How many there are.
+    /// The number of defects.
     pub count: usize,
-    /// The first, [`MAX_DEFECTS`] at most.
+    /// The first defects, at most [`MAX_DEFECTS`].
     pub first: Vec<Defect>,
 }
 
@@ -69,33 +69,33 @@ impl Defects {
 }
 
 impl MeshReport {
-    /// Each edge has two triangles or more: no boundary.
+    /// Whether each edge has two triangles or more, so that there is no boundary.
     #[must_use]
     pub const fn is_closed(&self) -> bool {
         self.triangles > 0 && self.boundary_edges.count == 0
     }
 
-    /// Closed, of triangles two of which meet at each edge and agree about the front: the boundary of a volume.
+    /// Whether the surface bounds a volume: each edge has two triangles, which agree about the front.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_closed() && self.non_manifold_edges.count == 0 && self.inconsistent_edges.count == 0
     }
 
-    /// All faces of the file were taken over as they are, and the edges are those of a surface, open or closed.
+    /// Whether all faces of the file are unchanged and the edges are those of a surface, open or closed.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.defects().all(|(_, defects)| defects.count == 0)
     }
 
-    /// A line for each kind of defect, such as `2 degenerate faces, dropped: 1 (line 9), 4 (line 12)`. An open boundary is
-    /// none.
+    /// Returns a line for each kind of defect, such as `2 degenerate faces, dropped: 1 (line 9), 4 (line 12)`. An open
+    /// boundary does not count.
     #[must_use]
     pub fn problems(&self) -> Vec<String> {
         let found = self.defects().filter(|(_, defects)| defects.count > 0);
         found.map(|(what, defects)| format!("{} {what}: {defects}", defects.count)).collect()
     }
 
-    /// The defects of each kind, by name.
+    /// Returns the defects of each kind, with its name.
     fn defects(&self) -> impl Iterator<Item = (&'static str, &Defects)> {
         [
             ("vertices that are not finite", &self.non_finite_vertices),
@@ -111,7 +111,7 @@ impl MeshReport {
 }
 
 impl fmt::Display for MeshReport {
-    /// One line of numbers, and one for each thing that is wrong.
+    /// Writes one line of counts, and one for each kind of defect.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { vertices, triangles, components, .. } = self;
         write!(f, "{vertices} vertices, {triangles} triangles, {components} pieces, ")?;
@@ -128,7 +128,7 @@ impl fmt::Display for MeshReport {
 }
 
 impl fmt::Display for Defects {
-    /// Such as `4 (line 12), 9 (line 31), ...`.
+    /// Writes indices and lines, such as `4 (line 12), 9 (line 31), ...`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (position, Defect { index, line }) in self.first.iter().enumerate() {
             let separator = if position == 0 { "" } else { ", " };

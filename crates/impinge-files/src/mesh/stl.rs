@@ -3,18 +3,18 @@
 use super::RawPart;
 use super::raw::{FormatError, number, words};
 
-/// The bytes before the triangles of a binary file, and those of each triangle.
+/// The bytes before the triangles of a binary file.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
-/// The bytes of the normal of a triangle, which come first.
+/// The bytes of the normal of a triangle, which comes first.
 const NORMAL: usize = 12;
 
-/// The solids of an STL file. O(n) in its bytes.
+/// Returns the solids of an STL file. O(n) in its bytes.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     let count = count(bytes);
     let has_length =
         count.is_some_and(|count| HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64);
-    // The header of a binary file may begin as text does.
+    // The header of a binary file may begin with the word of a text file.
     if has_length || !bytes.trim_ascii_start().starts_with(b"solid") {
         return Ok(vec![binary(bytes, count.unwrap_or(u64::MAX))?]);
     }
@@ -23,7 +23,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     ascii(text)
 }
 
-/// How many triangles the header of a binary file counts.
+/// The number of triangles in the header of a binary file.
 fn count(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(HEADER - 4..HEADER)?.try_into().ok()?;
     Some(u64::from(u32::from_le_bytes(count)))
@@ -43,12 +43,13 @@ fn binary(bytes: &[u8], count: u64) -> Result<RawPart, FormatError> {
     Ok(part)
 }
 
-/// A number of four bytes.
+/// Reads a number of four bytes.
 fn float(bytes: &[u8]) -> f64 {
     bytes.try_into().map_or(f64::NAN, |bytes| f64::from(f32::from_le_bytes(bytes)))
 }
 
-/// What the lines of a solid say, each after the one above; vertices come three times.
+/// The state of the parser of a solid; each state follows the one above, vertices occur three
+/// times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Outside,
@@ -58,7 +59,7 @@ enum Place {
     Closed,
 }
 
-/// The solids of a text.
+/// Returns the solids of a text file.
 fn ascii(text: &str) -> Result<Vec<RawPart>, FormatError> {
     let (mut parts, mut part) = (Vec::new(), RawPart::default());
     let (mut place, mut corners, mut last) = (Place::Outside, Vec::new(), 0);
@@ -71,7 +72,7 @@ fn ascii(text: &str) -> Result<Vec<RawPart>, FormatError> {
                 part = RawPart::soup(rest.trim());
                 Place::Solid
             }
-            // What follows the end of a solid is no part of the next.
+            // Text after the end of a solid does not belong to the next one.
             (Place::Outside, _) => place,
             (Place::Solid, "endsolid") => {
                 parts.push(core::mem::take(&mut part));
@@ -114,7 +115,7 @@ const fn expected(place: Place) -> &'static str {
     }
 }
 
-/// Three numbers, which STL has in 32 bits.
+/// Parses three numbers, which STL stores in 32 bits.
 fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     let mut words = text.split_whitespace();
     let mut position = [0.0; 3];

@@ -1,4 +1,4 @@
-//! The edges of triangles: whether they bound a volume.
+//! The edges of triangles: checks whether these bound a volume.
 
 use impinge::math::na::Vector3;
 
@@ -10,12 +10,12 @@ struct Side {
     /// The lower and the higher vertex.
     ends: [u32; 2],
     triangle: u32,
-    /// From the lower to the higher vertex.
+    /// Whether the side goes from the lower to the higher vertex.
     is_forward: bool,
 }
 
-/// Counts edges of each kind and pieces, and measures the volume. `origin` gives the face of a triangle, and its
-/// line. O(n log n).
+/// Counts edges of each kind and components, and computes the volume. `origin` returns the face of a triangle
+/// and its line. O(n log n).
 pub(super) fn examine(
     vertices: &[[f64; 3]],
     triangles: &[[u32; 3]],
@@ -52,7 +52,7 @@ fn sides(triangles: &[[u32; 3]]) -> Vec<Side> {
     sides
 }
 
-/// The volume by the divergence theorem, about the first vertex.
+/// Computes the volume by the divergence theorem, relative to the first vertex.
 fn volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
     let origin = vertices.first().copied().map(Vector3::from).unwrap_or_default();
     let at = |corner: u32| Vector3::from(vertices[corner as usize]) - origin;
@@ -60,7 +60,7 @@ fn volume(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
     six_times.sum::<f64>() / 6.0
 }
 
-/// Sets of triangles that hang together (union and find, with paths halved).
+/// Connected components of triangles (union-find with path halving).
 struct Pieces {
     parent: Vec<u32>,
     count: usize,
@@ -72,7 +72,7 @@ impl Pieces {
     }
 
     fn root(&mut self, mut triangle: u32) -> u32 {
-        // Ends: parents have lower numbers.
+        // Terminates: parents have lower numbers.
         while self.parent[triangle as usize] != triangle {
             let above = self.parent[triangle as usize];
             self.parent[triangle as usize] = self.parent[above as usize];

@@ -12,10 +12,10 @@ use crate::format::{
 };
 use crate::scene::about;
 
-/// The collision elements of a link; `None` if there is none.
+/// Returns the collision elements of a link as one shape; `None` if there is none.
 ///
-/// The shape of a single element lies around its own origin, and the element's origin becomes the frame, so that a
-/// box remains a cuboid. Several elements become a compound in the frame of the link.
+/// A single element is a shape around its own origin, and the origin of the element becomes the frame, so that a box
+/// stays a cuboid. Several elements become a compound in the frame of the link.
 pub(super) fn solid(
     link: &Link,
     kind: MeshKind,
@@ -34,14 +34,14 @@ pub(super) fn solid(
     Ok(Some(LinkSolid { shape, frame: Isometry3::identity() }))
 }
 
-/// A collision element as a shape. Sizes of URDF are whole lengths, those of the library half of them.
+/// Converts a collision element to a shape. Sizes in URDF are full lengths, sizes of the library are half lengths.
 fn element_solid(
     element: &Collision,
     kind: MeshKind,
     packages: &Packages,
 ) -> Result<LinkSolid, Problem> {
     let origin = isometry(&element.origin)?;
-    // Cylinders and capsules of URDF lie along z, those of the library along y.
+    // Cylinders and capsules of URDF are along z, those of the library along y.
     let upright = origin * about(Vector3::x(), core::f64::consts::FRAC_PI_2);
     Ok(match &element.geometry {
         Geometry::Box { size } => {
@@ -73,7 +73,7 @@ fn element_solid(
     })
 }
 
-/// A size that the library takes: checked here, where the line of the link is known.
+/// Checks a size here, where the line of the link is known.
 fn checked(what: &'static str, value: f64) -> Result<f64, Problem> {
     if !value.is_finite() {
         return Err(ShapeError::NotFinite { what, value }.into());
@@ -84,12 +84,12 @@ fn checked(what: &'static str, value: f64) -> Result<f64, Problem> {
     Ok(value)
 }
 
-/// Half a size, if the library takes it.
+/// Returns half a size, after checking it.
 fn half(what: &'static str, size: f64) -> Result<f64, Problem> {
     checked(what, 0.5 * size)
 }
 
-/// The frame of an origin: roll, pitch and yaw are turns about the fixed axes x, y and z.
+/// Returns the frame of an origin: roll, pitch and yaw are rotations about the fixed axes x, y and z.
 pub(super) fn isometry(origin: &Pose) -> Result<Isometry3<f64>, Problem> {
     let numbers = origin.xyz.iter().chain(origin.rpy.iter());
     if let Some(value) = numbers.copied().find(|number| !number.is_finite()) {
@@ -100,7 +100,8 @@ pub(super) fn isometry(origin: &Pose) -> Result<Isometry3<f64>, Problem> {
     Ok(Isometry3::from_parts(Vector3::from(origin.xyz.0).into(), rotation))
 }
 
-/// The frame as a scene file has it. The quaternion is unit up to rounding, and is normalized again when it is read.
+/// Converts a frame to that of a scene file. The quaternion is unit up to rounding, and is normalized again when it
+/// is read.
 fn pose_file(frame: &Isometry3<f64>) -> PoseFile {
     let turn = frame.rotation.coords;
     PoseFile {

@@ -1,4 +1,4 @@
-//! The tree of joints: from joint values to the frames of links.
+//! The tree of joints: computes the frames of links from joint values.
 
 use core::fmt;
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,21 +18,21 @@ use crate::{FileError, Printable, Problem};
 pub(super) struct Tree {
     /// The names of the links, in the order of the file.
     pub(super) links: Vec<String>,
-    /// The index of the link of a name.
+    /// The index of the link of each name.
     index: BTreeMap<String, usize>,
     joints: BTreeMap<String, TreeJoint>,
-    /// By link: the joint above it, none for the root.
+    /// For each link the joint above it, none for the root.
     above: Vec<Option<String>>,
-    /// The links, each after the one above it.
+    /// The links in an order in which parents come first.
     order: Vec<usize>,
-    /// The joints that follow others, and how.
+    /// The joints that mimic others.
     follows: BTreeMap<String, Follows>,
 }
 
-/// A joint follows another: its value is `factor` times the value of `joint`, which follows none, plus `offset`.
+/// A joint that mimics another: its value is `factor` times the value of `joint`, which mimics none, plus `offset`.
 #[derive(Clone, Debug, PartialEq)]
 struct Follows {
-    /// Shared by all that follow it.
+    /// Shared by all joints that mimic it.
     joint: Rc<str>,
     factor: f64,
     offset: f64,
@@ -40,17 +40,17 @@ struct Follows {
 
 /// A joint of a robot at a value outside the limits of its URDF file.
 ///
-/// The link below it is placed by the value all the same: limits are about what the drives of a robot can do, and a
-/// collision checker is asked about any pose.
+/// The link below it is placed by the value all the same: limits describe the drives of a robot, while a collision
+/// checker must accept any pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointBeyondLimits {
-    /// What the names of the robot's objects begin with.
+    /// The prefix of the names of the robot's objects.
     pub robot: String,
     /// The joint.
     pub joint: String,
-    /// Its value in the scene: radians, or a length. That of a joint that mimics another follows from it.
+    /// The value in the scene: radians, or a length. For a joint that mimics another, the derived value.
     pub value: f64,
-    /// The least and the largest value of the URDF file.
+    /// The lower and the upper limit of the URDF file.
     pub limits: [f64; 2],
 }
 
@@ -59,25 +59,25 @@ pub struct JointBeyondLimits {
 struct TreeJoint {
     /// The link above it.
     parent: usize,
-    /// The frame of the joint in that of its parent.
+    /// The frame of the joint in the frame of the parent link.
     origin: Isometry3<f64>,
     motion: JointMotion,
-    /// The least and the largest value; `None` if the file gives none.
+    /// The lower and the upper limit; `None` if the file gives none.
     limits: Option<[f64; 2]>,
     mimic: Option<Mimic>,
 }
 
-/// What a joint value does; axes are unit vectors.
+/// The motion of a joint as a function of its value; axes are unit vectors.
 #[derive(Clone, Copy, Debug)]
 enum JointMotion {
     Turn(Vector3<f64>),
     Slide(Vector3<f64>),
-    /// Fixed, or of several degrees of freedom, which stay as they are.
+    /// Fixed, or with several degrees of freedom, which are not moved.
     None,
 }
 
 impl Tree {
-    /// The tree of a robot.
+    /// Builds the tree of a robot.
     pub(super) fn new(robot: &urdf_rs::Robot, xml: &XmlFile) -> Result<Self, FileError> {
         let links: Vec<String> = robot.links.iter().map(|link| link.name.clone()).collect();
         let index: BTreeMap<String, usize> = links.iter().cloned().zip(0..).collect();
@@ -90,7 +90,8 @@ impl Tree {
                 found.ok_or_else(|| wrong(Problem::UnknownLink(name.clone())))
             };
             let (parent, child) = (link(&joint.parent.link)?, link(&joint.child.link)?);
-            // With one joint above each link but the root, links form a tree unless a cycle hangs apart: `sorted` finds it.
+            // With one joint above each link but the root, links form a tree unless there is a separate cycle, which
+            // `sorted` finds.
             if above[child].replace(joint.name.clone()).is_some() {
                 return Err(wrong(Problem::NotATree { link: joint.child.link.clone() }));
             }
@@ -109,11 +110,12 @@ impl Tree {
         Ok(tree)
     }
 
-    /// The links, each after the one above it; the name of a link if that leads to no root, or there are several.
+    /// Returns the links with parents first; the name of a link in an error if it is not connected to the root, or
+    /// there are several roots.
     fn sorted(&self) -> Result<Vec<usize>, String> {
         let mut below = vec![Vec::new(); self.links.len()];
         let mut open = Vec::new();
-        // The only open link is the root at first.
+        // The stack starts with the root alone.
         for (link, above) in self.above.iter().enumerate() {
             match above {
                 Some(joint) => below[self.joints[joint].parent].push(link),
@@ -124,13 +126,13 @@ impl Tree {
             return Err(self.links[*second].clone());
         }
         let mut order = Vec::new();
-        // Ends: each link is below one other at most.
+        // Terminates: each link has at most one parent.
         while let Some(link) = open.pop() {
             order.push(link);
             open.append(&mut below[link]);
         }
         let reached: BTreeSet<&usize> = order.iter().collect();
-        // Links of a cycle are below no root.
+        // Links of a cycle are not below the root.
         let is_missing = |link: &usize| !reached.contains(link);
         match (0..self.links.len()).find(is_missing) {
             Some(link) => Err(self.links[link].clone()),
@@ -138,15 +140,15 @@ impl Tree {
         }
     }
 
-    /// How joints follow others, along chains of any length: each joint is gone through once. The name of a joint and
-    /// what is wrong, if it mimics one that does not exist, or itself by way of others.
+    /// Resolves chains of mimicking joints of any length; each joint is visited once. The error has the name of a joint
+    /// that mimics one that does not exist, or itself through others.
     fn mimics(&self) -> Result<BTreeMap<String, Follows>, (String, Problem)> {
         let mut follows: BTreeMap<String, Follows> = BTreeMap::new();
         for name in self.joints.keys() {
             let mut chain: Vec<(&String, &Mimic)> = Vec::new();
             let mut passed = BTreeSet::new();
             let mut current = name;
-            // Ends: no joint is passed twice.
+            // Terminates: no joint is visited twice.
             while let (None, Some(mimic)) = (follows.get(current), &self.joints[current].mimic) {
                 if !passed.insert(current) {
                     return Err((name.clone(), Problem::MimicCycle(name.clone())));
@@ -167,8 +169,8 @@ impl Tree {
         Ok(follows)
     }
 
-    /// The frames of the links for joint values, those of others being 0, and a frame of the root. Only joints that move
-    /// and follow no other have a value.
+    /// Returns the frames of the links for joint values and a frame of the root. Joints without a value are at 0. Only
+    /// joints that move and mimic no other may have a value.
     pub(super) fn frames(
         &self,
         values: &BTreeMap<String, f64>,
@@ -184,7 +186,7 @@ impl Tree {
             }
         }
         let mut frames = vec![*base; self.links.len()];
-        // A link comes after its parent, so that the frame of the parent is known.
+        // Parents come first, so that the frame of the parent is known.
         for &link in &self.order {
             if let Some(name) = &self.above[link] {
                 let joint = &self.joints[name];
@@ -195,7 +197,7 @@ impl Tree {
         Ok(frames)
     }
 
-    /// The value of a joint, which may follow another.
+    /// Returns the value of a joint, which may mimic another.
     fn value(&self, name: &str, values: &BTreeMap<String, f64>) -> f64 {
         let given = |name: &str| values.get(name).copied().unwrap_or(0.0);
         match self.follows.get(name) {
@@ -204,7 +206,7 @@ impl Tree {
         }
     }
 
-    /// The joints that move and whose values are outside of their limits, in order of their names.
+    /// Returns the moving joints whose values are outside of their limits, sorted by name.
     pub(super) fn beyond_limits(
         &self,
         robot: &str,
@@ -221,20 +223,20 @@ impl Tree {
         joints.collect()
     }
 
-    /// How many joints there are.
+    /// The number of joints.
     pub(super) fn num_joints(&self) -> usize {
         self.joints.len()
     }
 
-    /// The link of a name.
+    /// Returns the link of a name.
     pub(super) fn link(&self, name: &str) -> Option<usize> {
         self.index.get(name).copied()
     }
 
-    /// By link: the nearest link above it for which something holds.
+    /// Returns for each link the nearest ancestor that satisfies a predicate.
     pub(super) fn nearest_above(&self, holds: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
         let mut nearest = vec![None; self.links.len()];
-        // A link comes after its parent, of which it is known.
+        // Parents come first, so that their result is known.
         for &link in &self.order {
             if let Some(joint) = &self.above[link] {
                 let parent = self.joints[joint].parent;
@@ -246,7 +248,7 @@ impl Tree {
 }
 
 impl Follows {
-    /// What follows a joint that follows this way.
+    /// Composes two relations: the relation of a joint that mimics this one.
     fn followed_by(&self, mimic: &Mimic) -> Self {
         let multiplier = mimic.multiplier.unwrap_or(1.0);
         Self {
@@ -257,7 +259,7 @@ impl Follows {
     }
 }
 
-/// A joint below a link. Axes of joints that do not move are not looked at: many files have zeros there.
+/// Converts a joint. Axes of fixed joints are ignored: many files have zeros there.
 fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
     let axis = || unit(Vector3::from(joint.axis.xyz.0));
     let motion = match joint.joint_type {
@@ -271,7 +273,8 @@ fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
     Ok(TreeJoint { parent, origin, motion, limits: limits(joint), mimic })
 }
 
-/// The limits of joints that URDF has them for. A joint without a `limit` element, which many files lack, has 0 twice.
+/// Returns the limits of joints of the kinds that have limits in URDF. For a joint without a `limit` element, as in
+/// many files, the parser returns 0 twice.
 fn limits(joint: &Joint) -> Option<[f64; 2]> {
     let is_limited = matches!(joint.joint_type, JointType::Revolute | JointType::Prismatic);
     let limits = [joint.limit.lower, joint.limit.upper];
@@ -279,7 +282,7 @@ fn limits(joint: &Joint) -> Option<[f64; 2]> {
 }
 
 impl fmt::Display for JointBeyondLimits {
-    /// Such as `the joint elbow of arm is at 3.5, outside its limits -2.5 to 2.5`.
+    /// Writes for example `the joint elbow of arm is at 3.5, outside its limits -2.5 to 2.5`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { robot, joint, value, limits: [lower, upper] } = self;
         let [robot, joint] = [robot, joint].map(|name| Printable(name));

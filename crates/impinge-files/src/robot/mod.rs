@@ -20,14 +20,14 @@ use crate::files::Files;
 use crate::format::{RobotFile, ShapeFile};
 use crate::{FileError, Problem};
 
-/// A robot as its files have it.
+/// The data of the files of a robot.
 #[derive(Debug)]
 pub(crate) struct Robot {
     pub(crate) name: String,
     tree: Tree,
-    /// By link: its collision elements, in the frame of the link.
+    /// For each link its collision elements, in the frame of the link.
     solids: Vec<Option<LinkSolid>>,
-    /// Pairs of links, by name, that the SRDF file disables.
+    /// Pairs of names of links that the SRDF file disables.
     disabled: BTreeSet<[String; 2]>,
 }
 
@@ -35,11 +35,11 @@ pub(crate) struct Robot {
 #[derive(Debug)]
 struct LinkSolid {
     shape: ShapeFile,
-    /// Where the shape is in the frame of the link.
+    /// The frame of the shape in the frame of the link.
     frame: Isometry3<f64>,
 }
 
-/// A link with collision elements, placed.
+/// A link with collision elements, with its frame.
 #[derive(Debug)]
 pub(crate) struct RobotLink {
     pub(crate) name: String,
@@ -72,13 +72,14 @@ impl Robot {
         Ok(Self { name: robot.name, tree, solids, disabled })
     }
 
-    /// The links with collision elements, in the order of the file, for joint values and a frame of the root link.
+    /// Returns the links with collision elements, in the order of the file, for joint values and a frame of the root
+    /// link.
     pub(crate) fn links(
         &self,
         file: &RobotFile,
         base: &Isometry3<f64>,
     ) -> Result<Vec<RobotLink>, Fault> {
-        // Links without collision elements move those below them, and are no objects themselves.
+        // Links without collision elements move the links below them, but are no objects.
         let frames = self.tree.frames(&file.joints, base)?;
         let links = self.tree.links.iter().zip(&self.solids).zip(frames);
         let links = links.filter_map(|((name, solid), frame)| {
@@ -89,19 +90,19 @@ impl Robot {
         Ok(links.collect())
     }
 
-    /// How many joints there are.
+    /// The number of joints.
     pub(crate) fn num_joints(&self) -> usize {
         self.tree.num_joints()
     }
 
-    /// The joints at values outside their limits; `name` is what the names of the robot's objects begin with.
+    /// Returns the joints at values outside their limits; `name` is the prefix of the names of the robot's objects.
     pub(crate) fn beyond_limits(&self, file: &RobotFile, name: &str) -> Vec<JointBeyondLimits> {
         self.tree.beyond_limits(name, &file.joints)
     }
 
-    /// The pairs of links, by their index among those with collision elements, that have no contacts: those that a joint
-    /// connects, directly or by way of links without collision elements, and those that the SRDF file disables.
-    /// A pair may occur several times. O(n log n) for n links and pairs of the file.
+    /// Returns the pairs of links that have no contacts, as indices among the links with collision elements: pairs that
+    /// are connected by a joint, directly or through links without collision elements, and pairs that the SRDF file
+    /// disables. A pair may occur several times. O(n log n) for n links and pairs of the file.
     pub(crate) fn disabled_pairs(&self) -> Vec<[usize; 2]> {
         let has_solid = |link: usize| self.solids[link].is_some();
         let numbers = (0..self.solids.len()).scan(0, |next, link| {
@@ -110,7 +111,7 @@ impl Robot {
             Some(number)
         });
         let numbers: Vec<Option<usize>> = numbers.collect();
-        // Above the nearest link with collision elements nothing is joined directly.
+        // The search upwards ends at the nearest link with collision elements.
         let above = self.tree.nearest_above(has_solid).into_iter().enumerate();
         let joined = above.filter_map(|(link, above)| Some([above?, link]));
         let disabled = self.disabled.iter().filter_map(|pair| {
@@ -122,7 +123,7 @@ impl Robot {
     }
 }
 
-/// The pairs of an SRDF file; its links are those of the robot.
+/// Reads the pairs of an SRDF file; its links must be those of the robot.
 fn disabled_pairs(xml: &XmlFile, tree: &Tree) -> Result<BTreeSet<[String; 2]>, FileError> {
     let mut pairs = BTreeSet::new();
     xml.each("disable_collisions", ["link1", "link2"], |names| {

@@ -1,4 +1,4 @@
-//! Where the mesh files of a robot are.
+//! Resolves the paths of the mesh files of a robot.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -6,7 +6,7 @@ use crate::Problem;
 use crate::files::Files;
 use crate::format::RobotFile;
 
-/// Folders in which packages are looked for, and the folder of relative paths.
+/// Folders that are searched for packages, and the folder of relative paths.
 #[derive(Debug)]
 pub(super) struct Packages {
     /// The folder of the URDF file.
@@ -15,8 +15,8 @@ pub(super) struct Packages {
 }
 
 impl Packages {
-    /// The folders that the user names, those that the scene names, and those that the URDF file is in; of the last
-    /// two, only such from which files may be read.
+    /// Collects the folders that the user names, those that the scene names, and the ancestors of the URDF file; of
+    /// the last two only those from which files may be read.
     pub(super) fn new(file: &RobotFile, folder: &Path, urdf: &Path, files: &Files) -> Self {
         let absolute = std::path::absolute(urdf).unwrap_or_else(|_| urdf.to_owned());
         let own = absolute.parent().unwrap_or_else(|| Path::new("")).to_owned();
@@ -26,8 +26,8 @@ impl Packages {
         Self { folders: files.packages.iter().cloned().chain(readable).collect(), own }
     }
 
-    /// The file of a `package://` path, of a `file://` path, or of one relative to the URDF file. It may still be one
-    /// that may not be read.
+    /// Resolves a `package://` path, a `file://` path, or one relative to the URDF file. The result may still be
+    /// outside of the root.
     pub(super) fn find(&self, name: &str) -> Result<PathBuf, Problem> {
         if let Some(path) = name.strip_prefix("file://") {
             return Ok(PathBuf::from(path));
@@ -37,12 +37,12 @@ impl Packages {
         };
         let (package, rest) = path.split_once('/').unwrap_or((path, ""));
         let unknown = || Problem::UnknownPackage(package.to_owned());
-        // The name is that of a folder, not a way to another one.
+        // The name must be that of a folder, not a path with several components.
         let mut parts = Path::new(package).components();
         if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) {
             return Err(unknown());
         }
-        // A folder is the package if it has its name, and holds it as a folder within otherwise.
+        // A folder with the name of the package is the package; otherwise the package is a folder within it.
         let found = self.folders.iter().find_map(|folder| {
             let inner = folder.join(package);
             if folder.file_name().is_some_and(|name| name == package) {

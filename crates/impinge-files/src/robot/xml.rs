@@ -8,13 +8,13 @@ use crate::files::Files;
 use crate::text::Quoted;
 use crate::{FileError, Problem};
 
-/// So deep may elements nest: parsers that call themselves are given no more.
+/// The largest depth of elements: the parsers that read the text next are recursive.
 const MAX_DEPTH: usize = 32;
 
-/// So many attributes may an element have: parsers compare each with those before.
+/// The largest number of attributes of an element: parsers compare each with all earlier ones.
 const MAX_ATTRIBUTES: usize = 256;
 
-/// The text of an XML file, which is well-formed and not nested deeply.
+/// The text of an XML file, which is well-formed and of bounded depth.
 #[derive(Debug)]
 pub(super) struct XmlFile {
     path: PathBuf,
@@ -32,7 +32,7 @@ impl XmlFile {
             return Err(file.whole(Problem::TooMany { what, given, limit }));
         }
         let document = file.parse()?;
-        // No more ancestors than the limit are counted, so that the check is linear in the text.
+        // At most `MAX_DEPTH + 1` ancestors are counted, so that the check is linear in the text.
         let depth = |node: &Node<'_, '_>| node.ancestors().take(MAX_DEPTH + 1).count();
         let too_deep = document.descendants().find(|node| depth(node) > MAX_DEPTH);
         if let Some(node) = too_deep {
@@ -42,8 +42,8 @@ impl XmlFile {
         Ok(file)
     }
 
-    /// The text with blanks in the place of `visual` and `material` elements, which collisions do not need: a mistake
-    /// in them is no error. Lines keep their numbers.
+    /// Returns the text with `visual` and `material` elements replaced by white space: collisions do not need them,
+    /// and errors in them do not matter. Lines keep their numbers.
     pub(super) fn without_visuals(&self) -> Result<String, FileError> {
         let document = self.parse()?;
         let is_visual =
@@ -55,11 +55,11 @@ impl XmlFile {
                 .filter(|byte| **byte != b'\n')
                 .for_each(|byte| *byte = b' ');
         }
-        // Whole elements were replaced: the rest is UTF-8 as before.
+        // Only whole elements were replaced: the text is still UTF-8.
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
-    /// The tree of the text. The error has the place where the parser stops.
+    /// Parses the text. The error has the position at which the parser stops.
     fn parse(&self) -> Result<Document<'_>, FileError> {
         Document::parse(&self.text).map_err(|error| {
             let place = error.pos();
@@ -69,12 +69,12 @@ impl XmlFile {
         })
     }
 
-    /// An error of the whole file.
+    /// Returns an error of the whole file.
     pub(super) fn whole(&self, problem: Problem) -> FileError {
         FileError::whole(&self.path, problem)
     }
 
-    /// An error of the element with this tag and name.
+    /// Returns an error of the element with this tag and name.
     pub(super) fn error(&self, tag: &str, name: &str, problem: Problem) -> FileError {
         let path = format!("{tag} {}", Quoted(name));
         let Ok(document) = self.parse() else { return self.whole(problem) };
@@ -87,15 +87,15 @@ impl XmlFile {
         FileError { path, ..error }
     }
 
-    /// An error at the begin tag of an element.
+    /// Returns an error at the start tag of an element.
     fn at(&self, document: &Document<'_>, node: Node<'_, '_>, problem: Problem) -> FileError {
         let place = document.text_pos_at(node.range().start);
         let (line, column) = (Some(place.row as usize), Some(place.col as usize));
         FileError { line, column, ..self.whole(problem) }
     }
 
-    /// Calls `take` with two attributes of each element with a tag. Its first error ends this, with the line of the
-    /// element.
+    /// Calls `take` with two attributes of each element with a tag. The first error ends the loop and gets the line
+    /// of the element.
     pub(super) fn each(
         &self,
         tag: &str,
@@ -105,14 +105,14 @@ impl XmlFile {
         let document = self.parse()?;
         for node in document.descendants().filter(|node| node.has_tag_name(tag)) {
             let values = names.map(|name| node.attribute(name).unwrap_or_default());
-            // A line is looked for in the error alone: it costs the text before.
+            // The line is computed for an error alone: it needs a pass over the text before.
             take(values).map_err(|problem| self.at(&document, node, problem))?;
         }
         Ok(())
     }
 }
 
-/// The most attributes that an element may have, by the signs `=` between its brackets and outside of quotes.
+/// Bounds the number of attributes of an element: counts `=` between angle brackets and outside of quotes.
 fn attributes(text: &str) -> usize {
     let (mut most, mut count) = (0, 0);
     let (mut is_tag, mut quote) = (false, None);

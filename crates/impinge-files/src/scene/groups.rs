@@ -8,19 +8,19 @@ use crate::Problem;
 use crate::error::{Fault, Within};
 use crate::format::{GroupsFile, SceneFile};
 
-/// There are so many groups.
+/// The number of groups.
 const GROUPS: usize = 30;
 
 /// The groups of a scene: those that the document names, and those that disable pairs of links.
 ///
 /// Pairs of links are disabled by groups, so that a recording needs no pair filter: one link of each pair is the only
-/// member of a group that the other one blacklists. These groups are among those that the document does not name.
-/// Objects that are members of all groups are not members of these.
+/// member of a group that the other one blacklists. Groups for this are taken from those that the document does not
+/// name. Objects that are members of all groups are not members of these.
 #[derive(Debug)]
 pub(super) struct GroupPlan {
-    /// The groups that no document names, the highest first.
+    /// The groups that the document does not name, the highest first.
     free: Vec<usize>,
-    /// Those that disable pairs.
+    /// The groups that disable pairs.
     taken: BTreeSet<usize>,
 }
 
@@ -34,14 +34,14 @@ impl DisabledPair {
         Self([a.min(b), a.max(b)])
     }
 
-    /// The other object of a pair with this one.
+    /// Returns the other object of a pair with `object`; `None` if the pair does not contain it.
     fn partner(self, object: usize) -> Option<usize> {
         let [a, b] = self.0;
         if a == object { Some(b) } else { (b == object).then_some(a) }
     }
 }
 
-/// What the disabled pairs add to the groups of an object.
+/// The groups that disabled pairs add to an object.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnGroups {
     member: Option<usize>,
@@ -49,7 +49,7 @@ pub(super) struct OwnGroups {
 }
 
 impl GroupPlan {
-    /// All groups are free that the document does not name.
+    /// Creates a plan in which all groups are free that the document does not name.
     pub(super) fn new(file: &SceneFile) -> Self {
         let objects = file.objects.iter().map(|object| &object.groups);
         let meshes = file.meshes.iter().map(|meshes| &meshes.groups);
@@ -60,8 +60,8 @@ impl GroupPlan {
         Self { free, taken: BTreeSet::new() }
     }
 
-    /// Gives groups to objects until each pair is disabled. The object with the most pairs left gets the next group, which
-    /// its partners refuse: a greedy vertex cover, since there are few groups.
+    /// Assigns groups to objects until each pair is disabled. The object with the most remaining pairs gets the next
+    /// group, which its partners blacklist: a greedy vertex cover, since there are few groups.
     pub(super) fn separate(
         &mut self,
         objects: usize,
@@ -69,7 +69,7 @@ impl GroupPlan {
     ) -> Result<Vec<OwnGroups>, Problem> {
         let mut own = vec![OwnGroups::default(); objects];
         let mut left: Vec<DisabledPair> = pairs.iter().copied().collect();
-        // Ends: each round disables the pairs of an object that has some.
+        // Terminates: each iteration disables the pairs of an object that has some.
         while !left.is_empty() {
             let mut counts = vec![0_usize; objects];
             left.iter().flat_map(|pair| pair.0).for_each(|object| counts[object] += 1);
@@ -87,7 +87,7 @@ impl GroupPlan {
         Ok(own)
     }
 
-    /// The groups of an object.
+    /// Returns the groups of an object.
     pub(super) fn groups(
         &self,
         file: &GroupsFile,

@@ -30,8 +30,8 @@ use crate::{
     ScalarFile, SceneFile, UpAxis,
 };
 
-/// A scene: its objects by name, and the files that they are made of. The library has not seen its numbers yet;
-/// [`Self::world`] and [`Self::collision_world`] refuse those that make no shape.
+/// A scene: its objects by name, and the files that they are made of. The library has not validated its values yet;
+/// [`Self::world`] and [`Self::collision_world`] return an error for those that make no shape.
 ///
 /// ```
 /// use impinge_files::Scene;
@@ -54,19 +54,19 @@ use crate::{
 pub struct Scene {
     source: Source,
     file: SceneFile,
-    /// The shapes of objects; those of a grid share one.
+    /// The shapes of objects; the objects of a grid share one.
     forms: Vec<Form>,
     objects: Vec<SceneObject>,
     meshes: MeshTable,
     joints_beyond_limits: Vec<JointBeyondLimits>,
 }
 
-/// A shape, and the path of what has it.
+/// A shape, with the path of the entry that has it.
 #[derive(Clone, Debug)]
 struct Form {
     shape: ShapeRef,
     path: String,
-    /// The member of it that is the shape; empty for meshes and robots.
+    /// The member of the entry that is the shape; empty for meshes and robots.
     member: &'static str,
 }
 
@@ -74,7 +74,7 @@ struct Form {
 #[derive(Clone, Debug)]
 struct SceneObject {
     name: String,
-    /// Its shape in `forms`.
+    /// The index of its shape in `forms`.
     form: usize,
     start: Placement,
     motion: Option<Motion>,
@@ -83,7 +83,7 @@ struct SceneObject {
 }
 
 /// Reads a file as a scene: a scene file (.json), a mesh file (.obj, .stl, .ply, .gltf, .glb), each of whose parts
-/// becomes an object, or a robot (.urdf) with all joints at 0, each of whose links becomes one.
+/// becomes an object, or a robot (.urdf) with all joints at 0, each of whose links becomes an object.
 ///
 /// ```
 /// let error = impinge_files::load("pile.scene".as_ref()).expect_err("no such format");
@@ -91,7 +91,7 @@ struct SceneObject {
 /// ```
 ///
 /// # Errors
-/// As [`Scene::read`], and for another ending of the name.
+/// As [`Scene::read`], and for an unknown extension.
 pub fn load(path: &Path) -> Result<Scene, FileError> {
     load_with(path, &ReadOptions::new())
 }
@@ -117,7 +117,7 @@ pub fn load_with(path: &Path, options: &ReadOptions) -> Result<Scene, FileError>
 }
 
 impl SceneFile {
-    /// The scene, with the files that it names; their paths are relative to the folder.
+    /// Resolves the scene: reads the files that it names, with paths relative to the folder.
     ///
     /// # Errors
     /// As [`Scene::read`], without lines.
@@ -157,7 +157,7 @@ impl Scene {
         Self::of_text(Source::new(path.to_owned(), text), files)
     }
 
-    /// The scene of a document. The path names it in errors, and its folder holds the files that it names.
+    /// Parses a document. The path names it in errors, and its folder contains the files that it names.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -198,7 +198,7 @@ impl Scene {
         self.file.dimension
     }
 
-    /// The scalar that the document asks for; a world may have another.
+    /// The scalar of the document; a world may have another.
     #[must_use]
     pub const fn scalar(&self) -> ScalarFile {
         self.file.scalar
@@ -210,7 +210,7 @@ impl Scene {
         self.file.up
     }
 
-    /// The names of the objects, in the order in which worlds have them: objects, parts of meshes, links of robots.
+    /// The names of the objects, in the order of the objects in worlds: objects, parts of meshes, links of robots.
     pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.objects.iter().map(|object| object.name.as_str())
     }
@@ -226,7 +226,7 @@ impl Scene {
         &self.joints_beyond_limits
     }
 
-    /// An object moves.
+    /// Whether an object moves.
     #[must_use]
     pub fn has_motion(&self) -> bool {
         self.objects.iter().any(|object| object.motion.is_some())

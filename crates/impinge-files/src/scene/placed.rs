@@ -11,7 +11,7 @@ use crate::error::{Fault, Within};
 use crate::format::{QueryTypeFile, ShapeFile, ShapeRef};
 use crate::{FileError, Problem};
 
-/// What a world takes of an object.
+/// An object in the form in which a world takes it.
 pub(super) struct PlacedObject<'a, N: SceneSpace<D>, const D: usize> {
     pub(super) object: &'a SceneObject,
     pub(super) position: N::Isometry,
@@ -20,13 +20,13 @@ pub(super) struct PlacedObject<'a, N: SceneSpace<D>, const D: usize> {
 }
 
 impl Scene {
-    /// A collision world with the objects, in their order, not updated yet. The data of an object is its name.
+    /// Makes a collision world with the objects, in their order, not updated yet. The data of an object is its name.
     ///
-    /// Objects that share a shape in the document share its handle. Costs as much as making the shapes, and
-    /// O(log n) for each object.
+    /// Objects that share a shape in the document share its handle. The cost is that of making the shapes, and O(log n)
+    /// for each object.
     ///
     /// # Errors
-    /// If the dimension is another than the scene's, and with the line of the value if the library refuses a shape,
+    /// If the dimension differs from that of the scene, or, with the line of the value, if the library rejects a shape,
     /// a position, a query type or the margin.
     pub fn collision_world<N: SceneSpace<D>, const D: usize>(
         &self,
@@ -41,7 +41,7 @@ impl Scene {
         Ok(world)
     }
 
-    /// A shape for queries: by its name in the document, or in JSON as a scene file has it.
+    /// Makes a shape for queries: by its name in the document, or from JSON as in a scene file.
     ///
     /// ```
     /// use impinge_files::Scene;
@@ -55,8 +55,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// If there is no such shape, the JSON is of none, the library refuses its numbers, or a mesh file that the JSON names
-    /// cannot be read.
+    /// If there is no such shape, the JSON is not that of a shape, the library rejects its values, or a mesh file that
+    /// the JSON names cannot be read.
     pub fn shape<N: SceneSpace<D>, const D: usize>(
         &self,
         shape: &str,
@@ -80,7 +80,7 @@ impl Scene {
         })
     }
 
-    /// The objects of a world of this scalar and dimension.
+    /// Returns the objects for a world of this scalar and dimension.
     pub(super) fn placed<N: SceneSpace<D>, const D: usize>(
         &self,
     ) -> Result<Vec<PlacedObject<'_, N, D>>, FileError> {
@@ -92,7 +92,8 @@ impl Scene {
         placed.map_err(|fault| self.source.error(fault))
     }
 
-    /// The shape of each form; those with names are made even if nothing has them, and refused with their own path.
+    /// Makes the shape of each form. Named shapes are made even if no object uses them, and their errors have their own
+    /// path.
     fn shapes<N: SceneSpace<D>, const D: usize>(&self) -> Result<Vec<ShapeHandle<N, D>>, Fault> {
         let mut builder = self.builder(&self.meshes);
         for name in self.file.shapes.keys() {
@@ -101,7 +102,7 @@ impl Scene {
         let forms = self.forms.iter().map(|form| {
             let made = builder.make(&form.shape);
             if form.member.is_empty() {
-                // Of a part or link only the problem is of interest: the document has no path to it.
+                // For a part or link only the problem is kept: the document has no path to it.
                 return made.map_err(|fault| Fault::from(fault.problem).within(&form.path));
             }
             made.within(form.member).within(&form.path)
@@ -109,7 +110,7 @@ impl Scene {
         forms.collect()
     }
 
-    /// Makes the shapes of the document, with the mesh files of a table.
+    /// Returns a builder of the shapes of the document, with the mesh files of a table.
     pub(super) fn builder<'a, N: SceneSpace<D>, const D: usize>(
         &'a self,
         meshes: &'a MeshTable,
@@ -132,7 +133,7 @@ impl Scene {
         Ok(PlacedObject { object, position, shape, query })
     }
 
-    /// The world refuses an object.
+    /// Returns the error of an object that the world rejects.
     pub(super) fn refused(&self, object: &SceneObject, problem: Problem) -> FileError {
         let member = match &problem {
             Problem::Library(LibraryError::World(WorldError::Position { .. })) => Some("position"),
@@ -153,7 +154,7 @@ impl Scene {
         }
     }
 
-    /// An error of the whole scene.
+    /// Returns an error of the whole scene.
     fn whole(&self, problem: Problem) -> FileError {
         FileError::whole(&self.source.file, problem)
     }

@@ -1,4 +1,4 @@
-//! Positions and motions of scenes, in `f64`, before a world's scalar is known.
+//! Positions and motions of scenes, in `f64`, before the scalar of a world is known.
 
 use impinge::math::na::{
     Isometry2, Isometry3, Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion,
@@ -17,16 +17,16 @@ pub(crate) enum Placement {
     Three(Isometry3<f64>),
 }
 
-/// Constant velocities; angular ones in radians a second.
+/// Constant velocities; angular velocities are in radians per second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Motion {
     velocity: Vector3<f64>,
-    /// Along the axis of the turn: along z in 2D.
+    /// Along the axis of the rotation: along z in 2D.
     angular: Vector3<f64>,
 }
 
 impl Placement {
-    /// The position that a file gives.
+    /// Reads the position of a file.
     pub(crate) fn read(pose: &PoseFile, dimension: Dimension) -> Result<Self, Fault> {
         let translation = pose.translation.as_ref();
         let translation = translation.map_or(Ok(Vector3::zeros()), |numbers| {
@@ -47,8 +47,8 @@ impl Placement {
         }
     }
 
-    /// The position in a world, which has the dimension of the scene. Numbers beyond the range of `N` become infinite,
-    /// which the world refuses.
+    /// Converts the position to the scalar of a world, which has the dimension of the scene. Values beyond the range of
+    /// `N` become infinite, which the world rejects.
     pub(crate) fn isometry<N: Recordable<D>, const D: usize>(
         &self,
     ) -> Result<N::Isometry, Problem> {
@@ -60,7 +60,7 @@ impl Placement {
         N::isometry_of(&numbers).ok_or(Problem::OtherWorld { scene, asked: D })
     }
 
-    /// The same, moved in the frame of the world.
+    /// Returns the position translated in the frame of the world.
     pub(crate) fn translated(mut self, by: Vector3<f64>) -> Self {
         match &mut self {
             Self::Two(at) => at.translation.vector += by.xy(),
@@ -69,7 +69,8 @@ impl Placement {
         self
     }
 
-    /// Where a motion leads in some seconds: computed from the start, so that no error accumulates.
+    /// Returns the position after some seconds of a motion. It is computed from the start, so that no error
+    /// accumulates.
     pub(crate) fn after(self, motion: &Motion, seconds: f64) -> Self {
         let mut moved = self.translated(motion.velocity * seconds);
         let angle = motion.angular * seconds;
@@ -82,7 +83,7 @@ impl Placement {
 }
 
 impl Motion {
-    /// The motion that a file gives; `None` at rest.
+    /// Reads the motion of a file; `None` at rest.
     pub(crate) fn read(motion: &MotionFile, dimension: Dimension) -> Result<Option<Self>, Fault> {
         let velocity = motion.velocity.as_ref();
         let velocity = velocity.map_or(Ok(Vector3::zeros()), |numbers| {
@@ -103,7 +104,7 @@ impl Motion {
     }
 }
 
-/// Coordinates as a vector, whose z is 0 in 2D.
+/// Converts coordinates to a vector, whose z is 0 in 2D.
 pub(crate) fn vector(numbers: &[f64], dimension: Dimension) -> Result<Vector3<f64>, Problem> {
     match (numbers, dimension) {
         (&[x, y], Dimension::Two) => Ok(Vector3::new(x, y, 0.0)),
@@ -157,40 +158,40 @@ fn turn3(rotation: &RotationFile) -> Result<UnitQuaternion<f64>, Fault> {
     }
 }
 
-/// The vector at length 1.
+/// Returns the vector scaled to length 1.
 pub(crate) fn unit(vector: Vector3<f64>) -> Result<Vector3<f64>, Problem> {
-    // Dividing by the largest component first keeps squares from overflowing and vanishing.
+    // Dividing by the largest component first avoids overflow and underflow of squares.
     let scaled = vector / vector.amax();
     let unit = scaled.normalize();
     let is_usable = unit.iter().all(|x| x.is_finite());
     if is_usable { Ok(unit) } else { Err(not_a_direction(vector.norm())) }
 }
 
-/// The error of a vector without a direction.
+/// Returns the error of a vector without a direction.
 pub(crate) const fn not_a_direction(length: f64) -> Problem {
     Problem::BadValue { what: "the length must be finite and not zero", value: length }
 }
 
-/// A turn in 2D. `libm` gives the same bits on every platform.
+/// Returns a rotation in 2D. `libm` gives the same bits on every platform.
 fn turn_by(radians: f64) -> UnitComplex<f64> {
     UnitComplex::from_cos_sin_unchecked(libm::cos(radians), libm::sin(radians))
 }
 
-/// The turn by an angle in radians about a vector of any length; none about the zero vector.
+/// Returns the rotation by an angle in radians about a vector of any length; the identity for the zero vector.
 pub(crate) fn about(axis: Vector3<f64>, radians: f64) -> UnitQuaternion<f64> {
     let Ok(axis) = unit(axis) else { return UnitQuaternion::identity() };
     let half = 0.5 * radians;
     turn_by_half(axis, [libm::sin(half), libm::cos(half)])
 }
 
-/// The turn about a unit vector by twice the angle with this sine and cosine.
+/// Returns the rotation about a unit vector by twice the angle with this sine and cosine.
 fn turn_by_half(axis: Vector3<f64>, [sine, cosine]: [f64; 2]) -> UnitQuaternion<f64> {
     let vector = axis * sine;
     UnitQuaternion::new_normalize(Quaternion::new(cosine, vector.x, vector.y, vector.z))
 }
 
-/// Sine and cosine of degrees, exact for multiples of a quarter turn: the angle is reduced to at most an eighth of a turn,
-/// and the quarters left out exchange and negate the two.
+/// Returns sine and cosine of an angle in degrees, exact for multiples of a quarter turn: the angle is reduced to at
+/// most an eighth of a turn, and the omitted quarters exchange and negate the two.
 fn sine_cosine(degrees: f64) -> [f64; 2] {
     let rest = degrees % 360.0;
     let quarters = libm::round(rest / 90.0);

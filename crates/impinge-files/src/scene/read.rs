@@ -1,4 +1,4 @@
-//! From a document to a scene: files are read, grids expanded, names compared.
+//! Resolves a document to a scene: reads files, expands grids, compares names.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ use crate::robot::{JointBeyondLimits, RobotLink};
 use crate::source::Source;
 use crate::{Dimension, FileError, Limit, Problem};
 
-/// Why a scene cannot be resolved: in the document, or in a file that it names.
+/// The error of resolving a scene: in the document, or in a file that it names.
 enum ResolveError {
     Document(Fault),
     File(FileError),
@@ -35,7 +35,7 @@ impl From<Fault> for ResolveError {
     }
 }
 
-/// Objects as they are collected.
+/// The objects collected so far.
 struct Collected<'a> {
     file: &'a SceneFile,
     forms: Vec<Form>,
@@ -47,7 +47,7 @@ struct Collected<'a> {
     joints_beyond_limits: Vec<JointBeyondLimits>,
 }
 
-/// An object without its groups, which depend on those of all.
+/// An object without its groups, which depend on the groups of all objects.
 struct Draft<'a> {
     name: String,
     form: usize,
@@ -55,7 +55,7 @@ struct Draft<'a> {
     common: Common<'a>,
 }
 
-/// What all objects of one entry of the document have.
+/// The common data of all objects of one entry of the document.
 #[derive(Clone, Copy)]
 struct Common<'a> {
     groups: &'a GroupsFile,
@@ -64,7 +64,7 @@ struct Common<'a> {
 }
 
 impl Scene {
-    /// The scene of a document that was parsed; a table with the files that were read before.
+    /// Resolves a parsed document; also returns the table of the files that were read.
     pub(super) fn resolve(
         source: Source,
         file: SceneFile,
@@ -82,7 +82,7 @@ impl Scene {
 }
 
 impl<'a> Collected<'a> {
-    /// Nothing of a document yet.
+    /// Starts without objects.
     const fn new(file: &'a SceneFile, meshes: MeshTable) -> Self {
         Self {
             file,
@@ -142,7 +142,7 @@ impl<'a> Collected<'a> {
         Ok(())
     }
 
-    /// Objects may be added, whose names have so many bytes together.
+    /// Checks the limits before objects are added whose names have `names` bytes together.
     fn expect(&mut self, objects: usize, names: usize) -> Result<(), Problem> {
         let files = &self.meshes.files;
         let total = self.objects.len().saturating_add(objects);
@@ -214,7 +214,7 @@ impl<'a> Collected<'a> {
         self.objects.push(Draft { name, form, start, common });
     }
 
-    /// The objects with their groups; none are left.
+    /// Takes the objects, with their groups.
     fn take_objects(&mut self) -> Result<Vec<SceneObject>, Fault> {
         self.check_names()?;
         let drafts = std::mem::take(&mut self.objects);
@@ -229,7 +229,7 @@ impl<'a> Collected<'a> {
         objects.collect()
     }
 
-    /// No two objects have the same name.
+    /// Checks that no two objects have the same name.
     fn check_names(&self) -> Result<(), Fault> {
         let mut names = BTreeSet::new();
         match self.objects.iter().find(|draft| !names.insert(&draft.name)) {
@@ -242,7 +242,7 @@ impl<'a> Collected<'a> {
     }
 }
 
-/// A grid of objects: how many there are along each axis, and at which distances.
+/// A grid of objects: the number along each axis, and the distances.
 struct Grid {
     count: Vec<usize>,
     spacing: Vector3<f64>,
@@ -266,13 +266,13 @@ impl Grid {
         self.count.iter().fold(1, |product: usize, count| product.saturating_mul(*count))
     }
 
-    /// The most bytes that the indices of a name take, with their brackets.
+    /// The largest number of bytes of the indices in a name, with their brackets.
     fn text_len(&self) -> usize {
         let digits = |count: &usize| count.to_string().len() + 1;
         self.count.iter().map(digits).sum::<usize>() + 1
     }
 
-    /// The index along each axis; the last axis runs fastest.
+    /// Returns the index along each axis; the last axis runs fastest.
     fn indices(&self, index: usize) -> Vec<usize> {
         let mut rest = index;
         let mut indices = vec![0; self.count.len()];
@@ -283,7 +283,7 @@ impl Grid {
         indices
     }
 
-    /// From the first object to the one with these indices.
+    /// Returns the offset from the first object to the one with these indices.
     fn offset(&self, indices: &[usize]) -> Vector3<f64> {
         let mut offset = Vector3::zeros();
         for (axis, index) in indices.iter().enumerate() {
@@ -293,7 +293,7 @@ impl Grid {
     }
 }
 
-/// Indices as names have them.
+/// Formats indices as in names.
 fn text_of(indices: &[usize]) -> String {
     indices.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
 }

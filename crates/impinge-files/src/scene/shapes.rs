@@ -1,4 +1,4 @@
-//! From the shapes of a document to those of the library.
+//! Converts the shapes of a document to those of the library.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -19,25 +19,25 @@ use crate::files::check;
 use crate::format::{ChildFile, DiagonalsFile, HeightFieldFile, MeshSource, ShapeFile, ShapeRef};
 use crate::{Dimension, Limit, Problem};
 
-/// What two shapes of files must have in common to be the same: path, part, bits of the scale, kind.
+/// The key of a shape of a file: path, part, bits of the scale, kind. Equal keys share the shape.
 type MeshKey = (PathBuf, Option<String>, [u64; 3], u8);
 
-/// Makes shapes; one of a name is made once.
+/// Makes shapes; a named shape is made once.
 pub(super) struct Builder<'a, N: SceneSpace<D>, const D: usize> {
     dimension: Dimension,
     shapes: &'a BTreeMap<String, ShapeFile>,
     meshes: &'a MeshTable,
     made: BTreeMap<&'a str, ShapeHandle<N, D>>,
     of_files: BTreeMap<MeshKey, ShapeHandle<N, D>>,
-    /// The vertices and corners of the shapes of files.
+    /// The number of vertices and corners of the shapes of files.
     elements: usize,
-    /// The names of the shapes that hold the one that is being made.
+    /// The names of the shapes that contain the one that is being made.
     holders: Vec<&'a str>,
     depth: u32,
 }
 
 impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
-    /// Nothing is made yet.
+    /// Starts without shapes.
     pub(super) const fn new(
         dimension: Dimension,
         shapes: &'a BTreeMap<String, ShapeFile>,
@@ -55,7 +55,7 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         }
     }
 
-    /// The shape of a reference.
+    /// Returns the shape of a reference.
     pub(super) fn make(&mut self, shape: &ShapeRef) -> Result<ShapeHandle<N, D>, Fault> {
         let limit = MAX_DEPTH as usize;
         if self.depth > MAX_DEPTH {
@@ -89,7 +89,8 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         Ok(made)
     }
 
-    /// The shape; a fault in it has the kind of the shape as the first step of its path.
+    /// Makes an inline shape; an error in it has the kind of the shape as the first step of its
+    /// path.
     fn inline(&mut self, shape: &ShapeFile) -> Result<ShapeHandle<N, D>, Fault> {
         self.shape(shape).within(kind_of(shape))
     }
@@ -154,7 +155,7 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         }
     }
 
-    /// The shape of a file. One with the same part, scale and kind is the same shape.
+    /// Makes the shape of a file. Equal part, scale and kind share a shape.
     fn mesh_file(&mut self, source: &MeshSource) -> Result<ShapeHandle<N, D>, Fault> {
         let scale = source.scale.factors().map(f64::to_bits);
         let key = (source.path.clone(), source.part.clone(), scale, source.kind as u8);
@@ -181,7 +182,7 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         Ok(ShapeHandle::new(Plane::<N, D>::new(Unit::new_normalize(normal))))
     }
 
-    /// A shape of one dimension alone.
+    /// Makes a shape that exists in one dimension only.
     fn own(&self, data: &ShapeData<N, D>, what: &'static str) -> Result<ShapeHandle<N, D>, Fault> {
         N::own_shape(data).map_err(|problem| match problem {
             RecordProblem::Library(error) => sized(error),
@@ -236,14 +237,14 @@ const fn kind_of(shape: &ShapeFile) -> &'static str {
     }
 }
 
-/// A shape as a handle.
+/// Puts a shape behind a handle.
 fn handle<N: SceneSpace<D>, const D: usize>(
     made: Result<impl Shape<N, D>, impl Into<Fault>>,
 ) -> Result<ShapeHandle<N, D>, Fault> {
     made.map(ShapeHandle::new).map_err(Into::into)
 }
 
-/// The fault at the member that a size was given by, which the library names in its own words.
+/// Returns an error at the member that gives a size, which the library names differently.
 fn sized(error: impl Into<LibraryError>) -> Fault {
     let error = error.into();
     let member = match &error {
@@ -261,7 +262,7 @@ fn sized(error: impl Into<LibraryError>) -> Fault {
     member.into_iter().fold(error.into(), Fault::within)
 }
 
-/// As many numbers as the dimension has.
+/// Converts coordinates; an error if their number differs from the dimension.
 pub(super) fn coordinates<N: SceneSpace<D>, const D: usize>(
     numbers: &[f64],
 ) -> Result<Vector<N, D>, Problem> {
@@ -271,7 +272,7 @@ pub(super) fn coordinates<N: SceneSpace<D>, const D: usize>(
     Ok(Vector::from_fn(|axis, _| N::lit(numbers[axis])))
 }
 
-/// Points of a member.
+/// Converts the points of a member.
 fn points<N: SceneSpace<D>, const D: usize>(
     given: &[Vec<f64>],
     member: &str,
@@ -282,7 +283,7 @@ fn points<N: SceneSpace<D>, const D: usize>(
     given.iter().enumerate().map(read).collect()
 }
 
-/// So many points of a member.
+/// Converts `COUNT` points of a member.
 fn corners<N: SceneSpace<D>, const D: usize, const COUNT: usize>(
     given: &[Vec<f64>; COUNT],
     member: &str,
@@ -349,12 +350,12 @@ fn line<N: SceneSpace<D>, const D: usize>(
     })
 }
 
-/// The mark of a removed cell: both its triangles, or in 2D its segment.
+/// The flag of a removed cell: both its triangles, or in 2D its segment.
 const HOLE: [u8; 2] = [1, 3];
-/// The mark of a cell cut the other way.
+/// The flag of a cell with the other diagonal.
 const BACKWARD: u8 = 4;
 
-/// The arguments of a height field: a mark for each cell.
+/// Returns the arguments of a height field, with flags for each cell.
 fn field<N: SceneSpace<D>, const D: usize>(
     file: &HeightFieldFile,
     dimension: Dimension,
@@ -394,7 +395,7 @@ fn field<N: SceneSpace<D>, const D: usize>(
     }))
 }
 
-/// How many parts a shape has.
+/// The number of parts of a shape.
 fn num_parts<N: SceneSpace<D>, const D: usize>(shape: &ShapeHandle<N, D>) -> usize {
     shape.geometry().as_composite().map_or(1, |composite| composite.num_parts() as usize)
 }

@@ -1,4 +1,4 @@
-//! What differs by dimension in making shapes.
+//! The making of shapes that differs by dimension.
 
 use impinge::dim2::shape::ConvexPolygon;
 use impinge::dim3::shape::ConvexHull;
@@ -6,13 +6,12 @@ use impinge::math::Point;
 use impinge::shape::{ShapeError, ShapeHandle};
 use impinge_record::{Recordable, Scalar};
 
-/// A scalar and a dimension whose worlds scenes can be: `f32` and `f64` with `D` = 2 and `D` = 3.
+/// A scalar and a dimension that scenes support: `f32` and `f64` with `D` = 2 and `D` = 3.
 pub trait SceneSpace<const D: usize>: Recordable<D> {
-    /// The convex hull of points, as a shape.
+    /// Returns the convex hull of points, as a shape.
     ///
     /// # Errors
-    /// If a coordinate is not finite, or the points span nothing: they coincide, or lie on one line, or in 3D in
-    /// one plane.
+    /// If a coordinate is not finite, or the points span no area (2D) or volume (3D).
     fn convex_hull(points: &[Point<Self, D>]) -> Result<ShapeHandle<Self, D>, ShapeError>;
 }
 

@@ -1,4 +1,4 @@
-//! A scene at work: a recorded world whose objects have names and move.
+//! The world of a scene: a recorded world whose objects have names and move.
 
 use core::num::NonZeroU64;
 use core::ops::Deref;
@@ -14,7 +14,8 @@ use super::{Placement, Scene, SceneSpace};
 use crate::error::Within;
 use crate::{FileError, Problem};
 
-/// The world of a scene, which is recorded and moves its objects. It lends the world for reading ([`Deref`]).
+/// The world of a scene, which is recorded and moves its objects. It dereferences to the world for reading
+/// ([`Deref`]).
 ///
 /// ```
 /// use impinge_files::Scene;
@@ -53,13 +54,14 @@ struct Mover {
 }
 
 impl Scene {
-    /// A recorded world with the objects, in their order, not updated yet. The data of an object is its name.
+    /// Makes a recorded world with the objects, in their order, not updated yet. The data of an object is its
+    /// name.
     ///
-    /// The recorder writes every shape down, which [`Self::collision_world`] does without. The recording needs
-    /// no registered shapes or filters.
+    /// The recorder stores every shape; [`Self::collision_world`] avoids that. The recording needs no registered
+    /// shapes or filters.
     ///
     /// # Errors
-    /// As [`Self::collision_world`], and if a shape has more parts than recordings take.
+    /// As [`Self::collision_world`], and if a shape has more parts than recordings allow.
     pub fn world<N: SceneSpace<D>, const D: usize>(&self) -> Result<SceneWorld<N, D>, FileError> {
         let recorder = Recorder::new(N::lit(self.file.margin), Registry::new());
         let recorder = recorder.map_err(Problem::recorded).within("margin");
@@ -85,18 +87,18 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         Self { recorder: self.recorder.with_key_frames(updates), ..self }
     }
 
-    /// Moves the objects by their motions over some seconds, and updates the world. A step of 0 seconds updates it
-    /// alone, as the first step mostly does. Positions are computed from the start and the time since.
+    /// Moves the objects by their motions over `seconds`, and updates the world. A step of 0 seconds only updates,
+    /// as the first step usually does. Positions are computed from the start and the elapsed time.
     ///
     /// # Errors
-    /// If a position leaves the range of numbers; the world is unchanged then, apart from the time.
+    /// If a position leaves the range of numbers; the world is then unchanged, apart from the time.
     pub fn step(&mut self, seconds: f64) -> Result<(), RecordError> {
         self.move_objects(seconds)?;
         self.recorder.update();
         Ok(())
     }
 
-    /// [`Self::step`] without the update, for those who look at the positions before it.
+    /// [`Self::step`] without the update, to read the positions before it.
     ///
     /// # Errors
     /// As [`Self::step`].
@@ -120,24 +122,24 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         self.seconds
     }
 
-    /// The object of a name.
+    /// Returns the object of a name.
     #[must_use]
     pub fn handle(&self, name: &str) -> Option<CollisionObjectHandle> {
         self.handles.get(name).copied()
     }
 
-    /// The name of an object; `None` for a stale handle.
+    /// Returns the name of an object; `None` for a stale handle.
     #[must_use]
     pub fn name(&self, handle: CollisionObjectHandle) -> Option<&str> {
         self.recorder.collision_object(handle).map(|object| object.data().as_str())
     }
 
-    /// The recorder, for changes that no motion describes and for queries that are recorded.
+    /// Returns the recorder, for changes that no motion describes and for recorded queries.
     pub const fn recorder_mut(&mut self) -> &mut Recorder<N, D, String> {
         &mut self.recorder
     }
 
-    /// Ends the recording.
+    /// Ends the recording and returns it.
     #[must_use]
     pub fn finish(self) -> Recording<N, D, String> {
         self.recorder.finish()

@@ -1,4 +1,5 @@
-//! Files cut short and with changed bytes: typed errors, no panic, no more memory than the file explains.
+//! Truncated files and files with changed bytes: typed errors, no panic, no more memory than the file
+//! explains.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +8,7 @@ use impinge_files::{FileError, MeshFile, Problem, Scene, load};
 
 use crate::cube::samples;
 
-/// A small generator of numbers, the same on every run (Marsaglia, *Xorshift RNGs*, 2003).
+/// A small random number generator, the same on every run (Marsaglia, *Xorshift RNGs*, 2003).
 struct Numbers(u64);
 
 impl Numbers {
@@ -23,7 +24,7 @@ impl Numbers {
     }
 }
 
-/// What must hold of any bytes: an error that names the file, or parts within the bounds of the file.
+/// Checks the result for any bytes: an error that names the file, or parts within the bounds of the file.
 fn check(path: &Path, bytes: &[u8]) -> Result<MeshFile, FileError> {
     let read = MeshFile::parse(path, bytes);
     match &read {
@@ -51,7 +52,7 @@ fn files_cut_at_every_length() {
         for length in 0..sample.bytes.len() {
             refused += usize::from(check(&sample.path(), &sample.bytes[..length]).is_err());
         }
-        // What lies at the end of a text may be missing without harm.
+        // The end of a text may be missing without an error.
         assert!(refused > sample.bytes.len() / 4, "{}: {refused} refused", sample.name);
     }
 }

@@ -42,7 +42,7 @@ pub(crate) fn samples() -> Vec<Sample> {
         sample("quads.obj", obj().into_bytes()),
         sample("ascii.stl", stl_text().into_bytes()),
         sample("binary.stl", stl_binary(b"a cube")),
-        // The header of a binary file may begin as text does.
+        // The header of a binary file may begin with the word of a text file.
         sample("misleading.stl", stl_binary(b"solid cube")),
         sample("ascii.ply", ply_text().into_bytes()),
         sample("little.ply", ply_binary(true)),
@@ -65,7 +65,7 @@ pub(crate) fn obj() -> String {
     text
 }
 
-/// The cube with its fronts inside, as a room has them.
+/// The cube with its fronts inside, like the walls of a room.
 pub(crate) fn obj_inside_out() -> String {
     let lines = obj();
     let turned = lines.lines().map(|line| match line.strip_prefix("f ") {
@@ -146,7 +146,7 @@ pub(crate) fn gltf_buffer() -> Vec<u8> {
     bytes
 }
 
-/// A node that mirrors the cube holds one that moves and scales it: triangles must be turned.
+/// A node that mirrors the cube contains one that moves and scales it: triangles must be reversed.
 fn gltf_json(buffer: &str) -> String {
     format!(
         r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],
@@ -164,20 +164,20 @@ pub(crate) fn gltf_text() -> String {
     gltf_with("")
 }
 
-/// With more buffers behind its own.
+/// Returns the cube with more buffers behind its own.
 pub(crate) fn gltf_with(more: &str) -> String {
     let data = base64(&gltf_buffer());
     let text = gltf_json(&format!("\"uri\": \"data:application/octet-stream;base64,{data}\", "));
     text.replace("\"byteLength\": 168}", &format!("\"byteLength\": 168}}{more}"))
 }
 
-/// With its buffer in a file.
+/// Returns the cube with its buffer in a file.
 pub(crate) fn gltf_with_uri(uri: &str) -> String {
     gltf_json(&format!("\"uri\": \"{uri}\", "))
 }
 
-/// The first corner is the origin and not written: the accessor of the positions has no view of its own, and seven
-/// sparse elements with the indices from 1 to 7.
+/// The first corner is the origin and is not stored: the accessor of the positions has no view of its own, and
+/// seven sparse elements with the indices from 1 to 7.
 pub(crate) fn gltf_sparse() -> String {
     let sparse = "\"sparse\": {\"count\": 7, \"indices\": {\"bufferView\": 2, \"componentType\": 5121}, \
                   \"values\": {\"bufferView\": 0, \"byteOffset\": 12}}, \"componentType\": 5126";
@@ -191,7 +191,7 @@ pub(crate) fn gltf_sparse() -> String {
 
 fn base64(bytes: &[u8]) -> String {
     let digits = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    // The lengths are multiples of 3: nothing is padded.
+    // The lengths are multiples of 3, so that no padding is needed.
     let groups = bytes.chunks_exact(3).flat_map(|group| {
         let [a, b, c] = [group[0], group[1], group[2]].map(usize::from);
         [a >> 2, (a & 3) << 4 | b >> 4, (b & 15) << 2 | c >> 6, c & 63]
@@ -203,7 +203,7 @@ pub(crate) fn glb() -> Vec<u8> {
     glb_with("{\"byteLength\": 168}", 168)
 }
 
-/// With these buffers, and a binary chunk of so many bytes.
+/// Returns a binary file with these buffers, and a binary chunk of `bytes` bytes.
 pub(crate) fn glb_with(buffers: &str, bytes: usize) -> Vec<u8> {
     let mut json = gltf_json("").replace("{\"byteLength\": 168}", buffers).into_bytes();
     while !json.len().is_multiple_of(4) {
@@ -224,7 +224,7 @@ pub(crate) fn glb_with(buffers: &str, bytes: usize) -> Vec<u8> {
     bytes
 }
 
-/// A number as 32 bits.
+/// Returns a number as 32 bits.
 fn word(number: usize) -> [u8; 4] {
     u32::try_from(number).expect("a small file").to_le_bytes()
 }

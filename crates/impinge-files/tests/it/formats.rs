@@ -1,4 +1,4 @@
-//! The same cube from every format.
+//! Reads one cube from every format.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! Files at which a time that grows with the square of their size would never end.
+//! Files that would take too long with an algorithm of quadratic time.
 
 use std::fmt::Write;
 use std::fs;
@@ -37,7 +37,7 @@ fn numbers_that_are_taken_are_left_out() {
 
 #[test]
 fn groups_of_a_large_file_have_their_own_vertices() {
-    // Each group is as cheap as its faces, however many vertices the file has.
+    // Each group costs as much as its faces, however many vertices the file has.
     let count = 100_000;
     let mut text = String::new();
     for index in 0..count {
@@ -167,7 +167,8 @@ fn chains_of_joints_that_mimic() {
 #[test]
 fn links_below_a_long_chain_without_solids() {
     let folder = tempfile::tempdir().expect("a folder");
-    // A link with a ball, a chain without, and at its end links with balls, each joined with the first.
+    // A link with a ball, a chain of links without, and at its end links with balls: each is connected
+    // with the first.
     let (chain, leaves) = (20_000, 20_000);
     let links = (0..=chain + leaves)
         .map(|index| if (1..=chain).contains(&index) { bare(index) } else { ball(index) });

@@ -1,4 +1,4 @@
-//! What is wrong with a mesh, and where.
+//! Reports of mesh defects and their positions.
 
 use impinge_files::{Defect, Defects, MeshFile, MeshReport, Problem};
 

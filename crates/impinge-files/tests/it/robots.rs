@@ -1,4 +1,4 @@
-//! Robots: joints, meshes of packages, and links that do not meet.
+//! Robots: joints, meshes of packages, and disabled pairs of links.
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
@@ -77,7 +77,7 @@ fn joints_of_all_types_move_their_links() {
     assert_at(&world, "arm/spin", [1.0, 1.0, 0.0]);
     assert_at(&world, "arm/slide", [-0.5, 1.0, 0.0]);
     assert_at(&world, "arm/weld", [-0.5, 1.0, 1.0]);
-    // Turned about z by half a turn, then about x by a quarter: z of the link is y of the world.
+    // Rotated about z by half a turn, then about x by a quarter turn: z of the link is y of the world.
     assert_at(&world, "arm/float", [-0.5, 2.0, 1.0]);
     assert_at(&world, "arm/plane", [-0.5, 1.0, 2.0]);
     assert_at(&world, "arm/follow", [-0.5, 0.0, 0.0]);
@@ -168,7 +168,8 @@ fn a_six_axis_arm_with_meshes() {
 fn disabled_pairs_and_links_without_solids() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
-    // Balls within each other: a joint connects a and b, b and c by way of a bare link; the file disables a and d.
+    // Balls within each other: a joint connects a and b; b and c are connected through a link without shape; the
+    // file disables a and d.
     let bare = r#"<link name="bare"/>"#;
     let links = [link("a"), link("b"), bare.to_owned(), link("c"), link("d")].concat();
     let joints = [

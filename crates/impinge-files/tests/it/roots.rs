@@ -1,4 +1,4 @@
-//! From where files are read.
+//! Root folders: which files may be read.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use crate::cube::{gltf_buffer, gltf_with_uri, obj};
 
-/// A folder `in` with a package, and files beside it that are none of its business.
+/// Returns a folder `in` with a package, and files beside it that must not be read.
 fn desk() -> TempDir {
     let desk = tempfile::tempdir().expect("a folder");
     let write = |name: &str, bytes: &[u8]| {
@@ -86,7 +86,7 @@ fn links_pipes_and_devices() {
         assert!(is_outside(&read(uri)), "{uri}: {:?}", read(uri));
     }
     assert!(read("own.bin").is_ok(), "within the folder");
-    // A folder may be named by a link.
+    // A folder may be named through a symbolic link.
     std::os::unix::fs::symlink(desk.join("in"), desk.join("linked")).expect("a link");
     assert!(MeshFile::read(&desk.join("linked/cube.gltf")).is_ok());
     let pipe = desk.join("in/pipe.obj");
@@ -157,7 +157,7 @@ fn packages_of_robots() {
     assert!(read("package://in/deep/cube.obj", &root).is_ok(), "the root is a package by its name");
     let packages = ReadOptions::new().with_packages(desk.join("in"));
     assert!(read(mesh, &packages).is_ok(), "in a folder of packages");
-    // A package is one by its manifest.
+    // A folder is a package if it has a manifest.
     fs::write(desk.join("in/pack/package.xml"), "<package/>").expect("it is written");
     assert!(read(mesh, &plain).is_ok() && read("../meshes/cube.obj", &plain).is_ok());
     let out = desk.join("out/cube.obj");

@@ -2,7 +2,7 @@
 
 use impinge_files::{Problem, Scene};
 
-/// The error of a scene, from reading it or from making its world.
+/// Returns the error of a scene, from reading it or from making its world.
 fn error(text: &str) -> impinge_files::FileError {
     match Scene::from_json("bad.json", text) {
         Err(error) => error,
@@ -13,14 +13,14 @@ fn error(text: &str) -> impinge_files::FileError {
     }
 }
 
-/// The error of an object with these members, on the third line from column 2 on.
+/// Returns the error of an object with these members, on the third line from column 2 on.
 fn object_error(dimension: usize, members: &str) -> impinge_files::FileError {
     error(&format!(
         "{{\"dimension\": {dimension}, \"objects\": [\n{{\"name\": \"a\",\n {members}}}]}}"
     ))
 }
 
-/// Dimension, members of an object, the path of the refused value, and the value.
+/// Dimension, members of an object, the path of the invalid value, and the value.
 const REFUSED: &[(usize, &str, &str, &str)] = &[
     (2, r#""shape": {"ball": {"radius": -2}}"#, "shape.ball.radius", "-2"),
     (

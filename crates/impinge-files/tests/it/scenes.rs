@@ -1,4 +1,4 @@
-//! The example scenes, the schema, and what each kind of shape becomes.
+//! The example scenes, the schema, and the shape of each kind.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -36,7 +36,7 @@ fn the_schema_is_that_of_the_types() {
     assert_eq!(written, SceneFile::schema(), "IMPINGE_BLESS=1 writes it anew");
 }
 
-/// The tests of the page ask the schema about the same scenes, by a validator of schemas.
+/// The tests of the page validate the same scenes by the schema.
 #[test]
 fn scenes_that_the_schema_refuses_are_refused() {
     let refused: Vec<serde_json::Value> =
@@ -130,7 +130,8 @@ fn a_car_drives_into_the_zone_and_out_of_it() {
         let events = world.proximity_events().iter();
         changes.extend(events.map(|event| (world.seconds(), event.new_status)));
     }
-    // Its front is at -3.25 + t: within the margin from 1.75 on, in the zone from 2.25 to 5.75, gone after 6.25.
+    // Its front is at -3.25 + t: within the margin from 1.75 on, in the zone from 2.25 to 5.75, outside after
+    // 6.25.
     use impinge::query::Proximity::{Disjoint, Intersecting, WithinMargin};
     let expected =
         [(1.75, WithinMargin), (2.25, Intersecting), (5.875, WithinMargin), (6.375, Disjoint)];

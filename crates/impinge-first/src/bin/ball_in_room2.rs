@@ -1,4 +1,4 @@
-//! A ball bounces around in a square room and says which coloured areas it enters and leaves.
+//! A ball bounces in a square room; prints which coloured areas it enters and leaves.
 
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
@@ -9,7 +9,7 @@ use impinge::dim2::math::{Isometry, Unit, Vector};
 use impinge::dim2::shape::{Ball, Cuboid, Plane, ShapeHandle};
 use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
 
-/// What the program knows about an object: the ball has a velocity, an area a name.
+/// The data of an object: the ball has a velocity, an area a name.
 struct ObjectData {
     name: &'static str,
     velocity: Option<Cell<Vector<f32>>>,
@@ -24,7 +24,8 @@ fn fixed(name: &'static str) -> ObjectData {
     ObjectData { name, velocity: None }
 }
 
-/// The ball in group 1; the rest in group 2, which looks at group 1 only.
+/// Returns the groups: the ball is in group 1; the rest is in group 2, which interacts with group 1
+/// only.
 fn groups() -> (CollisionGroups, CollisionGroups) {
     let mut ball = CollisionGroups::new();
     ball.set_membership(&[1]);
@@ -34,7 +35,7 @@ fn groups() -> (CollisionGroups, CollisionGroups) {
     (ball, others)
 }
 
-/// The ball, four walls, four areas.
+/// Adds the ball, four walls, four areas.
 fn build() -> World {
     let mut world = CollisionWorld::new(0.02);
     let (ball_groups, other_groups) = groups();
@@ -58,7 +59,7 @@ fn build() -> World {
     world
 }
 
-/// The line to print, if there is one.
+/// Returns the line to print, if there is one.
 fn describe(world: &World, event: &ProximityEvent) -> Option<String> {
     let area = [event.collider1, event.collider2]
         .into_iter()
@@ -88,7 +89,7 @@ fn bounce(world: &World, event: &ContactEvent) {
     }
 }
 
-/// Where the ball is after one more step.
+/// Moves the ball by one step.
 fn advance(world: &mut World) {
     let moved = world.collision_objects().find_map(|object| {
         let velocity = object.data().velocity.as_ref()?.get();
@@ -99,7 +100,7 @@ fn advance(world: &mut World) {
     world.set_position(ball, position);
 }
 
-/// Runs until some lines are there.
+/// Runs until `lines` lines are printed.
 pub(crate) fn run(lines: usize) -> Vec<String> {
     let mut world = build();
     let mut log = Vec::new();

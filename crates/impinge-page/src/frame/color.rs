@@ -1,25 +1,25 @@
-//! Colours: a restrained palette by the kind of a shape, legible on a light and on a dark page.
+//! Colours: a muted palette by the kind of a shape, legible on a light and on a dark page.
 
 use impinge::debug_render::{Color, DebugOptions, Drawn, MeshOptions, Style};
 use impinge::math::Real;
 use impinge::shape::ShapeKind;
 
-/// Bits of an instance's flags.
+/// Bits of the flags of an instance.
 pub(crate) const TOUCHES: u32 = 1;
 pub(crate) const SENSOR: u32 = 2;
 pub(crate) const SELECTED: u32 = 4;
 pub(crate) const ASKED: u32 = 8;
 
-/// What is selected.
+/// The colour of the selection.
 const SELECTION: Color = Color::rgb(242, 153, 46);
-/// What is asked for proximity alone.
+/// The colour of sensors.
 const SENSORS: Color = Color::rgb(150, 120, 200).with_alpha(88);
-/// Towards this colour go objects that touch something.
+/// The colour towards which touching objects are mixed.
 const WARM: Color = Color::rgb(255, 140, 110);
-/// How far, of 256.
+/// The share of that colour, of 256.
 const WARMTH: u16 = 40;
 
-/// The colour of a kind of shape.
+/// Returns the colour of a kind of shape.
 const fn of_kind(kind: ShapeKind) -> Color {
     match kind {
         ShapeKind::Ball | ShapeKind::Ellipsoid => Color::rgb(70, 150, 206),
@@ -34,13 +34,13 @@ const fn of_kind(kind: ShapeKind) -> Color {
     }
 }
 
-/// What the colour of an object depends on.
+/// The properties that determine the colour of an object.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
     pub(crate) kind: ShapeKind,
-    /// Neighbours in a pile differ a little by it.
+    /// The index, by which neighbours in a pile differ slightly.
     pub(crate) object: usize,
-    /// Bits of flags.
+    /// The flags.
     pub(crate) flags: u32,
 }
 
@@ -51,12 +51,13 @@ impl Look {
         if self.flags & SELECTED != 0 {
             return word(SELECTION.with_alpha(base.alpha.max(160)));
         }
-        // Most worlds stand on a half-space: it touches something nearly always, and is too large to be warm.
+        // Most worlds have a half-space as floor: it touches objects nearly always, and is too large to be
+        // highlighted.
         let is_warm = self.flags & TOUCHES != 0 && self.kind != ShapeKind::Plane;
         word(if is_warm { mixed(base, WARM, WARMTH) } else { base })
     }
 
-    /// One of four tones of the kind's colour.
+    /// Returns one of four tones of the colour of the kind.
     fn shaded(&self) -> Color {
         let base = of_kind(self.kind);
         // The order 0, 2, 1, 3: neighbours differ more.
@@ -71,7 +72,7 @@ pub(crate) const fn word(color: Color) -> u32 {
     u32::from_le_bytes([red, green, blue, color.alpha])
 }
 
-/// A colour `part` of 256 of the way to another; its alpha stays.
+/// Mixes two colours: `part` of 256 of the second; the alpha of the first.
 fn mixed(from: Color, to: Color, part: u16) -> Color {
     let mut rgb = from.rgb;
     for (byte, goal) in rgb.iter_mut().zip(to.rgb) {
@@ -81,7 +82,7 @@ fn mixed(from: Color, to: Color, part: u16) -> Color {
     Color { rgb, ..from }
 }
 
-/// The layers of a frame in order: names, and what is drawn in them.
+/// The layers of a frame in order: names, and the kinds of things drawn in them.
 pub(crate) const LAYERS: [(&str, Drawn); 10] = [
     ("object", Drawn::Object),
     ("tight box", Drawn::TightBox),
@@ -95,13 +96,13 @@ pub(crate) const LAYERS: [(&str, Drawn); 10] = [
     ("query hit", Drawn::QueryHit),
 ];
 
-/// The number of the layer of something drawn.
+/// Returns the number of the layer of a kind of thing.
 pub(crate) fn layer_of(what: Drawn) -> usize {
     LAYERS.iter().position(|(_, drawn)| *drawn == what).unwrap_or(0)
 }
 
-/// The styles of the layers that are shown, for objects of about this size. Objects themselves are instances and have
-/// none; queries have theirs whatever is shown, since samples read them.
+/// Returns the styles of the visible layers, for objects of about this size. Objects themselves are instances and
+/// have no style; queries always have one, since samples read it.
 pub(crate) fn options<N: Real>(
     mesh: MeshOptions<N>,
     size: N,

@@ -1,4 +1,4 @@
-//! Where a stage is and how large its objects are, for coordinates and cameras.
+//! The position of a stage and the size of its objects, for coordinates and cameras.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Real, Space};
@@ -6,11 +6,11 @@ use impinge::world::CollisionWorld;
 
 use crate::space::coordinates;
 
-/// An extent of objects beyond this counts as unbounded, and a coordinate beyond it is left out: its square is still
+/// Objects with a larger extent count as unbounded, and larger coordinates are omitted: the square of this is still
 /// within the range of `f32`.
 pub(crate) const FAR: f64 = 1e18;
 
-/// A box in `f64` and three dimensions; the third is empty in 2D.
+/// A box in `f64` and three dimensions; flat in 2D.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds {
     pub(crate) mins: [f64; 3],
@@ -18,7 +18,7 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// That of a box with an end.
+    /// Returns the bounds of a bounded box; `None` for an unbounded one.
     pub(crate) fn of<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Option<Self> {
         let [mins, maxs] = [aabb.mins(), aabb.maxs()].map(|point| coordinates(&point.coords));
         let is_near = mins.iter().chain(&maxs).all(|x| x.abs() <= FAR);
@@ -50,17 +50,17 @@ impl Bounds {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Framing {
     pub(crate) origin: [f64; 3],
-    /// Half the diagonal of the box of an object in the middle of the order of sizes; never 0.
+    /// Half the diagonal of the box of the object of median size; never 0.
     pub(crate) size: f64,
-    /// How far a half-space is drawn from its origin.
+    /// The distance from its origin up to which a half-space is drawn.
     pub(crate) patch: f64,
 }
 
 impl Framing {
-    /// Before there is an object.
+    /// The framing before there is an object.
     pub(crate) const UNKNOWN: Self = Self { origin: [0.0; 3], size: 1.0, patch: 10.0 };
 
-    /// That of a world; `None` if it has no objects.
+    /// Returns the framing of a world; `None` if it has no objects.
     pub(crate) fn of<N: Space<D>, const D: usize, T>(
         world: &CollisionWorld<N, D, T>,
     ) -> Option<Self> {
@@ -72,17 +72,17 @@ impl Framing {
         sizes.sort_by(f64::total_cmp);
         let (center, radius) = (bounds.center(), bounds.radius());
         let middle = sizes[sizes.len() / 2];
-        // Points and segments have no size, a world of one point no radius.
+        // Points and segments have size zero, and a world of one point radius zero.
         let size = [middle, radius / 8.0].into_iter().find(|size| *size > 0.0).unwrap_or(1.0);
         let distance = center.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
         let is_near = distance <= 64.0 * radius.max(size);
         let origin = if is_near { [0.0; 3] } else { center };
-        // A half-space goes on beyond the objects that lie on it.
+        // A half-space is drawn beyond the objects that lie on it.
         Some(Self { origin, size, patch: (1.5 * radius).max(8.0 * size) })
     }
 }
 
-/// The boxes of the objects that have an end.
+/// Returns the boxes of the bounded objects.
 fn boxes<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> impl Iterator<Item = Bounds> {
@@ -91,7 +91,7 @@ fn boxes<N: Space<D>, const D: usize, T>(
         .filter_map(|object| Bounds::of(&object.shape().aabb(&N::pose(object.position()))))
 }
 
-/// The box of all objects that have an end; `None` if none has. Costs the boxes of all objects.
+/// Returns the box of all bounded objects; `None` if there is none. Computes the boxes of all objects.
 pub(crate) fn bounds<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
 ) -> Option<Bounds> {

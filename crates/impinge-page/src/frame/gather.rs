@@ -1,5 +1,5 @@
-//! A back end of debug drawing that fills the buffers of a frame: structures of arrays, which the page uploads as they
-//! are.
+//! A back end of debug drawing that fills the buffers of a frame: structures of arrays, which the page uploads
+//! unchanged.
 
 use core::marker::PhantomData;
 
@@ -14,7 +14,7 @@ use crate::frame::payload::{Payload, Section};
 use crate::frame::unit_shapes::UNSCALED;
 use crate::space::{Viewed, coordinates};
 
-/// The number of an instance that is no object.
+/// The object number of an instance that is not an object.
 const NO_OBJECT: u32 = u32::MAX;
 
 /// The greatest number of texts: more are not legible.
@@ -29,11 +29,11 @@ struct Label {
     layer: u32,
 }
 
-/// Lines, triangles or points: their coordinates, and for each a colour and a layer.
+/// Lines, triangles or points: their coordinates, with a colour and a layer each.
 #[derive(Debug, Default)]
 struct Things {
     numbers: Vec<f32>,
-    /// Of points alone.
+    /// The sizes of points; otherwise empty.
     sizes: Vec<f32>,
     colors: Vec<u32>,
     layers: Vec<u32>,
@@ -47,7 +47,7 @@ impl Things {
     }
 }
 
-/// Shapes by mesh, scale and pose.
+/// Instances by mesh, scale and pose.
 #[derive(Debug, Default)]
 struct Instances {
     mesh: Vec<u32>,
@@ -58,7 +58,7 @@ struct Instances {
     flags: Vec<u32>,
 }
 
-/// An instance of a mesh that is to be drawn.
+/// An instance of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instance {
     pub(crate) mesh: u32,
@@ -69,7 +69,7 @@ pub(crate) struct Instance {
     pub(crate) flags: u32,
 }
 
-/// All that a frame draws, relative to an origin.
+/// The content of a frame, relative to an origin.
 #[derive(Debug, Default)]
 pub(crate) struct Buffers {
     instances: Instances,
@@ -79,7 +79,7 @@ pub(crate) struct Buffers {
     labels: Vec<Label>,
 }
 
-/// The back end: fills buffers with what belongs to a layer that is shown.
+/// The back end: fills buffers with the things of visible layers.
 #[derive(Debug)]
 pub(crate) struct Gather<'a, N, const D: usize> {
     pub(crate) buffers: Buffers,
@@ -90,13 +90,14 @@ pub(crate) struct Gather<'a, N, const D: usize> {
 }
 
 impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
-    /// The layer, if it is shown.
+    /// Returns the layer, if it is visible.
     fn layer(&self, what: Drawn) -> Option<u32> {
         let layer = layer_of(what);
         self.is_shown[layer].then(|| u32::try_from(layer).unwrap_or(0))
     }
 
-    /// Relative to the origin. The difference is taken in `f64`, so that scenes far from 0 keep their digits.
+    /// Returns a point relative to the origin. The difference is computed in `f64`, so that scenes far from 0 keep
+    /// their digits.
     fn relative(&self, point: [f64; 3]) -> [f32; 3] {
         [0, 1, 2].map(|axis| single(point[axis] - self.origin[axis]))
     }
@@ -105,7 +106,7 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
         self.relative(coordinates(&point.coords))
     }
 
-    /// Makes space for so many instances more, which are then added without moving the others.
+    /// Reserves space for `count` more instances, which are then added without a reallocation.
     pub(crate) fn reserve(&mut self, count: usize) {
         let Instances { mesh, object, color, pose, scale, flags } = &mut self.buffers.instances;
         for words in [mesh, object, color, flags] {
@@ -115,13 +116,13 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
         scale.reserve(3 * count);
     }
 
-    /// Puts a mesh at a position.
+    /// Adds an instance of a mesh at a position.
     pub(crate) fn instance(&mut self, instance: Instance, position: &N::Isometry) {
         let Some(center) = self.meshes.keep(instance.mesh) else { return };
         let mut translation = coordinates(&N::translation(position));
-        // Only a mesh without a scale has another centre than the origin of its shape.
+        // Only a mesh without a scale has a centre other than the origin of its shape.
         if center != [0.0; 3] {
-            // Turned with the shape, and only then added to its translation.
+            // Rotated with the shape, then added to its translation.
             let center =
                 N::pose(position).vector(&Vector::<N, D>::from_fn(|axis, _| N::lit(center[axis])));
             let turned = coordinates(&center);
@@ -146,7 +147,7 @@ fn is_nowhere<const COUNT: usize>(numbers: &[[f32; 3]; COUNT]) -> bool {
 
 impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
     fn line(&mut self, ends: [Point<N, D>; 2], color: Color, what: Drawn) {
-        // A layer that is off costs no conversion.
+        // Invisible layers need no conversion.
         let Some(layer) = self.layer(what) else { return };
         let ends = ends.map(|end| self.at(&end));
         if !is_nowhere(&ends) {
@@ -192,7 +193,7 @@ impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
     }
 }
 
-/// Sections of instances.
+/// The sections of instances.
 #[derive(Debug, Serialize)]
 struct InstanceSections {
     count: usize,
@@ -229,7 +230,7 @@ struct PointSections {
     layer: Section,
 }
 
-/// Where everything is in a payload, and the texts.
+/// The sections of a payload, and the texts.
 #[derive(Debug, Serialize)]
 pub(crate) struct Sections {
     instances: InstanceSections,
@@ -240,7 +241,7 @@ pub(crate) struct Sections {
 }
 
 impl Buffers {
-    /// Writes everything.
+    /// Writes all buffers.
     pub(crate) fn write(self, payload: &mut Payload) -> Sections {
         let Self { instances, lines, triangles, points, labels } = self;
         Sections {

@@ -17,8 +17,8 @@ const PATIENCE: u64 = 120;
 struct Buffers {
     /// [`ShapeMesh::id`].
     hash: u64,
-    /// The origin of the vertices, in the frame of the shape: in `f32` the vertices of a mesh far from the origin
-    /// of its shape would coincide.
+    /// The origin of the vertices, in the frame of the shape: the vertices of a mesh far from the origin of its
+    /// shape would coincide in `f32`.
     center: [f64; 3],
     vertices: Vec<f32>,
     triangles: Vec<u32>,
@@ -27,7 +27,7 @@ struct Buffers {
     used: u64,
 }
 
-/// Where the parts of a mesh are in a payload.
+/// The sections of a mesh in a payload.
 #[derive(Debug, Serialize)]
 pub(crate) struct MeshSections {
     id: u32,
@@ -36,7 +36,7 @@ pub(crate) struct MeshSections {
     lines: Section,
 }
 
-/// Meshes by number; numbers count up and are given once.
+/// Meshes by number; numbers increase and are not reused.
 #[derive(Debug, Default)]
 pub(crate) struct MeshTable {
     /// The numbers of the meshes by [`ShapeMesh::id`].
@@ -63,7 +63,7 @@ impl MeshTable {
         dropped
     }
 
-    /// The number of a mesh, by which frames name it.
+    /// Returns the number of a mesh, which frames use.
     pub(crate) fn number<N: Real, const D: usize>(&mut self, mesh: &ShapeMesh<N, D>) -> u32 {
         let next = self.next;
         let number = *self.numbers.entry(mesh.id).or_insert(next);
@@ -74,15 +74,15 @@ impl MeshTable {
         number
     }
 
-    /// Keeps a mesh for the frames to come, and returns the centre that its vertices are relative to; `None` if it
-    /// was dropped.
+    /// Keeps a mesh for later frames, and returns the centre that its vertices are relative to; `None` if it was
+    /// dropped.
     pub(crate) fn keep(&mut self, number: u32) -> Option<[f64; 3]> {
         let mesh = self.meshes.get_mut(&number)?;
         mesh.used = self.frame;
         Some(mesh.center)
     }
 
-    /// Writes the meshes with numbers from `known` on.
+    /// Writes the meshes with numbers of at least `known`.
     pub(crate) fn write(&self, known: u32, payload: &mut Payload) -> Vec<MeshSections> {
         let meshes = self.meshes.range(known..);
         meshes
@@ -113,8 +113,8 @@ impl Buffers {
     }
 }
 
-/// The origin, or the middle of the points where that is more than 16 times their extent away: then `f32` would lose
-/// more than 4 of its 24 bits.
+/// Returns the origin, or the centre of the points if that is more than 16 times their extent away: then `f32` would
+/// lose more than 4 of its 24 bits.
 fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
     let ends = |axis: usize| {
         let on_axis = points.iter().map(|point| point[axis]);
@@ -131,7 +131,7 @@ fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
     if distance > 16.0 * extent { center } else { [0.0; 3] }
 }
 
-/// The nearest `f32`, within what the page can compute with.
+/// Returns the nearest `f32`, within the range of the page's computations.
 #[expect(clippy::cast_possible_truncation, reason = "rounds, as documented")]
 pub(crate) const fn single(x: f64) -> f32 {
     x.clamp(-1e30, 1e30) as f32

@@ -1,4 +1,4 @@
-//! Frames: what a stage draws, as buffers of numbers that the page uploads as they are.
+//! Frames: the drawing of a stage, as buffers of numbers that the page uploads unchanged.
 //!
 //! `picture` draws a frame by the back end in `gather`, with meshes by number (`mesh`), most of them of unit shapes
 //! (`unit_shapes`), relative to the origin of the stage (`framing`), in the colours and layers of `color`; `queries` draws

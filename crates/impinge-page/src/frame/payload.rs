@@ -1,8 +1,8 @@
-//! The payload of a frame: sections of numbers, one after another.
+//! The payload of a frame: consecutive sections of numbers.
 
 use serde::Serialize;
 
-/// Where a section begins, in bytes, and how many elements it has.
+/// The offset of a section in bytes, and the number of its elements.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Section(usize, usize);
 
@@ -24,7 +24,7 @@ impl Payload {
     fn section(&mut self, count: usize, numbers: impl Iterator<Item = [u8; 4]>) -> Section {
         let start = self.0.len();
         self.0.resize(start + 4 * count, 0);
-        // Copied in place: appending four bytes at a time would ask for space each time.
+        // Copied in place: appending four bytes at a time would check the capacity each time.
         for (into, bytes) in self.0[start..].chunks_exact_mut(4).zip(numbers) {
             into.copy_from_slice(&bytes);
         }

@@ -1,4 +1,4 @@
-//! Frames of a stage, and the state that lasts from one to the next: meshes, the shapes of objects, the origin.
+//! Frames of a stage, and the state that is kept between them: meshes, the shapes of objects, the origin.
 
 use core::marker::PhantomData;
 
@@ -22,7 +22,7 @@ use crate::frame::unit_shapes::UnitShapes;
 use crate::request::FrameRequest;
 use crate::space::{Viewed, coordinates};
 
-/// The shape that an object had in the last frame, and the mesh that is drawn of it.
+/// The shape of an object in the last frame, and its mesh.
 #[derive(Clone, Debug)]
 struct KnownShape<N: Real, const D: usize> {
     shape: ShapeHandle<N, D>,
@@ -34,14 +34,14 @@ struct KnownShape<N: Real, const D: usize> {
 
 /// Draws frames of one stage.
 ///
-/// A frame has every pose: comparing them with those before would cost as much. Meshes are searched for objects with a
-/// new shape alone, and touching objects are found after a change of the world.
+/// A frame has every pose: comparing them with earlier ones would cost as much. Meshes are looked up only for objects
+/// with a new shape, and touching objects are computed after a change of the world.
 #[derive(Debug)]
 pub(crate) struct Picture<N: Viewed<D>, const D: usize> {
     drawing: DebugDrawing<N, D>,
     units: UnitShapes<N, D>,
     meshes: MeshTable,
-    /// By the index of the handle. The slot of an object that is gone keeps its shape until the index is taken again.
+    /// By the index of the handle. The slot of a removed object keeps its shape until the index is reused.
     shapes: Vec<Option<KnownShape<N, D>>>,
     /// `None` before the first object.
     framing: Option<Framing>,
@@ -72,19 +72,19 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         }
     }
 
-    /// Invalidates what depends on the contacts of the world.
+    /// Invalidates the state that depends on the contacts of the world.
     pub(crate) fn note_change(&mut self) {
         self.touching = None;
     }
 
-    /// Draws a world, and beside it what `beside` draws.
+    /// Draws a world, and then calls `beside` for additions.
     pub(crate) fn frame<T>(
         &mut self,
         world: &CollisionWorld<N, D, T>,
         asked: &FrameRequest,
         beside: impl FnOnce(&mut DebugDrawing<N, D>, &mut dyn DebugRender<N, D>),
     ) -> Result<Frame, EngineError> {
-        // Half-spaces have a mesh by the framing, and styles the sizes.
+        // The framing determines the mesh of half-spaces, and the sizes of styles.
         let framing = self.framing(world);
         let is_shown = LAYERS.map(|(name, _)| asked.layers.iter().any(|layer| layer == name));
         self.set_options(&framing, &is_shown);
@@ -98,7 +98,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
             origin: framing.origin,
             scalar: PhantomData,
         };
-        // Objects are instances of meshes and bypass the drawing; it draws all other layers.
+        // Objects are instances of meshes and bypass the drawing, which draws all other layers.
         if is_shown[0] {
             let mut objects = Objects { drawing, units, shapes, touching: &touching, asked };
             objects.draw(world, &mut gather);
@@ -109,7 +109,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         let buffers = gather.buffers;
         self.touching = Some(touching);
 
-        // The meshes are written after all drawing, which adds those that are new.
+        // The meshes are written after all drawing, which adds new ones.
         let mut payload = Payload::default();
         let text = FrameText {
             origin: framing.origin,
@@ -121,7 +121,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         Ok(Frame { text: serde_json::to_string(&text)?, payload: payload.0 })
     }
 
-    /// Begins a frame, and forgets the shapes whose meshes are dropped.
+    /// Begins a frame, and drops the shapes whose meshes are dropped.
     fn begin(&mut self) -> Vec<u32> {
         let dropped = self.meshes.begin();
         if !dropped.is_empty() {
@@ -132,7 +132,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         dropped
     }
 
-    /// The framing of the first frame with an object, for the whole stage: later frames keep their coordinates.
+    /// Returns the framing of the first frame with an object, for the whole stage: later frames keep their coordinates.
     fn framing<T>(&mut self, world: &CollisionWorld<N, D, T>) -> Framing {
         self.framing = self.framing.or_else(|| Framing::of(world));
         self.framing.unwrap_or(Framing::UNKNOWN)
@@ -144,7 +144,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         self.drawing.set_options(options(mesh, N::lit(framing.size), is_shown));
     }
 
-    /// A box for the camera: around the objects that have an end, else around the patch of one that has none.
+    /// Returns a box for the camera: around the bounded objects, else around the drawn part of an unbounded one.
     pub(crate) fn bounds<T>(&self, world: &CollisionWorld<N, D, T>) -> [[f64; 3]; 2] {
         if let Some(bounds) = bounds(world) {
             return [bounds.mins, bounds.maxs];
@@ -155,7 +155,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
     }
 }
 
-/// The pass over all objects.
+/// The loop over all objects.
 struct Objects<'a, N: Viewed<D>, const D: usize> {
     drawing: &'a mut DebugDrawing<N, D>,
     units: &'a UnitShapes<N, D>,
@@ -165,7 +165,7 @@ struct Objects<'a, N: Viewed<D>, const D: usize> {
 }
 
 impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
-    /// An instance for each object.
+    /// Adds an instance for each object.
     fn draw<T>(&mut self, world: &CollisionWorld<N, D, T>, gather: &mut Gather<'_, N, D>) {
         gather.reserve(world.len());
         for object in world.collision_objects() {
@@ -180,7 +180,7 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
         }
     }
 
-    /// The mesh and the kind of an object's shape, which are computed if the object had another one before.
+    /// Returns the mesh and the kind of an object's shape, which are computed if the shape has changed.
     fn known(
         &mut self,
         index: usize,
@@ -192,7 +192,7 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
         }
         let Self { drawing, units, shapes, .. } = self;
         let slot = &mut shapes[index];
-        // By identity: a shape that is equal but another costs a mesh with the same number.
+        // By identity: an equal but different shape costs a mesh look-up with the same number.
         let _ = slot.take_if(|known| !known.shape.is_same(shape));
         slot.get_or_insert_with(|| {
             let (drawn, scale) = units.scaled(shape);
@@ -209,8 +209,8 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
     }
 }
 
-/// Which objects have a contact or intersect another, by the index of the handle. Costs a walk over all manifolds, most
-/// of the time of a frame, and is therefore kept until the world changes.
+/// Returns which objects have a contact or intersect another, by the index of the handle. A loop over all manifolds,
+/// most of the time of a frame; the result is therefore kept until the world changes.
 fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Vec<bool> {
     let last = world.collision_objects().map(|object| object.handle().uid()).max();
     let mut touching = vec![false; last.map_or(0, |last| last + 1)];
@@ -226,8 +226,8 @@ fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) ->
     touching
 }
 
-/// Boxes and contacts of selected objects, except in layers that are on: those have them already. For that time the
-/// layers of the back end are the ones that are off, and the drawing has the styles of all.
+/// Draws boxes and contacts of selected objects, except in visible layers, which have them already. Meanwhile the back
+/// end shows the invisible layers, and the drawing has the styles of all.
 fn draw_selected<N: Viewed<D>, const D: usize, T>(
     drawing: &mut DebugDrawing<N, D>,
     world: &CollisionWorld<N, D, T>,
@@ -265,7 +265,7 @@ fn draw_selected<N: Viewed<D>, const D: usize, T>(
     gather.is_shown = before;
 }
 
-/// The edges of a box: from each corner along each axis on which it is at the least coordinate.
+/// Returns the edges of a box: from each corner along each axis on which it has the lowest coordinate.
 fn edges<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> impl Iterator<Item = [Point<N, D>; 2]> {
     let [mins, maxs] = [*aabb.mins(), *aabb.maxs()];
     let corner = move |number: usize| {

@@ -1,5 +1,5 @@
-//! Pictures of recorded queries: each with the answer of the replayed world, by the methods of the library where it has
-//! one for the query.
+//! Draws recorded queries, each with the result in the replayed world, by the methods of the library where it has one
+//! for the query.
 
 use core::fmt;
 
@@ -23,7 +23,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for QueryPen<'_, N, D> {
 impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
     /// Draws a query and its answer.
     pub(crate) fn draw(&mut self, asked: &Asked<N, D>) {
-        // Of each object that was found; which detail it has follows from the kind of the query.
+        // The details of the found objects; their kind follows from the kind of the query.
         let details = asked.answer.iter().map(|found| &found.detail);
         match &asked.query.question {
             Question::FirstRayHit(ray) | Question::RayHits(ray) => {
@@ -49,14 +49,14 @@ impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
         }
     }
 
-    /// The point of a query about a point.
+    /// Draws the point of a query.
     fn point(&mut self, at: &Point<N, D>) {
         if let Some(style) = self.drawing.options().query {
             self.renderer.point(at, style.size, style.color, Drawn::Query);
         }
     }
 
-    /// The shape of a query about a shape, unless its pose is not finite: queries are recorded whatever they ask.
+    /// Draws the shape of a query, unless its pose is not finite: queries are recorded with any arguments.
     fn shape(&mut self, placed: &PlacedShape<N, D>) {
         let style = self.drawing.options().query;
         if let Some(style) = style.filter(|_| N::pose(&placed.position).is_finite()) {
@@ -65,7 +65,7 @@ impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
         }
     }
 
-    /// A line from the point or shape of the query to the point that was found.
+    /// Draws a line from the point or shape of the query to the found point.
     fn found(&mut self, ends: [Point<N, D>; 2]) {
         if let Some(style) = self.drawing.options().query_hit {
             self.renderer.line(ends, style.color, Drawn::QueryHit);
@@ -73,7 +73,7 @@ impl<N: Space<D>, const D: usize> QueryPen<'_, N, D> {
         }
     }
 
-    /// The sweep once, with the first hit; of later hits a line between the points in contact.
+    /// Draws the sweep once, with the first hit; for later hits a line between the points in contact.
     fn cast<'a>(
         &mut self,
         cast: &CastQuestion<N, D>,

@@ -6,10 +6,10 @@ use impinge_record::{Recordable, ShapeData};
 
 use crate::frame::mesh::single;
 
-/// The scale of a mesh that is drawn as it is.
+/// The scale of an unscaled mesh.
 pub(crate) const UNSCALED: [f32; 3] = [1.0; 3];
 
-/// One shape of each kind, with radii, half extents and half heights of 1.
+/// A shape of each kind, with radii, half extents and half heights of 1.
 #[derive(Debug)]
 pub(crate) struct UnitShapes<N: Space<D>, const D: usize> {
     ball: ShapeHandle<N, D>,
@@ -22,7 +22,7 @@ pub(crate) struct UnitShapes<N: Space<D>, const D: usize> {
 
 impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
     pub(crate) fn new() -> Self {
-        // Generic code has no name for the solids of 3D alone, but it has their data.
+        // Generic code cannot name the solids of 3D, but can use their data.
         let sizes = [N::ONE; 2];
         Self {
             ball: ShapeHandle::new(Ball::new(N::ONE)),
@@ -32,8 +32,9 @@ impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
         }
     }
 
-    /// The unit shape and the scale whose product has the mesh of a shape, up to rounding. A shape of another kind, or
-    /// without extent along an axis, is its own, unscaled: a mesh leaves out edges without length, a scale of 0 would not.
+    /// Returns the unit shape and the scale whose product has the mesh of a shape, up to rounding. A shape of another
+    /// kind, or with extent zero along an axis, is returned unscaled: its mesh omits edges without length, which a
+    /// scale of 0 would not.
     pub(crate) fn scaled<'a>(
         &'a self,
         shape: &'a ShapeHandle<N, D>,
@@ -49,7 +50,7 @@ impl<N: Recordable<D>, const D: usize> UnitShapes<N, D> {
         usable.unwrap_or((shape, UNSCALED))
     }
 
-    /// The unit shape of the kind, and the lengths of a shape along the axes.
+    /// Returns the unit shape of the kind, and the lengths of a shape along the axes.
     fn unit_of(&self, shape: &ShapeHandle<N, D>) -> Option<(&ShapeHandle<N, D>, Vector<N, D>)> {
         match shape.geometry().kind() {
             ShapeKind::Ball => {
@@ -92,7 +93,7 @@ mod tests {
         ShapeMesh::of(&**shape, &MeshOptions::default())
     }
 
-    /// The scaled mesh of the unit shape is the mesh of the shape.
+    /// Asserts that the scaled mesh of the unit shape is the mesh of the shape.
     fn assert_scaled<N: Recordable<D>, const D: usize>(shape: ShapeHandle<N, D>) {
         let units = UnitShapes::<N, D>::new();
         let (unit, scale) = units.scaled(&shape);

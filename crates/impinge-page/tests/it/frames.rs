@@ -1,4 +1,4 @@
-//! Frames: what is drawn, where, and what it costs.
+//! Frames: their content and cost.
 
 use impinge::bounding_volume::Ray;
 use impinge::math::Vector;
@@ -17,7 +17,7 @@ fn frame(asker: &mut Asker, layers: &Value, selected: &[u32]) -> (Value, Vec<u8>
     asker.ask_with(&asked.to_string(), &[])
 }
 
-/// Two boxes of one shape that overlap, the second turned by a quarter, and a sensor around both.
+/// Two overlapping boxes of one shape, the second rotated by a quarter turn, and a sensor around both.
 fn scene<N: Viewed<D>, const D: usize>(at: f64) -> Asker {
     let mut scene = Scene::<N, D>::new(Registry::new());
     let cube = scene.add([at, 0.0, 0.0], Cuboid::new(all::<N, D>(1.0)));

@@ -1,4 +1,4 @@
-//! Samples: each opens, runs and is drawn; controls are set and refused.
+//! Samples: each opens, runs and is drawn; controls accept valid and reject invalid values.
 
 use impinge_samples::entries;
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! Messages of any bytes: an answer, whatever they are.
+//! Messages of any bytes have a response.
 
 use impinge::shape::Ball;
 use impinge_page::{Engine, message, parts};
@@ -16,7 +16,8 @@ fn recording() -> Vec<u8> {
     scene.finish()
 }
 
-/// The text of an answer, which has the layout of answers and JSON with an error or without.
+/// Returns the text of a response, which has the layout of responses and JSON with or without an
+/// error.
 fn answered(engine: &mut Engine, bytes: &[u8]) -> Value {
     let answer = engine.call(bytes);
     let (text, payload) = parts(&answer).expect("an answer has the layout of a message");
@@ -178,7 +179,7 @@ fn damaged_recordings_open_up_to_the_damage() {
         assert_eq!(answer["complete"], false, "byte {place}");
         answer["steps"].as_u64()
     };
-    // Two updates: there are none, one or both of them, the more the later the damage is.
+    // Two updates: none, one or both of them remain, more if the damage is later.
     let truncated = (0..bytes.len()).filter_map(|length| check(&bytes[..length], length));
     let mut truncated: Vec<_> = truncated.collect();
     assert!(truncated.is_sorted(), "{truncated:?}");
@@ -189,7 +190,7 @@ fn damaged_recordings_open_up_to_the_damage() {
         damaged[index] ^= 0x20;
         check(&damaged, index);
     }
-    // An engine that refuses a recording keeps what it had.
+    // An engine that rejects a recording keeps its stage.
     let refused = asker.ask_with(open, &bytes[..header - 1]).0;
     assert!(refused["error"].is_string(), "{refused}");
     assert_eq!(asker.ask(MESSAGES[1])["step"], 2, "the recording before is still open");

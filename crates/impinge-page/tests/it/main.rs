@@ -1,4 +1,4 @@
-//! The engine as the page sees it: messages in, answers out.
+//! Tests of the engine through messages and responses.
 
 mod frames;
 mod gallery;

@@ -1,4 +1,4 @@
-//! Distances, points, contacts, rays and boxes against closed forms.
+//! Compares distances, points, contacts, rays and boxes with closed forms.
 
 use impinge::shape::{Ball, Cuboid};
 use impinge_page::Viewed;

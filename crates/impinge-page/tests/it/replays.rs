@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::support::{Asker, Scene, place};
 
-/// So many steps the recording has.
+/// The number of steps of the recording.
 const STEPS: usize = 10;
 
 /// A ball of radius 1 that moves by 1 in each step, from -5 on, past one of radius 0.5 at the origin.
@@ -22,7 +22,7 @@ fn scene<N: Viewed<D>, const D: usize>() -> Vec<u8> {
     scene.finish()
 }
 
-/// Where the ball is at a step.
+/// The position of the ball at a step.
 fn x_at(step: usize) -> f64 {
     f64::from(u32::try_from(step).expect("a small step")) - 6.0
 }
@@ -145,7 +145,7 @@ fn packed_recordings_open() {
 fn a_recording_of_a_program_that_died_is_played_to_its_last_update() {
     let bytes = scene::<f64, 3>();
     let whole = seek(&mut Asker::of(&bytes), STEPS);
-    // The last record is left out: its kind, its length, a number of eight bytes, and a checksum.
+    // The last record is removed: its kind, its length, a number of eight bytes, and a checksum.
     let end = bytes.len() - (1 + 4 + 8 + 4);
     let lossless = "The recording has no end: its program did not finish it.";
     let last = format!(

@@ -1,4 +1,4 @@
-//! Recordings, and an engine that is asked in JSON.
+//! Recordings, and an engine with requests in JSON.
 
 use impinge::math::{Pose, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -8,12 +8,12 @@ use impinge_page::{Engine, message, parts};
 use impinge_record::{Recordable, Recorder, Registry};
 use serde_json::Value;
 
-/// An engine, and what it answers.
+/// An engine, with its requests and responses.
 #[derive(Default)]
 pub(crate) struct Asker(pub(crate) Engine);
 
 impl Asker {
-    /// With a recording open.
+    /// Opens a recording.
     pub(crate) fn of(recording: &[u8]) -> Self {
         let mut asker = Self::default();
         let (info, _) = asker.ask_with(r#"{"do": "open", "kind": "recording"}"#, recording);
@@ -28,13 +28,13 @@ impl Asker {
         (value, payload.to_vec())
     }
 
-    /// An answer without its payload.
+    /// Returns a response without its payload.
     pub(crate) fn ask(&mut self, text: &str) -> Value {
         self.ask_with(text, &[]).0
     }
 }
 
-/// A world that is recorded, of objects without rotation.
+/// A recorded world of objects without rotation.
 pub(crate) struct Scene<N: Recordable<D>, const D: usize>(pub(crate) Recorder<N, D, Vec<u8>>);
 
 impl<N: Recordable<D>, const D: usize> Scene<N, D> {
@@ -42,7 +42,7 @@ impl<N: Recordable<D>, const D: usize> Scene<N, D> {
         Self(Recorder::new(N::lit(0.0625), registry).expect("a usable margin"))
     }
 
-    /// Adds an object of these groups that is asked for contacts.
+    /// Adds an object with these groups and a query for contacts.
     pub(crate) fn add_in(
         &mut self,
         groups: CollisionGroups,
@@ -64,7 +64,7 @@ impl<N: Recordable<D>, const D: usize> Scene<N, D> {
         self.add_in(CollisionGroups::new(), at, shape)
     }
 
-    /// A recording with one update more.
+    /// Returns the recording after one more update.
     pub(crate) fn finish(mut self) -> Vec<u8> {
         self.0.update();
         self.0.finish().bytes

@@ -1,4 +1,4 @@
-//! Why two objects do not touch: each of the four reasons.
+//! Each of the four reasons why two objects do not touch.
 
 use impinge::dim2;
 use impinge::dim3;
@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use crate::support::{Asker, Scene, all};
 
-/// The tests of a pair by name: whether they pass, and their texts.
+/// The conditions of a pair by name: whether they are satisfied, and their texts.
 struct Reasons(Value);
 
 impl Reasons {
@@ -23,7 +23,7 @@ impl Reasons {
         Self(why)
     }
 
-    /// The only test that does not pass has a name and a text, which is the text of all.
+    /// Asserts that one condition alone is not satisfied, and that its text is the text of the result.
     fn assert_only(&self, name: &str, text: &str) {
         let tests = self.0["tests"].as_array().expect("a list");
         let failing: Vec<_> = tests.iter().filter(|test| test["passes"] == false).collect();
@@ -38,7 +38,7 @@ impl Reasons {
     }
 }
 
-/// Objects on top of each other, but for the last three. The filter refuses pairs of objects with the same data.
+/// Objects on top of each other, except the last three. The filter rejects pairs of objects with the same data.
 fn scene<N: Recordable<D>, const D: usize>(registry: Registry<N, D, Vec<u8>>) -> Vec<u8> {
     let [mut shy, mut other] = [CollisionGroups::new(); 2];
     shy.set_membership(&[2]);

@@ -1,4 +1,5 @@
-// The axes of the world in a corner of the picture, as the camera has them: coordinates in panels can be read off.
+// The axes of the world in a corner of the picture, turned with the camera, so that coordinates in panels can be
+// located.
 
 import { Vector3 } from "three";
 import type { StageCamera } from "./camera";
@@ -7,13 +8,13 @@ import type { StageCamera } from "./camera";
 const [HALF, LENGTH] = [34, 22];
 const NAMES = ["x", "y", "z"] as const;
 
-/** An axis: its line, and its name beyond the end. */
+/** An axis: its line, and its name at the end. */
 interface Axis {
   line: SVGLineElement;
   name: SVGTextElement;
 }
 
-/** Drawn in 3D only: in 2D x points to the right and y up, always. */
+/** The axes of a 3D world. In 2D x points right and y up, so nothing is drawn. */
 export class Axes {
   private readonly element = part("svg", { class: "axes", viewBox: `${-HALF} ${-HALF} ${2 * HALF} ${2 * HALF}` });
   private readonly axes: Axis[] = NAMES.map((name) => ({
@@ -26,7 +27,7 @@ export class Axes {
     layer.append(this.element);
   }
 
-  /** Turns the axes as the camera is turned. What points to the reader is drawn last. */
+  /** Turns the axes with the camera. Axes that point towards the reader are drawn last. */
   place({ camera }: StageCamera): void {
     const turned = this.axes.map((axis, index) => {
       // In the frame of the camera x is right, y up, and z points to the reader.

@@ -1,8 +1,8 @@
 // The camera of a stage: perspective that orbits in 3D, orthographic that pans in 2D.
 //
-// Two frames occur. The world's is in f64. The stage's, in which three.js draws, is the world's shifted by the origin of
-// the stage, so that f32 has digits left where a scene is far from 0. `Vec3` is a point of the world, `Vector3` one of
-// the stage.
+// There are two frames of coordinates. The world's frame is in f64. The stage's frame, in which three.js draws, is the
+// world's frame minus the origin of the stage, so that f32 keeps its precision in scenes far from 0. `Vec3` is a point
+// of the world, `Vector3` a point of the stage.
 
 import {
   Box3,
@@ -20,7 +20,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Info, Vec3 } from "./protocol";
 
-/** A half-line in the world; in 2D only its origin counts. */
+/** A half-line in the world. In 2D only its origin is used. */
 export interface WorldRay {
   from: Vec3;
   direction: Vec3;
@@ -30,32 +30,32 @@ export interface WorldRay {
 export interface CanvasPoint {
   x: number;
   y: number;
-  /** Between -1 at the near plane and 1 at the far plane: less is nearer. */
+  /** From -1 at the near plane to 1 at the far plane; smaller is nearer. */
   depth: number;
 }
 
 /** Vertical field of view of the perspective camera, in degrees. */
 const FIELD = 38;
-/** The tangent of half of it: half the height of what is visible at a distance of 1. */
+/** The tangent of half of `FIELD`: half the height of the visible area at a distance of 1. */
 const HALF_HEIGHT = Math.tan(MathUtils.degToRad(FIELD / 2));
-/** The part of the height or of the width that fitted bounds cover, whichever they fill first. */
+/** The fraction of the height or width that fitted bounds cover, whichever they fill first. */
 const FILL = 0.9;
-/** Points farther from the centre of the bounds than this many radii are not framed with them. */
+/** Points farther from the centre of the bounds than this many radii are not framed. */
 const FAR = 2.5;
 
-/** Lengths are those of the world. */
+/** The camera of a stage. Lengths are those of the world. */
 export class StageCamera {
   readonly camera: PerspectiveCamera | OrthographicCamera;
   readonly controls: OrbitControls;
-  /** The world is 2D. */
+  /** Whether the world is 2D. */
   readonly flat: boolean;
   /** The bounds of the world. */
   readonly box = new Box3();
-  /** Around the box: sizes of lights and grids are proportional to its radius. */
+  /** The bounding sphere of the box. Sizes of lights and grids are proportional to its radius. */
   readonly sphere = new Sphere();
-  /** What `fit` framed: the bounds and some of what is drawn around them. */
+  /** The box that `fit` framed: the bounds and some of the drawn points around them. */
   private readonly framed = new Box3();
-  /** The camera was not moved since it was aimed. */
+  /** Whether the camera was not moved since it was aimed. */
   private isFitted = false;
   private readonly caster = new Raycaster();
   /** Width over height of the canvas. */
@@ -77,7 +77,7 @@ export class StageCamera {
     this.framed.copy(this.box);
   }
 
-  /** Sets the bounds of the world, and the origin of the stage. NaN and empty bounds count as a cube of half extent 1. */
+  /** Sets the bounds of the world and the origin of the stage. NaN and empty bounds become a cube of half extent 1. */
   frame([mins, maxs]: [Vec3, Vec3], origin: Vec3): void {
     this.origin = origin;
     this.box.set(this.relative(mins), this.relative(maxs));
@@ -85,13 +85,13 @@ export class StageCamera {
       this.box.setFromCenterAndSize(new Vector3(), new Vector3(2, 2, this.flat ? 0 : 2));
     }
     this.box.getBoundingSphere(this.sphere);
-    // A world of one point has no size: what divides by the radius needs one.
+    // A world of one point has radius 0, but other sizes are divided by the radius.
     this.sphere.radius = Math.max(this.sphere.radius, 1e-12);
   }
 
   /**
-   * Frames the bounds, and those of the points that are not far outside of them, such as the end of a cast: a ray may
-   * go on for ever. In 3D from a direction between the front, the right and above.
+   * Frames the bounds, and those of `points` that are not far outside of them, such as the end of a cast: a ray may be
+   * endless. In 3D the view direction is between the front, the right and the top.
    */
   fit(points: Iterable<Vector3>): void {
     const { center, radius } = this.sphere;
@@ -100,7 +100,10 @@ export class StageCamera {
     this.aim();
   }
 
-  /** In CSS pixels. What was fitted stays so until the reader moves the camera, as when a phone is turned. */
+  /**
+   * Sets the size of the canvas in CSS pixels. A fitted view is fitted again unless the reader moved the camera, for
+   * example when a phone is turned.
+   */
   resize(width: number, height: number): void {
     this.aspect = width / Math.max(height, 1);
     if (this.camera instanceof PerspectiveCamera) this.camera.aspect = this.aspect;
@@ -109,13 +112,13 @@ export class StageCamera {
     this.camera.updateProjectionMatrix();
   }
 
-  /** Keeps the near and the far plane around the scene; called before each picture. */
+  /** Moves the near and the far plane around the scene. Called before each picture. */
   place(): void {
     if (this.camera instanceof PerspectiveCamera) {
       const { center, radius } = this.sphere;
       const distance = this.camera.position.distanceTo(center);
-      // Terrain and endless half-spaces go on beyond the bounds. The ratio of far to near stays below what 24 bits of
-      // depth resolve.
+      // Terrain and half-spaces extend beyond the bounds. The ratio of far to near stays small enough for 24
+      // bits of depth.
       const extent = radius * 12;
       this.camera.near = Math.max(distance - extent, Math.max(distance, radius) * 2e-3);
       this.camera.far = distance + extent * 4;
@@ -124,7 +127,7 @@ export class StageCamera {
     this.camera.updateMatrixWorld();
   }
 
-  /** The world's ray under a point of the window, in CSS pixels. */
+  /** Returns the world's ray under a point of the window, in CSS pixels. */
   rayAt(x: number, y: number): WorldRay {
     this.caster.setFromCamera(this.toDevice(x, y), this.camera);
     const { origin, direction } = this.caster.ray;
@@ -135,7 +138,7 @@ export class StageCamera {
     return { from: this.absolute(origin), direction: direction.toArray() };
   }
 
-  /** The point under a point of the window, in the plane through `anchor` that is parallel to the screen. */
+  /** Returns the point under a point of the window, in the plane through `anchor` that is parallel to the screen. */
   pointAt(x: number, y: number, anchor: Vec3): Vec3 {
     this.caster.setFromCamera(this.toDevice(x, y), this.camera);
     const normal = this.camera.getWorldDirection(new Vector3());
@@ -146,7 +149,7 @@ export class StageCamera {
     return [px, py, this.flat ? 0 : pz];
   }
 
-  /** Where a point of the stage is on the canvas; null behind the camera. */
+  /** Returns the position of a point of the stage on the canvas; null behind the camera. */
   project(at: Vector3): CanvasPoint | null {
     const device = at.clone().project(this.camera);
     if (!(device.z <= 1)) return null;
@@ -154,7 +157,7 @@ export class StageCamera {
     return { x: ((device.x + 1) / 2) * clientWidth, y: ((1 - device.y) / 2) * clientHeight, depth: device.z };
   }
 
-  /** CSS pixels for a length of 1 at the target. */
+  /** Returns the number of CSS pixels of a length of 1 at the target. */
   pixelsPerUnit(): number {
     const height = this.canvas.clientHeight;
     if (this.camera instanceof PerspectiveCamera) {
@@ -163,7 +166,7 @@ export class StageCamera {
     return (height / (2 * this.halfHeight)) * this.camera.zoom;
   }
 
-  /** Turns (3D) or shifts (2D) by keys: a step of 1 is an eighth of a right angle or of half the height. */
+  /** Rotates (3D) or shifts (2D) the view by keys. A step of 1 is an eighth of a right angle, or of half the height. */
   nudge(right: number, up: number): void {
     const { position, up: above } = this.camera;
     const offset = position.clone().sub(this.controls.target);
@@ -181,7 +184,7 @@ export class StageCamera {
     this.controls.update();
   }
 
-  /** A factor above 1 comes nearer. */
+  /** Zooms by a factor; above 1 the camera comes nearer. */
   zoom(factor: number): void {
     if (this.camera instanceof OrthographicCamera) this.camera.zoom *= factor;
     else {
@@ -196,17 +199,17 @@ export class StageCamera {
     this.controls.dispose();
   }
 
-  /** A point of the world in the stage's frame. */
+  /** Converts a point of the world to the stage's frame. */
   relative(at: Vec3): Vector3 {
     return new Vector3(at[0] - this.origin[0], at[1] - this.origin[1], at[2] - this.origin[2]);
   }
 
-  /** A point of the stage in the world's frame. */
+  /** Converts a point of the stage to the world's frame. */
   private absolute(at: Vector3): Vec3 {
     return [at.x + this.origin[0], at.y + this.origin[1], at.z + this.origin[2]];
   }
 
-  /** Moves the camera to where all of what is framed is visible. */
+  /** Moves the camera so that the framed box is visible. */
   private aim(): void {
     if (this.camera instanceof PerspectiveCamera) this.fitPerspective(this.camera);
     else this.fitOrthographic(this.camera);
@@ -216,7 +219,7 @@ export class StageCamera {
     this.place();
   }
 
-  /** In 2D a drag shifts the view; nothing turns it. */
+  /** Configures the controls. In 2D a drag shifts the view, and nothing rotates it. */
   private configure(): void {
     this.controls.addEventListener("change", () => (this.isFitted = false));
     this.controls.zoomToCursor = true;
@@ -252,12 +255,13 @@ export class StageCamera {
       const { plus, minus } = ends(axis, tangent);
       return (plus + minus) / (2 * tangent);
     });
-    // Never within the bounds, even if they are a line towards the camera.
+    // The camera stays outside of the bounds, even if they are a line towards it.
     const distance = Math.max(1.2 * this.sphere.radius, ...distances);
     const { target } = this.controls;
     target.copy(this.sphere.center);
     for (const { axis, tangent } of axes) {
-      // Along the axis that is not full, the corners are at the edges of a narrower view, whose tangent is a fixed point.
+      // Along the axis that is not full, the corners are at the edges of a narrower view, whose tangent is a fixed
+      // point.
       let { plus, minus } = ends(axis, tangent);
       for (let round = 0; round < 8; round += 1) ({ plus, minus } = ends(axis, (plus + minus) / (2 * distance)));
       target.addScaledVector(axis, (plus - minus) / 2);
@@ -275,7 +279,7 @@ export class StageCamera {
     this.spread(camera);
   }
 
-  /** The bounds fit into the view whatever its shape is; bounds without a size are as if they had one. */
+  /** Makes the view contain the bounds for any aspect ratio. Bounds without a size are enlarged. */
   private spread(camera: OrthographicCamera): void {
     const { x, y } = this.framed.getSize(new Vector3());
     this.halfHeight = Math.max(y, x / this.aspect, this.sphere.radius * 1e-3) / 2 / FILL;
@@ -285,21 +289,21 @@ export class StageCamera {
     camera.right = this.halfHeight * this.aspect;
   }
 
-  /** From pixels of the window to the square from -1 to 1 of normalized device coordinates, y up. */
+  /** Converts pixels of the window to normalized device coordinates: -1 to 1, y up. */
   private toDevice(x: number, y: number): Vector2 {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     return new Vector2(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2);
   }
 }
 
-/** From the target to the camera, as a unit vector: 29 degrees to the right of the front, 23 degrees above it. */
+/** Returns the unit vector from the target to the camera: 29 degrees to the right of the front, 23 degrees above it. */
 function viewDirection(up: Vector3): Vector3 {
-  // The front is -y where z points up, as in robotics, and otherwise +z, as in graphics.
+  // The front is -y if z points up, as in robotics, and otherwise +z, as in graphics.
   const front = Math.abs(up.z) > 0.5 ? new Vector3(0.55, -1, 0) : new Vector3(0.55, 0, 1);
   return front.normalize().addScaledVector(up, 0.42).normalize();
 }
 
-/** The bits of an index choose between the least and the greatest coordinate. */
+/** Returns the corners: the bits of an index choose between the least and the greatest coordinate. */
 function cornersOf({ min, max }: Box3): Vector3[] {
   return Array.from(
     { length: 8 },

@@ -4,19 +4,19 @@ import { Color, SRGBColorSpace } from "three";
 
 const scratch = new Color();
 
-/** The linear light of each byte of an sRGB colour: a table, since a frame has three of them for each instance. */
+/** The linear light of each byte of an sRGB colour, as a table: a frame converts three bytes per instance. */
 export const LINEAR = Float32Array.from(
   { length: 256 },
   (_, byte) => scratch.setRGB(byte / 255, 0, 0, SRGBColorSpace).r,
 );
 
-/** A colour of the engine, red in the lowest byte, as CSS writes it. */
+/** Converts a colour of the engine, with red in the lowest byte, to CSS. */
 export function css(color: number): string {
   const [red, green, blue] = [color & 255, (color >>> 8) & 255, (color >>> 16) & 255];
   return `rgb(${red} ${green} ${blue})`;
 }
 
-/** The sRGB bytes red, green, blue of a colour of the style sheet. */
+/** Returns the sRGB bytes red, green, blue of a colour of the style sheet. */
 export function bytesOf(text: string): number[] {
   const hex = scratch.set(text).getHex();
   return [hex >>> 16, (hex >>> 8) & 255, hex & 255];

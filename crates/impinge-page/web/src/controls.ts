@@ -4,15 +4,15 @@ import { button, make, setText } from "./dom";
 import { number } from "./format";
 import type { Control } from "./protocol";
 
-/** What a control sends: null for a button, which has no value. */
+/** The value that a control sends; null for a button. */
 export type Value = number | string | boolean | null;
-/** Hands a control's new value to the engine, which may refuse it. */
+/** Sends a control's new value to the engine, which may reject it. */
 type Send = (name: string, value: Value) => void;
 
-/** The form of a sample; `update` writes values that the sample changed by itself. */
+/** The form of a sample. `update` writes values that the sample changed by itself. */
 export class ControlForm {
   readonly element = make("form", { class: "controls" });
-  /** How the value of each control is shown, by the control's name. */
+  /** A function for each control, by its name, that shows a value. */
   private readonly writers = new Map<string, (control: Control) => void>();
 
   constructor(controls: Control[], send: Send) {
@@ -20,12 +20,12 @@ export class ControlForm {
     for (const control of controls) this.element.append(this.row(control, send));
   }
 
-  /** Controls that the form does not have are left out; buttons have nothing to write. */
+  /** Shows new values. Controls that the form does not have and buttons are skipped. */
   update(controls: Control[]): void {
     for (const control of controls) this.writers.get(control.name)?.(control);
   }
 
-  /** The element of one control with its name beside it. */
+  /** Returns the element of one control with its name beside it. */
   private row(control: Control, send: Send): HTMLElement {
     switch (control.kind) {
       case "number":
@@ -39,7 +39,7 @@ export class ControlForm {
     }
   }
 
-  /** A step of 0 means that any number between the bounds will do. */
+  /** A slider. A step of 0 allows any number between the bounds. */
   private slider(control: Control & { kind: "number" }, send: Send): HTMLElement {
     const { name, label, value, min, max, step } = control;
     const input = make("input", { type: "range", min, max, step: step > 0 ? step : "any", value });
@@ -56,7 +56,7 @@ export class ControlForm {
     return make("label", { class: "slider" }, make("span", {}, label), shown, input);
   }
 
-  /** The words of a choice come from the engine and are shown as they are. */
+  /** A choice. Its words come from the engine and are shown unchanged. */
   private choice(control: Control & { kind: "choice" }, send: Send): HTMLElement {
     const select = make("select");
     for (const choice of control.choices) select.append(make("option", { value: choice }, choice));

@@ -1,9 +1,9 @@
-// Elements made in code. Texts of files are set as text and never parsed as HTML.
+// Functions that create elements. Texts of files are set as text and never parsed as HTML.
 
 type Attributes = Record<string, string | number | boolean | null>;
 type Child = Node | string;
 
-/** An element with attributes and children; `true` sets an empty attribute, `false` and `null` none. */
+/** Returns an element with attributes and children. `true` sets an empty attribute, `false` and `null` none. */
 export function make<Name extends keyof HTMLElementTagNameMap>(
   name: Name,
   attributes: Attributes = {},
@@ -18,26 +18,26 @@ export function make<Name extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** A button that does something when it is pressed by pointer or key. */
+/** Returns a button that calls `act` when it is pressed by pointer or key. */
 export function button(label: string, act: () => void, attributes: Attributes = {}): HTMLButtonElement {
   const element = make("button", { type: "button", ...attributes }, label);
   element.addEventListener("click", act);
   return element;
 }
 
-/** The element of the template with this id. */
+/** Returns the element of the template with this id. */
 export function byId<Kind extends HTMLElement = HTMLElement>(id: string): Kind {
   const element = document.getElementById(id);
   if (!element) throw new Error(`the template has no element #${id}`);
   return element as Kind;
 }
 
-/** Writes a text where it differs, so that assistive technology is not called without need. */
+/** Sets a text if it differs, so that assistive technology does not announce it again. */
 export function setText(element: HTMLElement, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** A list of terms and their values. */
+/** Returns a list of terms and their values. */
 export function terms(rows: [string, Child][]): HTMLElement {
   const list = make("dl");
   for (const [term, value] of rows) list.append(make("dt", {}, term), make("dd", {}, value));

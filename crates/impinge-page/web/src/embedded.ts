@@ -1,32 +1,32 @@
-// What the file carries: the scene that it opens, a recording, and the engine.
+// The data embedded in the file: the scene to open, a recording, and the engine.
 
 import { PageError } from "./messages";
 
 export interface Scene {
   open: "recording" | "live" | "samples";
   title: string;
-  /** Where the bytes of a live recording come from. */
+  /** The address of the bytes of a live recording. */
   log?: string;
 }
 
-/** What the page opens. */
+/** Returns the scene that the page opens. */
 export function readScene(): Scene {
   return JSON.parse(textOf("impinge-scene")) as Scene;
 }
 
-/** The bytes of a recording, packed or not: the engine reads both. */
+/** Returns the bytes of a recording, packed or not; the engine reads both. */
 export function readRecording(): Uint8Array<ArrayBuffer> {
   return decodeBase64(textOf("impinge-recording"));
 }
 
-/** The module is compressed by gzip, which browsers unpack by themselves. */
+/** Returns the bytes of the module. They are compressed by gzip, which browsers can decompress. */
 export async function readModule(): Promise<Uint8Array<ArrayBuffer>> {
   const packed = decodeBase64(textOf("impinge-wasm"));
   const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   return new Uint8Array(await new Response(unpacked).arrayBuffer());
 }
 
-/** The text of an element of the file. */
+/** Returns the text of an element of the file. */
 function textOf(id: string): string {
   const text = document.getElementById(id)?.textContent?.trim();
   if (!text) {
@@ -35,7 +35,7 @@ function textOf(id: string): string {
   return text;
 }
 
-/** Bytes of a text of base64; the browser refuses others. */
+/** Decodes base64. The browser throws on other text. */
 function decodeBase64(text: string): Uint8Array<ArrayBuffer> {
   const binary = atob(text);
   const bytes = new Uint8Array(binary.length);

@@ -15,30 +15,33 @@ import {
   type Vec3,
 } from "./protocol";
 
-/** What the module exports. Addresses and lengths are in bytes. */
+/** The exports of the module. Addresses and lengths are in bytes. */
 export interface Exports {
   memory: { buffer: ArrayBufferLike };
-  /** 0 where there is no memory. */
+  /** Returns 0 if there is not enough memory. */
   reserve(bytes: number): number;
   call(bytes: number): number;
   answer_bytes(): number;
 }
 
-/** What a stage is made of. */
+/** The kind and content of a stage. */
 export type Source = { kind: "recording"; bytes: Uint8Array } | { kind: "stream" } | { kind: "sample"; name: string };
 
-/** The engine refused a message, and nothing has changed. The text is not for readers: `messages.ts` has theirs. */
+/**
+ * An error of the engine, which rejected a message and changed nothing. The text is for authors of pages; `messages.ts`
+ * has the sentences for readers.
+ */
 export class EngineError extends Error {
   constructor(
     text: string,
-    /** What went wrong, in a word of the protocol. */
+    /** The `code` of the protocol. */
     readonly code: string,
   ) {
     super(text);
   }
 }
 
-/** Compiles a module. It asks nothing of its surroundings, so that it has no imports. */
+/** Compiles a module. The module has no imports. */
 export async function loadEngine(bytes: Uint8Array<ArrayBuffer>): Promise<Engine> {
   const { instance } = await WebAssembly.instantiate(bytes, {});
   return new Engine(instance.exports as unknown as Exports);
@@ -47,14 +50,17 @@ export async function loadEngine(bytes: Uint8Array<ArrayBuffer>): Promise<Engine
 /** Most messages have no payload. */
 const NO_BYTES = new Uint8Array(0);
 
-/** Each method is a message of the protocol; a refusal is an `EngineError`. Calls are synchronous. */
+/**
+ * The engine. Each method sends a message of the protocol and throws an `EngineError` if it is rejected. Calls are
+ * synchronous.
+ */
 export class Engine {
   private readonly encoder = new TextEncoder();
   private readonly decoder = new TextDecoder();
 
   constructor(private readonly exports: Exports) {}
 
-  /** The gallery in its order. */
+  /** Returns the samples in the order of the gallery. */
   samples(): SampleEntry[] {
     return this.ask<{ samples: SampleEntry[] }>({ do: "samples" }).samples;
   }
@@ -67,7 +73,7 @@ export class Engine {
     return this.ask({ do: "open", ...source });
   }
 
-  /** Bytes that follow in a stream, in pieces of any size. */
+  /** Sends the next bytes of a stream, in pieces of any size. */
   push(bytes: Uint8Array): Info {
     return this.ask({ do: "push" }, bytes);
   }
@@ -77,12 +83,12 @@ export class Engine {
     return this.ask({ do: "seek", step });
   }
 
-  /** Goes on; a recording stays at its end. */
+  /** Makes steps. A recording stops at its end. */
   advance(steps: number): Status {
     return this.ask({ do: "advance", steps });
   }
 
-  /** A sample begins again with its controls as they are. */
+  /** Starts a sample again with the present values of its controls. */
   reset(): Status {
     return this.ask({ do: "reset" });
   }
@@ -92,33 +98,38 @@ export class Engine {
     return this.ask({ do: "control", name, value });
   }
 
-  /** What is to be drawn. `known` is the number of meshes that the page has. The answer dies with the next call. */
+  /**
+   * Returns the frame to draw. `known` is the number of meshes that the page has. The answer is valid until the next
+   * call.
+   */
   frame(layers: string[], selected: number[], known: number): Frame {
     const { text, payload } = this.exchange({ do: "frame", layers, selected, known }, NO_BYTES);
     return Object.assign(text as unknown as FrameText, { payload });
   }
 
-  /** All about an object. */
+  /** Returns the description of an object. */
   object(object: number): ObjectAnswer {
     return this.ask({ do: "object", object });
   }
 
-  /** All about two objects, and why they touch or do not. */
+  /** Returns the description of a pair, with the reasons why the objects touch or do not. */
   pair(a: number, b: number): PairAnswer {
     return this.ask({ do: "pair", a, b });
   }
 
-  /** `reach` counts in 2D: how far an object may be that does not hold the point. */
+  /**
+   * Returns the object under a ray. In 2D `reach` is the largest distance of an object that does not contain the point.
+   */
   pick(from: Vec3, direction: Vec3, reach: number): PickAnswer {
     return this.ask({ do: "pick", from, direction, reach });
   }
 
-  /** All hits up to a time, in their order; null for a ray without an end. */
+  /** Returns all hits up to a time, in order of time; `longest` is null for an endless ray. */
   ray(from: Vec3, direction: Vec3, longest: number | null): RayHit[] {
     return this.ask<{ hits: RayHit[] }>({ do: "ray", from, direction, ...(longest === null ? {} : { longest }) }).hits;
   }
 
-  /** The objects nearest to a point. */
+  /** Returns the objects nearest to a point. */
   nearest(point: Vec3, count: number): NearAnswer["nearest"] {
     return this.ask<NearAnswer>({ do: "nearest", point, count }).nearest;
   }
@@ -128,7 +139,7 @@ export class Engine {
     return this.ask({ do: "drag", object, translation });
   }
 
-  /** For messages whose answer has no payload. */
+  /** Sends a message whose answer has no payload. */
   private ask<Answer>(message: object, payload: Uint8Array = NO_BYTES): Answer {
     return this.exchange(message, payload).text as Answer;
   }
@@ -139,7 +150,7 @@ export class Engine {
     const start = 4 + padded(text.length);
     const address = this.exports.reserve(start + payload.length);
     if (address === 0) throw new EngineError(`there is no memory for ${payload.length} bytes`, "memory");
-    // `reserve` and `call` may move the memory: views are made after each.
+    // `reserve` and `call` may move the memory, so views are created after each.
     const bytes = new Uint8Array(this.exports.memory.buffer, address, start + payload.length);
     new DataView(bytes.buffer, address).setUint32(0, text.length, true);
     bytes.fill(32, 4, start);
@@ -160,7 +171,7 @@ export class Engine {
   }
 }
 
-/** The next multiple of four: payloads begin at one. */
+/** Returns the next multiple of four, where payloads begin. */
 function padded(length: number): number {
   return (length + 3) & ~3;
 }

@@ -1,8 +1,8 @@
-// Numbers and vectors as people read them.
+// Numbers and vectors as texts.
 
 import type { Vec3 } from "./protocol";
 
-/** Four significant digits; very large and very small numbers with an exponent. */
+/** Formats a number with four significant digits; very large and very small numbers have an exponent. */
 export function number(value: number | null | undefined): string {
   if (value === null || value === undefined) return "–";
   if (!Number.isFinite(value)) return String(value);
@@ -11,18 +11,18 @@ export function number(value: number | null | undefined): string {
   return minus(String(Number(value.toPrecision(size >= 1000 ? 6 : 4))));
 }
 
-/** As many coordinates as there are dimensions; a dash for none. */
+/** Formats the first `dimension` coordinates; a dash for null. */
 export function vector(value: Vec3 | null | undefined, dimension: number): string {
   if (!value) return "–";
   return value.slice(0, dimension).map(number).join(", ");
 }
 
-/** `1 object`, `2 objects`. */
+/** Returns a count with its noun: `1 object`, `2 objects`. */
 export function counted(count: number, noun: string): string {
   return `${count.toLocaleString("en").replaceAll(",", "\u202f")} ${noun}${count === 1 ? "" : "s"}`;
 }
 
-/** The sign of mathematics instead of a hyphen. */
+/** Replaces hyphens by minus signs. */
 function minus(text: string): string {
   return text.replaceAll("-", "\u2212");
 }

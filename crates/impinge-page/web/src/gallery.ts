@@ -3,7 +3,7 @@
 import { button, make, setText } from "./dom";
 import type { SampleEntry } from "./protocol";
 
-/** In the order of the buttons. */
+/** The filters in the order of their buttons. */
 const FILTERS = [
   { wanted: "all", label: "All" },
   { wanted: "2", label: "2D" },
@@ -14,7 +14,7 @@ const FILTERS = [
 const LEAD =
   "Collision detection in 2D and 3D, computed in this page. Open a sample, click its objects, drag them, and ask why they touch.";
 
-/** Fills the gallery; a card is a link, so that it opens by mouse, keyboard and in a new tab. */
+/** Fills the gallery. A card is a link, so that it opens by mouse, keyboard and in a new tab. */
 export function showGallery(container: HTMLElement, title: string, samples: SampleEntry[]): void {
   const cards = samples.map((sample) => ({ sample, element: card(sample) }));
   const filters = make("div", { class: "modes", role: "group", "aria-label": "Dimension" });
@@ -46,22 +46,22 @@ export function showGallery(container: HTMLElement, title: string, samples: Samp
   );
 }
 
-/** The name of a sample in the address of the page, or null. */
+/** Returns the name of the sample in the address of the page, or null. */
 export function sampleInAddress(): string | null {
   return new URLSearchParams(location.hash.slice(1)).get("sample");
 }
 
-/** The sample has the dimension, and all the words in its texts. */
+/** Returns whether the sample has the dimension, and all the words in its texts. */
 function matches({ name, title, about, dimension }: SampleEntry, wanted: string, words: string[]): boolean {
   const text = `${name} ${title} ${about}`.toLowerCase();
   return (wanted === "all" || wanted === String(dimension)) && words.every((word) => text.includes(word));
 }
 
-/** A picture, a title and a few sentences. The link covers the card. */
+/** Returns a card: a picture, a title and a few sentences. The link covers the card. */
 function card({ name, title, about, dimension }: SampleEntry): HTMLElement {
   const picture = make("div", { class: "picture", "aria-hidden": "true" });
   const image = make("img", { alt: "", loading: "lazy", src: `thumbnails/${name}.png` });
-  // A page without its folder has no thumbnails: the badge stands alone.
+  // A page without its folder has no thumbnails: then only the badge is shown.
   image.addEventListener("error", () => image.remove());
   picture.append(image, make("span", { class: "badge" }, `${dimension}D`));
   const link = make("a", { href: `#sample=${encodeURIComponent(name)}` }, title);

@@ -1,34 +1,34 @@
 // The grid: a plane whose shader draws lines where a coordinate is a multiple of the cell.
 //
-// Lines of a shader stay thin and smooth at any distance, and fade where they would be nearer to each other than pixels.
+// Lines of a shader stay thin and smooth at any distance, and fade where their distance is below a pixel.
 
 import { Color, DoubleSide, Mesh, PlaneGeometry, ShaderMaterial, Vector3 } from "three";
 import { ORDER } from "./order";
 import type { StageCamera } from "./camera";
 
-/** The plane goes so many times the radius of the world in each direction. */
+/** The plane extends this many radii of the world in each direction. */
 const EXTENT = 6;
 
-/** Below the world in 3D, behind it in 2D. */
+/** The grid, below the world in 3D and behind it in 2D. */
 export class Grid extends Mesh<PlaneGeometry, ShaderMaterial> {
   constructor() {
     const uniforms = { tint: { value: new Color() }, extent: { value: 1 } };
     const shaders = { vertexShader: VERTEX, fragmentShader: FRAGMENT };
-    // Pulled forward, as faces of solids are pushed back: on a floor at its height the grid is above it, everywhere.
+    // Offset towards the camera, as faces of solids are offset away: so the grid is visible on a floor at its height.
     const offset = { polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 };
     const options = { transparent: true, depthWrite: false, side: DoubleSide };
     super(new PlaneGeometry(2, 2), new ShaderMaterial({ ...shaders, ...options, ...offset, uniforms }));
     this.renderOrder = ORDER.grid;
   }
 
-  /** Any colour of CSS. */
+  /** Sets the colour, any colour of CSS. */
   set tint(color: string) {
     this.material.uniforms.tint!.value.set(color);
   }
 
   /**
-   * Lays the grid out for the bounds that the camera frames. A cell is the power of ten below their radius, and lines
-   * are where coordinates are multiples of it, as long as the origin of the stage is.
+   * Places the grid for the bounds that the camera frames. A cell is the largest power of ten below their radius. Lines
+   * are at multiples of it if the origin of the stage is one.
    */
   fit({ box, sphere, flat }: StageCamera, up: Vector3): void {
     const cell = 10 ** Math.floor(Math.log10(sphere.radius));
@@ -55,7 +55,7 @@ const VERTEX = `
     gl_Position = projectionMatrix * modelViewMatrix * vec4(cells, 0.0, 1.0);
   }`;
 
-// `lines` is 1 on a line and 0 half a pixel beside it; lines of a tenth of a cell are fainter.
+// `lines` is 1 on a line and 0 half a pixel beside it; lines at tenths of a cell are fainter.
 const FRAGMENT = `
   uniform vec3 tint;
   uniform float extent;

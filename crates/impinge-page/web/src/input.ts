@@ -1,55 +1,55 @@
-// Pointer and keyboard: what a gesture means, without what it does.
+// Pointer and keyboard: translates gestures and keys to calls, without carrying them out.
 
 import { button, make } from "./dom";
 
-/** What the pointer's button means. */
+/** The meaning of a click or drag. */
 export type Mode = "select" | "pair" | "ray" | "move";
 
-/** With a hint for the reader, and a key. */
+/** The modes, each with a hint for the reader and a key. */
 const MODES: { mode: Mode; label: string; hint: string; key: string }[] = [
   { mode: "select", label: "Select", hint: "Click an object; Shift-click a second one", key: "s" },
   { mode: "pair", label: "Pair", hint: "Click two objects: why do they touch, or not?", key: "p" },
   { mode: "ray", label: "Ray", hint: "Draw a ray: drag in 2D, click in 3D", key: "r" },
   { mode: "move", label: "Move", hint: "Drag an object; also Alt-drag in any mode", key: "m" },
 ];
-/** How exactly a pointer points, in CSS pixels. */
+/** The precision of a pointer, in CSS pixels. */
 const PRECISION = { mouse: 6, touch: 14 };
 
 /** A point of the window in CSS pixels. */
 export interface At {
   x: number;
   y: number;
-  /** A press that moves less than this is a click, and in 2D a click this far from an object selects it. */
+  /** A press that moves less than this is a click. In 2D a click within this distance of an object selects it. */
   radius: number;
 }
 
-/** What the pointer asks for. */
+/** The calls that gestures make. */
 export interface Gestures {
-  /** `second`: the object is added to the selection. */
+  /** A click. If `second`, the object is added to the selection. */
   click(at: At, second: boolean): void;
-  /** A ray from a point to another one, in 2D; while it is drawn and when it ends. */
+  /** A ray from one point to another, in 2D: called while it is drawn and when it ends. */
   drawRay(from: At, to: At): void;
-  /** True if there is an object to move. */
+  /** Returns whether there is an object to move. */
   grab(at: At): boolean;
-  /** What was grabbed follows. */
+  /** Moves the grabbed object. */
   move(to: At): void;
   /** The gesture ended. */
   drop(): void;
-  /** Whether the camera may take the drag. */
+  /** Tells whether the camera may use the drag. */
   free(camera: boolean): void;
-  /** Rays are drawn by a drag, not by a click. */
+  /** Returns whether rays are drawn by a drag instead of a click. */
   dragsRays(): boolean;
 }
 
-/** The bar of modes, and the canvas under the pointer. */
+/** The bar of modes, and the pointer on the canvas. */
 export class Pointer {
   mode: Mode = "select";
   private readonly buttons = new Map<Mode, HTMLButtonElement>();
-  /** Where the button or the first finger went down, while it is down. */
+  /** The place where the button or the first finger went down; null if none is down. */
   private start: At | null = null;
-  /** What the gesture will be if it moves. */
+  /** The gesture that a movement would begin. */
   private action: "click" | "ray" | "move" = "click";
-  /** It is no click any more. */
+  /** Whether the press moved, so that it is not a click. */
   private moved = false;
 
   constructor(
@@ -58,8 +58,8 @@ export class Pointer {
     private readonly gestures: Gestures,
     signal: AbortSignal,
   ) {
-    // A second finger is the camera's from its start, so that this comes before the camera's own listener. The first
-    // one comes after it: the camera tracks the finger even while it is disabled, and can take the pinch over.
+    // A second finger belongs to the camera from its start, so this listener runs before the camera's. The first finger
+    // reaches this class after the camera: the camera tracks it even while disabled, and can take over the pinch.
     canvas.addEventListener("pointerdown", (event) => this.interrupt(event), { signal, capture: true });
     canvas.addEventListener("pointerdown", (event) => this.down(event), { signal });
     canvas.addEventListener("pointermove", (event) => this.drag(event), { signal });
@@ -67,7 +67,7 @@ export class Pointer {
     canvas.addEventListener("pointercancel", () => this.finish(), { signal });
   }
 
-  /** The buttons of the modes. */
+  /** Returns the buttons of the modes. */
   tools(): HTMLElement {
     const group = make("div", { class: "modes", role: "group", "aria-label": "Mode" });
     for (const { mode, label, hint, key } of MODES) {
@@ -79,7 +79,7 @@ export class Pointer {
     return group;
   }
 
-  /** Takes up another mode, and shows its hint until the canvas is used. */
+  /** Selects a mode, and shows its hint until the canvas is used. */
   choose(mode: Mode): void {
     this.mode = mode;
     for (const [other, element] of this.buttons) element.setAttribute("aria-pressed", String(other === mode));
@@ -88,12 +88,12 @@ export class Pointer {
     this.hint.textContent = MODES.find((other) => other.mode === mode)?.hint ?? "";
   }
 
-  /** Two fingers pinch and pan: neither a click nor what the first one had begun. */
+  /** Two fingers pinch and pan: this ends a click, or the gesture of the first finger. */
   private interrupt(event: PointerEvent): void {
     if (!event.isPrimary && this.start) this.finish();
   }
 
-  /** Only the first finger and the main button draw and move: the rest is the camera's. */
+  /** Only the first finger and the main button draw and move; all else belongs to the camera. */
   private down(event: PointerEvent): void {
     if (event.button !== 0 || !event.isPrimary) return;
     this.hint.hidden = true;
@@ -103,14 +103,14 @@ export class Pointer {
     this.gestures.free(this.action === "click");
   }
 
-  /** Moving needs an object under the pointer; otherwise the camera takes the drag. */
+  /** Returns the action of a press. Without an object under the pointer the camera takes the drag of mode `move`. */
   private actionOf(event: PointerEvent): "click" | "ray" | "move" {
     if (this.mode === "ray" && this.gestures.dragsRays() && !event.altKey) return "ray";
     if ((this.mode === "move" || event.altKey) && this.gestures.grab(pointOf(event))) return "move";
     return "click";
   }
 
-  /** A press becomes a drag once it has moved far enough. */
+  /** Turns a press into a drag once it has moved far enough. */
   private drag(event: PointerEvent): void {
     if (!this.start || !event.isPrimary) return;
     const at = pointOf(event);
@@ -120,14 +120,14 @@ export class Pointer {
     if (this.action === "move") this.gestures.move(at);
   }
 
-  /** A press that did not move is a click, whatever the mode. */
+  /** Ends a press. A press that did not move is a click in every mode. */
   private up(event: PointerEvent): void {
     if (!this.start || !event.isPrimary) return;
     if (!this.moved) this.gestures.click(pointOf(event), event.shiftKey || this.mode === "pair");
     this.finish();
   }
 
-  /** Also where the browser took the gesture away. */
+  /** Ends the gesture, also if the browser cancelled it. */
   private finish(): void {
     if (this.action === "move") this.gestures.drop();
     this.start = null;
@@ -136,19 +136,19 @@ export class Pointer {
   }
 }
 
-/** Where a pointer is, and how exactly. */
+/** Returns the position and the precision of a pointer. */
 function pointOf({ clientX, clientY, pointerType }: PointerEvent): At {
   return { x: clientX, y: clientY, radius: pointerType === "touch" ? PRECISION.touch : PRECISION.mouse };
 }
 
-/** A key, what it does, and the words for it in the list of keys. */
+/** A key, its action, and the words for it in the list of keys. */
 export interface Key {
   keys: string[];
   text: string;
   act: (event: KeyboardEvent) => void;
 }
 
-/** Calls what a key stands for, unless the reader types or a control takes the key itself. */
+/** Calls the action of a key, unless the reader types or the focused control uses the key. */
 export function listen(keys: Key[], signal: AbortSignal): void {
   const acts = new Map(keys.flatMap(({ keys: names, act }) => names.map((name) => [name, act] as const)));
   const press = (event: KeyboardEvent): void => {
@@ -161,7 +161,7 @@ export function listen(keys: Key[], signal: AbortSignal): void {
   document.addEventListener("keydown", press, { signal });
 }
 
-/** An element keeps the keys by which it is operated, but for the time line: the page's own keys move it as well. */
+/** Returns whether the focused element uses the key. The time line does not count: the page's keys move it as well. */
 function taken({ target, key }: KeyboardEvent): boolean {
   if (!(target instanceof HTMLElement) || target.matches(".timeline input")) return false;
   if (target.closest("dialog[open], select")) return true;
@@ -170,7 +170,7 @@ function taken({ target, key }: KeyboardEvent): boolean {
   return (key === " " || key === "Enter") && target.closest("button, a, summary") !== null;
 }
 
-/** The list of keys, as a dialog that the browser opens and closes. */
+/** Fills the list of keys, a dialog that the browser opens and closes. */
 export function fillHelp(dialog: HTMLDialogElement, keys: Key[]): void {
   const rows = keys.map(({ keys: names, text }) => {
     const shown = keyNames(names).map((name) => make("kbd", {}, name));
@@ -187,14 +187,14 @@ export function fillHelp(dialog: HTMLDialogElement, keys: Key[]): void {
   );
 }
 
-/** Keys as they are printed on a keyboard; of a long list its ends. */
+/** Returns the names of keys as on a keyboard; of a long list the first and the last. */
 function keyNames(keys: string[]): string[] {
   const names = keys.map((key) => (key === " " ? "Space" : key.replace("Arrow", "").replace("Escape", "Esc")));
   if (names.length <= 2) return names;
   return keys.every((key) => key.startsWith("Shift+")) ? ["Shift", "arrows"] : [`${names[0]} … ${names.at(-1)}`];
 }
 
-/** The modes and their keys. */
+/** Returns the keys of the modes. */
 export function modeKeys(choose: (mode: Mode) => void): Key[] {
   return MODES.map(({ mode, key, label }) => ({ keys: [key], text: label, act: () => choose(mode) }));
 }

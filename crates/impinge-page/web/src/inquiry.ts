@@ -1,4 +1,4 @@
-// The reader's questions: what is selected, which ray is drawn, and the answers in panel and picture.
+// The reader's questions: the selected objects or the drawn ray, and the answers in the panel and the picture.
 
 import { type Engine, EngineError } from "./engine";
 import { number } from "./format";
@@ -7,23 +7,23 @@ import { type Links, objectPanel, pairPanel, rayPanel } from "./panels";
 import type { Info, Vec3 } from "./protocol";
 import type { AnswerLine } from "./view";
 
-/** In the world's coordinates; the direction is a unit vector. */
+/** A ray in world coordinates; the direction is a unit vector. */
 interface Ray {
   from: Vec3;
   direction: Vec3;
-  /** A length; null for a ray without an end. */
+  /** A length; null for an endless ray. */
   longest: number | null;
 }
 
-/** Neighbours that the panel of an object lists, with the object itself. */
+/** The number of neighbours in the panel of an object, including the object itself. */
 const NEIGHBOURS = 4;
 
-/** Either objects are selected or a ray is drawn. */
+/** The present question: selected objects, or a ray. */
 export class Inquiry {
   /** At most two objects. */
   selected: number[] = [];
   private ray: Ray | null = null;
-  /** What the panel was written from. */
+  /** The key of the content of the panel. */
   private written = "";
 
   constructor(
@@ -33,18 +33,18 @@ export class Inquiry {
     private readonly changed: () => void,
   ) {}
 
-  /** What links of panels do. */
+  /** The actions of links in panels. */
   readonly links: Links = {
     object: (object) => this.set([object], null),
     pair: (a, b) => this.set([a, b], null),
   };
 
-  /** Nothing is asked. */
+  /** Whether there is no question. */
   get empty(): boolean {
     return this.selected.length === 0 && this.ray === null;
   }
 
-  /** Selects an object, or adds it as the second one; nothing clears the selection. */
+  /** Selects an object, or adds it as the second one. Null clears the selection. */
   pick(object: number | null, second: boolean): void {
     const first = this.selected[0];
     if (object === null) this.set([], null);
@@ -57,14 +57,17 @@ export class Inquiry {
     this.set([], null);
   }
 
-  /** A ray from a point; `longest` is a length, since the direction is made a unit vector. */
+  /** Casts a ray from a point. `longest` is a length, since the direction is normalized. */
   shoot(from: Vec3, direction: Vec3, longest: number | null): void {
     const length = Math.hypot(...direction);
     if (!(length > 0)) return;
     this.set([], { from, direction: direction.map((part) => part / length) as Vec3, longest });
   }
 
-  /** Asks again, since time or objects moved. Returns the lines that answer; objects that are gone end the question. */
+  /**
+   * Computes the answers again after time or objects moved. Returns the lines to draw. If an object is gone, the panel
+   * tells so.
+   */
   answer(): AnswerLine[] {
     try {
       if (this.ray) return this.answerRay(this.ray);
@@ -80,14 +83,14 @@ export class Inquiry {
     return [];
   }
 
-  /** Another question. */
+  /** Replaces the question. */
   private set(selected: number[], ray: Ray | null): void {
     this.selected = selected;
     this.ray = ray;
     this.changed();
   }
 
-  /** The panel alone: the engine marks the object in the picture. */
+  /** Writes the panel of an object; the engine marks the object in the picture. */
   private answerObject(object: number): void {
     const answer = this.engine.object(object);
     const nearest = this.engine.nearest(answer.translation, NEIGHBOURS);
@@ -95,7 +98,7 @@ export class Inquiry {
     this.write(key, () => objectPanel(answer, nearest, this.info.dimension, this.links));
   }
 
-  /** A line from point to point with its length; of objects that overlap, with the depth. */
+  /** Returns a line between the nearest points with the distance; for overlapping objects with the depth. */
   private answerPair(a: number, b: number): AnswerLine[] {
     const answer = this.engine.pair(a, b);
     this.write(JSON.stringify(answer), () => pairPanel(answer, this.info.dimension, this.links));
@@ -106,19 +109,19 @@ export class Inquiry {
     return points ? [{ ends: points, kind: "distance", text: number(answer.distance) }] : [];
   }
 
-  /** The ray, and at each hit its normal. */
+  /** Returns the ray, and the normal at each hit. */
   private answerRay({ from, direction, longest }: Ray): AnswerLine[] {
     const hits = this.engine.ray(from, direction, longest);
     this.write(JSON.stringify(hits), () => rayPanel(hits, this.info.dimension, this.links));
     const last = hits.at(-1);
-    // A ray without an end is drawn up to its last hit, and a little beyond.
+    // An endless ray is drawn to 1.1 times the time of its last hit.
     const drawn = longest ?? (last?.time ?? 1) * 1.1;
     const end = from.map((part, index) => part + (direction[index] ?? 0) * drawn) as Vec3;
     const ticks = hits.slice(0, 50).map((hit): AnswerLine => normalTick(hit.point, hit.normal, drawn, hit.object));
     return [{ ends: [from, end], kind: "ray" }, ...ticks];
   }
 
-  /** Writes the panel where it differs, so that what has the focus stays as long as it can. */
+  /** Writes the panel if its key differs, so that the focused element stays. */
   private write(key: string, content: () => Node[]): void {
     if (key === this.written) return;
     this.written = key;
@@ -129,7 +132,7 @@ export class Inquiry {
   }
 }
 
-/** The normal of a hit as a short line, named by the object. */
+/** Returns the normal of a hit as a short line, named by the object. */
 function normalTick(point: Vec3, normal: Vec3 | null, scale: number, object: number): AnswerLine {
   const length = normal ? scale * 0.04 : 0;
   const tip = point.map((part, index) => part + (normal?.[index] ?? 0) * length) as Vec3;

@@ -1,4 +1,4 @@
-// What gestures and keys do to a stage.
+// The actions of gestures and keys on a stage.
 
 import type { Engine } from "./engine";
 import { byId } from "./dom";
@@ -6,16 +6,16 @@ import { type At, fillHelp, type Gestures, type Key, listen, modeKeys, Pointer }
 import type { PickAnswer, Vec3 } from "./protocol";
 import type { Viewer } from "./viewer";
 
-/** An object that is dragged, in the world's frame. */
+/** A dragged object, in the world's frame. */
 interface Dragged {
   object: number;
-  /** Where it was when the drag began. */
+  /** The position of the object when the drag began. */
   translation: Vec3;
-  /** The point of it that the pointer took, which stays under the pointer. */
+  /** The point of the object that the pointer grabbed, which stays under the pointer. */
   anchor: Vec3;
 }
 
-/** Connects the canvas and the keyboard with a viewer until it is closed. Returns the bar of modes. */
+/** Connects the canvas and the keyboard to a viewer until it is closed. Returns the bar of modes. */
 export function interact(engine: Engine, viewer: Viewer, leave: (() => void) | null): HTMLElement {
   const gestures = new StageGestures(engine, viewer, () => pointer.mode);
   const pointer: Pointer = new Pointer(byId<HTMLCanvasElement>("canvas"), byId("hint"), gestures, viewer.signal);
@@ -26,7 +26,7 @@ export function interact(engine: Engine, viewer: Viewer, leave: (() => void) | n
   return tools;
 }
 
-/** The pointer's gestures as questions and moves. */
+/** Carries out the pointer's gestures as questions and moves. */
 class StageGestures implements Gestures {
   private dragged: Dragged | null = null;
 
@@ -37,8 +37,7 @@ class StageGestures implements Gestures {
   ) {}
 
   /**
-   * A click under perspective is a ray from the camera. In 2D a ray is a drag, so that a click in that mode selects as in
-   * the others.
+   * Selects an object, or casts a ray from the camera in 3D. In 2D a ray is a drag, and a click selects in every mode.
    */
   click(at: At, second: boolean): void {
     const { camera } = this.viewer.view;
@@ -49,14 +48,14 @@ class StageGestures implements Gestures {
     });
   }
 
-  /** The ray has the length of the drag: it hits what lies between its ends. */
+  /** Casts a ray with the length of the drag, which hits the objects between its ends. */
   drawRay(from: At, to: At): void {
     const [a, b] = [this.point(from), this.point(to)];
     const direction: Vec3 = [b[0] - a[0], b[1] - a[1], 0];
     this.viewer.inquiry.shoot(a, direction, Math.hypot(...direction));
   }
 
-  /** Stops time, since a running world would take the object back. */
+  /** Grabs the object under the pointer. Stops time, since a running world would move the object back. */
   grab(at: At): boolean {
     const { camera } = this.viewer.view;
     this.viewer.attempt(() => {
@@ -70,7 +69,9 @@ class StageGestures implements Gestures {
     return this.dragged !== null;
   }
 
-  /** The point that was taken stays under the pointer, at its distance from the plane of the screen. */
+  /**
+   * Moves the object so that the grabbed point stays under the pointer, at its distance from the plane of the screen.
+   */
   move(to: At): void {
     if (!this.dragged) return;
     const { object, translation, anchor } = this.dragged;
@@ -79,12 +80,12 @@ class StageGestures implements Gestures {
     this.viewer.attempt(() => this.viewer.player.take(this.engine.drag(object, moved)));
   }
 
-  /** The object stays where it is: recordings take it back with the next step. */
+  /** Ends the drag. The object stays at its position; a recording restores the recorded position at the next step. */
   drop(): void {
     this.dragged = null;
   }
 
-  /** A disabled camera goes on to track the fingers, but does not move: see `Pointer`. */
+  /** Enables or disables the camera. A disabled camera tracks the fingers but does not move: see `Pointer`. */
   free(camera: boolean): void {
     this.viewer.view.camera.controls.enabled = camera;
   }
@@ -93,20 +94,20 @@ class StageGestures implements Gestures {
     return this.viewer.view.camera.flat;
   }
 
-  /** The object under a point of the window. */
+  /** Returns the object under a point of the window. */
   private pick({ x, y, radius }: At): PickAnswer {
     const { camera } = this.viewer.view;
     const { from, direction } = camera.rayAt(x, y);
     return this.engine.pick(from, direction, radius / camera.pixelsPerUnit());
   }
 
-  /** The point of the world under a point of the window, in 2D. */
+  /** Returns the point of the world under a point of the window, in 2D. */
   private point(at: At): Vec3 {
     return this.viewer.view.camera.rayAt(at.x, at.y).from;
   }
 }
 
-/** The keys of a stage with their words; `leave` goes back to the gallery. */
+/** Returns the keys of a stage with their words; `leave` goes back to the gallery. */
 function stageKeys(viewer: Viewer, leave: (() => void) | null): Key[] {
   const { player, view, inquiry, layers } = viewer;
   const turn = ({ key }: KeyboardEvent): void => {

@@ -1,7 +1,7 @@
-// Texts in the picture: elements above the canvas, so that they are sharp and can be of any script.
+// Texts in the picture: elements above the canvas, so that they are sharp and in any script.
 //
-// Texts give way where they would overlap, or come near to the point of another text. Answers to the reader come first, then what
-// is nearer to the camera, then what the engine lists earlier: the same picture always has the same texts.
+// Texts are hidden if they would overlap another text or come near to its point. Answers to the reader come first, then
+// texts nearer to the camera, then earlier texts of the engine. So the same picture always shows the same texts.
 
 import type { Vector3 } from "three";
 import type { CanvasPoint, StageCamera } from "./camera";
@@ -11,15 +11,15 @@ import { make } from "./dom";
 export interface PlacedText {
   at: Vector3;
   text: string;
-  /** A colour of CSS: the bar at the left. */
+  /** The colour of the bar at the left, any colour of CSS. */
   color: string;
 }
 
-/** Texts that a picture shows at most; each is an element. */
+/** The largest number of texts in a picture; each is an element. */
 const MAX_TEXTS = 150;
-/** Between a point and its text, and between two texts, in CSS pixels. */
+/** The distances between a point and its text, and between two texts, in CSS pixels. */
 const [OFFSET, GAP] = [8, 2];
-/** So far from the point of another text, in CSS pixels: what is named there has some size. */
+/** The least distance of a text from the point of another text, in CSS pixels: the named thing has some size. */
 const CLEARANCE = 14;
 
 /** A text whose point is on the canvas. */
@@ -36,12 +36,12 @@ interface Rectangle {
 }
 
 export class Labels {
-  /** Elements are made once and used again. */
+  /** The elements, which are created once and reused. */
   private readonly pool: HTMLElement[] = [];
   private answers: PlacedText[] = [];
   private texts: PlacedText[] = [];
 
-  /** `layer` lies above the canvas and is hidden from assistive technology, which reads the panels. */
+  /** `layer` is above the canvas and hidden from assistive technology, which reads the panels. */
   constructor(private readonly layer: HTMLElement) {}
 
   /** Replaces the texts of the engine; they are placed with the next picture. */
@@ -49,17 +49,19 @@ export class Labels {
     this.texts = texts;
   }
 
-  /** Replaces those of the page, which come first. */
+  /** Replaces the texts of the page's answers, which come first. */
   setAnswers(answers: PlacedText[]): void {
     this.answers = answers;
   }
 
-  /** Moves the texts to where the camera has their points. Reading the sizes lays the page out once. */
+  /**
+   * Moves the texts to the positions of their points on the canvas. Reading the sizes causes one layout of the page.
+   */
   place(camera: StageCamera): void {
     const answers = this.visible(this.answers, camera);
     const texts = this.visible(this.texts, camera).sort((one, other) => one.depth - other.depth);
     const candidates = [...answers, ...texts].slice(0, MAX_TEXTS);
-    // All are written before the first size is read: in turns, each reading would lay the page out again.
+    // All texts are written before the first size is read; alternating would cause a layout for each size.
     candidates.forEach(({ text }, index) => write(this.element(index), text));
     const placed = candidates.map((point, index) => ({ point, box: this.beside(point, this.element(index)) }));
     const taken: Rectangle[] = [];
@@ -74,7 +76,7 @@ export class Labels {
     for (const element of this.pool.slice(candidates.length)) element.style.visibility = "hidden";
   }
 
-  /** Those whose points are on the canvas, in their order. */
+  /** Returns the texts whose points are on the canvas, in their order. */
   private visible(texts: PlacedText[], camera: StageCamera): Candidate[] {
     const { clientWidth, clientHeight } = this.layer;
     return texts.flatMap((text) => {
@@ -84,7 +86,7 @@ export class Labels {
     });
   }
 
-  /** The element of an index. */
+  /** Returns the element of an index. */
   private element(index: number): HTMLElement {
     const found = this.pool[index];
     if (found) return found;
@@ -94,7 +96,7 @@ export class Labels {
     return element;
   }
 
-  /** To the right of the point, or to the left where it would leave the canvas, and at half its height. */
+  /** Returns the rectangle at the height of the point: to its right, or to its left if that would leave the canvas. */
   private beside({ x, y }: CanvasPoint, { offsetWidth: width, offsetHeight: height }: HTMLElement): Rectangle {
     const { clientWidth, clientHeight } = this.layer;
     const isInside = x + OFFSET + width < clientWidth;
@@ -104,7 +106,7 @@ export class Labels {
   }
 }
 
-/** Writes what differs. */
+/** Writes the text and the colour if they differ. */
 function write(element: HTMLElement, { text, color }: PlacedText): void {
   if (element.textContent !== text) element.textContent = text;
   if (element.dataset.color === color) return;
@@ -112,13 +114,16 @@ function write(element: HTMLElement, { text, color }: PlacedText): void {
   element.style.setProperty("--mark", color);
 }
 
-/** The text of a point comes near to another point. Points that are as near to each other need one text only. */
+/**
+ * Returns whether the text of a point comes near to another point. Points nearer to each other than `CLEARANCE` share
+ * one text, so they do not count.
+ */
 function comesNear({ left, top, right, bottom }: Rectangle, own: CanvasPoint, { x, y }: CanvasPoint): boolean {
   if (Math.hypot(own.x - x, own.y - y) < CLEARANCE) return false;
   return left - x < CLEARANCE && x - right < CLEARANCE && top - y < CLEARANCE && y - bottom < CLEARANCE;
 }
 
-/** The rectangles are nearer to each other than the gap. */
+/** Returns whether the distance of the rectangles is less than the gap. */
 function overlap(a: Rectangle, b: Rectangle): boolean {
   return a.left < b.right + GAP && b.left < a.right + GAP && a.top < b.bottom + GAP && b.top < a.bottom + GAP;
 }

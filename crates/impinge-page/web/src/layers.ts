@@ -1,9 +1,11 @@
-// The layers of a frame as check boxes, with their colours as a legend. The colours are the engine's; the style sheet
-// repeats them, since frames have those of visible layers only.
+// The layers of a frame as check boxes, with their colours as a legend. The colours are those of the engine. The style
+// sheet repeats them, since a frame has only the colours of visible layers.
 
 import { make } from "./dom";
 
-/** In the order of their keys: the engine's name, what it draws, and whether it is visible at first. */
+/**
+ * The layers in the order of their keys: the engine's name, the description, and whether the layer is visible at first.
+ */
 const LAYERS = [
   { name: "object", label: "objects", shown: true },
   { name: "tight box", label: "tight boxes", shown: false },
@@ -19,7 +21,7 @@ const LAYERS = [
 /** The engine's names of all layers. */
 export const LAYER_NAMES = LAYERS.map(({ name }) => name);
 
-/** The check boxes are the state. */
+/** The check boxes of the layers, which hold the state. */
 export class Layers {
   readonly element = make("ul", { class: "layers" });
   private readonly boxes = LAYERS.map(({ shown }) => make("input", { type: "checkbox", checked: shown }));
@@ -29,7 +31,7 @@ export class Layers {
     this.element.addEventListener("change", changed);
   }
 
-  /** The names of the layers that are on. */
+  /** The names of the visible layers. */
   get shown(): string[] {
     return LAYER_NAMES.filter((_, index) => this.boxes[index]?.checked);
   }
@@ -40,7 +42,7 @@ export class Layers {
   }
 }
 
-/** A check box, a colour, words and a key. */
+/** Returns a row with a check box, a colour, words and a key. */
 function row(box: HTMLInputElement, index: number): HTMLElement {
   const { name, label } = LAYERS[index]!;
   const swatch = make("i", { class: `swatch ${name.replace(" ", "-")}`, "aria-hidden": "true" });

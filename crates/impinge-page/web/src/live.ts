@@ -1,8 +1,8 @@
-// A recording that grows while it is watched.
+// Reads a recording that is still being written.
 
 import { PageError } from "./messages";
 
-/** Hands over the bytes of a stream in order, and returns when it ends; a failed request is an error with its reason. */
+/** Passes on the bytes of a stream in order, and returns when it ends. A failed request is an error with its reason. */
 export async function follow(address: string, take: (bytes: Uint8Array) => void): Promise<void> {
   const response = await fetch(address).catch(lost);
   if (!response.ok || !response.body) throw new PageError(refusal(response));
@@ -14,7 +14,7 @@ export async function follow(address: string, take: (bytes: Uint8Array) => void)
   }
 }
 
-/** Why there is no stream. */
+/** Returns the reason why there is no stream. */
 function refusal({ status, statusText }: Response): string {
   if (status === 503) return "Too many pages follow this recording. Close one of them and load this page again.";
   return `The recording cannot be followed: its program answers ${status} ${statusText}.`;

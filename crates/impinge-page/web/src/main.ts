@@ -1,4 +1,4 @@
-// The page: what it opens when it is loaded, and what changes with its address.
+// The page: opens the content of the file, and follows the page's address.
 
 import type { WebGLRenderer } from "three";
 import { button, byId, setText } from "./dom";
@@ -12,10 +12,10 @@ import type { Info } from "./protocol";
 import { makeRenderer } from "./view";
 import { Viewer } from "./viewer";
 
-/** What is open at the moment. The engine has one stage, so that there is one viewer at most. */
+/** The open stage. The engine has one stage, so that there is at most one viewer. */
 class Page {
   private viewer: Viewer | null = null;
-  /** Made when the first stage opens: the gallery needs no graphics. */
+  /** Created when the first stage opens: the gallery needs no graphics. */
   private renderer: WebGLRenderer | null = null;
 
   constructor(
@@ -23,7 +23,7 @@ class Page {
     private readonly engine: Engine,
   ) {}
 
-  /** Opens what the file names. Errors of a recording are the caller's. */
+  /** Opens the content of the file. Errors of a recording are passed to the caller. */
   open(): void {
     switch (this.scene.open) {
       case "recording":
@@ -38,7 +38,7 @@ class Page {
     }
   }
 
-  /** The gallery, or the sample that the address names. */
+  /** Shows the gallery, or the sample that the address names. */
   private route(): void {
     const name = sampleInAddress();
     this.viewer?.close();
@@ -51,7 +51,7 @@ class Page {
     else attempt(() => this.show(this.engine.open({ kind: "sample", name }), () => (location.hash = "")));
   }
 
-  /** Shows the stage that the engine has opened. Samples run at once, unless the reader prefers less motion. */
+  /** Shows the stage that the engine has opened. Samples start to run, unless the reader prefers reduced motion. */
   private show(info: Info, leave: (() => void) | null): Viewer {
     const title = info.title || this.scene.title;
     byId("viewer").hidden = false;
@@ -72,7 +72,7 @@ class Page {
     return viewer;
   }
 
-  /** The stage is opened when the header of the recording was read, which has its dimension. */
+  /** Reads a live recording. The stage is shown when the first step has arrived: then the dimension is known. */
   private watch(address: string): void {
     this.engine.open({ kind: "stream" });
     const take = (bytes: Uint8Array): void =>
@@ -88,13 +88,13 @@ class Page {
   }
 }
 
-/** What a stage is, in a line: dimension, scalar, length and the program that wrote it. */
+/** Returns the facts of a stage in a line: dimension, scalar, length and the program that wrote it. */
 function facts(info: Info): string {
   const steps = info.steps === null || info.kind === "stream" ? [] : [`${info.steps} steps`];
   return [`${info.dimension}D`, info.scalar, ...steps, info.written_by].filter(Boolean).join(" · ");
 }
 
-/** Shows a text, such as an error; it stays until it is dismissed. */
+/** Shows a text, such as an error, until it is dismissed. */
 function complain(message: string): void {
   const notice = byId("notice");
   setText(notice.querySelector("p") ?? notice, message);
@@ -106,7 +106,7 @@ function dismiss(): void {
   byId("notice").hidden = true;
 }
 
-/** Reports the error of what may fail. */
+/** Calls `act` and reports its error. */
 function attempt(act: () => void): void {
   try {
     act();
@@ -115,7 +115,7 @@ function attempt(act: () => void): void {
   }
 }
 
-/** A page that cannot be opened shows the error instead of staying blank. */
+/** Opens the page. If that fails, the page shows the error instead of staying blank. */
 async function main(): Promise<void> {
   byId("notice").querySelector("button")?.addEventListener("click", dismiss);
   const page = new Page(readScene(), await loadEngine(await readModule()));

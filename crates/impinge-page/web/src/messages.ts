@@ -1,11 +1,11 @@
-// What a reader is told where something goes wrong. The engine's own words are for those who write pages.
+// Sentences for readers about errors. The engine's own texts are for authors of pages.
 
 import { EngineError } from "./engine";
 
-/** An error whose text is written for readers. */
+/** An error whose text is a sentence for readers. */
 export class PageError extends Error {}
 
-/** By the code of the engine. */
+/** The sentences by the code of the engine. */
 const SENTENCES: Record<string, string> = {
   message: "This page has made a mistake and goes on without what was asked. Loading it again may help.",
   "unknown-sample": "There is no sample of this name.",
@@ -20,7 +20,7 @@ const SENTENCES: Record<string, string> = {
 };
 const UNKNOWN = "Something went wrong in this page. Loading it again may help.";
 
-/** A sentence about whatever was thrown. What it was stands in the browser's console. */
+/** Returns a sentence about any thrown value. All but a `PageError` are also written to the browser's console. */
 export function sentence(error: unknown): string {
   if (error instanceof PageError) return error.message;
   console.warn(error);

@@ -1,4 +1,4 @@
-// Answers as text: what an object is, how a pair stands and why, what a ray hits.
+// Answers as text: the description of an object, the state of a pair with its reasons, the hits of a ray.
 
 import { button, make, terms } from "./dom";
 import { counted, number, vector } from "./format";
@@ -14,16 +14,16 @@ import type {
   Status,
 } from "./protocol";
 
-/** Events that a panel lists. */
+/** The largest number of events in a panel. */
 const MAX_EVENTS = 60;
 
-/** What a reader does by links in the panels. */
+/** The actions of links in the panels. */
 export interface Links {
   object(object: number): void;
   pair(a: number, b: number): void;
 }
 
-/** The panel of one object, with its neighbours by distance. */
+/** Returns the panel of one object, with its neighbours by distance. */
 export function objectPanel(
   answer: ObjectAnswer,
   nearest: NearAnswer["nearest"],
@@ -49,7 +49,7 @@ export function objectPanel(
   ];
 }
 
-/** The panel of two objects. */
+/** Returns the panel of two objects. */
 export function pairPanel(answer: PairAnswer, dimension: number, links: Links): Node[] {
   const { a, b, contact, why } = answer;
   const rows: [string, string][] = [
@@ -81,7 +81,7 @@ export function pairPanel(answer: PairAnswer, dimension: number, links: Links): 
   ];
 }
 
-/** The panel of a ray; hits are in the order of time. */
+/** Returns the panel of a ray; hits are in order of time. */
 export function rayPanel(hits: RayHit[], dimension: number, links: Links): Node[] {
   const rows = hits.map((hit) => {
     const text = `at ${number(hit.time)} · ${vector(hit.point, dimension)}`;
@@ -100,7 +100,7 @@ export function rayPanel(hits: RayHit[], dimension: number, links: Links): Node[
   ];
 }
 
-/** What happened in the step that is shown. */
+/** Returns the list of the events of the shown step. */
 export function eventList({ events, event_count: count }: Status, links: Links): HTMLElement {
   const shown = events.slice(0, MAX_EVENTS);
   const rows = list(
@@ -113,7 +113,7 @@ export function eventList({ events, event_count: count }: Status, links: Links):
   return rows;
 }
 
-/** An event in words, for the panel and the summary. */
+/** Returns an event in words, for the panel and the summary. */
 export function eventText(event: PairEvent): string {
   if (event.kind === "contact") {
     return `contact of ${event.a} and ${event.b} ${event.started ? "started" : "stopped"}`;
@@ -121,23 +121,23 @@ export function eventText(event: PairEvent): string {
   return `proximity of ${event.a} and ${event.b}: ${event.before} to ${event.after}`;
 }
 
-/** Numbers and words that a sample computes. */
+/** Returns the list of numbers and words that a sample computes. */
 export function readoutList(readouts: Readout[]): HTMLElement {
   return terms(readouts.map(({ label, value }) => [label, value]));
 }
 
-/** A button that looks like a link: it changes the selection, not the address. */
+/** Returns a button that looks like a link: it changes the selection, not the address. */
 export function link(text: string, act: () => void): HTMLButtonElement {
   return button(text, act, { class: "link" });
 }
 
-/** The class of an event, which gives it a sign and a colour. */
+/** Returns the class of an event, which gives it a sign and a colour. */
 function sign(event: PairEvent): string {
   if (event.kind === "contact") return event.started ? "started" : "stopped";
   return "proximity";
 }
 
-/** Other objects by their distance from the origin of this one. */
+/** Returns other objects by their distance from the origin of this one. */
 function near(object: number, nearest: NearAnswer["nearest"], links: Links): Node[] {
   const others = nearest.filter((other) => other.object !== object);
   if (others.length === 0) return [];
@@ -148,7 +148,7 @@ function near(object: number, nearest: NearAnswer["nearest"], links: Links): Nod
   return [subheading("Nearest objects"), list(rows)];
 }
 
-/** Each test with its outcome; all are made, also after one that fails. */
+/** Returns all tests with their results, also those after a test that fails. */
 function tests({ why }: PairAnswer): HTMLElement {
   const rows = why.tests.map(({ name, passes, text }) => {
     const mark = make("b", { role: "img", "aria-label": passes ? "passes" : "fails" }, passes ? "✓" : "✗");
@@ -157,7 +157,7 @@ function tests({ why }: PairAnswer): HTMLElement {
   return make("ul", { class: "tests", "aria-label": "Why" }, ...rows);
 }
 
-/** The contacts of all manifolds in their order. */
+/** Returns the contacts of all manifolds in their order. */
 function manifolds({ manifolds }: PairAnswer, dimension: number): HTMLElement {
   const contacts = manifolds.flatMap((manifold) => manifold.contacts);
   return list(
@@ -168,20 +168,20 @@ function manifolds({ manifolds }: PairAnswer, dimension: number): HTMLElement {
   );
 }
 
-/** A pair of an object; touching ones are marked. */
+/** Returns a pair of an object; touching pairs are marked. */
 function pairLink(object: number, pair: ObjectPair, links: Links): HTMLElement {
   const open = link(`${object} and ${pair.object}`, () => links.pair(object, pair.object));
   return make("li", { class: pair.touching ? "touch" : "" }, open, ` ${pairText(pair)}`);
 }
 
-/** How a pair stands, in a line. */
+/** Returns the state of a pair in a line. */
 function pairText(pair: ObjectPair): string {
   if (pair.status !== undefined) return `${pair.kind}: ${pair.status}`;
   const contacts = counted(pair.contacts ?? 0, "contact");
   return pair.depth === null || pair.depth === undefined ? contacts : `${contacts}, depth ${number(pair.depth)}`;
 }
 
-/** An angle in degrees: in 2D counterclockwise, in 3D with its axis. */
+/** Formats an angle in degrees: in 2D counterclockwise, in 3D with its axis. */
 function rotation({ rotation: [x, y, z, w] }: ObjectAnswer, dimension: number): string {
   if (dimension === 2) return `${number((2 * Math.atan2(z, w) * 180) / Math.PI)}°`;
   const sine = Math.hypot(x, y, z);
@@ -191,13 +191,13 @@ function rotation({ rotation: [x, y, z, w] }: ObjectAnswer, dimension: number): 
   return `${angle} about ${vector([x * turn, y * turn, z * turn], 3)}`;
 }
 
-/** What is asked of the pairs of an object, with its limits. */
+/** Returns the query type of an object with its limits. */
 function queryText(query: ObjectAnswer["query"]): string {
   const numbers = Object.entries(query).filter(([name]) => name !== "kind");
   return [query.kind, ...numbers.map(([name, value]) => `${name} ${number(value as number)}`)].join(", ");
 }
 
-/** Groups by their numbers; self-collision only where it is on. */
+/** Returns the groups by their numbers; self-collision only if it is enabled. */
 function groupRows(groups: Groups): [string, string][] {
   const text = (value: number[] | "all"): string => {
     if (value === "all") return "all";

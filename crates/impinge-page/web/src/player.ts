@@ -1,27 +1,27 @@
-// Time: which step is shown, whether it runs, and how fast.
+// Time: the shown step, whether time runs, and its speed.
 
 import type { Engine } from "./engine";
 import type { Info, Status } from "./protocol";
 
-/** Those that the reader can choose. */
+/** The speeds that the reader can choose. */
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
-/** A picture that came late is caught up by at most so many steps. */
+/** The largest number of steps that are made before one picture, to catch up after a late one. */
 const MAX_STEPS = 16;
-/** The longest time that counts between two pictures, in seconds: a page that slept does not jump. */
+/** The longest time that counts between two pictures, in seconds: a suspended page does not jump. */
 const MAX_PAUSE = 0.1;
 
-/** Steps of the world against the reader's clock. */
+/** Converts the reader's time to steps of the world. */
 export class Player {
   playing = false;
-  /** How many seconds of the world for one of the reader's. */
+  /** Seconds of the world in a second of the reader. */
   speed = 1;
-  /** A live recording follows its end until the reader takes another step. */
+  /** Whether the end of a live recording is followed. Ends when the reader chooses another step. */
   following: boolean;
-  /** Steps that are due, a fraction of one included. */
+  /** The number of due steps, with a fraction. */
   private owed = 0;
-  /** The step that the reader chose last, until it is taken. */
+  /** The step that the reader chose last, until it is shown. */
   private wanted: number | null = null;
-  /** The step at which a recording stands after it is opened: the world before is empty. */
+  /** The first step that can be shown: before it the world of a recording is empty. */
   private readonly first: number;
 
   constructor(
@@ -34,22 +34,22 @@ export class Player {
     this.first = info.kind === "stream" ? 1 : info.step;
   }
 
-  /** The step that is shown, or that will be at the next picture. */
+  /** The shown step, or the step of the next picture. */
   get step(): number {
     return this.wanted ?? this.status.step;
   }
 
-  /** Samples only go on. */
+  /** Whether the time can go back; samples only go forward. */
   get canSeek(): boolean {
     return this.info.kind !== "sample";
   }
 
-  /** Nothing follows, as yet. */
+  /** Whether no later step is known. */
   get atEnd(): boolean {
     return this.info.steps !== null && this.step >= this.info.steps;
   }
 
-  /** Begins again at the start where the recording stands at its end. */
+  /** Starts or stops time. At its end a recording starts again. */
   toggle(): void {
     if (!this.playing && this.atEnd) this.reset();
     this.following = false;
@@ -58,20 +58,20 @@ export class Player {
     this.changed(this.status);
   }
 
-  /** Stops where it is. */
+  /** Stops time. */
   pause(): void {
     this.playing = false;
     this.changed(this.status);
   }
 
-  /** Single steps stop what runs; backwards only in recordings. */
+  /** Makes single steps and stops time. Only recordings can go back. */
   move(steps: number): void {
     this.playing = false;
     if (this.canSeek) this.seek(this.step + steps);
     else if (steps > 0) this.take(this.engine.advance(steps));
   }
 
-  /** The step is taken at the next picture: of many wishes within one picture only the last counts. */
+  /** Chooses the step of the next picture. Of several calls before that picture only the last counts. */
   seek(step: number): void {
     if (!this.canSeek) return;
     const last = this.info.steps ?? 0;
@@ -79,34 +79,34 @@ export class Player {
     this.following = this.info.kind === "stream" && this.wanted === last && step >= last;
   }
 
-  /** Goes to the end and stays there while the recording grows. */
+  /** Goes to the end and follows it while the recording grows. */
   follow(): void {
     this.playing = false;
     this.seek(Number.MAX_SAFE_INTEGER);
     this.following = this.info.kind === "stream";
   }
 
-  /** Back to the start. */
+  /** Goes back to the start. */
   reset(): void {
     this.wanted = null;
     this.following = false;
     this.take(this.engine.reset());
   }
 
-  /** So many speeds up or down the list. */
+  /** Moves by `by` places in the list of speeds. */
   faster(by: number): void {
     const index = SPEEDS.indexOf(this.speed) + by;
     this.speed = SPEEDS[Math.max(0, Math.min(index, SPEEDS.length - 1))] ?? 1;
     this.changed(this.status);
   }
 
-  /** More of a live recording came. */
+  /** Takes over new data of a live recording. */
   grow(info: Info): void {
     this.info = info;
     if (this.following) this.follow();
   }
 
-  /** Once for each picture, `seconds` after the one before. */
+  /** Advances time before each picture; `seconds` is the time since the previous one. */
   tick(seconds: number): void {
     if (this.wanted !== null) {
       const step = this.wanted;
@@ -116,7 +116,7 @@ export class Player {
     if (this.playing) this.run(Math.max(0, Math.min(seconds, MAX_PAUSE)));
   }
 
-  /** Takes the whole due steps. */
+  /** Makes the due whole steps. */
   private run(seconds: number): void {
     const step = this.info.time_step > 0 ? this.info.time_step : 1 / 60;
     this.owed += (seconds * this.speed) / step;
@@ -129,7 +129,7 @@ export class Player {
     } else this.take(this.engine.advance(steps));
   }
 
-  /** The engine's answer to anything that moves time or objects. */
+  /** Takes over the engine's answer to any message that moves time or objects. */
   take(status: Status): void {
     this.status = status;
     this.changed(status);

@@ -1,8 +1,8 @@
-// What is asked of the engine and what it answers. `PROTOCOL.md` of the crate is the contract.
+// The types of messages and answers of the engine. `PROTOCOL.md` of the crate specifies them.
 
 /** Three numbers; in 2D the third is 0. */
 export type Vec3 = [number, number, number];
-/** x, y, z, w. */
+/** The components x, y, z, w. */
 export type Quaternion = [number, number, number, number];
 
 /** A card of the gallery. */
@@ -13,7 +13,7 @@ export interface SampleEntry {
   dimension: 2 | 3;
 }
 
-/** What happened at a step, or in some steps from this one on where there would be too many marks. */
+/** The events of a step; or the sum of several steps from this one on, if there would be too many marks. */
 export interface Mark {
   step: number;
   started: number;
@@ -21,12 +21,12 @@ export interface Mark {
   proximities: number;
   added: number;
   removed: number;
-  /** Objects with another shape, groups, query, data or filter. */
+  /** The number of changed shapes, groups, query types, data and filters. */
   changed: number;
   queries: number;
 }
 
-/** A control of a sample: its kind says how it is operated. */
+/** A control of a sample; its kind tells how it is operated. */
 export type Control = { name: string; label: string } & (
   | { kind: "number"; value: number; min: number; max: number; step: number }
   | { kind: "choice"; value: string; choices: string[] }
@@ -34,7 +34,7 @@ export type Control = { name: string; label: string } & (
   | { kind: "button" }
 );
 
-/** What a stage is. */
+/** The description of a stage. */
 export interface Info {
   kind: "recording" | "stream" | "sample";
   step: number;
@@ -44,13 +44,13 @@ export interface Info {
   title: string;
   about: string;
   written_by: string;
-  /** The last step; samples run without end. */
+  /** The last step; null for samples, which have no end. */
   steps: number | null;
-  /** The end of a recording came. */
+  /** Whether the end of a recording was read. */
   complete: boolean;
   /** Seconds from a step to the next. */
   time_step: number;
-  /** The least and the greatest corner of what the camera frames. */
+  /** The least and the greatest corner of the box that the camera frames. */
   bounds: [Vec3, Vec3];
   /** The axis that points up on the screen. */
   up: Vec3;
@@ -63,19 +63,19 @@ export type PairEvent =
   | { kind: "contact"; started: boolean; a: number; b: number }
   | { kind: "proximity"; a: number; b: number; before: string; after: string };
 
-/** A number or a word of a sample, ready to be shown. */
+/** A number or a word that a sample shows. */
 export interface Readout {
   label: string;
   value: string;
 }
 
-/** How a stage stands at a step. */
+/** The state of a stage at a step. */
 export interface Status {
   step: number;
   objects: number;
   pairs: number;
   contacts: number;
-  /** In what a replay differs from its recording, in words. */
+  /** The difference of a replay from its recording, in words. */
   diverged: string | null;
   /** The first events of the step; `event_count` in all. */
   events: PairEvent[];
@@ -130,30 +130,30 @@ export interface Frame extends FrameText {
   payload: Payload;
 }
 
-/** Bytes of an answer, read as arrays of numbers without a copy. */
+/** The bytes of an answer, read as arrays of numbers without a copy. */
 export class Payload {
   constructor(
     private readonly buffer: ArrayBufferLike,
     private readonly start: number,
   ) {}
 
-  /** Numbers of 32 bits. */
+  /** Returns 32-bit floats. */
   floats([offset, count]: Section): Float32Array {
     return new Float32Array(this.buffer, this.start + offset, count);
   }
 
-  /** Whole numbers of 32 bits. */
+  /** Returns 32-bit unsigned integers. */
   words([offset, count]: Section): Uint32Array {
     return new Uint32Array(this.buffer, this.start + offset, count);
   }
 
-  /** Words as single bytes: colours as red, green, blue, alpha. */
+  /** Returns the words as single bytes: colours as red, green, blue, alpha. */
   bytes([offset, count]: Section): Uint8Array {
     return new Uint8Array(this.buffer, this.start + offset, 4 * count);
   }
 }
 
-/** Groups by their numbers. */
+/** The groups of an object by their numbers. */
 export type Groups = {
   membership: number[] | "all";
   whitelist: number[] | "all";
@@ -161,7 +161,7 @@ export type Groups = {
   self_collision: boolean;
 };
 
-/** A pair of an object, as of the last update: of contacts or of proximity. */
+/** A pair of an object after the last update, of contacts or of proximity. */
 export interface ObjectPair {
   object: number;
   kind: string;
@@ -171,7 +171,7 @@ export interface ObjectPair {
   status?: string;
 }
 
-/** All about an object. Boxes without an end are null. */
+/** The description of an object. Unbounded boxes are null. */
 export interface ObjectAnswer {
   object: number;
   shape: { kind: string; text: string };
@@ -185,7 +185,7 @@ export interface ObjectAnswer {
   pairs: ObjectPair[];
 }
 
-/** Points on both, the unit normal from the first to the second, and the depth, positive inside. */
+/** The points on both objects, the unit normal from the first to the second, and the depth, positive for an overlap. */
 export interface ContactPoint {
   a: Vec3;
   b: Vec3;
@@ -194,14 +194,14 @@ export interface ContactPoint {
   features?: string;
 }
 
-/** A reason for which two objects touch or do not. */
+/** A test for the contact of two objects, with its result. */
 export interface Test {
   name: string;
   passes: boolean;
   text: string;
 }
 
-/** All about two objects. `points` are null where they overlap. */
+/** The description of two objects. `points` is null if they overlap. */
 export interface PairAnswer {
   a: number;
   b: number;
@@ -213,7 +213,7 @@ export interface PairAnswer {
   why: { touch: boolean; text: string; tests: Test[] };
 }
 
-/** What is under the pointer. */
+/** The object under the pointer. */
 export interface PickAnswer {
   object: number | null;
   point: Vec3 | null;
@@ -221,7 +221,7 @@ export interface PickAnswer {
   time: number | null;
 }
 
-/** A hit; its time is in lengths of the direction. */
+/** A hit; its time is in units of the length of the direction. */
 export interface RayHit {
   object: number;
   point: Vec3;
@@ -230,7 +230,7 @@ export interface RayHit {
   feature: string | null;
 }
 
-/** Objects in the order of their distance from a point. */
+/** Objects in order of their distance from a point. */
 export interface NearAnswer {
   nearest: { object: number; distance: number; point: Vec3 }[];
 }

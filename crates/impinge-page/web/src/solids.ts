@@ -1,4 +1,4 @@
-// The objects of a frame as instances: one draw of faces and one of edges for each mesh and opacity.
+// The objects of a frame as instances: one draw call for faces and one for edges per mesh and opacity.
 
 import {
   Box3,
@@ -24,24 +24,24 @@ import { LINEAR } from "./color";
 import { ORDER } from "./order";
 import type { Frame } from "./protocol";
 
-/** Faces that meet at less than this angle, in radians, are shaded as one surface. */
+/** Faces that meet at a smaller angle than this, in radians, are shaded as one surface. */
 const CREASE = 0.6;
-/** Batches without instances in so many frames are released: a sample that alternates keeps its batches. */
+/** Batches that had no instances for this number of frames are released. Samples that alternate keep their batches. */
 const MAX_IDLE_FRAMES = 240;
-/** The alpha of opaque objects, and the number of alphas there are. */
+/** The alpha of opaque objects, and the number of values of alpha. */
 const [OPAQUE, ALPHAS] = [255, 256];
-/** In place of an object's number. */
+/** The number of an instance that is not an object. */
 const NO_OBJECT = 0xffffffff;
-/** More instances than this cast no shadows. */
+/** With more instances than this there are no shadows. */
 const MAX_SHADOWS = 3000;
 
-// Of one instance at a time, so that none is allocated for each.
+// Values of one instance at a time, so that none is allocated per instance.
 const translation = new Vector3();
 const rotation = new Quaternion();
 const scale = new Vector3();
 const pose = new Matrix4();
 
-/** A mesh, copied out of the engine's memory. Sizes are scales of instances: ten thousand boxes are one mesh. */
+/** A mesh, copied out of the engine's memory. Sizes are scales of instances, so ten thousand boxes share one mesh. */
 interface Mesh {
   vertices: Float32Array;
   triangles: Uint32Array;
@@ -49,31 +49,33 @@ interface Mesh {
 }
 
 /**
- * Sections of a frame. An instance has seven numbers of its pose, a translation and a unit quaternion x, y, z, w, and three
- * of its scale along the axes of its mesh.
+ * Sections of a frame. The pose of an instance has seven numbers: a translation and a unit quaternion x, y, z, w. Its
+ * scale has three, along the axes of its mesh.
  */
 interface Poses {
   pose: Float32Array;
   scale: Float32Array;
 }
 
-/** Batches by mesh and opacity; the key of one is `mesh * ALPHAS + alpha`. */
+/** The batches of a stage. The key of a batch is `mesh * ALPHAS + alpha`. */
 export class Solids {
   /** All batches, for the scene. */
   readonly group = new Group();
   private readonly meshes = new Map<number, Mesh>();
   private readonly batches = new Map<number, Batch>();
-  /** Frames so far: the clock of what is released. */
+  /** The number of frames so far, to find idle batches. */
   private frames = 0;
-  /** Opposite corners of the boxes of shapes that are no objects, such as those at the end of a cast. */
+  /** Opposite corners of the boxes of shapes that are not objects, such as those at the end of a cast. */
   private readonly corners: Vector3[] = [];
 
-  /** Meshes with ids below this number were received. */
+  /** Meshes with smaller ids than this number were received. */
   known = 0;
 
   constructor(private readonly flat: boolean) {}
 
-  /** Replaces what is drawn by the instances of a frame; nothing is allocated while batches are large enough. */
+  /**
+   * Replaces the drawn objects by the instances of a frame. Nothing is allocated while the batches are large enough.
+   */
   update(frame: Frame): void {
     this.frames += 1;
     this.receive(frame);
@@ -88,7 +90,7 @@ export class Solids {
     }
   }
 
-  /** What is drawn around the objects, for the camera. */
+  /** Returns points around the objects that the camera frames too. */
   points(): Vector3[] {
     return this.corners;
   }
@@ -98,7 +100,7 @@ export class Solids {
     for (const [key, batch] of this.batches) this.release(key, batch);
   }
 
-  /** Copies new meshes out of the engine's memory, and forgets those that it dropped. */
+  /** Copies new meshes out of the engine's memory, and deletes those that the engine dropped. */
   private receive({ meshes, dropped, payload }: Frame): void {
     for (const id of dropped) this.meshes.delete(id);
     for (const [key, batch] of this.batches) if (!this.meshes.has(meshOf(key))) this.release(key, batch);
@@ -119,7 +121,7 @@ export class Solids {
     let lastKey = -1;
     for (let index = 0; index < instances.count; index += 1) {
       const key = (mesh[index] ?? 0) * ALPHAS + (color[4 * index + 3] ?? OPAQUE);
-      // Neighbours mostly share a batch: the map is searched where they do not.
+      // Consecutive instances mostly share a batch, which saves the search in the map.
       if (key !== lastKey) batch = this.batches.get(key) ?? this.begin(key);
       lastKey = key;
       batch?.add(poses, color, index);
@@ -127,7 +129,7 @@ export class Solids {
     }
   }
 
-  /** A batch for a key that has none; undefined for a mesh that was not received. */
+  /** Creates the batch of a key; undefined for a mesh that was not received. */
   private begin(key: number): Batch | undefined {
     const mesh = this.meshes.get(meshOf(key));
     if (!mesh) return undefined;
@@ -137,7 +139,7 @@ export class Solids {
     return batch;
   }
 
-  /** Frees a batch; its mesh stays, since it may come again. */
+  /** Releases a batch. Its mesh stays, since instances of it may appear again. */
   private release(key: number, batch: Batch): void {
     this.group.remove(batch.faces, batch.edges);
     batch.dispose();
@@ -145,7 +147,7 @@ export class Solids {
   }
 }
 
-/** The id of the mesh of a batch's key. */
+/** Returns the id of the mesh of a batch's key. */
 function meshOf(key: number): number {
   return Math.floor(key / ALPHAS);
 }
@@ -155,13 +157,13 @@ class Batch {
   faces: InstancedMesh;
   readonly edges: LineSegments<InstancedBufferGeometry, ShaderMaterial>;
   count = 0;
-  /** The frame that used it last. */
+  /** The last frame in which the batch had instances. */
   used = 0;
-  /** Instances that the buffers hold. */
+  /** The number of instances for which the buffers have space. */
   private capacity = 0;
-  /** Four columns of four numbers: scale, then rotation, then translation. */
+  /** 4 × 4 matrices, column by column: scale, then rotation, then translation. */
   private matrix = new InstancedBufferAttribute(new Float32Array(0), 16);
-  /** Red, green and blue of linear light. */
+  /** Red, green and blue in linear light. */
   private color = new InstancedBufferAttribute(new Float32Array(0), 3);
 
   constructor(data: Mesh, alpha: number, flat: boolean) {
@@ -186,7 +188,7 @@ class Batch {
     this.count += 1;
   }
 
-  /** Opposite corners of the box around the instance that was added last. */
+  /** Returns opposite corners of the box around the instance that was added last. */
   lastBox(): [Vector3, Vector3] {
     const { geometry } = this.edges;
     if (!geometry.boundingBox) geometry.computeBoundingBox();
@@ -194,7 +196,7 @@ class Batch {
     return [min, max];
   }
 
-  /** Draws and uploads what was added. */
+  /** Draws and uploads the added instances. */
   show(shadows: boolean): void {
     const visible = this.count > 0;
     this.faces.visible = visible;
@@ -215,13 +217,13 @@ class Batch {
     this.edges.material.dispose();
   }
 
-  /** Reserves one more instance at least; what was added stays. Faces and edges read the same two buffers. */
+  /** Makes space for at least one more instance and keeps the content. Faces and edges share the two buffers. */
   private grow(): void {
     const capacity = grown(this.capacity, this.capacity + 1);
     this.matrix = larger(this.matrix, capacity);
     this.color = larger(this.color, capacity);
     this.capacity = capacity;
-    // The renderer frees the buffers of an instanced mesh when it is disposed of; the mesh itself stays in use.
+    // Disposing of an instanced mesh frees its buffers; the object itself can be used again.
     this.faces.dispose();
     this.faces.instanceMatrix = this.matrix;
     this.faces.instanceColor = this.color;
@@ -231,14 +233,14 @@ class Batch {
   }
 }
 
-/** A copy of a larger capacity. */
+/** Returns a copy with a larger capacity. */
 function larger(old: InstancedBufferAttribute, capacity: number): InstancedBufferAttribute {
   const array = new Float32Array(capacity * old.itemSize);
   array.set(old.array);
   return new InstancedBufferAttribute(array, old.itemSize).setUsage(DynamicDrawUsage);
 }
 
-/** Triangles; in 3D with normals that are smooth but for creases. */
+/** Returns the triangles; in 3D with normals that are smooth except at creases. */
 function facesOf(data: Mesh, flat: boolean): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(data.vertices, 3));
@@ -246,7 +248,7 @@ function facesOf(data: Mesh, flat: boolean): BufferGeometry {
   return flat ? geometry : toCreasedNormals(geometry, CREASE);
 }
 
-/** The edges that the engine chose, such as those between faces at an angle. */
+/** Returns the edges that the engine chose, such as those between faces at an angle. */
 function edgesOf(data: Mesh): InstancedBufferGeometry {
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(data.vertices, 3));
@@ -254,12 +256,12 @@ function edgesOf(data: Mesh): InstancedBufferGeometry {
   return geometry;
 }
 
-/** In 2D areas that are as good as opaque, in 3D shaded faces. */
+/** Returns the material of faces: in 2D nearly opaque areas, in 3D shaded faces. */
 function faceMaterial(alpha: number, flat: boolean): Material {
   const opacity = flat ? 0.92 * (alpha / OPAQUE) : alpha / OPAQUE;
   const options = { transparent: opacity < 1, opacity, depthWrite: !flat && opacity === 1, side: 2 as const };
   if (flat) return new MeshBasicMaterial({ ...options, depthTest: false });
-  // Faces are pushed back a little, so that edges on them are seen.
+  // Faces are offset away from the camera, so that edges on them are visible.
   return new MeshLambertMaterial({
     ...options,
     polygonOffset: true,
@@ -268,7 +270,7 @@ function faceMaterial(alpha: number, flat: boolean): Material {
   });
 }
 
-/** Edges in a darker tone of the object's colour; where there are no faces, the colour itself. */
+/** Returns the material of edges: a darker tone of the object's colour, or the colour itself if there are no faces. */
 function edgeMaterial(alpha: number, hasFaces: boolean): ShaderMaterial {
   const opacity = hasFaces ? 0.35 + 0.4 * (alpha / OPAQUE) : alpha / OPAQUE;
   return new ShaderMaterial({

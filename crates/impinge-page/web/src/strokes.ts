@@ -1,4 +1,4 @@
-// Lines, points and triangles of a frame: one buffer of each, refilled for each frame.
+// Lines, points and triangles of a frame: a buffer for each, refilled for each frame.
 
 import {
   type BufferGeometry,
@@ -22,24 +22,27 @@ import { ORDER } from "./order";
 import type { Frame } from "./protocol";
 
 /**
- * Layers that solids cover where these are nearer. The others lie on the surfaces of solids: rounding decides there which
- * is nearer, so that they are drawn over all solids.
+ * Layers that nearer solids cover. The other layers are on the surfaces of solids, where rounding would decide which is
+ * nearer, so that they are drawn over all solids.
  */
 const IN_DEPTH = new Set(["object", "tight box", "loosened box", "tree"]);
 
-/** The least diameter of a dot, in CSS pixels; half of it where there are more than so many, which would hide all else. */
+/**
+ * The least diameter of a dot, in CSS pixels, and the number of dots above which it is halved, so that they do not hide
+ * all else.
+ */
 const [MIN_DOT, CROWD] = [5, 1000];
 
-/** Line segments of one width, in CSS pixels. */
+/** Line segments of one width in CSS pixels. */
 export class Lines {
   readonly object: LineSegments2;
   private readonly geometry = new LineSegmentsGeometry();
   private readonly material: LineMaterial;
-  /** Six numbers for each segment, in the stage's frame. */
+  /** Six numbers per segment, in the stage's frame. */
   private ends = new Float32Array(0);
-  /** Red, green and blue of linear light for each segment. */
+  /** Red, green and blue in linear light per segment. */
   private colors = new Float32Array(0);
-  /** Segments since `begin`. */
+  /** The number of segments since `begin`. */
   private count = 0;
 
   /** Lines in the order of `ORDER.lines` are tested for depth. */
@@ -48,12 +51,12 @@ export class Lines {
     this.material = new LineMaterial({ linewidth: width, vertexColors: true, depthTest, depthWrite: false });
     this.material.transparent = true;
     this.object = new LineSegments2(this.geometry, this.material);
-    // The bounding sphere of a buffer that changes each frame would have to be computed each frame.
+    // With culling, the bounding sphere would have to be computed for each frame.
     this.object.frustumCulled = false;
     this.object.renderOrder = order;
   }
 
-  /** Removes the segments, and reserves at most so many. */
+  /** Removes the segments, and reserves space for `most`. */
   begin(most: number): void {
     this.count = 0;
     const capacity = grown(this.ends.length / 6, Math.max(most, 1));
@@ -69,12 +72,12 @@ export class Lines {
     this.count += 1;
   }
 
-  /** The ends of the segments. */
+  /** Returns the ends of the segments. */
   points(): Generator<Vector3> {
     return pointsOf(this.ends, 2 * this.count);
   }
 
-  /** Draws and uploads what was added. */
+  /** Draws and uploads the added segments. */
   end(): void {
     this.object.visible = this.count > 0;
     this.geometry.instanceCount = this.count;
@@ -90,7 +93,7 @@ export class Lines {
     this.material.dispose();
   }
 
-  /** New buffers. The layout is that of LineSegmentsGeometry: both ends share one, and both ends have one colour. */
+  /** Creates new buffers in the layout of LineSegmentsGeometry: both ends are in one buffer, and have one colour. */
   private reserve(capacity: number): void {
     this.ends = new Float32Array(6 * capacity);
     this.colors = new Float32Array(3 * capacity);
@@ -104,7 +107,7 @@ export class Lines {
   }
 }
 
-/** Discs of a least and a greatest size on the screen, with a light rim that sets them off from solids. */
+/** Discs with a least and a greatest size on the screen, and a light rim that separates them from solids. */
 export class Dots {
   readonly object: Points<BufferGeometry, ShaderMaterial>;
   private readonly buffers = new Buffers({ position: 3, size: 1, color: 3 });
@@ -115,7 +118,7 @@ export class Dots {
     this.object.renderOrder = ORDER.dots;
   }
 
-  /** `pixels` of the screen for a length of 1, on a screen with so many pixels for one of CSS. */
+  /** Sets the scale: `pixels` of the screen for a length of 1, and `density` pixels of the screen for one of CSS. */
   scale(pixels: number, density: number): void {
     const { uniforms } = this.object.material;
     uniforms.pixels!.value = pixels;
@@ -157,7 +160,10 @@ export class Faces {
     this.object.renderOrder = ORDER.areas;
   }
 
-  /** Copies the triangles of a frame: nine numbers each, and one colour, which its three corners repeat. */
+  /**
+   * Copies the triangles of a frame: nine numbers per triangle, and one colour, which is repeated for its three
+   * corners.
+   */
   update({ triangles, payload }: Frame): void {
     const bytes = payload.bytes(triangles.color);
     this.buffers.reserve(3 * triangles.count);
@@ -172,7 +178,7 @@ export class Faces {
     this.object.visible = triangles.count > 0;
   }
 
-  /** The corners of the triangles. The draw range is what `end` has set. */
+  /** Returns the corners of the triangles. `end` has set the draw range. */
   points(): Generator<Vector3> {
     return pointsOf(this.buffers.array("position"), this.buffers.geometry.drawRange.count);
   }
@@ -183,10 +189,10 @@ export class Faces {
   }
 }
 
-/** All of a frame that is not an object. */
+/** Everything in a frame except objects. */
 export class Strokes {
   readonly group = new Group();
-  /** Lines of `IN_DEPTH`, and all others. */
+  /** Lines of the layers `IN_DEPTH`, and all others. */
   private readonly behind = new Lines(1.5, ORDER.lines);
   private readonly above = new Lines(2.25, ORDER.linesAbove);
   private readonly dots = new Dots();
@@ -201,12 +207,12 @@ export class Strokes {
     this.dots.scale(pixels, density);
   }
 
-  /** The ends of all lines and the corners of all triangles, in the stage's frame. */
+  /** Returns the ends of all lines and the corners of all triangles, in the stage's frame. */
   *points(): Generator<Vector3> {
     for (const part of [this.behind, this.above, this.faces]) yield* part.points();
   }
 
-  /** Replaces all by what a frame has. */
+  /** Replaces the content by that of a frame. */
   update(frame: Frame): void {
     const { lines, payload } = frame;
     const inDepth = frame.layers.map((name) => IN_DEPTH.has(name));
@@ -230,7 +236,7 @@ function* pointsOf(numbers: Float32Array, count: number): Generator<Vector3> {
   for (let point = 0; point < count; point += 1) yield new Vector3().fromArray(numbers, 3 * point);
 }
 
-/** Points with a size in the world that stay legible: from `least` to 11 CSS pixels wide. */
+/** Returns the material of points. Their size is in the world's unit, limited to `least` to 11 CSS pixels. */
 function dotMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: `

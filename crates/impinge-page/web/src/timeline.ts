@@ -1,25 +1,25 @@
-// The time line: a slider over the steps, in front of marks where something happened.
+// The time line: a slider over the steps, in front of marks at the steps at which something happened.
 //
-// The slider is the browser's own, with its pointer, touch and assistive technology. Its thumb is as wide as both margins
-// of the marks together, so that its middle is above the mark of its step.
+// The slider is the browser's own, with its pointer, touch and assistive technology. Its thumb is as wide as both
+// margins of the marks together, so that its middle is above the mark of its step.
 
 import { make } from "./dom";
 import type { Mark } from "./protocol";
 
-/** Marks closer than this, in CSS pixels, are drawn as one. */
+/** The width of a bin in CSS pixels; the marks in a bin are drawn as one. */
 const BIN = 4;
-/** Left and right of the marks: half the width of the thumb, which the style sheet has. */
+/** The margin at the left and right of the marks: half the width of the thumb, which is in the style sheet. */
 const PAD = 10;
-/** In CSS pixels; the style sheet has the same. */
+/** The height in CSS pixels; the style sheet has the same value. */
 const HEIGHT = 58;
-/** From top to bottom: added, removed and changed; started; the track; stopped; proximities and queries. */
+/** Positions from top to bottom: added, removed and changed; started; the track; stopped; proximities and queries. */
 const ROWS = { changed: 8, track: HEIGHT / 2, queries: 50 };
 /** The length of the longest bar. */
 const BAR = 13;
 
-/** In the order of the legend. */
+/** The kinds of marks in the order of the legend. */
 const KINDS = ["started", "stopped", "proximities", "added", "removed", "changed", "queries"] as const;
-/** How often each kind of thing happened. */
+/** The count of each kind. */
 type Counts = Record<(typeof KINDS)[number], number>;
 const NOTHING = Object.fromEntries(KINDS.map((kind) => [kind, 0])) as Counts;
 
@@ -28,9 +28,9 @@ export class Timeline {
   private readonly canvas = make("canvas", { "aria-hidden": "true" });
   private readonly slider = make("input", { type: "range", min: 0, step: 1, value: 0, "aria-label": "Step" });
   private readonly tip = make("span", { class: "tip", "aria-hidden": "true", hidden: true });
-  /** Sums of marks by their bin on the track. */
+  /** The sums of marks in each bin of the track. */
   private bins = new Map<number, Counts>();
-  /** In order of the steps. */
+  /** The marks in order of the steps. */
   private marks: Mark[] = [];
   private steps = 0;
 
@@ -42,7 +42,7 @@ export class Timeline {
     new ResizeObserver(() => this.layout()).observe(this.element);
   }
 
-  /** Sets what is marked, which grows with a live recording. */
+  /** Sets the number of steps and the marks, which grow with a live recording. */
   setMarks(steps: number, marks: Mark[]): void {
     this.steps = steps;
     this.marks = marks;
@@ -50,21 +50,21 @@ export class Timeline {
     this.layout();
   }
 
-  /** Moves the head. */
+  /** Moves the thumb to a step. */
   setStep(step: number): void {
     this.slider.valueAsNumber = step;
     this.slider.setAttribute("aria-valuetext", `step ${step} of ${this.steps}`);
     this.slider.style.setProperty("--played", String(this.part(step)));
   }
 
-  /** The step of the mark after this one, or before it; null where there is none. */
+  /** Returns the step of the next or previous mark; null if there is none. */
   neighbour(step: number, direction: 1 | -1): number | null {
     const found =
       direction > 0 ? this.marks.find((mark) => mark.step > step) : this.marks.findLast((mark) => mark.step < step);
     return found?.step ?? null;
   }
 
-  /** Draws the marks; colours are those of the style sheet. */
+  /** Draws the marks in the colours of the style sheet. */
   draw(): void {
     const context = this.canvas.getContext("2d");
     if (!context) return;
@@ -80,12 +80,12 @@ export class Timeline {
     return this.element.clientWidth;
   }
 
-  /** How far a step is, from 0 at the first to 1 at the last. */
+  /** Returns the position of a step on the track, from 0 at the first to 1 at the last. */
   private part(step: number): number {
     return this.steps === 0 ? 0 : step / this.steps;
   }
 
-  /** From the left end of the track, in CSS pixels. */
+  /** Returns the distance of a step from the left end of the track, in CSS pixels. */
   private x(step: number): number {
     return this.part(step) * (this.width - 2 * PAD);
   }
@@ -94,7 +94,7 @@ export class Timeline {
     return Math.floor(this.x(step) / BIN);
   }
 
-  /** Sums the marks of each few pixels, so that drawing costs what the width is. */
+  /** Sums the marks in each bin, so that the cost of drawing depends on the width alone. */
   private layout(): void {
     const density = window.devicePixelRatio;
     this.canvas.width = Math.round(this.width * density);
@@ -109,7 +109,7 @@ export class Timeline {
     this.draw();
   }
 
-  /** Names what happened under the pointer. */
+  /** Shows the marks under the pointer. */
   private hover(event: PointerEvent): void {
     const part = (event.clientX - this.element.getBoundingClientRect().left - PAD) / (this.width - 2 * PAD);
     const step = Math.round(Math.max(0, Math.min(part, 1)) * this.steps);
@@ -119,7 +119,7 @@ export class Timeline {
     this.tip.style.left = `${Math.max(half, Math.min(PAD + this.x(step), this.width - half))}px`;
   }
 
-  /** The marks that share the bin of a step, in words. */
+  /** Returns the marks in the bin of a step, in words. */
   private happened(step: number): string[] {
     const counts = this.bins.get(this.binOf(step));
     if (!counts) return [];
@@ -127,18 +127,18 @@ export class Timeline {
   }
 }
 
-/** A count with its noun. */
+/** Returns a count with its noun. */
 function describe(kind: (typeof KINDS)[number], count: number): string {
   if (kind === "queries") return count === 1 ? "1 query" : `${count} queries`;
   if (kind === "proximities") return count === 1 ? "1 proximity" : `${count} proximities`;
   return `${count} ${kind}`;
 }
 
-/** Signs differ in form and place, not in colour alone. */
+/** Draws the signs of a bin, which differ in form and place, not only in colour. */
 function drawMark(context: CanvasRenderingContext2D, x: number, counts: Counts, color: (name: string) => string): void {
   context.lineCap = "butt";
   context.lineWidth = BIN - 1;
-  // Twice as many are a fixed bit longer: one and a thousand can both be seen.
+  // The length is logarithmic in the count, so that one and a thousand can both be seen.
   const length = (count: number): number => Math.min(BAR, 4 + 3 * Math.log2(count));
   if (counts.started > 0)
     stroke(context, [x, ROWS.track - 4, x, ROWS.track - 4 - length(counts.started)], color("started"));
@@ -158,7 +158,7 @@ function drawMark(context: CanvasRenderingContext2D, x: number, counts: Counts, 
   if (counts.proximities > 0) ring(context, x, color("proximities"));
 }
 
-/** The sign of queries. */
+/** Draws the sign of queries. */
 function disc(context: CanvasRenderingContext2D, x: number, color: string): void {
   context.beginPath();
   context.arc(x, ROWS.queries, 2.5, 0, 2 * Math.PI);
@@ -166,7 +166,7 @@ function disc(context: CanvasRenderingContext2D, x: number, color: string): void
   context.fill();
 }
 
-/** The sign of changed proximities. */
+/** Draws the sign of changed proximities. */
 function ring(context: CanvasRenderingContext2D, x: number, color: string): void {
   context.beginPath();
   context.arc(x, ROWS.queries, 3, 0, 2 * Math.PI);
@@ -186,7 +186,7 @@ function stroke(
   context.stroke();
 }
 
-/** What the marks mean, for the foot of the page. */
+/** Returns the meaning of the marks, for the foot of the page. */
 export function legend(): HTMLElement {
   const signs = { started: "▮", stopped: "▮", proximities: "○", added: "+", removed: "×", changed: "–", queries: "●" };
   const list = make("ul", { class: "legend", "aria-label": "Marks of the time line" });

@@ -8,9 +8,9 @@ export class Transport {
   /** Hidden for samples, which have no length. */
   readonly timeline: Timeline;
   private readonly play: HTMLButtonElement;
-  /** Pressed while the end of a live recording is followed. */
+  /** The button that is pressed while the end of a live recording is followed. */
   private readonly live: HTMLButtonElement;
-  /** The present step, and the last one of a recording. */
+  /** The current step, and the last step of a recording. */
   private readonly counter = make("output", { class: "counter" });
   private readonly speed = make("select", { "aria-label": "Speed" });
 
@@ -49,13 +49,13 @@ export class Transport {
     this.update();
   }
 
-  /** The stream of a live recording ended: nothing more comes. */
+  /** Shows that the stream of a live recording has ended. */
   ended(): void {
     setText(this.live, "Ended");
     this.live.title = "The recording has ended; show its last step";
   }
 
-  /** Samples have no time line and cannot go back. */
+  /** Arranges the elements. Samples have no time line and cannot go back. */
   private layout(): void {
     const { player } = this;
     const back = button("|◀", () => player.reset(), { "aria-label": "To the start", title: "To the start (Home)" });

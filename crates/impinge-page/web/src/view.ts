@@ -11,7 +11,7 @@ import type { Frame, Info, Vec3 } from "./protocol";
 import { Solids } from "./solids";
 import { Lines, Strokes } from "./strokes";
 
-/** A line that answers a question, and the text at its middle. Its colour is that of the style sheet for its kind. */
+/** A line that answers a question, with a text at its middle. The style sheet has a colour for each kind. */
 export interface AnswerLine {
   ends: [Vec3, Vec3];
   kind: "distance" | "ray";
@@ -21,7 +21,7 @@ export interface AnswerLine {
 /**
  * Draws a stage. Positions of frames are in the stage's frame, those of answers in the world's: see `camera.ts`.
  *
- * A picture is drawn where something changed: `update` after a frame, `answer` after a question, then `render`.
+ * The picture is drawn only after changes: call `update` after a frame, `answer` after a question, then `render`.
  */
 export class View {
   readonly camera: StageCamera;
@@ -34,12 +34,12 @@ export class View {
   private readonly axes: Axes | null;
   private readonly light = new DirectionalLight(0xffffff, 2);
   private readonly grid = new Grid();
-  /** Kept so that another colour scheme can draw them again. */
+  /** The lines of answers, kept to draw them again in another colour scheme. */
   private lines: AnswerLine[] = [];
-  /** The greatest number of pixels for one of CSS. */
+  /** The largest number of pixels of the screen per CSS pixel. */
   private density = 2;
   private readonly up: Vector3;
-  /** What camera, light and grid are laid out for. */
+  /** The bounds for which camera, light and grid were placed. */
   private bounds: Info["bounds"];
 
   constructor(
@@ -62,7 +62,7 @@ export class View {
     this.resize();
   }
 
-  /** Camera, light and grid are laid out for a world of these bounds. The view stays until it is fitted. */
+  /** Places camera, light and grid for these bounds of the world. The view stays the same until `fit`. */
   frame(bounds: Info["bounds"]): void {
     this.bounds = bounds;
     this.camera.frame(bounds, this.origin);
@@ -70,12 +70,12 @@ export class View {
     this.placeLight();
   }
 
-  /** Brings the world and what is drawn around it into the view. */
+  /** Moves the camera so that the world and the drawings around it are in the view. */
   fit(): void {
     this.camera.fit([...this.solids.points(), ...this.strokes.points()]);
   }
 
-  /** Draws another frame; the picture follows with `render`. */
+  /** Takes over another frame, which `render` will draw. */
   update(frame: Frame): void {
     const hasMoved = frame.origin.some((part, axis) => part !== this.origin[axis]);
     this.origin = frame.origin;
@@ -83,7 +83,7 @@ export class View {
     this.strokes.update(frame);
     this.labels.set(frame.labels.map(({ at, text, color }) => ({ at: new Vector3(...at), text, color: css(color) })));
     this.light.shadow.needsUpdate = true;
-    // The origin settles when the stage has its first object: nothing was visible that could jump.
+    // The origin is final once the stage has an object; before that nothing was drawn that could jump.
     if (!hasMoved) return;
     this.frame(this.bounds);
     this.fit();
@@ -115,7 +115,7 @@ export class View {
     this.axes?.place(this.camera);
   }
 
-  /** Takes over the size of the canvas, which the style sheet gives. */
+  /** Takes over the size of the canvas from the style sheet. */
   resize(): void {
     const { clientWidth, clientHeight } = this.renderer.domElement;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, this.density));
@@ -123,14 +123,14 @@ export class View {
     this.camera.resize(clientWidth, clientHeight);
   }
 
-  /** Reads the colours of the style sheet, which follow the reader's scheme. */
+  /** Reads the colours of the style sheet, which depend on the reader's colour scheme. */
   theme(): void {
     this.scene.background = new Color(styleOf("--canvas"));
     this.grid.tint = styleOf("--grid");
     this.answer(this.lines);
   }
 
-  /** Draws without shadows and grid and with a pixel for each of CSS, where drawing takes too long. */
+  /** Draws without shadows and grid, and with one pixel per CSS pixel, since drawing takes too long. */
   simplify(): void {
     this.light.castShadow = false;
     this.grid.visible = false;
@@ -138,7 +138,7 @@ export class View {
     this.resize();
   }
 
-  /** Releases what the graphics memory holds; the renderer stays. */
+  /** Releases the graphics memory; the renderer stays. */
   dispose(): void {
     this.solids.dispose();
     this.strokes.dispose();
@@ -148,7 +148,7 @@ export class View {
     this.camera.dispose();
   }
 
-  /** Light from the sky and one lamp, which casts soft shadows. */
+  /** Adds light from the sky and one lamp, which casts soft shadows. */
   private addLights(): void {
     const sky = new HemisphereLight(0xffffff, 0xb8bec9, 1.7);
     sky.position.copy(this.up);
@@ -156,23 +156,26 @@ export class View {
     light.castShadow = true;
     light.shadow.mapSize.set(2048, 2048);
     light.shadow.radius = 4;
-    // Contacts below a solid must stay legible in its shadow.
+    // Contacts below a solid must be legible in its shadow.
     light.shadow.intensity = 0.45;
-    // Shadows change with the frame, not with the camera: orbiting draws the objects once for each picture, not twice.
+    // Shadows change with the frame, not with the camera: moving the camera draws the objects once per picture, not
+    // twice.
     light.shadow.autoUpdate = false;
     this.scene.add(sky, light, light.target);
   }
 
-  /** The lamp is above the right front of the world; the box of its shadows holds the world. */
+  /** Places the lamp above the right front of the world, and the box of its shadows around the world. */
   private placeLight(): void {
     const { center, radius } = this.camera.sphere;
     const side = Math.abs(this.up.z) > 0.5 ? new Vector3(0.6, -0.35, 0) : new Vector3(0.6, 0, 0.35);
     this.light.target.position.copy(center);
     this.light.position.copy(center).addScaledVector(side.add(this.up), 2 * radius);
     const { shadow } = this.light;
-    // About two texels of the map, in lengths of the world: without it surfaces shade themselves in stripes.
+    // About two texels of the shadow map, as a length in the world: without it surfaces cast stripes of shadow on
+    // themselves.
     shadow.normalBias = radius * 2e-3;
-    // The box lies along the light: wide enough for the ball around the world, from before the lamp to behind the world.
+    // The box is aligned with the light and contains the ball around the world, from before the lamp to behind the
+    // world.
     const half = 1.2 * radius;
     Object.assign(shadow.camera, { left: -half, right: half, top: half, bottom: -half });
     Object.assign(shadow.camera, { near: 0.1 * radius, far: 5 * radius });
@@ -181,7 +184,7 @@ export class View {
   }
 }
 
-/** The renderer of the page: one for all stages, since browsers allow few. */
+/** Creates the renderer of the page: one for all stages, since browsers allow few. */
 export function makeRenderer(canvas: HTMLCanvasElement): WebGLRenderer {
   const renderer = new WebGLRenderer({ canvas, antialias: true });
   renderer.shadowMap.enabled = true;
@@ -189,7 +192,7 @@ export function makeRenderer(canvas: HTMLCanvasElement): WebGLRenderer {
   return renderer;
 }
 
-/** A colour that the style sheet names. */
+/** Returns a colour of the style sheet by its name. */
 function styleOf(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

@@ -1,4 +1,4 @@
-// One open stage: the engine's world, its picture, its panels, and the loop that keeps them together.
+// One open stage: the engine's world, its picture, its panels, and the loop that updates them.
 
 import type { WebGLRenderer } from "three";
 import { ControlForm, type Value } from "./controls";
@@ -14,22 +14,22 @@ import type { Info, Status } from "./protocol";
 import { Transport } from "./transport";
 import { View } from "./view";
 
-/** Panels are written at most so often while time runs, in milliseconds. */
+/** The least time between two updates of the panels while time runs, in milliseconds. */
 const PANEL_PAUSE = 120;
-/** The summary for assistive technology, likewise. */
+/** The least time between two updates of the summary for assistive technology, in milliseconds. */
 const SUMMARY_PAUSE = 1500;
-/** Pictures that take longer than this, in milliseconds, on the average are drawn more simply. */
+/** If pictures take longer than this on average, in milliseconds, they are simplified. */
 const SLOW = 60;
 
-/** What is out of date once the world has changed. */
+/** The parts that a change of the world makes out of date. */
 const ALL = { frame: true, picture: true, panels: true };
 
-/** Owns what belongs to a stage until `close`. Nothing is drawn while nothing changes. */
+/** Owns the parts of a stage until `close`. Nothing is drawn while nothing changes. */
 export class Viewer {
   /** Time. */
   readonly player: Player;
   readonly view: View;
-  /** What is selected. */
+  /** The reader's question: the selected objects, or a ray. */
   readonly inquiry: Inquiry;
   readonly layers: Layers;
   private readonly transport: Transport;
@@ -39,13 +39,13 @@ export class Viewer {
   private readonly events = make("div", { class: "events" });
   private readonly controller = new AbortController();
   private readonly watch: ResizeObserver;
-  /** Running average of the time between pictures while the world moves. */
+  /** The moving average of the time between pictures while the world runs. */
   private pace = 0;
-  /** What differs from the engine's state or from the camera. */
+  /** The parts that are out of date. */
   private stale = { ...ALL };
-  /** The time of the last picture, in milliseconds; none was drawn yet. */
+  /** The time of the last picture, in milliseconds; null before the first. */
   private time: number | null = null;
-  /** When panels and the summary were written last; they are out of date. */
+  /** The times at which panels and summary were written last. */
   private last = { panels: -Infinity, summary: -Infinity };
 
   constructor(
@@ -74,29 +74,29 @@ export class Viewer {
     requestAnimationFrame((time) => this.loop(time));
   }
 
-  /** Aborted by `close`: listeners end with it. */
+  /** A signal that `close` aborts, so that listeners end. */
   get signal(): AbortSignal {
     return this.controller.signal;
   }
 
-  /** The frame, the picture and the panels are made anew. */
+  /** Marks the frame, the picture and the panels as out of date. */
   refresh(): void {
     this.stale = { ...ALL };
     this.last.panels = -Infinity;
   }
 
-  /** Only the camera moved. */
+  /** Marks the picture as out of date, since the camera moved. */
   redraw(): void {
     this.stale.picture = true;
   }
 
-  /** Brings the world into the view. */
+  /** Moves the camera so that the world is in the view. */
   fit(): void {
     this.view.fit();
     this.redraw();
   }
 
-  /** The next step at which something happened, or the one before. */
+  /** Goes to the next or previous step at which something happened. */
   toMark(direction: 1 | -1): void {
     const step = this.transport.timeline.neighbour(this.player.step, direction);
     if (step !== null) this.player.seek(step);
@@ -109,19 +109,19 @@ export class Viewer {
     this.view.dispose();
   }
 
-  /** More of a live recording came. */
+  /** Takes over new data of a live recording. */
   grow(info: Info): void {
     this.player.grow(info);
     this.transport.grow();
     this.view.frame(info.bounds);
   }
 
-  /** The live recording's stream ended. */
+  /** Shows that the stream of a live recording has ended. */
   ended(): void {
     this.transport.ended();
   }
 
-  /** Reports a refusal of the engine; other errors are bugs, and are not caught. */
+  /** Calls `act` and reports an error of the engine; other errors are bugs, and are not caught. */
   attempt(act: () => void): void {
     try {
       act();
@@ -131,12 +131,12 @@ export class Viewer {
     }
   }
 
-  /** The reader operated a control of a sample. */
+  /** Sends a changed control of a sample to the engine. */
   private control(name: string, value: Value): void {
     this.attempt(() => this.player.take(this.engine.control(name, value)));
   }
 
-  /** The engine's state changed. */
+  /** Takes over a changed state of the engine. */
   private take(status: Status): void {
     this.stale = { ...ALL };
     this.form.update(status.controls);
@@ -144,8 +144,10 @@ export class Viewer {
     if (status.diverged) this.complain(`The replay differs from its recording (${status.diverged}).`);
   }
 
-  /** Once for each picture of the screen, until the stage is closed. All times are those of pictures: other clocks
-   * may be ahead of them. */
+  /**
+   * Runs before each picture of the screen, until the stage is closed. All times are those of pictures; other clocks
+   * may be ahead of them.
+   */
   private loop(time: number): void {
     if (this.signal.aborted) return;
     const passed = Math.max(0, time - (this.time ?? time));
@@ -156,14 +158,14 @@ export class Viewer {
     requestAnimationFrame((next) => this.loop(next));
   }
 
-  /** Software rendering is slow: shadows go first. One long pause does not count as slow. */
+  /** Simplifies the picture if pictures take too long, as with software rendering. One long pause does not count. */
   private watchPace(passed: number): void {
     if (!this.player.playing || this.pace > SLOW) return;
     this.pace += (Math.min(passed, 4 * SLOW) - this.pace) / 20;
     if (this.pace > SLOW) this.view.simplify();
   }
 
-  /** Frame before picture, panels last, since they may wait. */
+  /** Updates the frame before the picture; panels are last, since they may wait. */
   private bringUpToDate(time: number): void {
     if (this.stale.frame) {
       this.stale.frame = false;
@@ -189,7 +191,7 @@ export class Viewer {
     this.summarize(time);
   }
 
-  /** In words what is shown, for assistive technology. */
+  /** Writes a summary in words for assistive technology. */
   private summarize(time: number): void {
     const { player } = this;
     if (player.playing && time - this.last.summary < SUMMARY_PAUSE) {
@@ -203,7 +205,7 @@ export class Viewer {
     setText(byId("summary"), [`${step}: ${counts(player.status)}`, ...events].join("; "));
   }
 
-  /** Lays the panels out: the selection stands on top, where it is seen on a narrow screen too. */
+  /** Arranges the panels. The selection is on top, where it is visible on a narrow screen too. */
   private panels(selection: HTMLElement): void {
     const about = [this.info.about, ...this.info.notes]
       .filter(Boolean)
@@ -214,14 +216,14 @@ export class Viewer {
     byId("panels").replaceChildren(selection, world, layers);
   }
 
-  /** Draws at once, so that the canvas is not blank for a moment. */
+  /** Takes over the size of the canvas and draws at once, so that the canvas is not blank for a moment. */
   private resize(): void {
     this.view.resize();
     this.stale.picture = true;
     this.view.render();
   }
 
-  /** The reader's colour scheme changed. */
+  /** Takes over the reader's colour scheme. */
   private recolor(): void {
     this.view.theme();
     this.transport.timeline.draw();
@@ -229,7 +231,7 @@ export class Viewer {
   }
 }
 
-/** What there is, in words. */
+/** Returns the numbers of objects, pairs and contacts in words. */
 function counts({ objects, pairs, contacts }: Status): string {
   return [counted(objects, "object"), counted(pairs, "pair"), counted(contacts, "contact")].join(", ");
 }

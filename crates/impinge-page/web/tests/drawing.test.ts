@@ -1,4 +1,4 @@
-// What the page draws and how it is operated, with the engine of boxes in place of the module.
+// Tests of the drawing and the operation of the page, with the engine of boxes instead of the module.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -18,7 +18,7 @@ const BOUNDS2: [Vec3, Vec3] = [
 ];
 let browser: Browser;
 
-/** The texts in the picture that did not give way. */
+/** Returns the texts that are visible in the picture. */
 function labels(page: Page): Promise<(string | null)[]> {
   return page.$$eval("#labels span", (elements) =>
     elements.filter(({ style }) => style.visibility === "visible").map(({ textContent }) => textContent),
@@ -49,7 +49,7 @@ test("boxes in 2D cover the pixels that the fitted bounds say", options, async (
   await until(page, /step 120/);
   await settle(page);
   const project = await projection2(page, BOUNDS2);
-  // The blue ones are every fourth of rows of eight: columns 0 and 4, rows 0 to 7 at a distance of one.
+  // The blue boxes are every fourth in rows of eight: columns 0 and 4, rows 0 to 7, 1 apart.
   const [low, high] = [project([-0.5, 8, 0]), project([6.5, 0, 0])];
   const seen = await silhouette(page, "blue");
   for (const [one, other] of [
@@ -61,20 +61,20 @@ test("boxes in 2D cover the pixels that the fitted bounds say", options, async (
       `${JSON.stringify(one)} is not ${JSON.stringify(other)}`,
     );
   }
-  // Fifteen boxes of area 1: some are below the normal, and edges are darker.
+  // Fifteen boxes of area 1: normals cover parts of them, and edges are darker.
   const box = (high.x - low.x) / 7;
   const expected = 15 * box * box;
   assert.ok(seen.pixels > 0.8 * expected && seen.pixels < 1.05 * expected, `${seen.pixels} of ${expected} pixels`);
   await page.close();
 });
 
-/** Of the recording at its first step. */
+/** The bounds of the recording at its first step. */
 const BOUNDS3: [Vec3, Vec3] = [
   [-0.5, 0, -0.5],
   [5, 7, 5],
 ];
 
-/** How far the solids are within the projection of the fitted bounds: left, right, above, below. */
+/** Returns the distances of the solids from the projection of the fitted bounds: left, right, above, below. */
 async function margins(page: Page): Promise<number[]> {
   const spots = corners(BOUNDS3).map(await projection3(page, BOUNDS3));
   const [xs, ys] = [spots.map(({ x }) => x), spots.map(({ y }) => y)];
@@ -124,7 +124,7 @@ test("texts that would overlap give way, always the same ones", options, async (
     }
     assert.ok(boxes.length >= 8 && boxes.length < 60, `${boxes.length} of 60 texts`);
     shown.push(boxes.map(({ text }) => text));
-    // Nearer, the points are farther apart than the texts are long.
+    // After zooming in, the distances of the points are larger than the texts.
     for (const key of "++++++++++++") await page.keyboard.press(key as "+");
     await settle(page);
     assert.ok((await labels(page)).length > 2, "some remain");
@@ -272,7 +272,7 @@ test("a file that lacks its engine says so", options, async () => {
 
 test("a sample runs at once, though the clock is ahead of the first picture", options, async () => {
   const { page, errors } = await visit(browser, "about:blank", { fake: true, motion: true });
-  // The pictures of this browser have the times of half a second ago.
+  // In this browser the times of pictures are half a second behind its clock.
   await page.evaluateOnNewDocument(() => {
     const later = performance.now.bind(performance);
     performance.now = () => later() + 500;

@@ -1,6 +1,6 @@
-// A small engine of boxes that do not turn, with the exports of the real one. It serves to look at the page and to measure
-// its drawing without the cost of collision detection; what is asked of it has answers in closed form. `texts2:60` is
-// `boxes2:60` with a text at each box.
+// A small engine of boxes without rotation, with the exports of the real one. With it the page's drawing can be seen
+// and measured without the cost of collision detection. All answers are in closed form. `texts2:60` is `boxes2:60` with
+// a text at each box.
 
 import type { Exports } from "../src/engine";
 import type { Control, FrameText, Label, Section, Vec3 } from "../src/protocol";
@@ -10,16 +10,16 @@ interface Box {
   half: Vec3;
 }
 
-/** A world that is a function of the step. */
+/** A world as a function of the step. */
 interface Stage {
-  /** Each box has a text. */
+  /** Whether each box has a text. */
   isNamed: boolean;
   dimension: 2 | 3;
   steps: number | null;
   boxes: (step: number) => Box[];
 }
 
-/** So many boxes in a square or a cube; `name` is `boxes2:400` or `boxes3:10000`. */
+/** Returns boxes in a square or a cube; `name` is `boxes2:400` or `boxes3:10000`, with their number. */
 function makeStage(name: string, steps: number | null): Stage {
   const isNamed = name.startsWith("texts");
   const dimension = name.includes("2:") ? 2 : 3;
@@ -36,7 +36,7 @@ function makeStage(name: string, steps: number | null): Stage {
   return { isNamed, dimension, steps, boxes };
 }
 
-/** Gap between two boxes along each axis, negative where they overlap. */
+/** Returns the gap between two boxes along each axis, negative if they overlap. */
 function gaps(a: Box, b: Box): Vec3 {
   return a.at.map((part, axis) => Math.abs(part - b.at[axis]!) - a.half[axis]! - b.half[axis]!) as Vec3;
 }
@@ -123,7 +123,7 @@ class FakeEngine {
 
   private go(message: Record<string, unknown>): object {
     const steps = ((message.do === "seek" ? message.step : message.steps) as number) ?? 1;
-    // As the module refuses them.
+    // The module rejects these too.
     if (!(Number.isInteger(steps) && steps >= 0)) return { error: `invalid value: ${steps}`, code: "message" };
     this.step = message.do === "seek" ? steps : this.step + steps;
     this.step = Math.min(this.step, this.stage.steps ?? Infinity);
@@ -204,7 +204,7 @@ class FakeEngine {
     return boxes.map(({ at }, index) => ({ at, text: `number ${index}`, color: 0xff3cc8ff, layer: 0 }));
   }
 
-  /** The box that a line of sight meets first, by its slabs. */
+  /** Returns the first box on a ray, by the slabs of the boxes. */
   private pick(from: Vec3, direction: Vec3): object {
     let best = { object: null as number | null, time: Infinity };
     this.boxes.forEach(({ at, half }, object) => {
@@ -299,7 +299,7 @@ function cubeMesh(dimension: 2 | 3): { vertices: number[]; triangles: number[]; 
   return { vertices, triangles, lines: [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7] };
 }
 
-/** Gathers sections of a payload. */
+/** Collects the sections of a payload. */
 class Writer {
   private readonly parts: (Float32Array | Uint32Array)[] = [];
   private length = 0;
@@ -330,10 +330,10 @@ class Writer {
   }
 }
 
-/** Where messages begin: not at 0, which says that there is no memory. */
+/** The address of messages: not 0, which means that there is no memory. */
 const ADDRESS = 8;
 
-/** The exports of a module whose memory is replaced by each call. */
+/** Returns the exports of a module whose memory is replaced by each call. */
 function fakeExports(): Exports {
   const engine = new FakeEngine();
   const memory = { buffer: new ArrayBuffer(0) };
@@ -359,7 +359,7 @@ function fakeExports(): Exports {
   return { memory, reserve, call, answer_bytes: () => length };
 }
 
-// In the page it takes the place of the module.
+// In the page these exports replace those of the module.
 WebAssembly.instantiate = (async () => ({
   instance: { exports: fakeExports() },
 })) as unknown as typeof WebAssembly.instantiate;

@@ -1,6 +1,6 @@
-// Measures how many pictures a second the page draws while a world of boxes moves, with the engine of boxes, so that
-// drawing alone counts. The time of scripts, the engine of boxes included, says what the page costs where a graphics card
-// draws; without one the rest is the rasterizer's.
+// Measures the pictures per second that the page draws of a moving world, with the engine of boxes, so that the cost is
+// that of drawing. The time of scripts, including the engine of boxes, is the cost of the page with a graphics card;
+// without one the remaining time is that of the rasterizer.
 
 import { findBrowser, launch, settle, until, visit, write } from "./support";
 
@@ -26,7 +26,7 @@ async function main(): Promise<void> {
   await browser.close();
 }
 
-/** Runs in the page: each picture of the moving world is one turn of its loop. */
+/** Runs in the page and counts its pictures: each picture of the moving world is one iteration of its loop. */
 async function countPictures(duration: number): Promise<number> {
   const start = performance.now();
   let pictures = 0;

@@ -1,4 +1,4 @@
-// The whole page: template, bundle, the module of the engine, and recordings whose numbers are known in closed form.
+// Tests of the whole page: template, bundle, the module of the engine, and recordings with known numbers.
 //
 // The recordings are written by `examples/falling_ball.rs`: a ball of radius 0.5 falls from a height of 3, by 0.1 in each
 // step, onto a floor from -4 to 4 whose top is at 0. A second ball rests at x = 2.
@@ -23,7 +23,7 @@ if (!path) console.log("no browser: the tests of the whole page are skipped");
 if (!wasm) console.log("IMPINGE_PAGE_WASM names no module: the tests of the whole page are skipped");
 const options = { skip: !path || !wasm, timeout: 240_000 };
 const module = wasm ? { wasm } : {};
-/** At the first step. */
+/** The bounds of the recordings at the first step. */
 const BOUNDS2: [Vec3, Vec3] = [
   [-4, -1, 0],
   [4, 4, 0],
@@ -44,7 +44,7 @@ function recorded(dimension: 2 | 3): string {
   });
 }
 
-/** The number that a panel lists beside a word. */
+/** Returns the number that a panel lists beside a word. */
 async function listed(page: Page, term: string): Promise<number> {
   const text = await page.$$eval(
     ".selection dt",
@@ -96,7 +96,7 @@ test("recordings of every shape open and run to their end without an error", opt
     await until(page, /^step 1 of 10: \d+ objects/);
     await page.keyboard.press(" ");
     await until(page, /^step 10 of 10/);
-    // Others stand in for the shapes and pair filters of its program, so that the replay differs, and says so.
+    // Stand-ins replace the shapes and pair filters of the recorded program, so that the replay differs and reports it.
     const others = errors.filter((error) => !error.startsWith("banner: The replay differs from its recording (step "));
     assert.deepEqual(others, []);
     await page.close();
@@ -209,7 +209,7 @@ test("a ball in 3D is picked where the camera has it, and the picture covers the
   await page.close();
 });
 
-/** Serves the page and a recording that comes in pieces. */
+/** Serves the page and a recording that arrives in pieces. */
 function serve(recording: Uint8Array): Server {
   const scene = { open: "live", title: "Live", log: "/log" } as const;
   return createServer((request, response) => {
@@ -278,12 +278,12 @@ test(
     await page.evaluate(() => document.querySelector<HTMLButtonElement>("[data-wanted='2']")?.click());
     const shown = await page.$$eval(".card:not([hidden])", (cards) => cards.length);
     assert.equal(shown, dimensions.filter((text) => text === "2D").length);
-    // Every eighth: a browser draws slowly without a GPU, and the engine's own tests run each of them.
+    // Every eighth sample: a browser without a GPU draws slowly, and the engine's own tests run all of them.
     for (const name of names.filter((_, index) => index % 8 === 0)) {
       await page.evaluate((hash) => (location.hash = hash), name);
-      // Without waiting for a picture: software takes its time for ten thousand objects.
+      // Without waiting for a picture: rendering ten thousand objects in software is slow.
       const summary = await until(page, /^step 0: /).catch(() => assert.fail(`${name} does not open`));
-      // A picture of so many objects takes minutes in software; that it opens must do.
+      // A picture of so many objects takes minutes in software, so the test only checks that the sample opens.
       if (/^step 0: \d+\s\d{3} objects/.test(summary)) continue;
       await page.keyboard.press("ArrowRight");
       await until(page, /^step 1: \d/).catch(() => assert.fail(`${name} does not run`));
@@ -303,7 +303,7 @@ test(
     const { page, errors } = await visit(browser, "about:blank", { motion: true, undrawn: true });
     for (const { name } of samples) {
       for (const way of ["link", "reload"]) {
-        // The address of the same file with another sample alone would be no new page.
+        // A change of the sample in the address of the same file would not load the page again.
         if (way === "link") await page.goto("about:blank");
         await (way === "link" ? page.goto(`${address}#sample=${name}`) : page.reload());
         await until(page, /^step [1-9]/).catch(() => assert.fail(`${name} does not run by ${way}`));

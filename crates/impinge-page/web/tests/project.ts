@@ -1,4 +1,5 @@
-// Where points of a world are on the screen, computed here by itself, so that the page's own camera is tested against it.
+// Positions of points of a world on the screen, computed independently of the page's camera, which is tested against
+// them.
 
 import type { Page } from "puppeteer-core";
 import { PerspectiveCamera, Vector3 } from "three";
@@ -22,10 +23,10 @@ async function canvasOf(page: Page): Promise<Rectangle> {
   return box;
 }
 
-/** The part of the canvas that fitted bounds cover. */
+/** The fraction of the canvas that fitted bounds cover. */
 const FILL = 0.9;
 
-/** Of a world in 2D whose bounds were fitted: they fill the height or the width. */
+/** Returns the projection of a world in 2D whose bounds were fitted: they fill the height or the width. */
 export async function projection2(page: Page, [low, high]: [Vec3, Vec3]): Promise<Projection> {
   const { x, y, width, height } = await canvasOf(page);
   const scale = FILL * Math.min(width / (high[0] - low[0]), height / (high[1] - low[1]));
@@ -33,7 +34,7 @@ export async function projection2(page: Page, [low, high]: [Vec3, Vec3]): Promis
   return (at) => ({ x: x + width / 2 + (at[0] - cx) * scale, y: y + height / 2 - (at[1] - cy) * scale });
 }
 
-/** The corners of a box. */
+/** Returns the corners of a box. */
 export function corners([low, high]: [Vec3, Vec3]): Vec3[] {
   return [0, 1, 2, 3, 4, 5, 6, 7].map(
     (bits) => [0, 1, 2].map((axis) => ((bits >> axis) & 1 ? high : low)[axis]!) as Vec3,
@@ -41,8 +42,9 @@ export function corners([low, high]: [Vec3, Vec3]): Vec3[] {
 }
 
 /**
- * Of a world in 3D with y up: its bounds are in the middle of a field of 38 degrees and fill the height or the width. The
- * page solves for the camera; here it is found by trial: centred, then nearer or farther, until nothing changes.
+ * Returns the projection of a world in 3D with y up: its bounds are in the middle of a field of 38 degrees and fill the
+ * height or the width. The page solves for the camera. Here it is found by iteration: centred, then moved nearer or
+ * farther.
  */
 export async function projection3(page: Page, bounds: [Vec3, Vec3]): Promise<Projection> {
   const { x, y, width, height } = await canvasOf(page);
@@ -81,7 +83,7 @@ export interface Silhouette {
   pixels: number;
 }
 
-/** Reads the colours of a screenshot in the page itself, which can decode it. */
+/** Reads the colours of a screenshot in the page, which can decode it. */
 export async function silhouette(page: Page, kind: "blue" | "solid"): Promise<Silhouette> {
   const { x, y, width, height } = await canvasOf(page);
   await page.addStyleTag({ content: "#hint, #labels { display: none }" });
@@ -91,7 +93,7 @@ export async function silhouette(page: Page, kind: "blue" | "solid"): Promise<Si
   return { low: shift(found.low), high: shift(found.high), pixels: found.pixels };
 }
 
-/** Runs in the page. Blue is clearly so; solid differs from the almost grey background by its saturation or its darkness. */
+/** Runs in the page. In blue pixels blue clearly exceeds red and green; solid pixels are darker than the background. */
 async function readPicture(picture: string, kind: "blue" | "solid"): Promise<Silhouette> {
   const image = new Image();
   image.src = `data:image/png;base64,${picture}`;

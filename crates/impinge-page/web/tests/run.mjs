@@ -1,5 +1,5 @@
-// Bundles the tests, which are TypeScript like the page, and runs them by Node's test runner.
-// `node tests/run.mjs look` takes pictures instead; `fps` measures.
+// Bundles the tests, which are TypeScript like the page, and runs them with Node's test runner. `node tests/run.mjs
+// look` takes pictures instead, `fps` measures the drawing.
 
 import { build } from "esbuild";
 import { spawnSync } from "node:child_process";

@@ -1,5 +1,5 @@
-// The schema of scene files, by a validator of JSON Schema that is not ours: it accepts the examples, and refuses
-// the scenes that the loader refuses (crates/impinge-files/tests/it/scenes.rs reads the same list).
+// Tests the schema of scene files with an independent validator of JSON Schema: it accepts the examples, and rejects
+// the scenes that the loader rejects (crates/impinge-files/tests/it/scenes.rs reads the same list).
 
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
@@ -9,7 +9,7 @@ import { Ajv2020 } from "ajv/dist/2020.js";
 
 const files = join(process.cwd(), "../../impinge-files");
 const read = (path: string) => JSON.parse(readFileSync(join(files, path), "utf8")) as unknown;
-// Formats such as `uint32` are notes of the writer: the schema bounds the numbers itself.
+// Formats such as `uint32` are annotations: the schema itself bounds the numbers.
 const accepts = new Ajv2020({ validateFormats: false }).compile(read("scene.schema.json") as object);
 
 test("the schema accepts the example scenes", () => {

@@ -1,4 +1,4 @@
-// Pages from the template, a browser, and what tests read of both.
+// Creates pages from the template, opens them in a browser, and reads values for tests.
 
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
@@ -11,7 +11,7 @@ import type { Scene } from "../src/embedded";
 
 /** The folder of the page's sources; `run.mjs` starts the tests there. */
 const WEB = process.cwd();
-/** Software rendering of ten thousand objects takes long on a busy machine; in milliseconds. */
+/** The timeout in milliseconds: software rendering of ten thousand objects is slow on a busy machine. */
 const PATIENCE = 180_000;
 const FLAGS = [
   "--headless=new",
@@ -21,14 +21,14 @@ const FLAGS = [
   "--enable-unsafe-swiftshader",
 ];
 
-/** What a file is made of. */
+/** The contents of a file. */
 export interface Parts {
   scene: Scene;
   recording?: Uint8Array;
   wasm?: Uint8Array;
 }
 
-/** The path of a browser, or null where there is none. */
+/** Returns the path of a browser, or null if there is none. */
 export function findBrowser(): string | null {
   for (const name of ["chromium", "chromium-browser", "google-chrome"]) {
     try {
@@ -44,18 +44,18 @@ export function launch(path: string): Promise<Browser> {
   return puppeteer.launch({ executablePath: path, args: FLAGS });
 }
 
-/** The module of the engine, whose path is in the environment; null where it was not built. */
+/** Returns the module of the engine, whose path is in the environment; null if it was not built. */
 export function findModule(): Uint8Array | null {
   const path = process.env.IMPINGE_PAGE_WASM;
   return path ? readFileSync(path) : null;
 }
 
-/** The golden recordings of worlds in 2D and 3D. */
+/** Returns the golden recording of worlds in 2D or 3D. */
 export function golden(dimension: 2 | 3): Uint8Array {
   return readFileSync(join(WEB, `../../impinge-record/tests/golden/scene${dimension}.rec`));
 }
 
-/** Fills the template in one pass, so that nothing that is put in is filled again. */
+/** Fills the template in one pass, so that inserted text is not filled again. */
 export function fill({ scene, recording, wasm }: Parts): string {
   const base64 = (bytes: Uint8Array): string => Buffer.from(bytes).toString("base64");
   const escape = (text: string): string => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
@@ -71,14 +71,14 @@ export function fill({ scene, recording, wasm }: Parts): string {
   return template.replace(/\{\{([A-Z]+)\}\}/g, (whole, name: string) => values[name] ?? whole);
 }
 
-/** Writes a file as its receiver would have it. Returns its address. */
+/** Writes a file as the command does, and returns its address. */
 export function write(parts: Parts): string {
   const path = join(mkdtempSync(join(tmpdir(), "page-")), "page.html");
   writeFileSync(path, fill(parts));
   return pathToFileURL(path).href;
 }
 
-/** A page of a browser, and what it complained of. */
+/** A page of a browser, and the errors that it reported. */
 export interface Visit {
   page: Page;
   errors: string[];
@@ -88,13 +88,13 @@ export interface Look {
   width?: number;
   height?: number;
   dark?: boolean;
-  /** A screen that fingers touch. */
+  /** Whether the screen is a touch screen. */
   touch?: boolean;
-  /** With the engine of boxes instead of the module. */
+  /** Whether the engine of boxes replaces the module. */
   fake?: boolean;
-  /** Samples run at once, as they do for readers who do not prefer less motion. */
+  /** Whether samples run at once, as without a preference for reduced motion. */
   motion?: boolean;
-  /** Nothing is drawn: software would take its time, and the test does not look at pictures. */
+  /** Whether drawing is disabled, for tests that need no pictures: rendering in software is slow. */
   undrawn?: boolean;
 }
 
@@ -104,7 +104,7 @@ export async function visit(browser: Browser, address: string, look: Look = {}):
   const errors: string[] = [];
   page.on("pageerror", (error) => errors.push(String(error)));
   page.on("console", (message) => {
-    // Cards ask for thumbnails, which a file on its own does not have.
+    // Cards request thumbnails, which a single file does not have.
     const isThumbnail = message.location().url?.includes("/thumbnails/") ?? false;
     if (message.type() === "error" && !isThumbnail) errors.push(message.text());
   });
@@ -117,7 +117,7 @@ export async function visit(browser: Browser, address: string, look: Look = {}):
     { name: "prefers-color-scheme", value: look.dark ? "dark" : "light" },
     { name: "prefers-reduced-motion", value: look.motion ? "no-preference" : "reduce" },
   ]);
-  // A banner is an error too, however soon it is gone again.
+  // A banner is an error too, even if it is hidden again at once.
   await page.exposeFunction("banner", (text: string) => errors.push(`banner: ${text}`));
   await page.evaluateOnNewDocument(watchBanner);
   if (look.undrawn) await page.evaluateOnNewDocument(drawNothing);
@@ -127,7 +127,7 @@ export async function visit(browser: Browser, address: string, look: Look = {}):
   return { page, errors };
 }
 
-/** Runs in the page: all goes on as it does elsewhere, but for the graphics processor. */
+/** Runs in the page: disables the draw calls of the graphics context; all else is unchanged. */
 function drawNothing(): void {
   const context = WebGL2RenderingContext.prototype;
   context.drawArrays = context.drawElements = context.drawArraysInstanced = context.drawElementsInstanced = () => {};
@@ -146,7 +146,7 @@ function watchBanner(): void {
   });
 }
 
-/** Waits until the summary, which is what assistive technology reads, matches. */
+/** Waits until the summary for assistive technology matches. */
 export async function until(page: Page, pattern: RegExp): Promise<string> {
   await page.waitForFunction(
     (source) => new RegExp(source).test(document.getElementById("summary")?.textContent ?? ""),
@@ -156,7 +156,7 @@ export async function until(page: Page, pattern: RegExp): Promise<string> {
   return page.$eval("#summary", (element) => element.textContent ?? "");
 }
 
-/** Lets the page draw what it has to. */
+/** Waits until the page has drawn. */
 export async function settle(page: Page, milliseconds = 400): Promise<void> {
   await page.evaluate((pause) => new Promise((done) => setTimeout(done, pause)), milliseconds);
 }

@@ -1,4 +1,4 @@
-// The page on a screen that fingers touch: taps, drags and pinches, with the engine of boxes in place of the module.
+// Tests of the page on a touch screen: taps, drags and pinches, with the engine of boxes instead of the module.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -11,7 +11,7 @@ const path = findBrowser();
 if (!path) console.log("no browser: the tests of touches are skipped");
 const options = { skip: path === null, timeout: 120_000 };
 const samples = write({ scene: { open: "samples", title: "Samples" } });
-/** The middles of two boxes at the first step: rows of eight, 1.5 apart, and at twice the height. */
+/** Points of the boxes 0 and 2 at the first step. Boxes are in rows of eight. */
 const [FIRST, THIRD]: [Vec3, Vec3] = [
   [0.2, 0.6, 0],
   [3.2, 0.6, 0],
@@ -44,7 +44,7 @@ async function tap(page: Page, { x, y }: Spot): Promise<string> {
   return textOf(page, ".selection");
 }
 
-/** Two fingers around a point move from one distance to another. */
+/** Moves two fingers around a point from one distance to another. */
 async function pinch(page: Page, { x, y }: Spot, from: number, to: number): Promise<void> {
   const left = await page.touchscreen.touchStart(x - from, y);
   const right = await page.touchscreen.touchStart(x + from, y);
@@ -59,7 +59,7 @@ async function pinch(page: Page, { x, y }: Spot, from: number, to: number): Prom
   await settle(page);
 }
 
-/** Where a spot is once all distances from a fixed one were multiplied. */
+/** Returns the position of a spot after all distances from a fixed spot were multiplied. */
 function magnified(spot: Spot, fixed: Spot, factor: number): Spot {
   return { x: fixed.x + factor * (spot.x - fixed.x), y: fixed.y + factor * (spot.y - fixed.y) };
 }
@@ -69,7 +69,7 @@ test("a tap selects, two taps in the mode of pairs ask for a distance, a tap bes
   assert.match(await tap(page, project(FIRST)), /Object 0\b/);
   await page.tap(".modes button:nth-child(2)");
   assert.match(await tap(page, project(THIRD)), /Pair of 0 and 2[\s\S]*distance\s+2\b/);
-  // In the mode of pairs nothing is under this finger: beside all boxes by more than a finger's width.
+  // In the mode of pairs no box is within a finger's width of this tap.
   assert.equal(await tap(page, project([4, 13.5, 0])), "");
   assert.deepEqual(errors, []);
   await page.close();

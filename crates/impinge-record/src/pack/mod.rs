@@ -1,6 +1,6 @@
 //! Packed recordings: the same calls in about a tenth of the bytes.
 //!
-//! Records are taken apart into streams, and poses are predicted from those before: see `poses.rs`. What remains is small
+//! Records are split into streams, and poses are predicted from earlier ones: see `poses.rs`. The residuals are small
 //! numbers, which deflate compresses.
 
 mod poses;
@@ -18,29 +18,29 @@ const MAGIC: [u8; 8] = *b"\x89IPPAC\r\n";
 
 const PACKED_VERSION: u32 = 1;
 
-/// So many bytes may a recording have that is packed, or that comes of unpacking.
+/// The largest number of bytes of a recording that is packed, or that results from unpacking.
 pub const MAX_UNPACKED: usize = 1 << 30;
 
-/// What the streams of a recording may have in bytes, for each byte of the recording: the least that is taken apart is a
-/// record of one byte and its length.
+/// The largest number of bytes of the streams per byte of the recording: the smallest record that is split has one byte
+/// and its length.
 const STREAM_BYTES: usize = 2;
 
-/// The bytes are those of a packed recording, as far as their beginning says.
+/// Whether the bytes begin with the signature of a packed recording.
 #[must_use]
 pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC)
 }
 
-/// Packs a recording, or the beginning of one that ends with a whole record.
+/// Packs a recording, or the beginning of one that ends with a complete record.
 ///
-/// [`unpack`] gives the same recording to the bit, but for the hashes of objects in its updates, which are left out, since
-/// random bits cannot be packed: a replay that differs is still found at its step, by the hash of the state, and
-/// the object is not named. Updates of version 1 of the format keep them.
+/// [`unpack`] returns the same recording to the bit, except for the hashes of objects in its updates. These are
+/// omitted, since random bits cannot be compressed: a differing replay is still detected at its step, by the hash of
+/// the state, but the object is not named. Updates of version 1 of the format keep them.
 ///
 /// Costs time in proportion to the bytes, and about three times their memory.
 ///
 /// # Errors
-/// If the bytes are no recording, a checksum is wrong, a record is not whole, or the recording has more than
+/// If the bytes are no recording, a checksum is wrong, a record is incomplete, or the recording has more than
 /// [`MAX_UNPACKED`] bytes.
 ///
 /// ```
@@ -73,13 +73,13 @@ pub fn pack(bytes: &[u8]) -> Result<Vec<u8>, ReadError> {
     Ok(sink.bytes)
 }
 
-/// The recording that was packed.
+/// Returns the recording that was packed.
 ///
 /// Costs time in proportion to the bytes of the recording, and about three times their memory. Errors in compressed data have
 /// the offset at which it begins.
 ///
 /// # Errors
-/// If the bytes are of no packed recording of a known version, they were changed, or the recording would have more
+/// If the bytes are no packed recording of a supported version, they were changed, or the recording would have more
 /// than [`MAX_UNPACKED`] bytes.
 pub fn unpack(bytes: &[u8]) -> Result<Vec<u8>, ReadError> {
     let mut source = Source::new(bytes, 0..bytes.len());

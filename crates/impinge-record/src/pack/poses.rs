@@ -1,9 +1,9 @@
 //! Poses as residuals: the difference of each number from a prediction.
 //!
-//! A body that moves is predictable, so each number of a pose is predicted from the last poses of the object in several
-//! ways. The prediction used is the one whose residuals of this number were the shortest lately, which the reader knows
-//! too: nothing is written about it. All is computed by sums, products and quotients of `f64`, in one order, and is the
-//! same on every machine.
+//! The motion of a body is predictable. Each number of a pose is predicted from the last poses of the object in several
+//! ways. The prediction used is the one whose recent residuals of this number were the shortest. The reader knows this
+//! too, so that the choice is not written. All predictions are sums, products and quotients of `f64` in one order, and
+//! are the same on every machine.
 
 use std::collections::BTreeMap;
 
@@ -13,17 +13,17 @@ use crate::bytes::{from_zigzag, zigzag};
 use crate::error::{Problem, ReadError};
 use crate::space::Recordable;
 
-/// What the numbers of a pose are.
+/// The layout of the numbers of a pose.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
     pub(super) scalar_bytes: usize,
-    /// How many numbers the translation has; those of the rotation follow.
+    /// The number of components of the translation; those of the rotation follow.
     pub(super) dimension: usize,
     pub(super) numbers: usize,
 }
 
 impl Layout {
-    /// That of recordings of a scalar of so many bytes, and a dimension.
+    /// Returns the layout of recordings with a scalar of `scalar_bytes` bytes and a dimension.
     pub(super) const fn new(scalar_bytes: u8, dimension: u8) -> Result<Self, Problem> {
         let numbers = match dimension {
             2 => <f64 as Recordable<2>>::ISOMETRY_NUMBERS,
@@ -37,40 +37,41 @@ impl Layout {
         Ok(Self { scalar_bytes, dimension, numbers })
     }
 
-    /// How many bytes a pose has.
+    /// The number of bytes of a pose.
     pub(super) const fn pose_bytes(&self) -> usize {
         self.numbers * self.scalar_bytes
     }
 
-    /// The ones are the bits that a number has.
+    /// A mask of the bits of a number.
     const fn mask(&self) -> u64 {
         u64::MAX >> (64 - 8 * self.scalar_bytes)
     }
 
-    /// Bits as an integer, so that the order of numbers is the order of integers.
+    /// Maps bits to an integer, so that the order of numbers is the order of integers.
     pub(super) const fn ordered(&self, bits: u64) -> u64 {
         let sign = self.mask() ^ (self.mask() >> 1);
         if bits & sign == 0 { bits | sign } else { !bits & self.mask() }
     }
 
-    /// The bits of [`Self::ordered`].
+    /// The inverse of [`Self::ordered`].
     const fn unordered(&self, integer: u64) -> u64 {
         let sign = self.mask() ^ (self.mask() >> 1);
         if integer & sign == 0 { !integer & self.mask() } else { integer ^ sign }
     }
 
-    /// The difference of two ordered integers modulo the bits of a number, as a small unsigned one.
+    /// Returns the difference of two ordered integers modulo the bits of a number, as an unsigned number that is small
+    /// for small differences.
     pub(super) const fn residual(&self, actual: u64, predicted: u64) -> u64 {
         let unused = 64 - 8 * self.scalar_bytes;
         zigzag((actual.wrapping_sub(predicted) << unused).cast_signed() >> unused)
     }
 
-    /// The integer with this residual from a prediction.
+    /// Returns the integer with this residual from a prediction.
     const fn with_residual(&self, predicted: u64, residual: u64) -> u64 {
         predicted.wrapping_add_signed(from_zigzag(residual)) & self.mask()
     }
 
-    /// The bits of the numbers of a pose.
+    /// Returns the bits of the numbers of a pose.
     pub(super) fn bits(&self, bytes: &[u8]) -> Bits {
         let mut bits = [0; MAX_NUMBERS];
         for (own, number) in bits.iter_mut().zip(bytes.chunks_exact(self.scalar_bytes)) {
@@ -81,23 +82,23 @@ impl Layout {
         bits
     }
 
-    /// The bytes of the numbers of a pose.
+    /// Returns the bytes of the numbers of a pose.
     pub(super) fn bytes(&self, bits: &Bits) -> Vec<u8> {
         let number = |bits: &u64| bits.to_le_bytes().into_iter().take(self.scalar_bytes);
         bits.iter().take(self.numbers).flat_map(number).collect()
     }
 }
 
-/// How an object gets a pose.
+/// The reason why an object has a new pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PoseKind {
-    /// It is set there.
+    /// Its position was set.
     Moved,
-    /// It is added there, or a key frame says that it is there: most likely where it was last.
+    /// It was added, or it is in a key frame: most likely at its last position.
     Placed,
 }
 
-/// The objects of a recording by index, as far as it was packed or unpacked.
+/// The objects of a recording by index, up to the current record.
 #[derive(Debug)]
 pub(super) struct Poses {
     layout: Layout,

@@ -1,4 +1,4 @@
-//! Records taken apart into streams, and put together again.
+//! Splits records into streams, and rebuilds them.
 
 use std::collections::BTreeMap;
 
@@ -12,24 +12,24 @@ use crate::log::{Cursor, Header, Log, Raw};
 /// The bytes of an update before the flag of the hashes of objects.
 const UPDATE_BYTES: usize = 28;
 
-/// A description of at most so many bytes is not written again. Those of longer ones would let few packed bytes become
+/// The largest length in bytes of a description that is not repeated. Otherwise a few packed bytes could unpack to
 /// many.
 const REPEATED_BYTES: usize = 256;
 
 /// The bytes of the descriptions of objects by index: shape, groups, query type and data.
 type Descriptions = BTreeMap<u32, Vec<u8>>;
 
-/// A recording in streams.
+/// A recording split into streams.
 #[derive(Debug)]
 pub(super) struct Packed {
     pub(super) streams: Streams,
-    /// The bytes of the recording that unpacking gives.
+    /// The number of bytes of the unpacked recording.
     pub(super) length: u64,
     /// Its last checksum.
     pub(super) checksum: u32,
 }
 
-/// Takes records apart.
+/// Splits records.
 #[derive(Debug)]
 pub(super) struct Packer {
     layout: Layout,
@@ -43,7 +43,7 @@ pub(super) struct Packer {
 }
 
 impl Packer {
-    /// For recordings with this header.
+    /// Creates a packer for recordings with this header.
     pub(super) fn new(header: &Header) -> Result<Self, ReadError> {
         let layout = Layout::new(header.scalar_bytes, header.dimension);
         let layout = layout.map_err(|problem| ReadError { offset: 0, problem })?;
@@ -81,7 +81,7 @@ impl Packer {
         Ok(Packed { streams: self.streams, length, checksum })
     }
 
-    /// Notes bytes that unpacking gives, before a checksum.
+    /// Counts bytes of the unpacked recording, before a checksum.
     fn count(&mut self, parts: &[&[u8]]) {
         for part in parts {
             self.checksum.update(part);
@@ -96,7 +96,7 @@ impl Packer {
         plain.bytes.extend(bytes);
     }
 
-    /// An update without the hashes of objects.
+    /// Adds an update without the hashes of objects.
     fn update(&mut self, hashes: &[u8]) {
         self.streams.sink(PLAIN).bytes.extend(hashes);
         let mut head = Sink::default();
@@ -130,7 +130,7 @@ impl Packer {
         source.finish()
     }
 
-    /// The length of a list, whose elements follow.
+    /// Adds the length of a list, whose elements follow.
     fn list(&mut self, source: &mut Source<'_>) -> Result<usize, ReadError> {
         let length = source.count(4)?;
         self.streams.sink(PLAIN).varint(length as u64);
@@ -155,7 +155,7 @@ impl Packer {
         Ok(())
     }
 
-    /// The index of an object, which it returns, and the pose.
+    /// Adds the index of an object, which it returns, and the pose.
     fn pose(&mut self, source: &mut Source<'_>, kind: PoseKind) -> Result<u32, ReadError> {
         let index = source.word()?;
         let difference = i64::from(index) - i64::from(self.index);
@@ -167,7 +167,7 @@ impl Packer {
     }
 }
 
-/// Keeps a short description, so that it is not written again.
+/// Stores a short description, so that it is not written again.
 fn remember(descriptions: &mut Descriptions, index: u32, description: &[u8]) {
     if description.len() <= REPEATED_BYTES {
         descriptions.insert(index, description.to_vec());
@@ -176,7 +176,7 @@ fn remember(descriptions: &mut Descriptions, index: u32, description: &[u8]) {
     }
 }
 
-/// Puts records together.
+/// Rebuilds records.
 #[derive(Debug)]
 pub(super) struct Unpacker {
     layout: Layout,
@@ -185,12 +185,12 @@ pub(super) struct Unpacker {
     descriptions: Descriptions,
     /// The last index read.
     index: u32,
-    /// The bytes that the recording has.
+    /// The number of bytes of the recording.
     limit: usize,
 }
 
 impl Unpacker {
-    /// For a recording of `limit` bytes.
+    /// Creates an unpacker for a recording of `limit` bytes.
     pub(super) fn new(layout: Layout, streams: Inflated, limit: usize) -> Self {
         let (poses, descriptions) = (Poses::new(layout), Descriptions::new());
         Self { layout, streams, poses, descriptions, index: 0, limit }
@@ -212,7 +212,7 @@ impl Unpacker {
         Ok(log)
     }
 
-    /// No more bytes than the recording has.
+    /// Checks that the result does not exceed the length of the recording.
     fn check(&self, length: usize) -> Result<(), ReadError> {
         let problem = Problem::BadValue { what: "the length of the recording" };
         if length <= self.limit { Ok(()) } else { Err(ReadError { offset: 0, problem }) }
@@ -261,7 +261,7 @@ impl Unpacker {
         Ok(())
     }
 
-    /// The length of a list, whose elements follow.
+    /// Reads the length of a list, whose elements follow.
     fn list(&mut self, sink: &mut Sink) -> Result<u32, ReadError> {
         let length = self.list_length()?;
         sink.word(length);
@@ -281,7 +281,7 @@ impl Unpacker {
         Ok(())
     }
 
-    /// The index of an object, which it returns, and the pose.
+    /// Reads the index of an object, which it returns, and the pose.
     fn pose(&mut self, sink: &mut Sink, kind: PoseKind) -> Result<u32, ReadError> {
         let difference = from_zigzag(self.streams.pull(INDICES, Source::varint)?);
         let index = u32::try_from(i64::from(self.index).wrapping_add(difference));

@@ -1,4 +1,4 @@
-//! The streams of a packed recording, each compressed by itself.
+//! The streams of a packed recording, each compressed separately.
 
 use miniz_oxide::deflate::compress_to_vec;
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
@@ -6,34 +6,34 @@ use miniz_oxide::inflate::decompress_to_vec_with_limit;
 use crate::bytes::{Sink, Source};
 use crate::error::{Problem, ReadError};
 
-/// Kinds of records, lengths, and all fields but those of the other streams.
+/// Kinds of records, lengths, and all fields without a stream of their own.
 pub(super) const PLAIN: usize = 0;
 /// Differences of the indices of objects.
 pub(super) const INDICES: usize = 1;
 /// The low bits of residuals, which are nearly random.
 pub(super) const BITS: usize = 2;
-/// The symbols of the first number of poses; a stream for each number follows.
+/// The symbols of the first number of poses; the streams of the other numbers follow.
 pub(super) const SYMBOLS: usize = 3;
 
-/// The slowest level of deflate but for the exhaustive one.
+/// The slowest level of deflate except the exhaustive one.
 const LEVEL: u8 = 9;
 
-/// Numbers below this are symbols of their own.
+/// Numbers below this are symbols.
 const SMALL: u64 = 16;
 /// The length in bits of the smallest other number.
 const SHORTEST: u32 = 5;
 
-/// Streams being written.
+/// Streams for writing.
 #[derive(Debug)]
 pub(super) struct Streams {
     sinks: Vec<Sink>,
-    /// Bits that fill no byte yet: the oldest are the lowest.
+    /// Bits that do not fill a byte yet: the oldest are the lowest.
     open: u64,
     open_bits: u32,
 }
 
 impl Streams {
-    /// Streams for poses of so many numbers.
+    /// Creates streams for poses of `numbers` numbers.
     pub(super) fn new(numbers: usize) -> Self {
         Self { sinks: vec![Sink::default(); SYMBOLS + numbers], open: 0, open_bits: 0 }
     }
@@ -42,8 +42,8 @@ impl Streams {
         &mut self.sinks[stream]
     }
 
-    /// A residual of a number of a pose. A small one is a symbol. Of another the symbol says the length and the
-    /// two highest bits, and the others are bits.
+    /// Writes a residual of a number of a pose. A small one is a symbol. For a larger one the symbol encodes
+    /// the length and the two highest bits, and the other bits go to the stream of bits.
     pub(super) fn residual(&mut self, number: usize, residual: u64) {
         let length = u64::BITS - residual.leading_zeros();
         let (symbol, low) = match length.checked_sub(SHORTEST) {
@@ -58,7 +58,7 @@ impl Streams {
         self.bits(residual, low);
     }
 
-    /// The lowest `count` bits of a value, in bytes of which the lowest bit is the first.
+    /// Writes the lowest `count` bits of a value; the first bit is the lowest of its byte.
     fn bits(&mut self, value: u64, count: u32) {
         for bit in 0..count {
             self.open |= (value >> bit & 1) << self.open_bits;
@@ -70,7 +70,7 @@ impl Streams {
         }
     }
 
-    /// Compresses all streams: their number, then for each its length and the compressed bytes.
+    /// Compresses all streams and writes their number, then for each its length and the compressed bytes.
     pub(super) fn write(mut self, sink: &mut Sink) {
         self.sinks[BITS].long(self.open);
         sink.count(self.sinks.len());
@@ -81,7 +81,7 @@ impl Streams {
     }
 }
 
-/// Streams being read.
+/// Streams for reading.
 #[derive(Debug)]
 pub(super) struct Inflated {
     streams: Vec<Stream>,
@@ -89,17 +89,17 @@ pub(super) struct Inflated {
     open_bits: u32,
 }
 
-/// A stream, and how far it was read.
+/// A stream, and the position up to which it was read.
 #[derive(Debug)]
 struct Stream {
     bytes: Vec<u8>,
     at: usize,
-    /// Where its compressed bytes begin.
+    /// The offset of its compressed bytes.
     offset: usize,
 }
 
 impl Inflated {
-    /// Streams that have at most `limit` bytes together.
+    /// Reads streams that have at most `limit` bytes together.
     pub(super) fn read(source: &mut Source<'_>, mut limit: usize) -> Result<Self, ReadError> {
         // The last bits fill eight bytes.
         limit += 8;
@@ -131,17 +131,17 @@ impl Inflated {
         value.map_err(|error| ReadError { offset: *offset, ..error })
     }
 
-    /// An error in a stream.
+    /// Returns an error in a stream.
     pub(super) fn error(&self, stream: usize, problem: Problem) -> ReadError {
         ReadError { offset: self.streams.get(stream).map_or(0, |stream| stream.offset), problem }
     }
 
-    /// All bytes of the stream were read.
+    /// Whether all bytes of the stream were read.
     pub(super) fn is_read(&self, stream: usize) -> bool {
         self.streams.get(stream).is_none_or(|stream| stream.at == stream.bytes.len())
     }
 
-    /// A residual of a number of a pose.
+    /// Reads a residual of a number of a pose.
     pub(super) fn residual(&mut self, number: usize) -> Result<u64, ReadError> {
         let symbol = u64::from(self.pull(SYMBOLS + number, Source::byte)?);
         let Some(above) = symbol.checked_sub(SMALL) else { return Ok(symbol) };

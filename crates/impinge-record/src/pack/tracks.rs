@@ -4,36 +4,37 @@ use std::array;
 
 use super::poses::{Layout, PoseKind};
 
-/// So many numbers has a pose at most.
+/// The largest number of numbers of a pose.
 pub(super) const MAX_NUMBERS: usize = 7;
 
-/// The bits of the numbers of a pose; those that it does not have are 0.
+/// The bits of the numbers of a pose; unused ones are 0.
 pub(super) type Bits = [u64; MAX_NUMBERS];
 
 type Numbers = [f64; MAX_NUMBERS];
 
-/// So many ways are there to predict a number.
+/// The number of predictions of a number.
 const CANDIDATES: usize = 4;
 
 /// Predictions as ordered integers.
 pub(super) type Predictions = [Bits; CANDIDATES];
 
-/// How many poses are remembered.
+/// The number of stored poses.
 const HISTORY: usize = 5;
 
-/// What is remembered of an object.
+/// The stored poses and costs of an object.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Track {
     last: Bits,
-    /// The last poses, the latest first. NaN and infinities predict nothing.
+    /// The last poses, the latest first. NaN and infinities are not used for predictions.
     history: [Numbers; HISTORY],
-    /// For each number and candidate: an average of the lengths of its residuals in sixteenths of a bit, of which the
-    /// latest has a quarter.
+    /// For each number and candidate an average of the lengths of its residuals in sixteenths of a bit; the latest
+    /// residual has a weight of a quarter.
     costs: [[u32; CANDIDATES]; MAX_NUMBERS],
 }
 
 impl Track {
-    /// Each candidate for each number. An object that is placed is predicted to be where it was.
+    /// Returns the prediction of each candidate for each number. An object that is placed is predicted at its last
+    /// position.
     pub(super) fn predictions(&self, layout: &Layout, kind: PoseKind) -> Predictions {
         let last = self.last.map(|bits| layout.ordered(bits));
         if kind == PoseKind::Placed {
@@ -52,16 +53,16 @@ impl Track {
         [*same, first, second, third]
     }
 
-    /// The candidates that compute: the last step again, the last two steps with their change, and the mean
-    /// of some steps again.
+    /// Returns the extrapolations: the last step repeated, the last two steps with their change, and the mean of some
+    /// steps repeated.
     fn extrapolated(&self, layout: &Layout) -> [Numbers; CANDIDATES - 1] {
         let [now, before, earlier, _, earliest] = &self.history;
         let mut again: Numbers = array::from_fn(|i| now[i] + (now[i] - before[i]));
         let bent = array::from_fn(|i| 3.0 * (now[i] - before[i]) + earlier[i]);
         let mean = array::from_fn(|i| now[i] + (now[i] - earliest[i]) / 4.0);
-        // The rotation of the last step again. For complex numbers and quaternions
+        // The last step of the rotation repeated. For complex numbers and quaternions
         // q1 q0^-1 q1 = (2 (q0 . q1) q1 - |q1|^2 q0) / |q0|^2.
-        // Those of poses are not unit to the last bit, and a small difference is many residuals.
+        // Rotations of poses are not unit to the last bit, and a small difference changes many residuals.
         let rotation = layout.dimension..layout.numbers;
         let dot = |one: &Numbers, two: &Numbers| {
             rotation.clone().fold(0.0, |sum, i| sum + one[i] * two[i])
@@ -74,13 +75,13 @@ impl Track {
         [again, bent, mean]
     }
 
-    /// The prediction of the candidate that was best lately, the first of several.
+    /// Returns the prediction of the candidate with the lowest cost, the first of several.
     pub(super) fn best(&self, number: usize, predictions: &Predictions) -> u64 {
         let costs = self.costs[number].iter().zip(predictions);
         costs.min_by_key(|(cost, _)| **cost).map_or(0, |(_, prediction)| prediction[number])
     }
 
-    /// Remembers a pose.
+    /// Stores a pose.
     pub(super) fn learn(
         &mut self,
         layout: &Layout,
@@ -110,7 +111,7 @@ impl Track {
     }
 }
 
-/// The number of these bits; exact.
+/// Returns the number of these bits; exact.
 fn number_of(bits: u64, layout: &Layout) -> f64 {
     match u32::try_from(bits) {
         Ok(bits) if layout.scalar_bytes == 4 => f64::from(f32::from_bits(bits)),
@@ -118,7 +119,7 @@ fn number_of(bits: u64, layout: &Layout) -> f64 {
     }
 }
 
-/// The bits of the nearest number of the recording's scalar.
+/// Returns the bits of the nearest number of the scalar of the recording.
 #[expect(clippy::cast_possible_truncation, reason = "the nearest number is meant")]
 fn bits_of(number: f64, layout: &Layout) -> u64 {
     match layout.scalar_bytes {

@@ -1,4 +1,4 @@
-//! Bytes that are no recording give errors with offsets, and never a panic.
+//! Bytes that are no recording: errors with offsets, and no panic.
 
 use impinge::dim2::math::Isometry;
 use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
@@ -60,7 +60,7 @@ fn every_flipped_byte_is_an_error() {
     }
 }
 
-/// What lies behind the checksums: errors, other worlds, or the same one.
+/// Changed bytes with correct checksums: errors, other worlds, or the same world.
 #[test]
 fn every_flipped_byte_with_right_checksums() {
     let bytes = small();
@@ -132,7 +132,7 @@ fn a_length_beyond_the_end_is_refused_before_memory_is_taken() {
     assert_eq!(error, ReadError { offset: 12, problem: Problem::Truncated });
 }
 
-/// Another position than was recorded: the first step and object are named.
+/// Another position than the recorded one: the first step and object are reported.
 #[test]
 fn a_divergence_names_the_object() {
     let bytes = small();

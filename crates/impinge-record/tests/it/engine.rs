@@ -1,4 +1,4 @@
-//! The calls of those who write engines, recorded and replayed.
+//! Calls for physics engines, recorded and replayed.
 
 use std::num::NonZeroU64;
 
@@ -9,12 +9,13 @@ use impinge_record::{Problem, Recorder, Replay, pack, unpack, validate};
 
 use crate::scene::{Stage, words};
 
-/// Balls that move through each other, with every call; the recording, with a key frame now and then.
+/// Returns the recording of balls that move through each other, with every call and with optional key
+/// frames.
 pub(crate) fn written<N: Stage<D>, const D: usize>(key_frames: Option<u64>) -> Vec<u8> {
     play::<N, D>(key_frames).0
 }
 
-/// The recording, and the words of the world after each update.
+/// Returns the recording, and the words of the world after each update.
 fn play<N: Stage<D>, const D: usize>(key_frames: Option<u64>) -> (Vec<u8>, Vec<Vec<String>>) {
     let mut recorder = Recorder::new(N::lit(0.02), N::registry()).expect("a usable margin");
     if let Some(every) = key_frames.and_then(NonZeroU64::new) {
@@ -102,7 +103,7 @@ fn calls_of_engines_in_3d() {
     check::<f64, 3>();
 }
 
-/// Records that name objects which are not there, or have bad numbers, are errors.
+/// Records with unknown objects or invalid numbers are errors.
 #[test]
 fn calls_about_nobody_are_errors() {
     let bytes = written::<f32, 2>(None);

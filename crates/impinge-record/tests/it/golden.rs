@@ -1,9 +1,9 @@
-//! Recordings in the repository, of each version of the format: it must not change unnoticed.
+//! Recordings in the repository, of each version of the format: the format must not change unnoticed.
 //!
-//! `golden/scene2.rec` and `golden/scene3.rec` are of version 1, those in `golden/version2/` of version 2. They have
-//! every shape, call and question of these, and are read as long as the version is known. Those in `golden/version3/`
-//! have the calls that came with version 3. If answers change on purpose, or
-//! the format gets a new version, run `IMPINGE_BLESS=1 cargo test -p impinge-record golden` and commit the files.
+//! `golden/scene2.rec` and `golden/scene3.rec` have version 1, those in `golden/version2/` version 2. They have every
+//! shape, call and question of these versions, and are read as long as the version is supported. Those in
+//! `golden/version3/` have the calls that came with version 3. If results change on purpose, or the format gets a new
+//! version, run `IMPINGE_BLESS=1 cargo test -p impinge-record golden` and commit the files.
 
 use std::num::NonZeroU64;
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ fn written<N: Stage<D>, const D: usize>() -> Vec<u8> {
     scene.recorder.finish().bytes
 }
 
-/// Without calls that came with version 3 the records of version 2 are the same.
+/// Without the calls of version 3 the records of version 2 are equal.
 fn in_version_2(bytes: &[u8]) -> Vec<u8> {
     let mut earlier = bytes.to_vec();
     earlier[8] = 2;
@@ -37,7 +37,7 @@ fn in_version_2(bytes: &[u8]) -> Vec<u8> {
     earlier
 }
 
-/// The same calls and hashes in version 1 of the format: its updates have no numbers of events, and no flag.
+/// Converts to version 1 of the format: its updates have no numbers of events, and no flag.
 fn in_version_1(bytes: &[u8], scalar_bytes: usize) -> Vec<u8> {
     let word = |at: usize| {
         let bytes = bytes[at..at + 4].try_into().expect("four bytes");
@@ -73,7 +73,7 @@ fn check_engine<N: Stage<D>, const D: usize>(name: &str) {
     compare::<N, D>(&bytes, &format!("version3/{name}"));
 }
 
-/// The file has these bytes, and is the recording of a world that has the same bits today.
+/// The file has these bytes, and the replay of its recording has the same bits.
 fn compare<N: Stage<D>, const D: usize>(bytes: &[u8], name: &str) {
     if std::env::var_os("IMPINGE_BLESS").is_some() {
         std::fs::write(file(name), bytes).expect("the golden file can be written");
@@ -96,7 +96,7 @@ fn golden_in_3d() {
     check_engine::<f64, 3>("engine3.rec");
 }
 
-/// A ball that turns, falls and is placed anew: each prediction of packing is the best one for some steps.
+/// A ball that rotates, falls and is placed again: each prediction of packing is the best one for some steps.
 fn turning() -> Vec<u8> {
     let recorder = Recorder::<f32, 3, u32>::new(0.02, Registry::new());
     let every = NonZeroU64::new(10).expect("not zero");
@@ -116,7 +116,7 @@ fn turning() -> Vec<u8> {
     recorder.finish().bytes
 }
 
-/// What was packed by version 1 of packing can be unpacked to the bit.
+/// Recordings that version 1 of packing wrote can be unpacked to the bit.
 #[test]
 fn golden_packed() {
     let packed = pack(&turning()).expect("a recording");

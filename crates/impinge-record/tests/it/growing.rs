@@ -1,4 +1,4 @@
-//! Recordings that grow, that end early, and what happened in them.
+//! Recordings that grow, that end early, and their time lines.
 
 use impinge::dim2::math::{Isometry, Point};
 use impinge::dim2::shape::{Ball, Polyline, ShapeHandle};
@@ -165,8 +165,8 @@ fn a_changed_world_is_undone_by_the_next_seek() -> Result<(), impinge_record::Re
     Ok(())
 }
 
-/// A long line that is bent anew at each step, with balls on it: its search tree is refitted in the recorded world and
-/// built in the replay.
+/// A long polyline that is deformed at each step, with balls on it: its search tree is refitted in the recorded world
+/// and built in the replay.
 #[test]
 fn deformed_shapes_have_the_same_bits() -> Result<(), impinge_record::RecordError> {
     let mut recorder = balls()?;

@@ -1,4 +1,4 @@
-//! Recordings: the same bits when replayed, in every direction, and errors for all other bytes.
+//! Recordings: the same bits in a replay, in every direction, and errors for all other bytes.
 
 mod damage;
 mod engine;

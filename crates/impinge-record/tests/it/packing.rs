@@ -60,7 +60,7 @@ fn a_recording_without_its_end() {
     assert_eq!(cut.problem, Problem::Truncated);
 }
 
-/// Bits that no computation gives: NaN with a payload, infinities, subnormal numbers.
+/// Bits that no computation returns: NaN with a payload, infinities, subnormal numbers.
 #[test]
 fn any_bits_of_positions() {
     let mut recorder = Recorder::<f32, 3, u32>::new(0.02, Registry::new()).expect("usable");
@@ -111,7 +111,7 @@ fn damaged_packed_bytes_are_errors() {
     for place in 0..packed.len() {
         let mut other = packed.clone();
         other[place] ^= 0x21;
-        // Bits that fill up the last byte of a compressed stream mean nothing.
+        // Bits that fill up the last byte of a compressed stream are ignored.
         if let Ok(same) = unpack(&other) {
             assert!(same == unpack(&packed).expect("it is whole"), "byte {place}");
         }
@@ -135,7 +135,8 @@ fn declared_lengths_are_bounded() {
     assert_eq!(unpack(&other).expect_err("no scalar").problem, Problem::Scalar { found: 5 });
 }
 
-/// Bytes of a packed pose of 32 bytes: 200 balls move as `pose` of the ball and the time says.
+/// Returns the bytes of a packed pose, unpacked 32 bytes: 200 balls move by `pose`, a function of the ball and the
+/// time.
 fn bytes_per_pose(mut pose: impl FnMut(u32, f64) -> Isometry<f32>) -> f64 {
     const BALLS: u32 = 200;
     const STEPS: u32 = 300;
@@ -160,7 +161,7 @@ fn bytes_per_pose(mut pose: impl FnMut(u32, f64) -> Isometry<f32>) -> f64 {
     packed.len() as f64 / f64::from(BALLS * STEPS)
 }
 
-/// Numbers between -1 and 1 that look random.
+/// Returns pseudorandom numbers between -1 and 1.
 fn random(seed: u64) -> f64 {
     let mixed = (seed + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let mixed = (mixed ^ (mixed >> 31)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -173,8 +174,8 @@ fn turned(axis: [f64; 3], angle: f64, at: [f64; 3]) -> Isometry<f32> {
     Isometry::from_parts(at.cast::<f32>().into(), turn.cast::<f32>())
 }
 
-/// Bodies as a program in `f32` moves them, with its rounding errors: thrown from a height, they turn, bounce on a half-space
-/// and come to rest.
+/// Bodies as a program in `f32` moves them, with its rounding errors: thrown from a height, they rotate, bounce on a
+/// half-space and come to rest.
 fn integrated() -> impl FnMut(u32, f64) -> Isometry<f32> {
     struct Body {
         at: Vector3<f32>,

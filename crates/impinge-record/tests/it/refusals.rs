@@ -1,4 +1,4 @@
-//! What cannot be recorded is refused, with the reason, and changes nothing.
+//! Calls that cannot be recorded return an error with the reason, and change nothing.
 
 use impinge::bounding_volume::Aabb;
 use impinge::dim2::math::{Isometry, Point};
@@ -7,7 +7,7 @@ use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
 use impinge::shape::{Ball, Shape};
 use impinge_record::{Problem, RecordError, Recorder, Registry, Replay, validate};
 
-/// A shape of a user's own.
+/// A shape of a user type.
 #[derive(Debug)]
 struct Coin(Ball<f64>);
 

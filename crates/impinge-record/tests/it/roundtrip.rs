@@ -1,4 +1,4 @@
-//! A replay has the bits of what was recorded.
+//! A replay has the bits of the recorded world.
 
 use impinge::world::{CollisionObject, CollisionWorld};
 use impinge_record::{Header, Replay, validate};
@@ -28,8 +28,8 @@ fn filled<N: Stage<D>, const D: usize>() -> Scene<N, D> {
     scene
 }
 
-/// Steps in an order that goes forwards and backwards, near and far; `before` updates came before the first
-/// words.
+/// Seeks steps in an order that goes forwards and backwards, near and far; `before` updates came before the
+/// first words.
 fn check<N: Stage<D>, const D: usize>(played: &Played, before: usize) {
     let registry = N::registry();
     assert_eq!(validate::<N, D, u32>(&played.bytes, &registry), Ok(None), "the same bits");
@@ -65,7 +65,7 @@ fn every_shape_and_call_in_3d() {
     in_every_way::<f64, 3>();
 }
 
-/// A world with a history: objects were removed in an order that is not that of the handles.
+/// Returns a world with a history: objects were removed in an order other than that of the handles.
 fn old_world<N: Stage<D>, const D: usize>() -> CollisionWorld<N, D, u32> {
     let mut scene = filled::<N, D>();
     (0..5).for_each(|step| scene.step(step).expect("the calls are allowed"));

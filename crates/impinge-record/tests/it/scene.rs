@@ -17,13 +17,13 @@ use impinge_record::{
     Registry, Scalar,
 };
 
-/// What a dimension adds to the scene.
+/// The parts of the scene that differ by dimension.
 pub(crate) trait Stage<const D: usize>: Recordable<D> {
-    /// Shapes of this dimension alone.
+    /// Returns shapes that exist in this dimension only.
     fn own_shapes() -> Vec<ShapeHandle<Self, D>>;
-    /// A registry with the filter `odd`.
+    /// Returns a registry with the filter `odd`.
     fn registry() -> Registry<Self, D, u32>;
-    /// A turned pose at a place.
+    /// Returns a rotated pose at a position.
     fn placed(x: f64, y: f64) -> Self::Isometry;
 }
 
@@ -119,7 +119,7 @@ pub(crate) fn shapes<N: Stage<D>, const D: usize>() -> Vec<ShapeHandle<N, D>> {
     all
 }
 
-/// The recorder of a scene, and where its objects are.
+/// The recorder of a scene, and the positions of its objects.
 pub(crate) struct Scene<N: Stage<D>, const D: usize> {
     pub(crate) recorder: Recorder<N, D, u32>,
     handles: Vec<CollisionObjectHandle>,
@@ -127,13 +127,13 @@ pub(crate) struct Scene<N: Stage<D>, const D: usize> {
 }
 
 impl<N: Stage<D>, const D: usize> Scene<N, D> {
-    /// Without objects.
+    /// Creates a scene without objects.
     pub(crate) fn new() -> Self {
         let recorder = Recorder::new(N::lit(0.02), N::registry()).expect("a usable margin");
         Self { recorder, handles: Vec::new(), shapes: shapes::<N, D>() }
     }
 
-    /// Goes on with a world of objects.
+    /// Continues with a world that has objects.
     pub(crate) fn of_world(world: CollisionWorld<N, D, u32>) -> Self {
         let handles = world.collision_objects().map(CollisionObject::handle).collect();
         let recorder = Recorder::of_world(world, N::lit(0.02), N::registry());
@@ -160,7 +160,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         Ok(())
     }
 
-    /// The calls of a step, which differ from step to step, and an update.
+    /// Makes the calls of a step, which differ from step to step, and updates.
     pub(crate) fn step(&mut self, step: u32) -> Result<(), RecordError> {
         let moved =
             self.handles.iter().zip(0_u32..).filter(|(_, id)| (id + step).is_multiple_of(3));
@@ -208,7 +208,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         Ok(())
     }
 
-    /// Each question once.
+    /// Asks each question once.
     fn ask(&mut self) -> Result<(), RecordError> {
         let far = N::lit(10.0);
         let mut right = Vector::<N, D>::zeros();
@@ -242,7 +242,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
     }
 }
 
-/// What the scene is in a world, in words that have all bits.
+/// Returns the state of the scene in a world as text that has all bits.
 pub(crate) fn words<N: Recordable<D>, const D: usize>(
     world: &CollisionWorld<N, D, u32>,
 ) -> Vec<String> {

@@ -1,4 +1,4 @@
-//! Closed meshes and lines that were made solid are so in a replay.
+//! Closed meshes and polylines that were made solid are solid in a replay.
 
 use impinge::dim2::math::Isometry as Isometry2;
 use impinge::dim3::math::Isometry as Isometry3;

@@ -1,4 +1,4 @@
-//! The samples, one to a file, by what they show.
+//! The samples, one per file, by subject.
 
 pub(crate) mod motion;
 pub(crate) mod pairs;

@@ -1,4 +1,4 @@
-//! What the texts of the samples say about worlds and pairs of shapes.
+//! Checks the statements of the texts of samples about worlds and pairs of shapes.
 
 use impinge_samples::ControlValue;
 
@@ -22,7 +22,7 @@ fn every_pair_of_kinds_has_contacts() {
     every_pair_touches::<3>();
 }
 
-/// The greatest deviation of a normal from the vertical on the way over the floor and back.
+/// Returns the largest deviation of a normal from the vertical on the path over the floor and back.
 fn greatest_lean<const D: usize>(contacts: &str) -> f32
 where
     f32: Stage<D>,
@@ -78,7 +78,7 @@ fn contacts_are_the_same_at_every_size() {
     scales_exactly::<3>();
 }
 
-/// Whether contacts pushed the ball up, and down, on its way up and down again.
+/// Returns whether contacts pushed the ball up, and down, while it rose and fell.
 fn pushes<const D: usize>(is_one_sided: bool) -> [bool; 2]
 where
     f32: Stage<D>,

@@ -1,4 +1,4 @@
-//! What holds of every sample.
+//! Properties of every sample.
 
 use std::collections::BTreeSet;
 
@@ -52,7 +52,7 @@ where
     assert_eq!(drawn(running).broken, 0, "{} draws what is finite", entry.name);
 }
 
-/// What the sample claims to show can be seen now.
+/// Whether the claimed property of the sample is visible now.
 fn is_shown<const D: usize>(entry: &Entry, running: &Running<D>) -> bool
 where
     f32: Stage<D>,
@@ -82,7 +82,7 @@ where
     }
     check_finite(entry, &running);
     assert!(shown, "{} shows {:?}", entry.name, entry.shows);
-    // Another start is in the same recording.
+    // A restart is in the same recording.
     running.restart().expect("it starts again");
     advance(entry, &mut running);
     assert_eq!(running.step(), 1, "{} counts its steps anew", entry.name);
@@ -120,7 +120,7 @@ fn every_sample_is_the_same_on_every_run() {
     }
 }
 
-/// The least, the middle and the greatest value.
+/// Returns the minimum, the middle and the maximum.
 fn values(control: &Control) -> Vec<ControlValue> {
     match control.kind {
         ControlKind::Number { min, max, .. } => {
@@ -146,7 +146,7 @@ where
             advance(entry, &mut running);
             check_finite(entry, &running);
         }
-        // Back to what it was, so that each is tried by itself.
+        // Resets the control, so that each is tested alone.
         running.set_control(control.name, &first_value(&control)).expect("its own value");
     }
     refuse_controls(&mut running);

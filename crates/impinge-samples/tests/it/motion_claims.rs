@@ -1,4 +1,4 @@
-//! What the texts of the samples say about objects that move.
+//! Checks the statements of the texts of samples about moving objects.
 
 use std::collections::BTreeSet;
 
@@ -115,7 +115,7 @@ fn bullets_never_pass_walls() {
     never_pass::<3>();
 }
 
-/// The pairs of objects that overlap, but for links that share a joint, by looking at all of them.
+/// Returns the overlapping pairs of objects, except links that share a joint, by testing all pairs.
 fn overlaps<const D: usize>(objects: &[&Object<D>]) -> BTreeSet<String>
 where
     f32: Stage<D>,
@@ -212,7 +212,7 @@ fn the_gripper_stops_at_contact() {
     }
 }
 
-/// How many boxes, balls and capsules entered.
+/// Returns how many boxes, balls and capsules entered.
 fn entered<const D: usize>() -> [[i32; 3]; 2]
 where
     f32: Stage<D>,

@@ -51,7 +51,7 @@ where
     running.set_control(name, &ControlValue::Choice(word.to_owned())).expect("a known word");
 }
 
-/// What a readout says.
+/// Returns the value of a readout.
 pub(crate) fn readout<const D: usize>(running: &Running<D>, label: &str) -> String
 where
     f32: Recordable<D>,
@@ -61,7 +61,7 @@ where
     found.unwrap_or_else(|| panic!("a readout {label:?}")).value
 }
 
-/// The object of a label.
+/// Returns the object of a label.
 pub(crate) fn labelled<'a, const D: usize>(world: &'a World<D>, label: &str) -> &'a Object<D>
 where
     f32: Recordable<D>,
@@ -70,7 +70,7 @@ where
     objects.find(|object| object.data() == label).expect("an object of this label")
 }
 
-/// The position of an object as queries about two shapes take it.
+/// Returns the position of an object as the type of queries about two shapes.
 pub(crate) fn position<const D: usize>(object: &Object<D>) -> na::Isometry<f32, Rotation<f32, D>, D>
 where
     f32: Space<D>,
@@ -80,7 +80,7 @@ where
     na::Isometry::from_parts(pose.translation.into(), rotation)
 }
 
-/// Counts lines, and those that are not finite.
+/// Counts lines, and lines that are not finite.
 #[derive(Debug, Default)]
 pub(crate) struct Count {
     pub(crate) lines: usize,
@@ -98,7 +98,7 @@ where
     }
 }
 
-/// What a sample draws beside its objects.
+/// Returns the counts of a sample's drawing beside its objects.
 pub(crate) fn drawn<const D: usize>(running: &Running<D>) -> Count
 where
     f32: Recordable<D>,

@@ -1,4 +1,4 @@
-//! Pictures as they were when somebody looked at them.
+//! Compares pictures with golden images.
 
 use crate::scenes::{boxes, glass, hills, plane};
 use impinge::dim3::math::Vector;

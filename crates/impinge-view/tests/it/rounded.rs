@@ -1,4 +1,4 @@
-//! The surfaces of rounded 3D solids: closed, on the solid, and as large as they should be.
+//! The surfaces of rounded 3D solids: closed, on the solid, and of the expected area.
 
 use impinge::debug_render::{MeshOptions, ShapeMesh};
 use impinge::dim3::math::{Isometry, Point, Vector};
@@ -40,7 +40,7 @@ fn volume(mesh: &ShapeMesh<f64, 3>) -> f64 {
     mesh.triangles.iter().map(of).sum()
 }
 
-/// Points on a sphere in no particular places.
+/// Returns points on a sphere in general position.
 fn hull(count: u32) -> ConvexHull<f64> {
     let point = |index: u32| {
         let n = f64::from(index);

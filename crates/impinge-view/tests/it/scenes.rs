@@ -1,4 +1,4 @@
-//! Meshes by hand and scenes of them.
+//! Hand-made meshes and scenes of them.
 
 use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};
 use impinge::dim3::math::{Isometry, Point, Vector};

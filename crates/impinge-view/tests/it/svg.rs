@@ -1,4 +1,4 @@
-//! Documents that parse, and what is in them.
+//! Parses SVG documents and checks their content.
 
 use crate::scenes::{INK, ball_mesh, box_mesh, boxes, hills, plane};
 use impinge::debug_render::{DebugRender, Drawn, ShapeMesh};
@@ -80,7 +80,8 @@ fn hidden_lines_of_a_box_are_the_three_behind() {
     assert_eq!(hidden, 3, "those that meet at the farthest corner");
 }
 
-/// Of a ball without lines the outline is all there is; it is closed and nothing hides it.
+/// The picture of a ball without lines is its silhouette, which is closed and not hidden by the
+/// ball.
 #[test]
 fn the_outline_of_a_ball_is_not_hidden_by_the_ball() {
     for direction in [[0.0, 0.0, -1.0], [-0.6, -0.5, -1.0], [0.3, -1.0, 0.2]] {

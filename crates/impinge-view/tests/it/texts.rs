@@ -1,4 +1,4 @@
-//! Texts and legends: which pixels they cover, and which they leave alone.
+//! Texts and legends: the pixels that they cover.
 
 use crate::scenes::{INK, RED, box_mesh, plane};
 use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -8,13 +8,13 @@ use impinge_view::{Camera, Image, PngPicture, SvgPicture};
 
 const BLACK: Color = Color::rgb(0, 0, 0);
 
-/// A picture of a square from -1 to 1, without anything in it yet.
+/// Returns an empty picture of a square from -1 to 1.
 fn framed(size: [u32; 2]) -> PngPicture {
     let corners = [Point::new(-1.0, -1.0, 0.0), Point::new(1.0, 1.0, 0.0)];
     PngPicture::new(Camera::plane().fit(corners), size).with_margin(0.0)
 }
 
-/// The least and the largest column and row of pixels that differ from the background.
+/// Returns the smallest and the largest column and row of pixels that differ from the background.
 fn extent(image: &Image) -> Option<[[u32; 2]; 2]> {
     let [width, height] = image.size();
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));

@@ -1,4 +1,4 @@
-//! Where the answers go: a column for each fact, in the caller's memory.
+//! Output columns: one column for each component of a result, in the caller's memory.
 
 use super::BatchError;
 use crate::chunks::Cut;
@@ -9,26 +9,26 @@ use crate::query::{
 };
 use crate::shape::FeatureId;
 
-/// The feature of an element without an answer.
+/// The feature of an element without a result.
 pub const NO_FEATURE: FeatureId = FeatureId::Face(u32::MAX);
 
-/// The part of an element without an answer.
+/// The part of an element without a result.
 const NO_PART: u32 = u32::MAX;
 
-/// Slots for the answers of a batch.
+/// Output columns of a batch.
 pub(super) trait AnswerColumns: Cut {
-    /// Each column has a slot for each of `len` elements, or none where that is allowed.
+    /// Returns an error unless each column has `len` slots, or is empty where that is allowed.
     fn check(&self, len: usize) -> Result<(), BatchError>;
 }
 
-/// A column by itself is wanted.
+/// A single column must not be empty.
 impl<T: Send> AnswerColumns for &mut [T] {
     fn check(&self, len: usize) -> Result<(), BatchError> {
         as_long_as(len, "out", self)
     }
 }
 
-/// An array has an element for each of a batch.
+/// Returns an error unless `array` has `needed` elements.
 pub(super) const fn as_long_as<T>(
     needed: usize,
     argument: &'static str,
@@ -38,7 +38,7 @@ pub(super) const fn as_long_as<T>(
     if given == needed { Ok(()) } else { Err(BatchError::Length { argument, given, needed }) }
 }
 
-/// Columns with these fields are cut and checked field by field.
+/// Implements cutting and checking for a struct of columns, field by field.
 macro_rules! columns {
     ($name:ident<$($parameter:ident),+> [$($generics:tt)+]: $($field:ident),+) => {
         impl<'a, $($generics)+> Cut for $name<'a, $($parameter),+> {
@@ -60,7 +60,7 @@ macro_rules! columns {
     };
 }
 
-/// Slots for the answers of [`PairBatch::closest_points`](super::PairBatch::closest_points).
+/// Output columns of [`PairBatch::closest_points`](super::PairBatch::closest_points).
 ///
 /// Points are on the surfaces, in the world frame.
 ///
@@ -73,11 +73,13 @@ macro_rules! columns {
 /// ```
 #[derive(Debug, Default)]
 pub struct ClosestColumns<'a, N: Real, const D: usize> {
-    /// How far apart the solids are: zero if they touch or overlap, infinite beyond the limit.
+    /// The distance of the solids: zero if they touch or overlap, infinite beyond the limit.
     pub distance: &'a mut [N],
-    /// The nearest point of the first solid; NaN if they touch or overlap, and beyond the limit.
+    /// The nearest point of the first solid; NaN if the solids touch or overlap, and beyond the
+    /// limit.
     pub point1: &'a mut [[N; D]],
-    /// The nearest point of the second solid, as the first.
+    /// The nearest point of the second solid; NaN if the solids touch or overlap, and beyond the
+    /// limit.
     pub point2: &'a mut [[N; D]],
 }
 
@@ -94,7 +96,7 @@ impl<N: Real, const D: usize> ClosestColumns<'_, N, D> {
     }
 }
 
-/// Slots for the answers of [`PairBatch::witnesses`](super::PairBatch::witnesses).
+/// Output columns of [`PairBatch::witnesses`](super::PairBatch::witnesses).
 ///
 /// ```
 /// use impinge::dim3::batch::WitnessColumns;
@@ -105,7 +107,7 @@ impl<N: Real, const D: usize> ClosestColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct WitnessColumns<'a, N: Real, const D: usize> {
-    /// How far apart the shapes are, negative where they overlap; infinite beyond the limit.
+    /// The signed distance of the shapes, negative where they overlap; infinite beyond the limit.
     pub distance: &'a mut [N],
     /// The point on the surface of the first shape, in the world frame.
     pub point1: &'a mut [[N; D]],
@@ -142,7 +144,7 @@ impl<N: Real, const D: usize> WitnessColumns<'_, N, D> {
     }
 }
 
-/// Slots for the answers of [`PairBatch::contacts`](super::PairBatch::contacts).
+/// Output columns of [`PairBatch::contacts`](super::PairBatch::contacts).
 ///
 /// ```
 /// use impinge::dim3::batch::ContactColumns;
@@ -153,7 +155,7 @@ impl<N: Real, const D: usize> WitnessColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct ContactColumns<'a, N: Real, const D: usize> {
-    /// How deep the solids overlap along the normal, minus the distance when apart; minus infinity without a
+    /// The penetration along the normal, minus the distance when apart; minus infinity without a
     /// contact.
     pub depth: &'a mut [N],
     /// The unit vector from the first solid to the second.
@@ -176,7 +178,7 @@ impl<N: Real, const D: usize> ContactColumns<'_, N, D> {
     }
 }
 
-/// Slots for the answers of [`PairBatch::impacts`](super::PairBatch::impacts).
+/// Output columns of [`PairBatch::impacts`](super::PairBatch::impacts).
 ///
 /// ```
 /// use impinge::dim2::batch::ImpactColumns;
@@ -187,7 +189,7 @@ impl<N: Real, const D: usize> ContactColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct ImpactColumns<'a, N: Real, const D: usize> {
-    /// When the solids first touch, zero or more; infinite without an impact.
+    /// The time at which the solids first touch, zero or more; infinite without an impact.
     pub time: &'a mut [N],
     /// The unit vector from the first solid to the second at that time.
     pub normal: &'a mut [[N; D]],
@@ -199,7 +201,7 @@ pub struct ImpactColumns<'a, N: Real, const D: usize> {
     pub part1: &'a mut [u32],
     /// The part of the second shape that touches; 0 for a convex solid.
     pub part2: &'a mut [u32],
-    /// How sure the impact is; `None` without one.
+    /// The reliability of the impact; `None` without one.
     pub status: &'a mut [Option<ImpactStatus>],
 }
 
@@ -221,7 +223,7 @@ impl<N: Real, const D: usize> ImpactColumns<'_, N, D> {
     }
 }
 
-/// Slots for the answers of [`PointBatch::project`](super::PointBatch::project).
+/// Output columns of [`PointBatch::project`](super::PointBatch::project).
 ///
 /// ```
 /// use impinge::dim3::batch::ProjectionColumns;
@@ -232,7 +234,7 @@ impl<N: Real, const D: usize> ImpactColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct ProjectionColumns<'a, N: Real, const D: usize> {
-    /// The nearest point of the shape or of its boundary, in the world frame.
+    /// The projection of the given point on the shape or its boundary, in the world frame.
     pub point: &'a mut [[N; D]],
     /// The given point lies in the shape or on its boundary.
     pub is_inside: &'a mut [bool],
@@ -258,7 +260,7 @@ impl<N: Real, const D: usize> ProjectionColumns<'_, N, D> {
     }
 }
 
-/// Slots for the answers of [`RayColumns::cast`](super::RayColumns::cast).
+/// Output columns of [`RayColumns::cast`](super::RayColumns::cast).
 ///
 /// ```
 /// use impinge::dim3::batch::HitColumns;
@@ -269,10 +271,10 @@ impl<N: Real, const D: usize> ProjectionColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct HitColumns<'a, N: Real, const D: usize> {
-    /// When the ray hits, in units of its direction; infinite if it does not.
+    /// The time of the hit, in units of the ray's direction; infinite without a hit.
     pub time: &'a mut [N],
-    /// The unit vector out of the shape where it is hit, in the world frame; zero where a ray of a solid query
-    /// starts inside, NaN without a hit.
+    /// The outward unit normal of the shape at the hit, in the world frame; zero if a ray of a
+    /// solid query starts inside, NaN without a hit.
     pub normal: &'a mut [[N; D]],
     /// The part of a composite that is hit; 0 for a convex solid.
     pub part: &'a mut [u32],
@@ -292,7 +294,7 @@ impl<N: Real, const D: usize> HitColumns<'_, N, D> {
     }
 }
 
-/// Fills a slot, if the column has slots.
+/// Writes a slot, if the column is not empty.
 #[inline]
 fn put<T>(column: &mut [T], slot: usize, value: T) {
     if let Some(place) = column.get_mut(slot) {
@@ -300,7 +302,7 @@ fn put<T>(column: &mut [T], slot: usize, value: T) {
     }
 }
 
-/// The coordinates of a point or vector; NaN for none.
+/// Returns the coordinates of a point or vector; NaN for `None`.
 #[inline]
 fn array<N: Real, const D: usize>(point: Option<Point<N, D>>) -> [N; D] {
     let nowhere = || Vector::<N, D>::repeat(N::lit(f64::NAN));

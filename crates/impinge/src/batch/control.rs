@@ -8,17 +8,19 @@ use std::sync::{Mutex, PoisonError};
 use super::BatchError;
 use crate::chunks::{CHUNK, Cut, PerChunk, each_chunk};
 
-/// Gets the number of finished elements.
+/// A callback that receives the number of finished elements.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Chunks whose lists are joined at a time: what they hold beside the joined list stays bounded.
+/// Chunks that are computed before their lists are joined; bounds the memory of lists not yet
+/// joined.
 const CHUNKS_PER_WAVE: usize = 1024;
 
-/// Hears of the progress of a batch, and may cancel it.
+/// Reports the progress of a batch, and may cancel it.
 ///
-/// The callback gets the number of elements finished so far after each chunk of 64 elements; the last call
-/// gets all. If it breaks, the batch ends with [`BatchError::Cancelled`] and the callback is not called again.
-/// The numbers ascend. With the feature `parallel` calls come from the threads of the pool, one at a time.
+/// The callback receives the number of elements finished so far after each chunk of 64 elements,
+/// all of them at last. If it breaks, the batch ends with [`BatchError::Cancelled`] and the
+/// callback is not called again. The numbers ascend. With the feature `parallel` the calls come
+/// from the threads of the pool, one at a time.
 ///
 /// ```
 /// use core::ops::ControlFlow;
@@ -44,13 +46,13 @@ pub struct Control<'a> {
 }
 
 impl<'a> Control<'a> {
-    /// To the end, without a word.
+    /// Creates a control without a callback: the batch runs to its end.
     #[must_use]
     pub const fn new() -> Self {
         Self { report: None }
     }
 
-    /// Calls with the number of finished elements after each chunk.
+    /// Creates a control that calls `report` with the number of finished elements after each chunk.
     #[must_use]
     pub const fn with_progress(report: &'a (dyn Fn(usize) -> ControlFlow<()> + Sync)) -> Self {
         Self { report: Some(report) }
@@ -63,10 +65,10 @@ impl fmt::Debug for Control<'_> {
     }
 }
 
-/// How far a batch is.
+/// Progress of a batch.
 pub(crate) struct Progress<'a> {
     report: Option<Report<'a>>,
-    /// What the callback was told last. It is locked while the callback runs.
+    /// The number last reported. Locked while the callback runs.
     done: Mutex<usize>,
     is_cancelled: AtomicBool,
 }
@@ -77,7 +79,7 @@ impl<'a> Progress<'a> {
         Self { report: control.report, done: Mutex::new(0), is_cancelled }
     }
 
-    /// Does a whole batch, chunk by chunk.
+    /// Runs a whole batch, chunk by chunk.
     pub(crate) fn run<C: Cut>(
         &self,
         count: usize,
@@ -87,7 +89,7 @@ impl<'a> Progress<'a> {
         self.each(0..count, columns, &work)
     }
 
-    /// Does a whole batch whose chunks yield lists, and hands these on in order.
+    /// Runs a whole batch whose chunks yield lists, and passes these to `take` in order.
     pub(crate) fn collect<T: Default + Send>(
         &self,
         count: usize,
@@ -131,7 +133,7 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Some more elements are finished.
+    /// Reports that `count` more elements are finished.
     fn advance(&self, count: usize) -> ControlFlow<()> {
         let Some(report) = self.report else { return ControlFlow::Continue(()) };
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);

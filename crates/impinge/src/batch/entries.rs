@@ -1,4 +1,4 @@
-//! The entries of batches.
+//! The entries of batches, compiled in this crate.
 
 use super::{
     BatchError, ClosestColumns, ContactColumns, Control, HitColumns, ImpactColumns, ManifoldRows,
@@ -13,7 +13,7 @@ use crate::tables::compiled;
 type Done = Result<(), BatchError>;
 
 compiled! {
-    /// Batches.
+    /// Entries of batches.
     trait BatchEntries where feature = "batch";
 
     fn distances(pairs: &PairBatch<'_, N, D>, control: &Control<'_>, out: &mut [N]) -> Done =
@@ -55,7 +55,7 @@ compiled! {
         out: ImpactColumns<'_, N, D>,
     ) -> Done = pairs::impacts;
 
-    /// `asked` has the prediction and the greatest number of points of a manifold.
+    /// `asked` has the prediction and the maximum number of points of a manifold.
     fn manifolds(
         pairs: &PairBatch<'_, N, D>,
         asked: (&ContactPrediction<N>, Option<usize>),
@@ -63,7 +63,7 @@ compiled! {
         out: &mut ManifoldRows<N, D>,
     ) -> Done = manifolds::manifolds;
 
-    /// The nearest pair of all.
+    /// The nearest of all pairs.
     fn nearest(
         pairs: &PairBatch<'_, N, D>,
         limit: N,

@@ -1,8 +1,8 @@
-//! Why a batch has no answers.
+//! Errors of a batch.
 
 use core::fmt;
 
-/// Why a batch was refused, or ended early.
+/// The reason why a batch was refused, or ended early.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Shapes, Side};
@@ -18,74 +18,75 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BatchError {
-    /// An array is not as long as the batch.
+    /// The length of an array differs from that of the batch.
     Length {
-        /// What the array is called.
+        /// The name of the array.
         argument: &'static str,
-        /// How many elements it has.
+        /// Its length.
         given: usize,
-        /// How many it needs.
+        /// The required length.
         needed: usize,
     },
     /// A flat array ends within a row.
     PartialRow {
-        /// What the array is called.
+        /// The name of the array.
         argument: &'static str,
-        /// How many numbers it has.
+        /// Its length.
         given: usize,
-        /// How many numbers make a row.
+        /// The length of a row.
         width: usize,
     },
-    /// An element picks a shape that there is not.
+    /// An element picks a shape that does not exist.
     Pick {
-        /// The element.
+        /// The index of the element.
         index: usize,
-        /// What it picks.
+        /// The picked index.
         pick: u32,
-        /// How many shapes there are.
+        /// The number of shapes.
         shapes: usize,
     },
-    /// A matrix is no pose.
+    /// A matrix is not a pose.
     Matrix {
-        /// The number of the matrix.
+        /// The index of the matrix.
         index: usize,
-        /// What is wrong with it.
+        /// The reason.
         error: MatrixError,
     },
-    /// The distance up to which pairs are wanted is negative or NaN.
+    /// The distance limit of pairs is negative or NaN.
     Distance {
         /// The distance.
         value: f64,
     },
-    /// There is no tile of this number, or no tile at all.
+    /// There is no tile with this number, or the number of tiles is zero.
     NoTile {
         /// The number of the tile.
         tile: u32,
-        /// How many tiles there are.
+        /// The number of tiles.
         tiles: u32,
     },
-    /// A cut between tiles is across no axis, not finite, or outside what it shall cut.
+    /// A cut between tiles has an axis that does not exist, is not finite, or lies outside the
+    /// region that it cuts.
     TileCut {
-        /// The number of the cut.
+        /// The index of the cut.
         index: usize,
         /// Its axis: 0 for x.
         axis: u32,
-        /// Where it cuts the axis.
+        /// Its position on the axis.
         at: f64,
     },
     /// There are more elements than 32 bits can number.
     TooMany {
-        /// How many were given.
+        /// The number of elements given.
         given: usize,
     },
     /// The callback of the [`Control`](super::Control) ended the batch.
     Cancelled {
-        /// How many elements it was told are done.
+        /// The number of elements last reported.
         done: usize,
     },
 }
 
-/// Why a matrix is no pose; rows and columns are counted from zero.
+/// The reason why a matrix is not a pose; rows and columns are counted from zero.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Matrices, MatrixError};
@@ -115,14 +116,14 @@ pub enum MatrixError {
     },
     /// Two columns of the rotation are not perpendicular, or one is not a unit vector.
     NotOrthogonal {
-        /// The columns, or the column twice.
+        /// Both columns, or the same column twice.
         columns: [usize; 2],
-        /// Their scalar product, where 0, or of one column 1, is needed.
+        /// Their scalar product, which should be 0, or 1 for a single column.
         product: f64,
     },
-    /// The rotation part mirrors.
+    /// The rotation part is a reflection.
     NotARotation {
-        /// Its determinant, where 1 is needed.
+        /// Its determinant, which should be 1.
         determinant: f64,
     },
 }

@@ -1,8 +1,9 @@
-//! The contact points of many pairs.
+//! Contact manifolds of many pairs.
 //!
-//! A chunk is computed in three steps: its pairs are placed, and rejected where they are certainly too far apart; the
-//! manifolds of those that are left are computed, boxes, balls, segments and capsules sorted by their kinds and eight at
-//! a time; the points are written down in the order of the pairs.
+//! A chunk is computed in three steps. Its pairs are placed, and certainly distant ones rejected.
+//! The manifolds of the others are computed: pairs of boxes, balls, segments and capsules are
+//! sorted by kinds and computed eight at a time in SIMD lanes. The points are written in the order
+//! of the pairs.
 
 use crate::math::order::sort_few;
 use crate::tables::ByDimension;
@@ -37,7 +38,7 @@ pub(super) fn manifolds<N: Space<D>, const D: usize>(
     Progress::new(control).collect(batch.len(), work, |rows| out.append(rows))
 }
 
-/// The rows of a chunk.
+/// Computes the rows of a chunk.
 fn chunk<N: Space<D>, const D: usize>(
     sides: &[PreparedSide<'_, N, D>; 2],
     range: Range<usize>,
@@ -88,17 +89,17 @@ fn kinds_of<N: Real, const D: usize>(solids: &[Solid<N, D>; 2]) -> [ShapeKind; 2
     [Geometry(solids[0].kind()).kind(), Geometry(solids[1].kind()).kind()]
 }
 
-/// A pair that is not certainly too far apart, and its contacts.
+/// A pair that may be near, and its contacts.
 struct PairManifolds<'a, N: Real, const D: usize> {
-    /// In canonical order.
+    /// Both solids in canonical order.
     placed: [Placed<'a, N, D>; 2],
-    /// The canonical order is the opposite of the caller's.
+    /// The canonical order is the reverse of the caller's.
     is_swapped: bool,
-    /// Copies of the solids in canonical order, if there may be lanes for such pairs.
+    /// Copies of the solids in canonical order, if both are small enough for SIMD lanes.
     solids: Option<[Solid<N, D>; 2]>,
-    /// Those of two convex solids, in the frame of the first in canonical order.
+    /// Contacts of two convex solids, in the frame of the first in canonical order.
     raw: RawManifold<N, D>,
-    /// Those of a pair with a composite.
+    /// Contacts of a pair with a composite.
     composite: Option<CompositeContacts<N, D>>,
 }
 
@@ -116,7 +117,7 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
         Ordered { first, second, swapped: self.is_swapped }
     }
 
-    /// Computes the manifolds of the pair alone.
+    /// Computes the manifolds of one pair.
     fn update(&mut self, request: &ManifoldRequest<N>) {
         let ordered = self.ordered();
         if ordered.has_composite() {
@@ -129,7 +130,7 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
         }
     }
 
-    /// Appends all points.
+    /// Appends all points to `rows`.
     fn write(&self, rows: &mut ManifoldRows<N, D>) {
         let pose1 = &self.placed[0].pose;
         let placement = Placement { pose1, pair: 0, is_swapped: self.is_swapped };
@@ -151,10 +152,10 @@ impl<N: Real, const D: usize> PlacedSolids<N, D> for PairManifolds<'_, N, D> {
     }
 }
 
-/// Pairs of a chunk whose solids are of the same kinds.
+/// Pairs of a chunk whose solids have equal kinds.
 pub(crate) struct SolidGroup<'g, 'a, N: Real, const D: usize> {
     pairs: &'g mut [Option<PairManifolds<'a, N, D>>],
-    /// Their kinds and where they are.
+    /// Kinds and index of each pair in the group.
     group: &'g [([ShapeKind; 2], usize)],
     request: &'g ManifoldRequest<N>,
 }
@@ -164,7 +165,7 @@ impl<'a, N: Space<D>, const D: usize> SolidGroup<'_, 'a, N, D> {
         self.pairs[self.group[index].1].as_mut().expect("all pairs of a group are near")
     }
 
-    /// For kinds without lanes.
+    /// Computes the pairs one by one, for kinds without a SIMD kernel.
     fn update_one_by_one(&mut self) {
         let request = self.request;
         (0..self.group.len()).for_each(|index| self.pair(index).update(request));

@@ -3,11 +3,11 @@
 use super::{BatchError, MatrixError, PoseSource};
 use crate::math::{Matrix, Pose, Real, Space, Vector};
 
-/// By how much the scalar product of two columns of a rotation may differ from 0 or 1: 2⁻¹⁶.
+/// Greatest deviation of the scalar product of two columns of a rotation from 0 or 1: 2⁻¹⁶.
 const TOLERANCE: f64 = 1.0 / 65536.0;
 
-/// Poses as homogeneous matrices, read where they lie: (D+1) × (D+1) numbers each, row by row, one matrix after the
-/// other: an array of the shape (n, D+1, D+1) in C order.
+/// Poses as homogeneous matrices, read in place. Each has (D+1) × (D+1) numbers in row-major order,
+/// as in an array of shape (n, D+1, D+1) in C order.
 ///
 /// ```text
 ///   | r00 r01 r02 t0 |
@@ -32,20 +32,22 @@ pub struct Matrices<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Matrices<'a, N, D> {
-    /// How many numbers a matrix has.
+    /// Numbers in a matrix.
     const WIDTH: usize = (D + 1) * (D + 1);
 
-    /// Takes matrices whose last row is 0, …, 0, 1 and whose rotation is orthogonal with the determinant 1.
+    /// Accepts matrices whose last row is 0, …, 0, 1 and whose rotation is orthogonal with
+    /// determinant 1.
     ///
-    /// The scalar products of the columns of the rotation, which have no unit, may differ from 0 and 1 by 2⁻¹⁶, about
-    /// 1.5e-5: five correct decimals will do. The matrix is used as it is given: a rotation that is off
-    /// by so much puts the points of a shape off by as much of their distance from its origin.
+    /// The scalar products of the columns of the rotation, which have no unit, may differ from 0
+    /// and 1 by 2⁻¹⁶, about 1.5e-5: five correct decimals suffice. The matrix is used as given:
+    /// such a deviation displaces the points of a shape by that fraction of their distance from its
+    /// origin.
     ///
     /// Cost: some nanoseconds for each matrix, on one thread.
     ///
     /// # Errors
-    /// [`BatchError::PartialRow`] if the numbers are not whole matrices, and [`BatchError::Matrix`] for the first
-    /// matrix that is no pose.
+    /// [`BatchError::PartialRow`] if the numbers are not whole matrices, and [`BatchError::Matrix`]
+    /// for the first matrix that is not a pose.
     pub fn try_new(numbers: &'a [N]) -> Result<Self, BatchError> {
         let (given, width) = (numbers.len(), Self::WIDTH);
         if !given.is_multiple_of(width) {
@@ -59,7 +61,7 @@ impl<'a, N: Space<D>, const D: usize> Matrices<'a, N, D> {
         Ok(Self { numbers })
     }
 
-    /// The numbers of one matrix.
+    /// Returns the numbers of one matrix.
     #[inline]
     fn matrix(&self, index: usize) -> &'a [N] {
         &self.numbers[index * Self::WIDTH..][..Self::WIDTH]
@@ -82,7 +84,7 @@ impl<N: Space<D>, const D: usize> PoseSource<N, D> for Matrices<'_, N, D> {
         translation_of(self.matrix(index))
     }
 
-    /// All rotations are finite.
+    /// The rotation need not be checked: all rotations are finite.
     #[inline]
     fn unturned(&self, index: usize) -> Pose<N, D> {
         Pose::from_translation(self.translation(index))
@@ -109,7 +111,8 @@ fn translation_of<N: Real, const D: usize>(matrix: &[N]) -> Vector<N, D> {
     translation
 }
 
-/// [`check`] finds nothing. All numbers are looked at and no way depends on one, which is quicker than to stop.
+/// Returns `true` if [`check`] finds no error. Branch-free over all numbers, which is faster than
+/// stopping early.
 #[inline]
 fn is_pose<N: Space<D>, const D: usize>(matrix: &[N]) -> bool {
     let (rows, last) = matrix.split_at(D * (D + 1));
@@ -126,7 +129,7 @@ fn is_pose<N: Space<D>, const D: usize>(matrix: &[N]) -> bool {
     is_pose & (N::determinant(&rotation) > N::ZERO)
 }
 
-/// By how much the scalar product of two columns differs from that of a rotation.
+/// Returns the deviation of the scalar product of two columns from that of a rotation.
 #[inline]
 fn deviation<N: Real, const D: usize>(rotation: &Matrix<N, D>, one: usize, other: usize) -> N {
     let product = rotation.column(one).dot(&rotation.column(other));
@@ -158,7 +161,7 @@ fn check_rotation<N: Space<D>, const D: usize>(rotation: &Matrix<N, D>) -> Resul
             }
         }
     }
-    // Near 1 or -1 now.
+    // The determinant is near 1 or -1 here.
     let determinant = N::determinant(rotation);
     if determinant > N::ZERO {
         Ok(())

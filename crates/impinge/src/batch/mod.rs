@@ -1,4 +1,4 @@
-//! Batches: one question about many placed shapes, with the answers in columns that the caller owns.
+//! Batches: one query for many placed shapes, with the results in columns that the caller owns.
 //!
 //! ```text
 //!   Shapes: one, one each, or picked     Side ─┐
@@ -6,14 +6,14 @@
 //!                                        Side ─┘
 //!   element       0     1     2     3    …        a length of one stands for every element
 //!   distance   [ d0 ][ d1 ][ d2 ][ d3 ]  …        one slot for each element, in this order
-//!   point1     [ p0 ][ p1 ][ p2 ][ p3 ]  …        an empty column is not wanted
+//!   point1     [ p0 ][ p1 ][ p2 ][ p3 ]  …        an empty column is not computed
 //! ```
 //!
-//! Every answer has the bits of the single call of [`query`](crate::query) about the same shapes and poses. They
-//! do not depend on the number of threads: with the feature `parallel` the elements are cut into chunks of 64,
-//! which the threads of rayon's current pool share.
+//! Every result has the bits of the single call of [`query`](crate::query) for the same shapes and
+//! poses. It does not depend on the number of threads: with the feature `parallel` the elements are
+//! cut into chunks of 64, which the threads of rayon's current pool share.
 //!
-//! | one answer | many answers |
+//! | single query | batch |
 //! |---|---|
 //! | [`distance`](crate::query::distance()) | [`PairBatch::distances`], [`PairBatch::nearest`] |
 //! | [`closest_points`](crate::query::closest_points()) | [`PairBatch::closest_points`] |
@@ -25,16 +25,16 @@
 //! | [`PointQuery`](crate::query::PointQuery) | [`PointBatch`] |
 //! | [`RayCast`](crate::query::RayCast) | [`RayColumns`] |
 //!
-//! # No answer
+//! # No result
 //!
-//! An element without an answer (beyond the limit, or with a pose, point, ray or velocity that is not finite) has the
-//! distance and the time `INFINITY`, the depth `-INFINITY`, `NaN` in points and normals, `u32::MAX` as its part
-//! and [`NO_FEATURE`] as its feature.
+//! An element without a result (beyond the limit, or with a pose, point, ray or velocity that is
+//! not finite) has the distance and the time `INFINITY`, the depth `-INFINITY`, `NaN` in points and
+//! normals, `u32::MAX` as its part and [`NO_FEATURE`] as its feature.
 //!
 //! # Errors
 //!
-//! Each method checks all lengths before it computes anything; then no column is changed. After
-//! [`BatchError::Cancelled`] some slots are filled.
+//! Each method checks all lengths before it computes anything; on an error no column is changed.
+//! After [`BatchError::Cancelled`] some slots are filled.
 
 mod columns;
 mod control;

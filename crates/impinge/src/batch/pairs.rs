@@ -1,4 +1,4 @@
-//! Pairs of placed shapes, element by element.
+//! Queries of pairs of placed shapes, element by element.
 
 use super::entries;
 use crate::collide::mesh::contact_in_world;
@@ -24,10 +24,10 @@ use crate::query::{
     witness_between,
 };
 
-/// Two sides whose elements with one index are a pair.
+/// A batch of pairs: elements of two sides with equal indices.
 ///
-/// One side may have a single element, which then stands against each of the other. The methods write the answer
-/// about pair `i` into slot `i`, with the bits of the single call.
+/// One side may have a single element, which is paired with each of the other side. The methods
+/// write the result of pair `i` to slot `i`, with the bits of the single call.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, ClosestColumns, Control, OnePose, PairBatch, Shapes, Side};
@@ -57,32 +57,33 @@ pub struct PairBatch<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
-    /// The pairs of two sides with as many elements, or of one with a single element and another.
+    /// Pairs two sides of equal length, or a single element with each of the other side.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if neither has one element and they do not have as many.
+    /// [`BatchError::Length`] if the lengths differ and neither is one.
     pub fn try_new(side1: Side<'a, N, D>, side2: Side<'a, N, D>) -> Result<Self, BatchError> {
         let len = common_length(side1.len(), ("side2", side2.len()))?;
         Ok(Self { sides: [side1, side2], len })
     }
 
-    /// How many pairs there are.
+    /// Returns the number of pairs.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// There is no pair.
+    /// Returns `true` if there is no pair.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// How far apart the solids of each pair are, zero if they touch or overlap: see [`distance`](crate::query::distance()).
-    /// Infinite without an answer.
+    /// Computes the distance of each pair, zero if the solids touch or overlap: see
+    /// [`distance`](crate::query::distance()). Infinite without a result.
     ///
-    /// Cost: that of the single calls, less what all elements of a side have in common. Where a limit will do,
-    /// [`Self::closest_points`] and [`Self::proximities`] reject distant pairs by their bounding balls.
+    /// Cost: that of the single calls, without the work that all elements of a side share. If a
+    /// limit suffices, [`Self::closest_points`] and [`Self::proximities`] reject distant pairs by
+    /// their bounding balls.
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -90,11 +91,12 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::distances(self, control, out)
     }
 
-    /// The nearest points of each pair that is at most `max_distance` apart: see
+    /// Computes the nearest points of each pair that is at most `max_distance` apart: see
     /// [`closest_points`](crate::query::closest_points()).
     ///
-    /// The distance is zero and the points are NaN where the solids touch or overlap; [`Self::witnesses`] has points
-    /// there. A negative or NaN `max_distance` counts as zero.
+    /// The distance is zero and the points are NaN where the solids touch or overlap;
+    /// [`Self::witnesses`] computes points there too. A negative or NaN `max_distance` counts as
+    /// zero.
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -107,8 +109,9 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::closest_points(self, max_distance, control, out)
     }
 
-    /// The nearest or deepest points of each pair that is at most `max_distance` apart, with the parts and features
-    /// that they lie on: see [`witness`](crate::query::witness()), also for negative limits.
+    /// Computes the nearest or deepest points of each pair that is at most `max_distance` apart,
+    /// with the parts and features that they lie on: see [`witness`](crate::query::witness()), also
+    /// for negative limits.
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -121,8 +124,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::witnesses(self, max_distance, control, out)
     }
 
-    /// Whether the solids of each pair touch or overlap, are at most `margin` apart, or neither: see
-    /// [`proximity`](crate::query::proximity()). Disjoint without an answer.
+    /// Computes whether the solids of each pair touch or overlap, are at most `margin` apart, or
+    /// neither: see [`proximity`](crate::query::proximity()). Disjoint without a result.
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -135,8 +138,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::proximities(self, margin, control, out)
     }
 
-    /// The deepest contact of each pair that overlaps, touches, or is at most `prediction` apart: see
-    /// [`contact`](crate::query::contact()).
+    /// Computes the deepest contact of each pair that overlaps, touches, or is at most `prediction`
+    /// apart: see [`contact`](crate::query::contact()).
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -149,15 +152,15 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::contacts(self, prediction, control, out)
     }
 
-    /// When the solids of each pair first touch if they move with constant velocities and do not turn: see
-    /// [`impact`](crate::query::impact()).
+    /// Computes the time at which the solids of each pair first touch if they move with constant
+    /// velocities and do not rotate: see [`impact`](crate::query::impact()).
     ///
-    /// `velocities` are those of the first and of the second side in the world frame, in units of length per unit of
-    /// time: one for each pair, one for all, or none for solids at rest.
+    /// `velocities` are those of the first and of the second side in the world frame, in units of
+    /// length per unit of time: one for each pair, one for all, or none for solids at rest.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if there is another number of velocities, or a column is neither empty nor as long as
-    /// the batch; [`BatchError::Cancelled`].
+    /// [`BatchError::Length`] if the number of velocities is another, or a column is neither empty
+    /// nor as long as the batch; [`BatchError::Cancelled`].
     pub fn impacts(
         &self,
         velocities: [&[[N; D]]; 2],
@@ -168,16 +171,17 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::impacts(self, velocities, options, control, out)
     }
 
-    /// The contact points of each pair, row by row: those that a new
-    /// [`PairManifoldGenerator`](crate::narrow_phase::PairManifoldGenerator) finds, to the bit.
+    /// Computes the contact points of each pair as rows: those of a new
+    /// [`PairManifoldGenerator`](crate::narrow_phase::PairManifoldGenerator), to the bit.
     ///
-    /// `prediction` is how far apart, and after which turns, points count; manifolds have at most `max_points` points,
-    /// at least one, and without it two in 2D and four in 3D. What `out` held is replaced; its memory is
-    /// used again. Boxes, balls, segments and capsules are computed eight pairs at a time.
+    /// `prediction` limits distances and rotations as there. Manifolds have at most `max_points`
+    /// points, but at least one; by default (`None`) two in 2D and four in 3D. The content of `out`
+    /// is replaced and its memory reused. Boxes, balls, segments and capsules are computed eight
+    /// pairs at a time.
     ///
     /// # Errors
-    /// [`BatchError::Cancelled`]; then `out` holds the rows of the first pairs, and how many these are is
-    /// [`ManifoldRows::num_pairs`].
+    /// [`BatchError::Cancelled`]; then `out` holds the rows of the first
+    /// [`ManifoldRows::num_pairs`] pairs.
     pub fn manifolds(
         &self,
         prediction: &ContactPrediction<N>,
@@ -188,11 +192,12 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::manifolds(self, (prediction, max_points), control, out)
     }
 
-    /// The pair whose solids are nearest to each other, and their distance; of several the one of least index, and
-    /// `None` if none are at most `max_distance` apart. A negative or NaN `max_distance` counts as zero.
+    /// Returns the index and distance of the nearest pair; at equal distances the lowest index.
+    /// `None` if no pair is at most `max_distance` apart. A negative or NaN `max_distance` counts
+    /// as zero.
     ///
-    /// The limit shrinks to the least distance so far, so that most pairs are rejected by their bounding balls:
-    /// cheaper than all [`Self::distances`]. The answer does not depend on the threads.
+    /// The limit shrinks to the least distance so far, so that most pairs are rejected by their
+    /// bounding balls: cheaper than [`Self::distances`]. The result does not depend on the threads.
     ///
     /// # Errors
     /// [`BatchError::Cancelled`].
@@ -204,13 +209,13 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::nearest(self, max_distance, control)
     }
 
-    /// Both sides, ready to be asked. Each is made where it stays: `map` over both copies them several times.
+    /// Prepares both sides. Written out, because `map` copies them several times.
     #[inline]
     pub(super) fn prepared(&self) -> [PreparedSide<'a, N, D>; 2] {
         [PreparedSide::new(&self.sides[0]), PreparedSide::new(&self.sides[1])]
     }
 
-    /// Calls with the elements of each pair and the slot of the answer in the columns of a chunk.
+    /// Calls `answer` with the elements of each pair and its slot in the columns of a chunk.
     fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,
@@ -225,8 +230,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Fills the slots with what follows from the distances of pairs that are at most a limit apart, and those of
-    /// others with what stands for none.
+    /// Fills the slots of pairs at most `limit` apart with `answer` of their distance, the others
+    /// with `none`.
     fn each_distance<T: Copy + Send + Sync>(
         &self,
         limit: N,
@@ -250,8 +255,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Calls with the slot of each pair and nothing, then with that of each that may be at most a limit apart and
-    /// what is known of it.
+    /// Calls `answer` with the slot of each pair and `None`, then again with the slot and data of
+    /// each pair that may be at most `limit` apart.
     fn each_separation<C: AnswerColumns>(
         &self,
         limit: N,
@@ -273,7 +278,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Calls with the pair of a batch of one, if it may be at most a limit apart: it takes less time than lists.
+    /// Calls `answer` for the pair of a batch of one, if it may be at most `limit` apart; avoids
+    /// building lists.
     fn alone<C: Cut>(
         &self,
         limit: N,
@@ -403,7 +409,7 @@ pub(super) fn impacts<N: Space<D>, const D: usize>(
     })
 }
 
-/// The velocity of an element: its own, that of all, or none.
+/// Returns the velocity of an element: its own, the common one, or zero for an empty column.
 #[inline]
 fn velocity_at<N: Real, const D: usize>(column: &[[N; D]], index: usize) -> Vector<N, D> {
     match column.get(index_in(column.len(), index)) {
@@ -414,9 +420,9 @@ fn velocity_at<N: Real, const D: usize>(column: &[[N; D]], index: usize) -> Vect
 
 /// See [`PairBatch::nearest`].
 ///
-/// Each chunk begins with the nearest pair that any chunk has found by then. What it rejects for that is farther, or as
-/// far and later by its index: so the least of all, by distance and then by index, does not depend on which
-/// chunks came first.
+/// Each chunk starts from the nearest pair that any chunk has found so far, and rejects only pairs
+/// that are farther, or as far with a larger index. So the minimum by distance, then index, does
+/// not depend on the order of chunks.
 pub(super) fn nearest<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     max_distance: N,
@@ -433,7 +439,7 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
     Ok(best.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// The nearest of a range of pairs and one that is known.
+/// Returns the nearest of a range of pairs and the known one.
 fn nearest_of<N: Space<D>, const D: usize>(
     sides: &[PreparedSide<'_, N, D>; 2],
     range: Range<usize>,
@@ -442,7 +448,7 @@ fn nearest_of<N: Space<D>, const D: usize>(
 ) -> Option<(usize, N)> {
     let mut best = known;
     for index in range {
-        // Nothing is nearer than what touches.
+        // No pair is nearer than a touching one.
         if best.is_some_and(|(first, distance)| distance <= N::ZERO && first < index) {
             break;
         }
@@ -454,7 +460,7 @@ fn nearest_of<N: Space<D>, const D: usize>(
     best
 }
 
-/// The nearer of two pairs, of two at one distance the one of lower index.
+/// Returns the nearer of two pairs; at equal distances the one with the lower index.
 fn nearer<N: Real>(one: Option<(usize, N)>, other: Option<(usize, N)>) -> Option<(usize, N)> {
     let (Some((index1, distance1)), Some((index2, distance2))) = (one, other) else {
         return one.or(other);

@@ -1,4 +1,4 @@
-//! The pairs of a chunk that are near enough, placed: those of convex solids are found together.
+//! The pairs of a chunk that may be near, with placed shapes. Convex pairs are computed together in SIMD lanes.
 
 use crate::collide::separation::distance_in_world;
 use crate::tables::ByDimension;
@@ -11,25 +11,26 @@ use crate::collide::{ConvexPair, Placed};
 use crate::convex::Separation;
 use crate::math::{Real, Space};
 
-/// The pairs of a chunk that are not certainly farther apart than a limit, where they stand.
+/// Placed pairs of a chunk that are not certainly farther apart than `limit`.
 pub(super) struct PlacedPairs<'a, N: Real, const D: usize> {
-    /// The slots of their answers in the chunk.
+    /// Slots of the pairs in the chunk.
     slots: Vec<usize>,
-    /// The elements of each side by the index of their slot.
+    /// Placed elements of each side, parallel to `slots`.
     sides: [PlacedSide<'a, N, D>; 2],
     limit: N,
 }
 
-/// What is known of a pair.
+/// Data of a pair for the caller.
 pub(super) enum PairAnswer<'p, 'a, N: Real, const D: usize> {
-    /// The separation of two convex solids, in the world and in the order given.
+    /// The separation of two convex solids, in the world frame and the given order.
     Convex(&'p Separation<N, D>),
-    /// Nothing yet: the pair is asked alone, as one is of which a shape is a composite.
+    /// A pair with a composite, which the caller computes by a single query.
     Alone([&'p Placed<'a, N, D>; 2]),
 }
 
 impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
-    /// Those of a range of elements. Without a limit all poses are read at once, else only those of what is near.
+    /// Collects the pairs of a range of elements. Without a limit all poses are read in bulk, else only those of pairs
+    /// that may be near.
     pub(super) fn new(sides: &[PreparedSide<'a, N, D>; 2], range: Range<usize>, limit: N) -> Self {
         if limit == N::INFINITY {
             let slots = (0..range.len()).collect();
@@ -50,7 +51,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         Self { slots, sides: near, limit }
     }
 
-    /// The pairs of convex solids, each with its index here as slot. Calls with the slot of each other pair.
+    /// Returns the pairs of convex solids, each with its index here as `slot`. Calls `of_composites` with the chunk
+    /// slot of each other pair.
     fn convex(
         &self,
         mut of_composites: impl FnMut(usize, [&Placed<'a, N, D>; 2]),
@@ -72,8 +74,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         convex
     }
 
-    /// Calls with the slot and the distance of each pair that is at most the limit apart, which is not positive where the
-    /// shapes touch or overlap.
+    /// Calls `put` with the slot and the distance of each pair that is at most `limit` apart. The distance is not
+    /// positive where the shapes touch or overlap.
     pub(super) fn distances(&self, mut put: impl FnMut(usize, N)) {
         let mut convex = self.convex(|slot, [placed1, placed2]| {
             if let Some(found) = distance_in_world(placed1, placed2, self.limit) {
@@ -89,7 +91,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         }
     }
 
-    /// Calls with the slot of each pair that may be at most the limit apart, and what is known of it.
+    /// Calls `put` with the slot and data of each pair that may be at most `limit` apart.
     pub(super) fn separations(&self, mut put: impl FnMut(usize, PairAnswer<'_, 'a, N, D>)) {
         let mut convex = self.convex(|slot, placed| put(slot, PairAnswer::Alone(placed)));
         let mut found = vec![None; self.slots.len()];

@@ -1,4 +1,4 @@
-//! Points against placed shapes.
+//! Queries of points and placed shapes.
 
 use super::columns::AnswerColumns;
 use super::control::Progress;
@@ -9,11 +9,11 @@ use crate::math::{Point, Pose, Real, Space};
 use crate::query::{PointQuery, located_at};
 use crate::shape::Shape;
 
-/// Points of the world, each against an element of a side: element `i` against point `i`, or one of either
-/// against all of the other.
+/// A batch of points in the world frame, each paired with an element of a side: point `i` with
+/// element `i`, or a single point or element with all of the other.
 ///
-/// The answers are those of [`PointQuery`], to the bit. See there for what inside means of composites
-/// and sets without thickness.
+/// The results are those of [`PointQuery`], to the bit. See there for the inside of composites and
+/// of sets without thickness.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, OnePose, PointBatch, ProjectionColumns, Shapes, Side};
@@ -43,29 +43,29 @@ pub struct PointBatch<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
-    /// Points beside as many placed shapes, or one of either.
+    /// Pairs points with as many placed shapes, or a single one of either with all of the other.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if there are several of both and not as many.
+    /// [`BatchError::Length`] if the lengths differ and neither is one.
     pub fn try_new(side: Side<'a, N, D>, points: &'a [[N; D]]) -> Result<Self, BatchError> {
         let len = common_length(side.len(), ("points", points.len()))?;
         Ok(Self { side, points, len })
     }
 
-    /// How many questions there are.
+    /// Returns the number of pairs.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// There is no question.
+    /// Returns `true` if there is no pair.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The point of each shape, or with `solid` false of its boundary, that is nearest to the point: see
-    /// [`PointQuery::project_point_with_location`].
+    /// Computes the point of each shape, or with `solid` false of its boundary, that is nearest to
+    /// the given point: see [`PointQuery::project_point_with_location`].
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -78,7 +78,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         entries::project(self, solid, control, out)
     }
 
-    /// How far each point is from the boundary of the shape, negative inside: see [`PointQuery::distance_to_point`].
+    /// Computes the distance of each point from the boundary of the shape, negative inside: see
+    /// [`PointQuery::distance_to_point`].
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -86,7 +87,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         entries::signed_distances(self, control, out)
     }
 
-    /// Whether each point lies in the shape or on its boundary: see [`PointQuery::contains_point`].
+    /// Computes whether each point lies in the shape or on its boundary: see
+    /// [`PointQuery::contains_point`].
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -94,8 +96,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         entries::contains(self, control, out)
     }
 
-    /// Calls with each question and the slot of its answer in the columns of a chunk; without a question where the
-    /// point or the pose is not finite.
+    /// Calls `answer` with each point and shape, and the slot in the columns of a chunk; with
+    /// `None` if point or pose is not finite.
     fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,
@@ -128,7 +130,7 @@ impl<N: Real, const D: usize> PointQuestion<'_, N, D> {
         is_finite.then_some(self)
     }
 
-    /// The point in the frame of the shape.
+    /// Returns the point in the frame of the shape.
     fn local(&self) -> Point<N, D> {
         self.pose.inverse_point(&self.point)
     }

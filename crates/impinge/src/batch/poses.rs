@@ -1,10 +1,10 @@
-//! Where the shapes of a batch are.
+//! The poses of a batch.
 
 use core::ops::Range;
 
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
 
-/// What places a shape: a [`Pose`], nalgebra's isometries, or a type of your own.
+/// A placement of a shape: a [`Pose`], an isometry of nalgebra, or a custom type.
 ///
 /// ```
 /// use impinge::dim2::batch::AsPose;
@@ -21,15 +21,17 @@ use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
 /// assert_eq!(Body([1.0, 2.0]).translation(), Vector::new(1.0, 2.0));
 /// ```
 pub trait AsPose<N: Real, const D: usize>: Sync {
-    /// The pose: a rotation matrix and a translation.
+    /// Returns the pose: a rotation matrix and a translation.
     fn to_pose(&self) -> Pose<N, D>;
 
-    /// The translation alone, to the bit; shapes that are far apart by it are never rotated.
+    /// Returns the translation alone, to the bit. Distant shapes are rejected by it without
+    /// computing a rotation.
     fn translation(&self) -> Vector<N, D> {
         self.to_pose().translation
     }
 
-    /// The pose of what looks the same however it is turned, such as a ball: see [`Pose::unturned`].
+    /// Returns the pose of a shape that every rotation maps to itself, such as a ball: see
+    /// [`Pose::unturned`].
     fn unturned(&self) -> Pose<N, D> {
         self.to_pose().without_rotation()
     }
@@ -66,37 +68,38 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> AsPose<N, D>
     }
 }
 
-/// The poses of one side of a batch, known by their indices.
+/// The poses of one side of a batch, by index.
 ///
-/// A vector, an array or a slice (`&slice`, as the batch takes a reference) of what [`AsPose`] is implemented
-/// for; [`Matrices`](super::Matrices); [`OnePose`]. Implement it to read poses where they lie in memory of your own.
+/// Implemented by vectors, arrays and slices (`&slice`, as the batch takes a reference) of types
+/// with [`AsPose`], by [`Matrices`](super::Matrices) and by [`OnePose`]. Implement it to read poses
+/// in place from other memory.
 ///
-/// A source of one pose places every element of its side there. Poses need not be finite: an element with
-/// a pose that is not has no answer.
+/// A source of one pose places every element of its side there. Poses need not be finite: an
+/// element with a pose that is not has no result.
 pub trait PoseSource<N: Real, const D: usize>: Sync {
-    /// How many poses there are.
+    /// Returns the number of poses.
     fn len(&self) -> usize;
 
-    /// A pose: a rotation matrix and a translation. It is asked for with an `index` below [`Self::len`], and always
-    /// the same for one index.
+    /// Returns a pose: a rotation matrix and a translation. `index` is below [`Self::len`]; equal
+    /// indices must give equal poses.
     fn pose(&self, index: usize) -> Pose<N, D>;
 
-    /// There is no pose.
+    /// Returns `true` if there is no pose.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The translation of a pose, to the bit.
+    /// Returns the translation of a pose, to the bit.
     fn translation(&self, index: usize) -> Vector<N, D> {
         self.pose(index).translation
     }
 
-    /// The pose of what looks the same however it is turned: see [`Pose::unturned`].
+    /// Returns the pose of a shape that every rotation maps to itself: see [`Pose::unturned`].
     fn unturned(&self, index: usize) -> Pose<N, D> {
         self.pose(index).without_rotation()
     }
 
-    /// Appends the poses of a range of indices: one call for many where a source is known by its methods alone.
+    /// Appends the poses of a range of indices: one virtual call for many poses.
     fn append(&self, range: Range<usize>, out: &mut Vec<Pose<N, D>>) {
         out.reserve(range.len());
         for index in range {
@@ -104,7 +107,7 @@ pub trait PoseSource<N: Real, const D: usize>: Sync {
         }
     }
 
-    /// Appends what [`Self::unturned`] has of a range of indices.
+    /// Appends the results of [`Self::unturned`] for a range of indices.
     fn append_unturned(&self, range: Range<usize>, out: &mut Vec<Pose<N, D>>) {
         out.reserve(range.len());
         for index in range {

@@ -1,4 +1,4 @@
-//! Rays against placed shapes.
+//! Ray casts against placed shapes.
 
 use super::columns::AnswerColumns;
 use super::control::Progress;
@@ -9,11 +9,13 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Space, Vector};
 use crate::query::{RayBatch, RayIntersection, cast_at, cast_many_on};
 
-/// Rays of the world as arrays of origins and directions, each against an element of a side: element `i` against ray
-/// `i`, or one of either against all of the other.
+/// A batch of rays in the world frame, as arrays of origins and directions, each paired with an
+/// element of a side: ray `i` with element `i`, or a single ray or element with all of the other.
 ///
-/// The answers are those of [`RayCast::first_hit_with_ray`](crate::query::RayCast::first_hit_with_ray), to the bit.
-/// Of several shapes each ray meets its own; a world or a [`Compound`](crate::shape::Compound) finds the first of many.
+/// The results are those of
+/// [`RayCast::first_hit_with_ray`](crate::query::RayCast::first_hit_with_ray), to the bit. Each ray
+/// is cast against its own element only; to find the first hit among many shapes, use a world or a
+/// [`Compound`](crate::shape::Compound).
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, HitColumns, OnePose, RayColumns, Shapes, Side};
@@ -42,11 +44,12 @@ pub struct RayColumns<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
-    /// Rays without an end beside as many placed solids, or one of either. A single origin or direction is that of all
-    /// rays. Times are in units of the length of each direction.
+    /// Pairs unlimited rays with as many placed shapes, or a single one of either with all of the
+    /// other. A single origin or direction is that of all rays. Times are in units of the length of
+    /// each direction.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if there are several of two of these and not as many.
+    /// [`BatchError::Length`] if the lengths differ and are not one.
     pub fn try_new(
         side: Side<'a, N, D>,
         origins: &'a [[N; D]],
@@ -57,31 +60,32 @@ impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
         Ok(Self { side, origins, directions, max_time: N::INFINITY, solid: true, len })
     }
 
-    /// The same rays up to a time; no hit is found if it is negative or NaN.
+    /// Returns the rays with the maximum time `max_time`; nothing is hit if it is negative or NaN.
     #[must_use]
     pub const fn until(self, max_time: N) -> Self {
         Self { max_time, ..self }
     }
 
-    /// The same rays among boundaries: those that start inside a shape hit where they leave it.
+    /// Returns the rays with shapes reduced to their boundaries: a ray that starts inside a shape
+    /// hits where it leaves it.
     #[must_use]
     pub const fn hollow(self) -> Self {
         Self { solid: false, ..self }
     }
 
-    /// How many rays there are.
+    /// Returns the number of rays.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// There is no ray.
+    /// Returns `true` if there is no ray.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The first hit of each ray.
+    /// Computes the first hit of each ray.
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].

@@ -1,4 +1,4 @@
-//! The contact points of many pairs, row by row.
+//! Contact points of many pairs as rows.
 
 use core::ops::Range;
 
@@ -6,8 +6,8 @@ use crate::math::{Real, Space};
 use crate::query::ManifoldView;
 use crate::shape::FeatureId;
 
-/// The contact points of many pairs in columns: those of pair `i` are in the slots `starts[i]..starts[i + 1]`, as a
-/// sparse matrix in compressed rows has its entries.
+/// Contact points of many pairs in columns. The points of pair `i` are in slots
+/// `starts[i]..starts[i + 1]`, as in the compressed rows of a sparse matrix.
 ///
 /// ```text
 ///   starts      0        2  2           6            one more than there are pairs
@@ -15,8 +15,8 @@ use crate::shape::FeatureId;
 ///   manifold  [ 0 0    ][  ][ 0 0  1 1 ]             pair 2 has two manifolds of two points each
 /// ```
 ///
-/// Two convex solids have at most one manifold, composites one for each flat patch that they touch in. The points of a
-/// manifold share one normal.
+/// Two convex solids have at most one manifold, composites one for each flat patch that they touch
+/// in. The points of a manifold have equal normals.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, ManifoldRows, OnePose, PairBatch, Shapes, Side};
@@ -37,7 +37,7 @@ use crate::shape::FeatureId;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ManifoldRows<N: Real, const D: usize> {
-    /// Where the points of each pair begin, and where those of the last end.
+    /// The first slot of each pair, and at last the number of points.
     pub starts: Vec<usize>,
     /// The number of the manifold of each point within its pair.
     pub manifold: Vec<u32>,
@@ -47,7 +47,7 @@ pub struct ManifoldRows<N: Real, const D: usize> {
     pub point2: Vec<[N; D]>,
     /// The unit vector from the first shape to the second.
     pub normal: Vec<[N; D]>,
-    /// How deep the shapes overlap there along the normal; minus the distance when apart.
+    /// The penetration at the point along the normal; minus the distance when apart.
     pub depth: Vec<N>,
     /// The part of the first shape; 0 for a convex solid.
     pub part1: Vec<u32>,
@@ -60,7 +60,7 @@ pub struct ManifoldRows<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> ManifoldRows<N, D> {
-    /// The rows of no pairs.
+    /// Creates rows without pairs.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -77,19 +77,19 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
         }
     }
 
-    /// How many pairs there are.
+    /// Returns the number of pairs.
     #[must_use]
     pub const fn num_pairs(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
 
-    /// How many points all pairs have.
+    /// Returns the number of points of all pairs.
     #[must_use]
     pub const fn num_points(&self) -> usize {
         self.depth.len()
     }
 
-    /// The slots of the points of a pair.
+    /// Returns the slots of the points of a pair.
     ///
     /// # Panics
     /// If there is no such pair.
@@ -98,7 +98,7 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
         self.starts[pair]..self.starts[pair + 1]
     }
 
-    /// Forgets all pairs and keeps the memory.
+    /// Removes all pairs and keeps the memory.
     pub fn clear(&mut self) {
         let Self { starts, manifold, point1, point2, normal, depth, .. } = self;
         starts.clear();
@@ -110,7 +110,7 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
         [&mut self.feature1, &mut self.feature2].into_iter().for_each(Vec::clear);
     }
 
-    /// Appends the points of one manifold to the pair under way.
+    /// Appends the points of one manifold to the present pair.
     #[inline]
     pub(super) fn push(&mut self, manifold: u32, view: &ManifoldView<'_, N, D>)
     where
@@ -129,13 +129,13 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
         }
     }
 
-    /// The pair under way has no more points.
+    /// Ends the present pair.
     #[inline]
     pub(super) fn end_pair(&mut self) {
         self.starts.push(self.depth.len());
     }
 
-    /// Moves the pairs of other rows behind the own ones.
+    /// Moves the pairs of other rows behind these.
     pub(super) fn append(&mut self, other: &mut Self) {
         let before = self.depth.len();
         self.starts.extend(other.starts.iter().skip(1).map(|start| before + start));

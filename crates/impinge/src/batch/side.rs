@@ -1,4 +1,4 @@
-//! One side of a batch: shapes and where they are.
+//! One side of a batch: shapes and their poses.
 
 use core::fmt;
 use core::ops::Range;
@@ -27,17 +27,17 @@ pub enum Shapes<'a, N: Real, const D: usize> {
     One(&'a dyn Shape<N, D>),
     /// A shape for each element; a single one is for all.
     Each(&'a [ShapeHandle<N, D>]),
-    /// For each element the number of one of some shapes; a single number is for all.
+    /// For each element an index into `shapes`; a single index is for all.
     Picked {
-        /// What there is to pick from.
+        /// The shapes to pick from.
         shapes: &'a [ShapeHandle<N, D>],
-        /// The number of the shape of each element.
+        /// The index of the shape of each element.
         picks: &'a [u32],
     },
 }
 
 impl<'a, N: Real, const D: usize> Shapes<'a, N, D> {
-    /// How many elements have a shape of their own: 1 for one shape for all.
+    /// Returns the number of elements with a shape of their own; 1 for a shape that all share.
     #[must_use]
     pub const fn len(&self) -> usize {
         match self {
@@ -47,13 +47,13 @@ impl<'a, N: Real, const D: usize> Shapes<'a, N, D> {
         }
     }
 
-    /// No element has a shape.
+    /// Returns `true` if no element has a shape.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The shape at an index below the length.
+    /// Returns the shape at an index below the length.
     #[inline]
     fn at(&self, index: usize) -> &'a dyn Shape<N, D> {
         match *self {
@@ -75,8 +75,8 @@ impl<'a, N: Real, const D: usize> Shapes<'a, N, D> {
     }
 }
 
-/// Shapes and where they are: element `i` is shape `i` at pose `i`, and a single shape or pose is that of every
-/// element.
+/// Shapes and their poses: element `i` is shape `i` at pose `i`. A single shape or pose is that of
+/// every element.
 ///
 /// ```
 /// use impinge::dim3::batch::{OnePose, Shapes, Side};
@@ -98,11 +98,11 @@ pub struct Side<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Side<'a, N, D> {
-    /// Shapes at poses; of each as many, or one.
+    /// Combines shapes and poses; as many of each, or one.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if there are several of both and not as many, [`BatchError::Pick`] for the first
-    /// element that picks a shape that there is not.
+    /// [`BatchError::Length`] if the lengths differ and neither is one, [`BatchError::Pick`] for
+    /// the first element that picks a shape that does not exist.
     pub fn try_new(
         shapes: Shapes<'a, N, D>,
         poses: &'a dyn PoseSource<N, D>,
@@ -112,19 +112,19 @@ impl<'a, N: Real, const D: usize> Side<'a, N, D> {
         Ok(Self { shapes, poses, len })
     }
 
-    /// How many elements there are; a side of one stands for as many as are needed.
+    /// Returns the number of elements; a side of one is paired with any number.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// There is no element.
+    /// Returns `true` if there is no element.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The only element: one that is asked about once needs nothing prepared.
+    /// Returns the first element without preparing the side, for a single query.
     #[inline]
     pub(super) fn alone(&self) -> Element<'a, 'a, N, D> {
         Element { poses: self.poses, only: None, shape: self.shapes.at(0).geometry(), pose: 0 }
@@ -138,7 +138,7 @@ impl<N: Real, const D: usize> fmt::Debug for Side<'_, N, D> {
     }
 }
 
-/// The length of two lists side by side, where a single element stands for as many as are needed.
+/// Returns the common length of two lists; a list of one counts as long as the other.
 pub(super) fn common_length(
     needed: usize,
     (argument, given): (&'static str, usize),
@@ -150,20 +150,20 @@ pub(super) fn common_length(
     }
 }
 
-/// The index of what belongs to an element in a list with one entry for each, or with one for all.
+/// Returns the index of an element in a list with one entry for each element, or one for all.
 #[inline]
 pub(super) const fn index_in(len: usize, element: usize) -> usize {
     if len == 1 { 0 } else { element }
 }
 
-/// A side with what all of its elements have in common looked up once.
+/// A side with the data that all of its elements share looked up once.
 pub(super) struct PreparedSide<'a, N: Real, const D: usize> {
     side: Side<'a, N, D>,
-    /// How many poses there are.
+    /// Number of poses.
     poses: usize,
-    /// The shape of all elements.
+    /// The shape of all elements, if they share one.
     shape: Option<(&'a dyn Shape<N, D>, Geometry<'a, N, D>)>,
-    /// The only element: its pose, and where it is placed.
+    /// If all elements share shape and pose: the pose, and the placed shape.
     only: Option<(Pose<N, D>, Placed<'a, N, D>)>,
 }
 
@@ -182,12 +182,12 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         Self { side: *side, poses: side.poses.len(), shape, only }
     }
 
-    /// The only element, if there is one.
+    /// Returns shape and pose, if all elements share both.
     pub(super) fn alone(&self) -> Option<(Geometry<'a, N, D>, Pose<N, D>)> {
         self.shape.zip(self.only.as_ref()).map(|((_, geometry), (pose, _))| (geometry, *pose))
     }
 
-    /// The shape of an element.
+    /// Returns the shape of an element.
     #[inline]
     pub(super) fn shape(&self, element: usize) -> &'a dyn Shape<N, D> {
         match self.shape {
@@ -196,7 +196,7 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         }
     }
 
-    /// The pose of an element, with a rotation also if it is a ball.
+    /// Returns the pose of an element, including the rotation of a ball.
     #[inline]
     pub(super) fn pose(&self, element: usize) -> Pose<N, D> {
         match &self.only {
@@ -205,7 +205,7 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         }
     }
 
-    /// The shapes of a range of elements where they are.
+    /// Returns the placed shapes of a range of elements.
     pub(super) fn placed(&self, range: Range<usize>) -> PlacedSide<'a, N, D> {
         let mut found = PlacedSide { shapes: Vec::new(), poses: Vec::new() };
         match (&self.only, &self.shape) {
@@ -223,7 +223,7 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         found
     }
 
-    /// An element, which is placed when it is near enough.
+    /// Returns an element, whose pose is read only when it may be near.
     #[inline]
     pub(super) fn element(&self, element: usize) -> Element<'_, 'a, N, D> {
         let shape = match self.shape {
@@ -235,16 +235,16 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
     }
 }
 
-/// Elements of a side where they are placed, known by numbers.
+/// Placed elements of a side, by number.
 pub(super) struct PlacedSide<'a, N: Real, const D: usize> {
     /// One for each element, or one for all.
     shapes: Vec<Geometry<'a, N, D>>,
-    /// The same. The rotation of a ball is none.
+    /// One for each element, or one for all. The rotation of a ball is the identity.
     poses: Vec<Pose<N, D>>,
 }
 
 impl<'a, N: Real, const D: usize> PlacedSide<'a, N, D> {
-    /// No element, and room for some.
+    /// Creates an empty list with room for `len` elements.
     pub(super) fn with_capacity(len: usize) -> Self {
         Self { shapes: Vec::with_capacity(len), poses: Vec::with_capacity(len) }
     }
@@ -271,7 +271,8 @@ impl<'a, N: Real, const D: usize> PlacedSide<'a, N, D> {
     }
 }
 
-/// The elements of two sides that are a pair. Written out: a closure over both is not always inlined.
+/// Returns the elements of a pair. Written out, because a closure over both sides is not always
+/// inlined.
 #[inline]
 pub(super) fn pair_at<'s, 'a, N: Space<D>, const D: usize>(
     sides: &'s [PreparedSide<'a, N, D>; 2],
@@ -283,10 +284,10 @@ pub(super) fn pair_at<'s, 'a, N: Space<D>, const D: usize>(
 /// An element of a side.
 pub(super) struct Element<'s, 'a, N: Real, const D: usize> {
     poses: &'a dyn PoseSource<N, D>,
-    /// What is looked up already, of the only element of a prepared side.
+    /// Pose and placed shape, if all elements of the side share both.
     only: Option<&'s (Pose<N, D>, Placed<'a, N, D>)>,
     shape: Geometry<'a, N, D>,
-    /// The index of its pose.
+    /// Index of the pose.
     pose: usize,
 }
 

@@ -1,21 +1,21 @@
-//! The pairs of more objects than one machine holds: space is cut into tiles, and each tile names its own pairs.
+//! Pairs among more objects than one machine holds: space is cut into tiles, and each tile computes its own pairs.
 //!
 //! ```text
 //!   cut 0 ──── below ──── cut 1 ── tile 0       ┌────┬────────┐
 //!     │                     └───── tile 1       │ 1  │   3    │    an object goes to every tile that its box,
-//!     └─ at or above ──── cut 2 ── tile 2       ├────┼────────┤    grown by half the clearance, meets
+//!     └─ at or above ──── cut 2 ── tile 2       ├────┼────────┤    grown by half the clearance, overlaps
 //!                           └───── tile 3       │ 0  │   2    │
 //!                                               └────┴────────┘    a pair belongs to one of them
 //! ```
 //!
 //! The tiles are the leaves of a k-d tree (Bentley, "Multidimensional binary search trees used for associative
-//! searching", 1975) over the boxes of a sample, so that each has about as many objects, however uneven they lie.
-//! Two near objects meet where their grown boxes overlap. The lowest corner of this overlap is a point, and the pair
-//! belongs to the tile that holds it: the reference point of Dittrich and Seeger ("Data redundancy and duplicate
-//! detection in spatial join processing", 2000). Both boxes hold that point, so both objects are given to the tile.
+//! searching", 1975) over the boxes of a sample, so that each has about as many objects, even if their density varies.
+//! The grown boxes of two near objects overlap, and the pair belongs to the tile that contains the lowest corner of
+//! this overlap: the reference point of Dittrich and Seeger ("Data redundancy and duplicate detection in spatial join
+//! processing", 2000). Both boxes contain that point, so both objects are given to the tile.
 //!
-//! A subtree with n tiles has n - 1 cuts, of which its first ⌊n/2⌋ tiles take the next ⌊n/2⌋ - 1: the cuts in this
-//! order, and the clearance, are all that a [`Tiles`] is.
+//! A [`Tiles`] consists of the clearance and the cuts in preorder: a subtree with n tiles has n - 1 cuts, first its
+//! own, then ⌊n/2⌋ - 1 of the ⌊n/2⌋ tiles below it, then the rest.
 
 use super::entries;
 use super::within::{half_margin, is_distance};
@@ -24,19 +24,19 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::order::order_of;
 use crate::math::{Mapped, Point, Real, Space, max};
 
-/// A plane across an axis: what is less than `at` there is below it.
+/// A plane across an axis: coordinates less than `at` are below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileCut<N> {
     /// The axis: 0 for x.
     pub axis: u32,
-    /// Where it cuts the axis.
+    /// The position on the axis.
     pub at: N,
 }
 
-/// A division of space into tiles, and the clearance up to which pairs are wanted.
+/// A division of space into tiles, and the clearance up to which pairs are found.
 ///
-/// [`tiles()`] makes it. It is a plain value: [`Tiles::cuts`] and [`Tiles::clearance`] are numbers from which
-/// [`Tiles::try_from_cuts`] makes an equal one, on another machine.
+/// [`tiles()`] computes it. It is a plain value: from the numbers in [`Tiles::cuts`] and [`Tiles::clearance`]
+/// [`Tiles::try_from_cuts`] creates an equal one, on another machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tiles<N: Real, const D: usize> {
     clearance: N,
@@ -46,18 +46,18 @@ pub struct Tiles<N: Real, const D: usize> {
 /// The tiles of many objects: those of object `i` are `tiles[starts[i]..starts[i + 1]]`, ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TileRows {
-    /// Where the tiles of each object begin, and where those of the last end.
+    /// The index of each object's first tile in `tiles`, and at last the length of `tiles`.
     pub starts: Vec<usize>,
-    /// The numbers of tiles.
+    /// Numbers of tiles.
     pub tiles: Vec<u32>,
 }
 
 /// Cuts space into `number` tiles with about as many of the objects in each.
 ///
-/// `boxes` are those of the objects or of a sample of them, as [`boxes()`](super::boxes) has them; `None` does not
-/// count. The tiles follow from the arguments alone. They need not fit the objects that are later given to them: any
-/// tiles lead to the same pairs, others only to more work for some of them. There may be more tiles than objects,
-/// and no boxes at all; then some tiles are empty.
+/// `boxes` are those of the objects or of a sample of them, as [`boxes()`](super::boxes) computes them; `None` is
+/// ignored. The tiles depend on the arguments alone. They need not fit the objects that are later assigned to them: any
+/// tiles lead to the same pairs, only the balance of work differs. There may be more tiles than objects, or no boxes at
+/// all; then some tiles are empty.
 ///
 /// Cost: O(n log n log t) for n boxes and t tiles.
 ///
@@ -73,7 +73,7 @@ pub struct TileRows {
 /// let tiles = tiles(&boxes, 2, 1.0)?;
 /// let rows = tiles.meeting(&boxes);
 /// assert_eq!((rows.starts, rows.tiles), (vec![0, 1, 2, 3, 4], vec![0, 0, 1, 1]), "two in each");
-/// // Here each tile gets everything; what it has no part in only costs time.
+/// // Here each tile gets all objects; those that do not meet it only cost time.
 /// assert_eq!(pairs_in_tile(&row, &ids, &tiles, 0, &Control::new())?, [[70, 71]]);
 /// assert_eq!(pairs_in_tile(&row, &ids, &tiles, 1, &Control::new())?, [[72, 73]]);
 /// # Ok::<(), BatchError>(())
@@ -97,18 +97,18 @@ pub fn tiles<N: Real, const D: usize>(
     Ok(tiles)
 }
 
-/// The pairs of a tile: those of its objects that touch, overlap, or are at most the clearance of the tiles apart, and
-/// that belong to the tile; as pairs of ids, the lower first, ascending.
+/// Returns the pairs of a tile: the pairs of objects that touch, overlap, or are at most the clearance of the tiles
+/// apart, and that belong to the tile; as pairs of ids, the lower first, ascending.
 ///
-/// `side` has the objects of which [`Tiles::meeting`] names the tile, in any order; objects beside them cost time and
-/// change nothing. `ids` has an id for each, no two equal. The lists of all tiles together hold every pair once: those
-/// that [`pairs_within_one`](super::pairs_within_one) finds among all objects, for any tiles.
+/// `side` has the objects for which [`Tiles::meeting`] lists the tile, in any order; other objects cost time and change
+/// nothing. `ids` has a different id for each. The lists of all tiles together contain every pair once: the pairs that
+/// [`pairs_within_one`](super::pairs_within_one) finds among all objects, for any tiles.
 ///
-/// Cost: that of `pairs_within_one` for the objects of the tile; pairs of other tiles are not looked at closely.
+/// Cost: that of `pairs_within_one` for the objects of the tile; pairs of other tiles get no exact test.
 ///
 /// # Errors
-/// [`BatchError::Length`] if `ids` has not as many elements as the side, [`BatchError::NoTile`] if there is no tile of
-/// this number, [`BatchError::TooMany`] if 32 bits cannot number the elements, [`BatchError::Cancelled`].
+/// [`BatchError::Length`] if `ids` is not as long as the side, [`BatchError::NoTile`] if there is no tile of this
+/// number, [`BatchError::TooMany`] if 32 bits cannot number the elements, [`BatchError::Cancelled`].
 pub fn pairs_in_tile<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     ids: &[u64],
@@ -133,7 +133,7 @@ pub fn pairs_in_tile<N: Space<D>, const D: usize>(
 }
 
 impl TileRows {
-    /// The tiles of an object.
+    /// Returns the tiles of an object.
     ///
     /// # Panics
     /// If there is no such object.
@@ -143,7 +143,7 @@ impl TileRows {
     }
 }
 
-/// A subtree: its first cut, its first tile, and how many tiles it has.
+/// A subtree: the index of its first cut, its first tile, and its number of tiles.
 #[derive(Clone, Copy)]
 struct Subtree {
     cut: usize,
@@ -152,7 +152,7 @@ struct Subtree {
 }
 
 impl Subtree {
-    /// What lies below its first cut, and the rest.
+    /// Returns the subtrees below and above the first cut.
     const fn halves(self) -> [Self; 2] {
         let below = self.tiles / 2;
         let next = self.cut + below as usize;
@@ -164,12 +164,13 @@ impl Subtree {
 }
 
 impl<N: Real, const D: usize> Tiles<N, D> {
-    /// The tiles with this clearance and these cuts, in the order of [`Tiles::cuts`]; one tile for no cuts.
+    /// Creates the tiles with this clearance and these cuts, in the order of [`Tiles::cuts`]; a single tile without
+    /// cuts.
     ///
     /// # Errors
-    /// [`BatchError::Distance`] if the clearance is negative or NaN, [`BatchError::TileCut`] for the first cut that is
-    /// across no axis, not finite, or outside what it shall cut, [`BatchError::TooMany`] if 32 bits cannot number the
-    /// tiles.
+    /// [`BatchError::Distance`] if the clearance is negative or NaN, [`BatchError::TileCut`] for the first cut that has
+    /// an axis that does not exist, is not finite, or lies outside the region that it cuts, [`BatchError::TooMany`] if
+    /// 32 bits cannot number the tiles.
     pub fn try_from_cuts(clearance: N, cuts: Vec<TileCut<N>>) -> Result<Self, BatchError> {
         is_distance(clearance)?;
         if u32::try_from(cuts.len() + 1).is_err() {
@@ -188,25 +189,25 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         }
     }
 
-    /// How many tiles there are.
+    /// Returns the number of tiles.
     #[must_use]
     pub fn number(&self) -> u32 {
         self.root().tiles
     }
 
-    /// Pairs count that are at most so far apart.
+    /// Returns the greatest distance of pairs.
     #[must_use]
     pub const fn clearance(&self) -> N {
         self.clearance
     }
 
-    /// The cuts: one less than there are tiles, each before those of what it cuts, those below it first.
+    /// Returns the cuts, one less than tiles, in preorder: each before the cuts of its subtree, below before above.
     #[must_use]
     pub fn cuts(&self) -> &[TileCut<N>] {
         &self.cuts
     }
 
-    /// The part of space that each tile is; infinite outwards. A point on a cut lies in the tile above it.
+    /// Returns the region of each tile; outer faces are infinite. A point on a cut lies in the tile above it.
     #[must_use]
     pub fn bounds(&self) -> Vec<Aabb<N, D>> {
         let mut all = Vec::with_capacity(self.cuts.len() + 1);
@@ -214,7 +215,7 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         all
     }
 
-    /// The tile that a point lies in. What is not a number counts as above every cut.
+    /// Returns the tile that contains a point. A NaN coordinate counts as above every cut.
     #[must_use]
     pub fn owner(&self, point: &Point<N, D>) -> u32 {
         let mut subtree = self.root();
@@ -226,12 +227,12 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         subtree.tile
     }
 
-    /// The tiles to which each object must be given: those that its box, grown by half the clearance, meets.
+    /// Returns the tiles to which each object must be given: those that its box, grown by half the clearance, overlaps.
     ///
-    /// `boxes` are those of [`boxes()`](super::boxes), of all objects or of any part of them. What has no box has no
-    /// tile. An unbounded box, or a huge one, may meet them all.
+    /// `boxes` are those of [`boxes()`](super::boxes), of all objects or any part of them. An object without a box has
+    /// no tile. An unbounded or huge box may overlap all tiles.
     ///
-    /// Cost: O(log t + r) for t tiles and each of the boxes with r of them.
+    /// Cost: O(log t + r) for t tiles and a box that overlaps r of them.
     #[must_use]
     pub fn meeting(&self, boxes: &[Option<Aabb<N, D>>]) -> TileRows {
         let mut rows = TileRows { starts: vec![0], tiles: Vec::with_capacity(boxes.len()) };
@@ -244,13 +245,13 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         rows
     }
 
-    /// The tile that a pair with these boxes belongs to.
+    /// Returns the tile that a pair with these boxes belongs to.
     pub(super) fn owner_of_pair(&self, box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> u32 {
         let [low1, low2] = [box1, box2].mapped(|aabb| *self.grown(aabb).mins());
         self.owner(&Point::from(low1.coords.zip_map(&low2.coords, max)))
     }
 
-    /// Two of these overlap if their objects are near.
+    /// Returns the box grown by half the clearance: two grown boxes overlap if their objects are near.
     fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         aabb.loosened(half_margin(self.clearance))
     }
@@ -260,7 +261,7 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         Subtree { cut: 0, tile: 0, tiles: cuts + 1 }
     }
 
-    /// Cuts a part of space with the boxes that meet it into tiles. The depth is the logarithm of their number.
+    /// Cuts a region with the boxes that overlap it into tiles. The recursion depth is the logarithm of `tiles`.
     fn divide(&mut self, boxes: Vec<Aabb<N, D>>, bounds: &Aabb<N, D>, tiles: u32) {
         if tiles == 1 {
             return;
@@ -302,7 +303,7 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         }
     }
 
-    /// The first cut that is outside the part of space that it cuts.
+    /// Returns the first cut that lies outside the region that it cuts.
     fn first_outside(&self, subtree: Subtree, bounds: &Aabb<N, D>) -> Option<usize> {
         if subtree.tiles == 1 {
             return None;
@@ -317,7 +318,7 @@ impl<N: Real, const D: usize> Tiles<N, D> {
     }
 }
 
-/// What lies below a cut through a box, and the rest.
+/// Returns the parts of a box below and above a cut.
 fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aabb<N, D>; 2] {
     let (mut below, mut above) = (*bounds.maxs(), *bounds.mins());
     below[cut.axis as usize] = cut.at;
@@ -325,11 +326,12 @@ fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aa
     [Aabb::new(*bounds.mins(), below), Aabb::new(above, *bounds.maxs())]
 }
 
-/// What a cut leads to, the better the less: the number of objects in a tile of the fuller side, times a common number,
-/// and the number of objects on both sides.
+/// Cost of a cut, compared in this order: the number of objects in a tile of the fuller side, times a common factor,
+/// then the number of objects on both sides, which counts those cut twice.
 type CutLoad = (u64, usize);
 
-/// The cut with the least load; anywhere inside where the bounds and all boxes have no lower end.
+/// Returns the cut with the least cost. Any finite cut inside the bounds if no box and no bound has a finite lower
+/// face.
 fn best_cut<N: Real, const D: usize>(
     boxes: &[Aabb<N, D>],
     bounds: &Aabb<N, D>,
@@ -351,7 +353,7 @@ fn best_cut<N: Real, const D: usize>(
     best.map_or(TileCut { axis: 0, at }, |(_, cut)| cut)
 }
 
-/// The faces of boxes across an axis, ascending.
+/// The faces of boxes on one axis, ascending.
 struct Faces<N> {
     lows: Vec<N>,
     highs: Vec<N>,
@@ -368,8 +370,8 @@ impl<N: Real> Faces<N> {
         Self { lows: sorted(lows.collect()), highs: sorted(highs.collect()) }
     }
 
-    /// The lower faces between which the loads of both sides are even, the first, and the lower bound: nothing
-    /// that lies above it is then below the cut, which is best where boxes all overlap.
+    /// Returns candidate cuts: the two lower faces between which both sides are balanced, the first lower face, and the
+    /// lower bound. With the last, no box is below the cut, which is best if all boxes overlap.
     fn even_cuts(&self, [low, high]: [N; 2], tiles: u32) -> impl Iterator<Item = N> {
         let begin = self.lows.partition_point(|&face| face <= low);
         let inside = &self.lows[begin..];
@@ -385,7 +387,7 @@ impl<N: Real> Faces<N> {
         cuts.into_iter().flatten()
     }
 
-    /// How many boxes meet what is below a cut, and the rest.
+    /// Returns the numbers of boxes that reach below the cut, and at or above it.
     fn counts(&self, at: N) -> [usize; 2] {
         let before = |faces: &[N]| faces.partition_point(|&face| face < at);
         [before(&self.lows), self.highs.len() - before(&self.highs)]

@@ -1,7 +1,8 @@
-//! All pairs of two sets of placed shapes that are near each other.
+//! All near pairs of two sets of placed shapes.
 //!
-//! A tree is built over the boxes of the smaller set, and each element of the larger one searches it with its own box,
-//! grown by the distance. What is proposed is decided by the proximity of the two shapes.
+//! A tree is built over the boxes of one set, and each element of the other searches it with its
+//! own box, grown by the distance. The proximity of the two shapes decides about each proposed
+//! pair.
 //!
 //! ```text
 //!    +-------------+  the box of an element, rounded outwards and grown by the rounding errors of its pair
@@ -9,10 +10,10 @@
 //!    +-------------+ <----- distance -----> |   the searched volume ends here
 //! ```
 //!
-//! The algorithms for pairs are off by some hundred rounding errors of the lengths of the pair, as
-//! [`crate::collide::far`] has it: the sizes of both solids about their origins, and the distance. So each box is grown
-//! by 2¹⁰ rounding errors of the reach of its own solid, and the volume by as many of the distance, before anything
-//! is rejected.
+//! The algorithms for pairs have errors of some hundred rounding errors of the pair's lengths (see
+//! [`crate::collide::far`]): the sizes of both solids about their origins, and the distance. So
+//! each box is grown by 2¹⁰ rounding errors of the extent of its own solid about its origin, and
+//! the searched volume by as many of the distance, before any pair is rejected.
 
 use super::entries;
 use core::ops::Range;
@@ -27,19 +28,20 @@ use crate::math::{Mapped, Real, Space, max};
 use crate::partitioning::BoxTree;
 use crate::query::distance_within;
 
-/// Boxes are grown by so many rounding errors of the lengths that they stand for.
+/// Boxes are grown by this number of rounding errors of their lengths.
 const ROUNDING_ERRORS: f64 = 1024.0;
 
-/// The pairs `[i, j]` of an element `i` of the first side and an element `j` of the second that touch, overlap, or
-/// are at most `distance` apart, ascending.
+/// Returns the pairs `[i, j]` of an element `i` of the first side and an element `j` of the second
+/// that touch, overlap, or are at most `distance` apart, ascending.
 ///
-/// What counts is what [`proximity`](crate::query::proximity()) says of the two: a distance equal to `distance` is
-/// within it. Elements with a pose that is not finite, and composites without parts, have no pairs.
+/// The test is [`proximity`](crate::query::proximity()): a distance equal to `distance` is within
+/// it. Elements with a pose that is not finite, and composites without parts, have no pairs.
 ///
-/// The callback of `control` hears of the elements of the larger side.
+/// The callback of `control` counts the elements of the larger side.
 ///
-/// Cost: O((n + m) log n) for n and m elements, n ≤ m, and the proximity of each pair whose boxes are within the
-/// distance. Half-spaces that do not lie along an axis are held against every element of the other side.
+/// Cost: O((n + m) log n) for n and m elements, n ≤ m, and the proximity of each pair whose boxes
+/// are within the distance. Half-spaces that are not aligned with an axis are tested against every
+/// element of the other side.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, OnePose, Shapes, Side, pairs_within};
@@ -66,8 +68,9 @@ pub fn pairs_within<N: Space<D>, const D: usize>(
     entries::pairs_within(side1, Some(side2), distance, control)
 }
 
-/// The pairs `[i, j]`, `i < j`, of elements of one side that touch, overlap, or are at most `distance` apart,
-/// ascending: [`pairs_within`] of a side and itself, without pairs of an element with itself and with each pair once.
+/// Returns the pairs `[i, j]`, `i < j`, of elements of one side that touch, overlap, or are at most
+/// `distance` apart, ascending: [`pairs_within`] of a side and itself with each pair once and
+/// without self-pairs.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, pairs_within_one};
@@ -90,11 +93,12 @@ pub fn pairs_within_one<N: Space<D>, const D: usize>(
     entries::pairs_within(side, None, distance, control)
 }
 
-/// The box of each element of a side, grown by the rounding errors of its pairs: what [`tiles()`](super::tiles())
-/// and [`Tiles::meeting`] ask for.
+/// Returns the box of each element of a side, grown by the rounding errors of its pairs, as
+/// [`tiles()`](super::tiles()) and [`Tiles::meeting`] need them.
 ///
-/// `None` for what is nowhere: with a pose that is not finite, or a composite without parts. Half-spaces, and what else
-/// has no end, have infinite faces. The boxes follow from the shapes and poses alone.
+/// `None` for an element with a pose that is not finite and for a composite without parts.
+/// Half-spaces and other unbounded shapes have infinite faces. The boxes depend on the shapes and
+/// poses alone.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, boxes};
@@ -121,7 +125,7 @@ pub fn boxes<N: Space<D>, const D: usize>(
 /// The elements of a side and their boxes.
 struct BoxedSide<'a, N: Real, const D: usize> {
     side: PreparedSide<'a, N, D>,
-    /// `None` for what is nowhere.
+    /// `None` for an element without a finite point.
     boxes: Vec<Option<Aabb<N, D>>>,
 }
 
@@ -177,19 +181,19 @@ pub(super) fn boxes_of<N: Space<D>, const D: usize>(
     Ok(BoxedSide::new(side, control)?.boxes)
 }
 
-/// A distance up to which pairs are wanted is zero or more.
+/// Returns an error unless a distance limit is zero or more.
 pub(super) fn is_distance<N: Real>(value: N) -> Result<(), BatchError> {
     let is_usable = value >= N::ZERO;
     if is_usable { Ok(()) } else { Err(BatchError::Distance { value: value.as_f64() }) }
 }
 
-/// By how much a box is grown to find those within a distance.
+/// Returns the distance grown by its rounding errors: the growth of one of two boxes.
 fn margin<N: Real>(distance: N) -> N {
     distance + distance * N::lit(ROUNDING_ERRORS) * N::EPSILON
 }
 
-/// By how much both of two boxes are grown to overlap if they are within a distance; twice this is not less than what one
-/// alone is grown by, also where the half of the smallest number is zero.
+/// Returns the growth of both boxes by which they overlap if they are within a distance. Twice the
+/// result is not less than [`margin`], even where half of the smallest number rounds to zero.
 pub(super) fn half_margin<N: Real>(distance: N) -> N {
     let whole = margin(distance);
     let half = whole * N::HALF;
@@ -199,7 +203,7 @@ pub(super) fn half_margin<N: Real>(distance: N) -> N {
 impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
     fn new(side: &Side<'a, N, D>, control: &Control<'_>) -> Result<Self, BatchError> {
         let given = side.len();
-        // The largest number is that of no element.
+        // `u32::MAX` is not the index of an element.
         if u32::try_from(given).is_err() {
             return Err(BatchError::TooMany { given });
         }
@@ -213,7 +217,8 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         Ok(Self { side, boxes })
     }
 
-    /// The pairs of elements of this side, which search, and of the other, as `named` has them, in any order.
+    /// Returns the near pairs of an element of this side, which searches, and one of the other
+    /// side, as `named` maps them, in any order. `named` returns `None` for pairs to be left out.
     fn pairs_with(
         &self,
         other: &Self,
@@ -244,24 +249,25 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         Ok(all)
     }
 
-    /// A tree over the boxes that there are, and the numbers of their elements.
+    /// Builds a tree over the existing boxes; returns it with the element of each box.
     fn tree(&self) -> Result<(Vec<u32>, BoxTree<N, D>), BatchError> {
         let boxes = (0..).zip(&self.boxes);
         let (numbers, boxes): (Vec<u32>, Vec<_>) =
             boxes.filter_map(|(number, aabb)| Some((number, (*aabb)?))).unzip();
         let given = boxes.len();
-        // The boxes are neither inverted nor NaN, so it can only be their number.
+        // The boxes are neither inverted nor NaN, so only their number can be refused.
         let tree = BoxTree::try_from_vec(boxes).map_err(|_| BatchError::TooMany { given })?;
         Ok((numbers, tree))
     }
 }
 
-/// An index of a side, whose length was checked.
+/// Converts an index of a side, whose length was checked.
 fn number_of(element: usize) -> u32 {
     u32::try_from(element).expect("32 bits can number the elements")
 }
 
-/// A box around an element that arithmetic on pairs does not leave; `None` if it is nowhere.
+/// Returns the box of an element grown by its rounding errors; `None` if the element has no finite
+/// point.
 fn grown_box<N: Space<D>, const D: usize>(
     side: &PreparedSide<'_, N, D>,
     element: usize,

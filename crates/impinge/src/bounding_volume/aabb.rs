@@ -6,10 +6,10 @@ use super::{BoundingVolume, Ray};
 use crate::math::outward::{product_within, sum_above, sum_below};
 use crate::math::{Point, Real, Vector, max, max_component, min};
 
-/// The points between two corners, the faces included.
+/// The points between two corners, faces included.
 ///
-/// `mins ≤ maxs` on every axis and nothing is NaN. Faces may be infinite: such a box is unbounded.
-/// Zero extents are allowed.
+/// `mins ≤ maxs` on every axis and no coordinate is NaN. Faces may be infinite: such a box is
+/// unbounded. Zero extents are allowed.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::{Aabb, BoundingVolume};
@@ -26,7 +26,7 @@ pub struct Aabb<N: Real, const D: usize> {
     pub(super) maxs: Point<N, D>,
 }
 
-/// Why two corners make no box. Values are given as `f64`, exactly.
+/// The reason why two corners are refused. Values are given as `f64`, exactly.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::{Aabb, AabbError};
@@ -40,16 +40,16 @@ pub struct Aabb<N: Real, const D: usize> {
 pub enum AabbError {
     /// A coordinate is NaN.
     NotANumber {
-        /// The axis at fault: 0 for x.
+        /// The axis of the error: 0 for x.
         axis: usize,
         /// The coordinate of the first corner on this axis.
         min: f64,
         /// The coordinate of the second corner on this axis.
         max: f64,
     },
-    /// The first corner lies beyond the second.
+    /// The first corner exceeds the second on an axis.
     Inverted {
-        /// The axis at fault: 0 for x.
+        /// The axis of the error: 0 for x.
         axis: usize,
         /// The coordinate of the first corner on this axis.
         min: f64,
@@ -74,7 +74,7 @@ impl fmt::Display for AabbError {
 impl std::error::Error for AabbError {}
 
 impl<N: Real, const D: usize> Aabb<N, D> {
-    /// The box between two corners.
+    /// Creates the box between two corners.
     ///
     /// # Panics
     /// If a coordinate is NaN or `mins` exceeds `maxs` on an axis; [`Aabb::try_new`] returns these.
@@ -87,7 +87,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         }
     }
 
-    /// The box between two corners.
+    /// Creates the box between two corners.
     ///
     /// # Errors
     /// If a coordinate is NaN or `mins` exceeds `maxs` on an axis.
@@ -106,7 +106,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Ok(Self { mins, maxs })
     }
 
-    /// The box around `center` that reaches `half_extents` to both sides along each axis, rounded outwards.
+    /// Creates the box with this centre and these half extents, rounded outwards.
     ///
     /// # Panics
     /// If a coordinate is NaN or a half extent negative; [`Aabb::try_from_half_extents`] returns these.
@@ -119,7 +119,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         }
     }
 
-    /// The box around `center` that reaches `half_extents` to both sides along each axis, rounded outwards.
+    /// Creates the box with this centre and these half extents, rounded outwards.
     ///
     /// # Errors
     /// If a coordinate is NaN or a half extent negative.
@@ -131,18 +131,18 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self::try_new(aabb.mins, aabb.maxs)
     }
 
-    /// The box that is a point; for trusted numbers.
+    /// Returns the box of a single point; the numbers are not checked.
     pub(crate) const fn at(point: Point<N, D>) -> Self {
         Self { mins: point, maxs: point }
     }
 
-    /// The smallest box around some points; `None` for no points or a NaN among them.
+    /// Returns the smallest box around some points; `None` for no points or a NaN among them.
     #[must_use]
     pub fn from_points(points: &[Point<N, D>]) -> Option<Self> {
         Self::around_all(points.iter().copied())
     }
 
-    /// [`Self::from_points`] of points that need not lie in memory.
+    /// As [`Self::from_points`], for an iterator.
     pub(crate) fn around_all(mut points: impl Iterator<Item = Point<N, D>>) -> Option<Self> {
         let first = points.next()?;
         let is_usable = |point: &Point<N, D>| point.iter().all(|x| x.partial_cmp(x).is_some());
@@ -156,43 +156,44 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         are_usable.then_some(aabb)
     }
 
-    /// The box of everything.
+    /// Returns the box of the whole space.
     #[must_use]
     pub fn unbounded() -> Self {
         let infinity = Vector::<N, D>::repeat(N::INFINITY);
         Self { mins: Point::from(-infinity), maxs: Point::from(infinity) }
     }
 
-    /// The corner of least coordinates.
+    /// Returns the corner with the least coordinates.
     #[inline]
     pub const fn mins(&self) -> &Point<N, D> {
         &self.mins
     }
 
-    /// The corner of greatest coordinates.
+    /// Returns the corner with the greatest coordinates.
     #[inline]
     pub const fn maxs(&self) -> &Point<N, D> {
         &self.maxs
     }
 
-    /// The middle; not finite where the box is unbounded.
+    /// Returns the centre; not finite if the box is unbounded.
     pub fn center(&self) -> Point<N, D> {
         self.mins + self.half_extents()
     }
 
-    /// Half the size along each axis; infinite where the box is unbounded.
+    /// Returns half the size along each axis; infinite where the box is unbounded.
     pub fn half_extents(&self) -> Vector<N, D> {
         (self.maxs - self.mins) * N::HALF
     }
 
-    /// Every face is finite.
+    /// Returns `true` if every face is finite.
     pub fn is_bounded(&self) -> bool {
         self.mins.iter().chain(self.maxs.iter()).all(|x| x.is_finite_number())
     }
 
-    /// The times at which the ray enters and leaves the box, cut off at `t = 0`; `None` for a miss.
+    /// Returns the times at which the ray enters and leaves the box, clamped to `t ≥ 0`; `None` for
+    /// a miss.
     ///
-    /// Slab test (Kay and Kajiya 1986); a ray that runs in a face hits.
+    /// Slab test (Kay and Kajiya 1986); a ray that lies in a face hits.
     pub fn ray_interval(&self, ray: &Ray<N, D>) -> Option<(N, N)> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for axis in 0..D {
@@ -210,11 +211,11 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         (enter <= leave).then_some((enter, leave))
     }
 
-    /// The times at which another box that moves with `velocity` begins and ceases to touch this one,
-    /// cut off at `t = 0`; `None` if it never does.
+    /// Returns the times at which another box that moves with `velocity` begins and ceases to touch
+    /// this one, clamped to `t ≥ 0`; `None` if it never does.
     ///
-    /// The slab test on the sums of both extents: for a box that is a point, [`Self::ray_interval`].
-    /// A box at rest touches always or never. The velocity must be finite.
+    /// The slab test on the sums of both extents: for a single point, [`Self::ray_interval`]. A box
+    /// at rest touches always or never. The velocity must be finite.
     pub fn sweep_interval(&self, moving: &Self, velocity: &Vector<N, D>) -> Option<(N, N)> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for axis in 0..D {
@@ -233,13 +234,13 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         (enter <= leave).then_some((enter, leave))
     }
 
-    /// The distance from the box to a point, zero inside.
+    /// Returns the distance from the box to a point, zero inside.
     pub fn distance_to_point(&self, point: &Point<N, D>) -> N {
         self.distance_to_aabb(&Self::at(*point))
     }
 
-    /// The distance between two boxes, zero if they meet. Distances whose squares are too small for
-    /// the scalar count as zero.
+    /// Returns the distance between two boxes, zero if they overlap. Distances whose squares
+    /// underflow count as zero.
     pub fn distance_to_aabb(&self, other: &Self) -> N {
         let below = (self.mins - other.maxs).map(|x| max(x, N::ZERO));
         let above = (other.mins - self.maxs).map(|x| max(x, N::ZERO));
@@ -248,15 +249,17 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         if distance.is_finite_number() { distance } else { long_distance(&gaps) }
     }
 
-    /// The box holds a finite point: it is neither inverted nor NaN nor wholly at infinity.
+    /// Returns `true` if the box contains a finite point: it is neither inverted nor NaN nor
+    /// entirely at infinity.
     pub(crate) fn holds_finite_point(&self) -> bool {
         let holds = |low: N, high: N| low <= high && low < N::INFINITY && high > -N::INFINITY;
         (0..D).all(|axis| holds(self.mins[axis], self.maxs[axis]))
     }
 }
 
-/// The length of a vector whose square is too large for the scalar. Never below those whose square is
-/// not, so that a box that encloses another is not farther than it.
+/// Returns the length of a vector whose square overflows. It is never less than a length whose
+/// square does not, so that distances stay monotonic: a box that encloses another is not farther
+/// away.
 #[cold]
 fn long_distance<N: Real, const D: usize>(gaps: &Vector<N, D>) -> N {
     let largest = max_component(gaps);
@@ -303,7 +306,7 @@ impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
     fn swept(&self, velocity: &Vector<N, D>, max_time: N) -> Self {
         let mut swept = *self;
         for axis in 0..D {
-            // What rests goes nowhere, not even in infinite time.
+            // A component of zero moves nothing, even in infinite time.
             if velocity[axis] != N::ZERO {
                 let [back, forth] = product_within(velocity[axis], max_time);
                 swept.mins[axis] = sum_below(self.mins[axis], min(back, N::ZERO));

@@ -1,4 +1,4 @@
-//! Simple volumes that enclose shapes: what the broad phase works on.
+//! Simple volumes that enclose shapes, for the broad phase.
 
 mod aabb;
 mod placed;
@@ -11,12 +11,12 @@ pub use sphere::{BoundingSphere, BoundingSphereError};
 
 use crate::math::Real;
 
-/// A volume that a broad phase can keep in place of an object.
+/// A volume that stands for an object in a broad phase.
 ///
-/// What is computed from volumes is rounded outwards: [`merged`](Self::merged) holds both to the last bit,
-/// [`loosened`](Self::loosened) and [`swept`](Self::swept) hold what they are around. Boxes whose exact corners are
-/// numbers of the scalar are exact, but for [`swept`](Self::swept) by a product that is not; spheres are larger by
-/// some units in the last place.
+/// Computed volumes are rounded outwards: [`merged`](Self::merged) contains both to the last bit,
+/// and [`loosened`](Self::loosened) and [`swept`](Self::swept) contain the exact result. Boxes are
+/// exact if the exact corners are representable, apart from [`swept`](Self::swept) with a rounded
+/// product; spheres are larger by some units in the last place.
 ///
 /// All tests are closed: volumes that only touch intersect.
 ///
@@ -29,29 +29,29 @@ use crate::math::Real;
 /// assert!(volume.swept(&Vector::new(2.0, 0.0), 1.0).contains_point(&Point::new(3.0, 1.0)));
 /// ```
 pub trait BoundingVolume<N: Real>: Clone {
-    /// The points of the space that the volume lies in.
+    /// The points of the volume's space.
     type Point;
-    /// The rays of the space that the volume lies in.
+    /// The rays of the volume's space.
     type Ray;
-    /// The velocities of the space that the volume lies in.
+    /// The velocities of the volume's space.
     type Vector;
 
-    /// The two volumes have a point in common.
+    /// Returns `true` if the two volumes have a common point.
     fn intersects(&self, other: &Self) -> bool;
-    /// Every point of `other` is a point of this volume.
+    /// Returns `true` if every point of `other` is in this volume.
     fn contains(&self, other: &Self) -> bool;
-    /// The smallest volume of this kind around both.
+    /// Returns the smallest volume of this kind around both.
     #[must_use]
     fn merged(&self, other: &Self) -> Self;
-    /// The volume grown by `margin` (zero or more) on every side.
+    /// Returns the volume grown by `margin` (zero or more) on every side.
     #[must_use]
     fn loosened(&self, margin: N) -> Self;
-    /// The smallest volume of this kind around all places of this one as it moves with `velocity`
-    /// (finite) from time zero to `max_time` (zero or more, perhaps infinite).
+    /// Returns the smallest volume of this kind around the whole motion of this one with `velocity`
+    /// (finite) from time zero to `max_time` (zero or more, possibly infinite).
     #[must_use]
     fn swept(&self, velocity: &Self::Vector, max_time: N) -> Self;
-    /// The point lies in the volume.
+    /// Returns `true` if the point is in the volume.
     fn contains_point(&self, point: &Self::Point) -> bool;
-    /// The ray, with times from zero on, meets the volume.
+    /// Returns `true` if the ray, with times from zero on, meets the volume.
     fn intersects_ray(&self, ray: &Self::Ray) -> bool;
 }

@@ -1,21 +1,22 @@
-//! Boxes around what a pose has placed, rounded outwards.
+//! Boxes around placed solids, rounded outwards.
 //!
-//! A coordinate of a placed point is `t + Σ Rᵢⱼ·pⱼ`. The sum is rounded, so that boxes grow by a bound of its error
-//! ([`slack_of`]); adding `t` is as exact as the scalar allows ([`sum_below`], [`sum_above`]), so that solids far
-//! from the origin have boxes as tight as others. Where a pose turns axes to axes nothing is rounded but that.
+//! A coordinate of a placed point is `t + Σ Rᵢⱼ·pⱼ`. The sum is rounded, so boxes grow by a bound of its error
+//! ([`slack_of`]). Adding `t` is rounded outwards to the neighbouring number ([`sum_below`], [`sum_above`]), so that
+//! solids far from the origin have boxes as tight as others. If a pose maps axes to axes, only this addition is
+//! rounded.
 
 use super::Aabb;
 use crate::math::outward::{slack_of, sum_above, sum_below};
 use crate::math::{Point, Pose, Real, Vector, max, min};
 
 impl<N: Real, const D: usize> Aabb<N, D> {
-    /// The box around `center` that reaches `half_extents` along each axis, rounded outwards; for trusted numbers.
+    /// Returns the box with this centre and these half extents, rounded outwards; the numbers are not checked.
     #[inline]
     pub(crate) fn around(center: Point<N, D>, half_extents: Vector<N, D>) -> Self {
         Self::moved([&-half_extents, &half_extents], &center.coords)
     }
 
-    /// The box between two corners, moved and rounded outwards.
+    /// Returns the box between two corners, translated and rounded outwards.
     #[inline(always)]
     fn moved([low, high]: [&Vector<N, D>; 2], by: &Vector<N, D>) -> Self {
         let (mut mins, mut maxs) = (*by, *by);
@@ -26,8 +27,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self { mins: Point::from(mins), maxs: Point::from(maxs) }
     }
 
-    /// The box around a solid that is symmetric about the local origin, placed at `pose`. `reach` is how far it
-    /// reaches along each outer axis: sums of magnitudes, each off by at most four units of its rounding.
+    /// Returns the box around a solid that is symmetric about its local origin, placed at `pose`. `reach` is its extent
+    /// along each outer axis: a sum of magnitudes with an error of at most four of its rounding units.
     #[inline(always)]
     pub(crate) fn around_turned(pose: &Pose<N, D>, mut reach: Vector<N, D>) -> Self {
         if !pose.is_aligned() {
@@ -39,12 +40,12 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self::around(Point::from(pose.translation), reach)
     }
 
-    /// The box around points that are turned by `pose` already, but not moved: `low` and `high` are the least and
-    /// the greatest of their coordinates as [`Pose::vector`] has them. No point is farther from the local origin
-    /// than `size`. The box of everything where the numbers end.
+    /// Returns the box around points that `pose` has rotated but not yet translated: `low` and `high` are the least and
+    /// greatest of their coordinates as computed by [`Pose::vector`]. `size` bounds the distance of the points from the
+    /// local origin. Unbounded where the numbers overflow.
     ///
-    /// A coordinate of a turned point is a sum of D products and off by at most D·ε·size/2 (Higham, "Accuracy and
-    /// Stability of Numerical Algorithms", 2002, section 3.1).
+    /// A coordinate of a rotated point is a sum of D products with an error of at most D·ε·size/2 (Higham, "Accuracy
+    /// and Stability of Numerical Algorithms", 2002, section 3.1).
     #[inline]
     pub(crate) fn of_turned(
         mut low: Vector<N, D>,
@@ -62,10 +63,10 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self::try_new(mins, maxs).unwrap_or_else(|_| Self::unbounded())
     }
 
-    /// The smallest box, in the outer frame, around this box placed at `pose`; rounded outwards, and exact where
-    /// the pose turns axes to axes and the corners are numbers of the scalar.
+    /// Returns the smallest box, in the outer frame, around this box placed at `pose`; rounded outwards, and exact if
+    /// the pose maps axes to axes and the corners are representable.
     ///
-    /// An unbounded axis of the local box makes every outer axis it leans on unbounded.
+    /// An unbounded local axis makes every outer axis unbounded to which it contributes.
     #[must_use]
     pub fn transformed_by(&self, pose: &Pose<N, D>) -> Self {
         let is_aligned = pose.is_aligned();
@@ -74,7 +75,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
             let (mut below, mut above) = (N::ZERO, N::ZERO);
             for column in 0..D {
                 let factor = pose.rotation[(row, column)];
-                // 0 · ∞ is no number: such an axis says nothing of this one.
+                // Skips 0 · ∞, which is NaN: such an axis does not contribute to this one.
                 if factor != N::ZERO {
                     let (a, b) = (factor * self.mins[column], factor * self.maxs[column]);
                     let (least, most) = (min(a, b), max(a, b));

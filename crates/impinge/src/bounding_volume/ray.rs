@@ -2,9 +2,10 @@
 
 use crate::math::{Point, Pose, Real, Vector};
 
-/// The points `origin + t · dir` for `t ≥ 0`.
+/// A half-line: the points `origin + t · dir` for `t ≥ 0`.
 ///
-/// `dir` need not be unit; times are in units of its length. A zero `dir` makes the ray a point.
+/// `dir` need not be a unit vector; times are in units of its length. A zero `dir` makes the ray a
+/// point.
 ///
 /// ```
 /// use impinge::dim2::math::{Point, Vector};
@@ -16,30 +17,31 @@ use crate::math::{Point, Pose, Real, Vector};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ray<N: Real, const D: usize> {
-    /// Where the ray starts.
+    /// The start of the ray.
     pub origin: Point<N, D>,
-    /// Where it goes, per unit of time.
+    /// The displacement in one unit of time.
     pub dir: Vector<N, D>,
 }
 
 impl<N: Real, const D: usize> Ray<N, D> {
-    /// The ray from `origin` along `dir`.
+    /// Creates the ray from `origin` along `dir`.
     pub const fn new(origin: Point<N, D>, dir: Vector<N, D>) -> Self {
         Self { origin, dir }
     }
 
-    /// The point at time `t`.
+    /// Returns the point at time `t`.
     pub fn point_at(&self, t: N) -> Point<N, D> {
         self.origin + self.dir * t
     }
 
-    /// The same ray, seen from the local frame of a solid at `pose`.
+    /// Returns the ray in the local frame of a solid at `pose`; times stay equal.
     #[must_use]
     pub fn inverse_transformed_by(&self, pose: &Pose<N, D>) -> Self {
         Self::new(pose.inverse_point(&self.origin), pose.inverse_vector(&self.dir))
     }
 
-    /// The same ray, given in a solid's local frame, in the outer frame.
+    /// Returns the ray, given in the local frame of a solid at `pose`, in the outer frame; times
+    /// stay equal.
     #[must_use]
     pub fn transformed_by(&self, pose: &Pose<N, D>) -> Self {
         Self::new(pose.point(&self.origin), pose.vector(&self.dir))

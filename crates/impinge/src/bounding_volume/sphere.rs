@@ -8,7 +8,7 @@ use crate::math::{Point, Pose, Real, Vector, max, unit};
 
 /// The points within `radius` of `center`.
 ///
-/// The radius may be zero (a point) or infinite (everything).
+/// The radius may be zero (a point) or infinite (the whole space).
 ///
 /// ```
 /// use impinge::dim3::bounding_volume::{BoundingSphere, BoundingVolume};
@@ -24,7 +24,7 @@ pub struct BoundingSphere<N: Real, const D: usize> {
     radius: N,
 }
 
-/// Why a centre and a radius make no sphere.
+/// The reason why a centre and a radius are refused.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::{BoundingSphere, BoundingSphereError};
@@ -54,7 +54,7 @@ impl<N: Real> fmt::Display for BoundingSphereError<N> {
 impl<N: Real> std::error::Error for BoundingSphereError<N> {}
 
 impl<N: Real, const D: usize> BoundingSphere<N, D> {
-    /// The sphere around `center`.
+    /// Creates the sphere around `center`.
     ///
     /// # Panics
     /// If the radius is negative or NaN or the centre is not finite; [`Self::try_new`] returns these.
@@ -67,7 +67,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         }
     }
 
-    /// The sphere around `center`.
+    /// Creates the sphere around `center`.
     ///
     /// # Errors
     /// If the radius is negative or NaN or the centre is not finite.
@@ -79,23 +79,23 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         if usable { Ok(Self { center, radius }) } else { Err(BoundingSphereError::Radius(radius)) }
     }
 
-    /// The sphere of everything.
+    /// Returns the sphere of the whole space.
     #[must_use]
     pub fn unbounded() -> Self {
         Self { center: Point::origin(), radius: N::INFINITY }
     }
 
-    /// The centre.
+    /// Returns the centre.
     pub const fn center(&self) -> &Point<N, D> {
         &self.center
     }
 
-    /// The radius.
+    /// Returns the radius.
     pub const fn radius(&self) -> N {
         self.radius
     }
 
-    /// The sphere around a box; that of everything where the box has no end.
+    /// Returns the sphere around a box; unbounded if the box is.
     pub(crate) fn around_box(aabb: &Aabb<N, D>) -> Self {
         let center = aabb.center();
         let farthest = Vector::<N, D>::from_fn(|axis, _| {
@@ -104,13 +104,13 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         Self::try_new(center, length_above(&farthest)).unwrap_or_else(|_| Self::unbounded())
     }
 
-    /// No point of `other` is farther from `center` than this.
+    /// Returns an upper bound of the distance from `center` to a point of this sphere.
     pub(crate) fn farthest_from(&self, center: &Point<N, D>) -> N {
         sum_above(length_above(&(self.center - center)), self.radius)
     }
 
-    /// The sphere placed at `pose`, rounded outwards; one about the origin that is not turned, or by quarters, is
-    /// exact.
+    /// Returns the sphere placed at `pose`, rounded outwards. Exact for a sphere about the origin
+    /// under a pose that maps axes to axes.
     #[must_use]
     pub fn transformed_by(&self, pose: &Pose<N, D>) -> Self {
         let (center, mut radius) = (pose.point(&self.center), self.radius);
@@ -119,15 +119,15 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
             radius = sum_above(radius, slack_of(size));
         }
         if !pose.is_aligned() {
-            // A rotation that is rounded stretches.
+            // A rounded rotation matrix may stretch.
             radius = sum_above(radius, slack_of(radius));
         }
         Self { center, radius }
     }
 }
 
-/// A number not below the length of a vector whose components are right to a unit of rounding; infinity for what
-/// is not finite, zero for zero.
+/// Returns an upper bound of the length of a vector whose components have an error of one rounding
+/// unit; infinity for a vector that is not finite, zero for zero.
 fn length_above<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     match unit(v) {
         Some((_, length)) => length + slack_of(length),
@@ -157,7 +157,7 @@ impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
             return *other;
         }
         let Some((direction, distance)) = unit(&(other.center - self.center)) else {
-            // Too far apart for the scalar.
+            // The distance overflows.
             return Self::unbounded();
         };
         let share = (other.radius - self.radius + distance) * N::HALF;
@@ -176,7 +176,7 @@ impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
         let rounding = slack_of(length_above(&self.center.coords) + way);
         let radius = sum_above(self.radius, rounding);
         let moved = Self::try_new(self.center + velocity * max_time, radius);
-        // A way without an end leads everywhere.
+        // An infinite path leads everywhere.
         moved.map_or_else(|_| Self::unbounded(), |moved| self.merged(&moved))
     }
 

@@ -19,10 +19,10 @@ use crate::partitioning::Sweep;
 
 /// A bounding volume that [`DBVTBroadPhase`] can keep: every [`Aabb`]. Sealed.
 pub trait TreeVolume<N: Real>: BoundingVolume<N> + sealed::Sealed {
-    /// What finds the pairs of such volumes.
+    /// The algorithm that finds the pairs of such volumes.
     type Finder: Debug + Clone;
 
-    /// A finder without objects.
+    /// Creates a finder without objects.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.
@@ -47,18 +47,17 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 
 /// A dynamic tree over bounding volumes loosened by a margin.
 ///
-/// The tree is touched only when an object's exact volume leaves its loosened one, so objects that
-/// move slowly or jitter cost almost nothing. Volumes are loosened at creation too. The pairs
-/// kept are those of overlapping loosened volumes; the searches (`interferences_with_*`, `visit_*`)
-/// use exact volumes.
+/// The tree changes only when an object's exact volume leaves its loosened one, so objects that
+/// move slowly or jitter cost almost nothing. Volumes are loosened at creation too. The pairs kept
+/// are those of overlapping loosened volumes; the searches (`interferences_with_*`, `visit_*`) use
+/// exact volumes.
 ///
-/// Loosened volumes are kept as `f32`, rounded outwards, also for `f64`: a pair is never missed.
-/// Volumes with a face beyond the range of `f32` are unbounded: ordinary, but each is tested
-/// against every object that changes, so there should be few.
+/// Loosened volumes are stored as `f32`, rounded outwards, also for `f64`: a pair is never missed.
+/// Volumes with a face beyond the range of `f32` are unbounded. They are supported, but each is
+/// tested against every object that changes, so there should be few.
 ///
-/// Costs O(changed · log n) with temporal coherence. Of an object that stays where it is and has no pairs,
-/// about 60 bytes are kept beside its volume, the loosened one and the data. [`PairFinder`] describes the
-/// layout.
+/// Costs O(changed · log n) with temporal coherence. A still object without pairs takes about 60
+/// bytes besides its volume, the loosened one and the data. [`PairFinder`] describes the layout.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -77,7 +76,7 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 /// ```
 pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
     pub(super) handles: Handles,
-    /// By index of the handle; `None` where there is no object.
+    /// Data by index of the handle; `None` where there is no object.
     pub(super) proxies: Proxies<T>,
     pub(super) finder: BV::Finder,
     recent: Recent,
@@ -99,8 +98,8 @@ impl<N: Space<D>, const D: usize, T> Debug for DBVTBroadPhase<N, Aabb<N, D>, T> 
 }
 
 impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
-    /// A broad phase without objects, whose volumes are loosened by `margin` (zero or more; 0.02
-    /// suits objects of size 1).
+    /// Creates a broad phase without objects, whose volumes are loosened by `margin` (zero or more;
+    /// 0.02 suits objects of size 1).
     ///
     /// # Panics
     /// If the margin is negative, infinite or NaN; [`Self::try_new`] returns these.
@@ -110,7 +109,7 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
         or_panic(Self::try_new(margin))
     }
 
-    /// A broad phase without objects, whose volumes are loosened by `margin`.
+    /// Creates a broad phase without objects, whose volumes are loosened by `margin`.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.
@@ -121,20 +120,20 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     }
 }
 
-/// The data of an object that is known to be there.
+/// Returns the data of an object, which must exist.
 pub(super) fn data_of<T>(proxies: &[Option<T>], id: u32) -> &T {
     let data = proxies[id as usize].as_ref();
     data.expect("the finder knows only objects that are there")
 }
 
-/// The number that the finder knows the object by.
+/// Returns the id of the object in the finder.
 fn id_of(handle: ProxyHandle) -> u32 {
     u32::try_from(handle.uid()).expect("handles hold an index of 32 bits")
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
-    /// A broad phase without objects that uses the given vectors; the results do not depend on
-    /// them. For tests.
+    /// Creates a broad phase without objects that uses the given vector width, which does not
+    /// affect results. For tests.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.
@@ -143,19 +142,20 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         Ok(Self { finder, ..Self::try_new(margin)? })
     }
 
-    /// The margin by which volumes are loosened.
+    /// Returns the margin by which volumes are loosened.
     pub fn margin(&self) -> N {
         self.finder.margin()
     }
 
-    /// The loosened volume; `None` for a stale handle or an object that no update has seen.
+    /// Returns the loosened volume; `None` for a stale handle or before the first update of the
+    /// object.
     pub fn loosened_volume(&self, handle: ProxyHandle) -> Option<&Bounds<D>> {
         self.check(handle).ok()?;
         self.finder.loosened(id_of(handle))
     }
 
-    /// The pairs as of the last update, less those removed since, each with the smaller handle
-    /// first; in no particular order.
+    /// Iterates over the pairs as of the last update without those removed since, each with the
+    /// smaller handle first, in unspecified order.
     pub fn pairs(&self) -> impl Iterator<Item = (ProxyHandle, ProxyHandle)> + '_ {
         let handle = |id: u32| self.handles.at(id);
         self.finder.pairs().iter().map(move |&(a, b)| (handle(a), handle(b)))
@@ -164,7 +164,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     /// Checks every invariant; for tests.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// A sentence that names the violated invariant.
     pub fn validate(&self) -> Result<(), String> {
         self.finder.validate()
     }
@@ -174,7 +174,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         is_alive.then_some(()).ok_or(BroadPhaseError::StaleHandle(handle))
     }
 
-    /// Refuses stale handles and handles that occur twice.
+    /// Returns an error for a stale handle or one that occurs twice.
     fn check_all(&self, handles: &[ProxyHandle]) -> Result<(), BroadPhaseError> {
         handles.iter().try_for_each(|&handle| self.check(handle))?;
         let mut sorted = handles.to_vec();
@@ -183,7 +183,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         twice.map_or(Ok(()), |two| Err(BroadPhaseError::RemovedTwice(two[0])))
     }
 
-    /// Hands on what a search found. One at least, and as many as it finds at once at most.
+    /// Passes a group of found objects to `visit`: at least one, at most [`GROUP`].
     #[inline]
     fn propose(&self, found: &[(u32, N)], visit: &mut VisitProposals<'_, N, T>) -> N {
         let mut proposals = [Proposal::kept(&self.proxies, found[0].0, found[0].1); GROUP];
@@ -198,7 +198,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     }
 }
 
-/// Refuses NaN and inverted boxes, which arithmetic on good ones can yield.
+/// Returns an error for NaN and inverted boxes, which arithmetic on valid ones can yield.
 fn check_volume<N: Real, const D: usize>(
     bv: &Aabb<N, D>,
     handle: Option<ProxyHandle>,

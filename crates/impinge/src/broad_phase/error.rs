@@ -1,10 +1,10 @@
-//! What a broad phase refuses.
+//! Errors of a broad phase.
 
 use core::fmt;
 
 use super::ProxyHandle;
 
-/// Why a call to a broad phase was refused. Nothing has changed then.
+/// The reason why a call to a broad phase was refused. The broad phase is unchanged then.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -16,12 +16,11 @@ use super::ProxyHandle;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BroadPhaseError {
-    /// The handle is that of an object removed earlier, or of another broad phase.
+    /// The handle is that of a removed object, or of another broad phase.
     StaleHandle(ProxyHandle),
-    /// The handle stands twice in one list of removals.
+    /// The handle occurs twice in one list of removals.
     RemovedTwice(ProxyHandle),
-    /// The volume for this object (`None`: one to be created) has a face that is NaN, or is
-    /// inverted.
+    /// The volume of this object (`None`: a new one) has a NaN face, or is inverted.
     BadVolume(Option<ProxyHandle>),
     /// The margin (given here as `f64`) is negative, infinite or NaN.
     BadMargin(f64),
@@ -47,7 +46,7 @@ impl fmt::Display for BroadPhaseError {
 
 impl std::error::Error for BroadPhaseError {}
 
-/// The value, or a panic with the error's text: the end of every panicking method.
+/// Returns the value, or panics with the text of the error: the end of every panicking method.
 #[track_caller]
 pub(super) fn or_panic<S>(result: Result<S, BroadPhaseError>) -> S {
     match result {

@@ -1,4 +1,4 @@
-//! One update: from boxes that wait to events in canonical order.
+//! One update of the broad phase: from waiting boxes to events in canonical order.
 
 use super::PairFinder;
 use super::finder::{AGAIN, CHANGED, Home};
@@ -7,23 +7,23 @@ use crate::math::Real;
 use crate::memory::Look;
 use crate::pairs::{PairTable, pack, unpack};
 
-/// Pairs whose ends are brought into the cache together.
+/// Number of pairs whose table entries are prefetched together.
 const AT_ONCE: usize = 16;
 
-/// What becomes of pairs in an update; packed pairs, ascending.
+/// Started and stopped pairs of an update, packed, in ascending order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PairEvents {
-    /// The pairs that begin.
+    /// Pairs that start.
     starting: Vec<u64>,
-    /// The pairs that end.
+    /// Pairs that stop.
     stopped: Vec<u64>,
-    /// Both, merged: `true` for those that begin.
+    /// Both lists merged; `true` for pairs that start.
     events: Vec<(u64, bool)>,
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
-    /// Applies what is pending; see `BroadPhase::update`. The numbers handed out are ids, the
-    /// smaller one first.
+    /// Applies the waiting changes; see `BroadPhase::update`. Arguments of both callbacks are ids,
+    /// the smaller one first.
     pub fn update(
         &mut self,
         filter: &mut dyn FnMut(u32, u32) -> bool,
@@ -44,7 +44,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         let mut found = core::mem::take(&mut self.found);
         self.find_changes(&mut found);
         self.filter(&mut found, filter);
-        // From here on no foreign code runs until everything is consistent.
+        // No user code runs from here until the state is consistent.
         self.commit_and_settle(&found.ended);
         self.recent.note(found.began.len().max(found.ended.len()));
         self.found = found;
@@ -56,8 +56,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.pair_events.events = events;
     }
 
-    /// Decides about the pairs that began; those to be asked about again that are refused now join
-    /// the ended ones. Alters no pair.
+    /// Filters the pairs that began. Pairs that are filtered again and now refused are added to the
+    /// ended ones. Changes no pair.
     fn filter(&mut self, found: &mut Changes, filter: &mut dyn FnMut(u32, u32) -> bool) {
         self.pair_events.starting.clear();
         found.began.sort_unstable();
@@ -76,7 +76,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         found.ended.dedup();
     }
 
-    /// The pairs whose boxes overlap and did not before, and those whose boxes did and do not.
+    /// Finds the pairs whose boxes began to overlap and those whose boxes ceased to.
     fn find_changes(&mut self, found: &mut Changes) {
         found.clear();
         self.joiner.self_join(&self.moving, found);
@@ -91,7 +91,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// The pairs of an object that overlap no more.
+    /// Lists the pairs of an object whose boxes no longer overlap.
     fn parted_from(&self, a: u32, ended: &mut Vec<u64>) {
         for (b, _) in self.pairs.partners(a) {
             if !self.loose[a as usize].overlaps(&self.loose[b as usize]) {
@@ -100,12 +100,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// The pairs of one unbounded object that began or ended: with all objects if it changed itself,
-    /// else with those that changed.
+    /// Finds the pairs of one unbounded object that began or ended: among all objects if it changed
+    /// itself, else among those that changed.
     fn changes_of_unbounded(&self, u: u32, found: &mut Changes) {
         let is_changed = self.marks[u as usize] & CHANGED != 0;
         let mut test = |other: u32| {
-            // Of two unbounded objects, the one that changed speaks, of two that did the smaller.
+            // A pair of two unbounded objects is reported once: by the one that changed, or by the
+            // smaller id.
             let is_reported_by_other = self.homes[other as usize] == Home::Unbounded
                 && self.marks[other as usize] & CHANGED != 0
                 && (!is_changed || other < u);
@@ -131,8 +132,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (before, self.loose[a as usize].overlaps(&self.loose[b as usize]))
     }
 
-    /// Alters the table of pairs, and makes the trees ready for the next update. Neither needs the
-    /// other.
+    /// Updates the table of pairs, and prepares the trees for the next update. Both are
+    /// independent.
     fn commit_and_settle(&mut self, ended: &[u64]) {
         let mut pairs = core::mem::take(&mut self.pairs);
         let mut pair_events = core::mem::take(&mut self.pair_events);
@@ -152,7 +153,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (self.pairs, self.pair_events) = (pairs, pair_events);
     }
 
-    /// Declares the present boxes those of before.
+    /// Makes the present boxes the old ones, and clears all marks.
     fn settle(&mut self) {
         for &id in &self.changes {
             self.marks[id as usize] = 0;
@@ -164,7 +165,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 }
 
-/// Runs both, on two threads if there are several.
+/// Runs both closures, with the feature `parallel` possibly on two threads.
 fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
     #[cfg(feature = "parallel")]
     rayon::join(one, other);
@@ -176,15 +177,15 @@ fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
 }
 
 impl PairEvents {
-    /// Gives back the memory of lists that have been short for some time.
+    /// Releases the memory of lists that have been short for some time.
     pub(super) fn give_back(&mut self, look: Look) {
         look.trim(&mut self.starting);
         look.trim(&mut self.stopped);
         look.trim(&mut self.events);
     }
 
-    /// Alters the table of pairs and lists the events in canonical order. A pair that starts takes the
-    /// place of one that stops, so that no third one moves.
+    /// Updates the table of pairs and lists the events in canonical order. A pair that starts takes
+    /// the index of one that stops, so that no third one moves.
     fn commit(&mut self, pairs: &mut PairTable, ended: &[u64]) {
         let Self { starting, stopped, events } = self;
         let mut started = 0;
@@ -194,7 +195,7 @@ impl PairEvents {
             pairs.fetch(&starting[started..starting.len().min(started + AT_ONCE)]);
             for &key in chunk {
                 let (a, b) = unpack(key);
-                // A pair that the filter refused is not there.
+                // A pair that the filter refused is not in the table.
                 let was_there = match starting.get(started) {
                     Some(&start) => pairs.replace((a, b), unpack(start)).is_some(),
                     None => pairs.remove(a, b).is_some(),
@@ -215,7 +216,7 @@ impl PairEvents {
     }
 }
 
-/// Two ascending lists as one: stopped pairs with `false`, started ones with `true`.
+/// Merges two ascending lists into one: stopped pairs with `false`, started ones with `true`.
 fn merge(stopped: &[u64], started: &[u64], events: &mut Vec<(u64, bool)>) {
     events.clear();
     let mut rest = started.iter().peekable();

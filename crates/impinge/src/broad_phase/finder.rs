@@ -1,4 +1,4 @@
-//! The broad phase without the user's data: numbers and boxes in, changes of pairs out.
+//! The broad phase without the users' data: ids and boxes in, started and stopped pairs out.
 
 use core::fmt;
 
@@ -14,60 +14,60 @@ use crate::math::Real;
 use crate::memory::{Look, Recent, clone_fields};
 use crate::pairs::PairTable;
 
-/// Where an object is kept.
+/// The container of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Home {
-    /// Nowhere: no such object, or one that no update has seen.
+    /// None: there is no such object, or no update has applied its box yet.
     Nowhere,
-    /// In the tree of objects that move.
+    /// The tree of moving objects.
     Moving,
-    /// In the tree of objects that have stood still for long.
+    /// The tree of objects that have been still for some time.
     Still,
-    /// In the list of unbounded objects.
+    /// The list of unbounded objects.
     Unbounded,
 }
 
-/// The loosened box changed since the last update.
+/// Mark: the loosened box changed since the last update.
 pub(super) const CHANGED: u8 = 1;
-/// The filter is to be asked again about all pairs.
+/// Mark: all pairs of the object must be filtered again.
 pub(super) const AGAIN: u8 = 2;
 
-/// A box to be given to an object at the next update; the id is [`NONE`] if it was removed since.
+/// A box to be set at the next update; `id` is [`NONE`] if the object was removed since.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting<N: Real, const D: usize> {
     pub(super) id: u32,
     pub(super) aabb: Aabb<N, D>,
 }
 
-/// Keeps the pairs of objects whose loosened boxes overlap. Objects are dense small numbers.
+/// Keeps the pairs of objects whose loosened boxes overlap. Objects are small dense numbers (ids).
 ///
-/// An object's loosened box is its exact box grown by the margin and rounded outwards to `f32`. It
-/// changes only when the exact box leaves it (or when an unbounded object becomes bounded), so
-/// objects that move little cost almost nothing. Boxes with a face beyond the range of `f32` count
-/// as unbounded: they are kept in a list and tested against every object that changed.
+/// The loosened box of an object is its exact box grown by the margin and rounded outwards to
+/// `f32`. It changes only when the exact box leaves it, or when an unbounded object becomes
+/// bounded, so objects that move little cost almost nothing. Boxes with a face beyond the range of
+/// `f32` count as unbounded: they are kept in a list and tested against every object that changed.
 ///
-/// All arrays are by id. Objects that have not changed for a while move to a second tree, which
-/// is then joined only with what changed.
+/// All arrays are indexed by id. Objects that have not changed for a while move to a second tree,
+/// which is joined only with what changed.
 pub struct PairFinder<N: Real, const D: usize> {
     margin: N,
-    /// As given, at the last update.
+    /// Exact boxes at the last update.
     pub(super) exact: Vec<Aabb<N, D>>,
     pub(super) loose: Vec<Bounds<D>>,
-    /// The loosened box at the last update, for unbounded objects marked as changed. Only as long as for
-    /// the last of these.
+    /// Loosened boxes at the last update, for unbounded objects marked as changed; up to the last
+    /// of these.
     previous: Vec<Bounds<D>>,
     pub(super) homes: Vec<Home>,
     pub(super) marks: Vec<u8>,
-    /// The update that last changed the loosened box.
+    /// Update (`clock`) in which the loosened box last changed.
     pub(super) last_change: Vec<u32>,
     pub(super) waiting: Vec<Waiting<N, D>>,
-    /// Memory for places in `waiting`.
+    /// Scratch: indices in `waiting`.
     leavers: Vec<u32>,
-    /// Where an object stands in `waiting`, or [`NONE`].
+    /// Index of each object in `waiting`, or [`NONE`].
     pub(super) waiting_at: Vec<u32>,
-    /// The objects marked as changed, each once.
+    /// Objects marked as changed, each once.
     pub(super) changes: Vec<u32>,
-    /// Objects whose pairs the filter is to be asked about again.
+    /// Objects whose pairs must be filtered again.
     pub(super) again: Vec<u32>,
     pub(super) is_all_again: bool,
     pub(super) moving: Tree<D>,
@@ -75,15 +75,15 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) unbounded: Vec<u32>,
     pub(super) pairs: PairTable,
     pub(super) joiner: Joiner<D>,
-    /// Objects whose pairs are to be looked through for those that ended: what the join sees of
-    /// them is not enough.
+    /// Objects whose pairs are checked one by one for ends, because the join does not find all of
+    /// these.
     pub(super) searched: Vec<u32>,
-    /// Memory for an update.
+    /// Scratch of one update.
     pub(super) resting: Vec<u32>,
     pub(super) found: Changes,
     pub(super) pair_events: PairEvents,
     pub(super) lanes: Lanes,
-    /// Updates so far; wraps.
+    /// Number of updates; wraps.
     pub(super) clock: u32,
     pub(super) rest_pass: RestPass,
     pub(super) recent: Recent,
@@ -106,7 +106,7 @@ impl<N: Real, const D: usize> fmt::Debug for PairFinder<N, D> {
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
-    /// A finder without objects that loosens boxes by `margin`.
+    /// Creates a finder without objects that loosens boxes by `margin`.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.
@@ -114,7 +114,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         Self::with_lanes(margin, Lanes::detect())
     }
 
-    /// The same, with the choice of vectors; for tests.
+    /// As [`Self::try_new`], with the given vector width; for tests.
     pub(super) fn with_lanes(margin: N, lanes: Lanes) -> Result<Self, BroadPhaseError> {
         let is_usable = margin >= N::ZERO && margin.is_finite_number();
         if !is_usable {
@@ -151,36 +151,36 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         })
     }
 
-    /// The margin.
+    /// Returns the margin.
     pub const fn margin(&self) -> N {
         self.margin
     }
 
-    /// The pairs as of the last update, less those removed since; in no particular order.
+    /// Returns the pairs as of the last update without those removed since, in unspecified order.
     pub fn pairs(&self) -> &[(u32, u32)] {
         self.pairs.pairs()
     }
 
-    /// The exact box at the last update; for an object that no update has seen, the box it was
-    /// given first. The object must exist.
+    /// Returns the exact box at the last update; before the first update of the object, the box
+    /// that it was added with. The object must exist.
     pub fn exact(&self, id: u32) -> &Aabb<N, D> {
         &self.exact[id as usize]
     }
 
-    /// The loosened box; `None` for an object that no update has seen.
+    /// Returns the loosened box; `None` before the first update of the object.
     pub fn loosened(&self, id: u32) -> Option<&Bounds<D>> {
         let is_known = *self.homes.get(id as usize)? != Home::Nowhere;
         is_known.then(|| &self.loose[id as usize])
     }
 
-    /// Calls `visit` with the bounds of each node of the two trees, that of objects that move first.
+    /// Calls `visit` with the bounds of each node of both trees, that of moving objects first.
     #[cfg(feature = "debug_render")]
     pub(super) fn each_node(&self, visit: &mut dyn FnMut(&Bounds<D>)) {
         self.moving.each_node(visit);
         self.still.each_node(visit);
     }
 
-    /// Adds an object at the next update. The id must not be in use; ids should be dense.
+    /// Adds an object at the next update. The id must be unused; ids should be dense.
     pub fn insert(&mut self, id: u32, aabb: Aabb<N, D>) {
         let needed = id as usize + 1;
         if self.homes.len() < needed {
@@ -196,7 +196,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.set(id, aabb);
     }
 
-    /// Gives the object another box at the next update; the last call counts.
+    /// Sets the box of an object at the next update; the last of several calls counts.
     #[inline]
     pub fn set(&mut self, id: u32, aabb: Aabb<N, D>) {
         let at = self.waiting_at[id as usize];
@@ -208,17 +208,17 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Asks the filter again about every pair of the object at the next update.
+    /// Filters every pair of the object again at the next update.
     pub fn ask_again(&mut self, id: u32) {
         self.again.push(id);
     }
 
-    /// Asks the filter again about every pair at the next update.
+    /// Filters every pair again at the next update.
     pub fn ask_all_again(&mut self) {
         self.is_all_again = true;
     }
 
-    /// The pairs that involve one of the objects, packed, each once, in ascending order.
+    /// Returns the pairs that involve one of the objects, packed, each once, in ascending order.
     pub(super) fn pairs_of(&self, ids: &[u32]) -> Vec<u64> {
         let of_one = |&a: &u32| self.pairs.partners(a).map(move |(b, _)| crate::pairs::pack(a, b));
         let mut keys: Vec<u64> = ids.iter().flat_map(of_one).collect();
@@ -227,7 +227,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         keys
     }
 
-    /// Takes an object out at once, and its pairs with it.
+    /// Removes an object and its pairs at once.
     pub fn remove(&mut self, id: u32) {
         self.note(id);
         while let Some(pair) = self.pairs.any_pair_of(id) {
@@ -239,13 +239,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         if at != NONE {
             self.waiting[at as usize].id = NONE;
         }
-        // Not empty only if a filter panicked. The list `again` may keep the id: an object that
-        // takes the number over is new, and all its pairs are asked about in any case.
+        // Not empty only after a filter panicked. `again` may keep the id: an object that reuses it
+        // is new, and all its pairs are filtered in any case.
         self.changes.retain(|&other| other != id);
         self.marks[index] = 0;
     }
 
-    /// Takes the object out of its tree or list.
+    /// Removes the object from its tree or list.
     pub(super) fn leave_home(&mut self, id: u32) {
         match core::mem::replace(&mut self.homes[id as usize], Home::Nowhere) {
             Home::Nowhere => {}
@@ -255,7 +255,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Applies the boxes that wait, in the order in which they came.
+    /// Applies the waiting boxes, in the order in which they were set.
     pub(super) fn apply_waiting(&mut self) {
         let mut waiting = core::mem::take(&mut self.waiting);
         let mut leavers = core::mem::take(&mut self.leavers);
@@ -272,8 +272,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (self.waiting, self.leavers) = (waiting, leavers);
     }
 
-    /// Stores the exact boxes and lists, by place in the list of those that wait, the objects that
-    /// leave their loosened boxes or have none in a tree.
+    /// Stores the exact boxes, and lists in `leavers`, by index in `waiting`, the objects that
+    /// leave their loosened boxes or are in no tree.
     fn list_leavers(&mut self, waiting: &[Waiting<N, D>], leavers: &mut Vec<u32>) {
         leavers.clear();
         leavers.resize(waiting.len(), 0);
@@ -283,13 +283,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         leavers.truncate(count);
     }
 
-    /// Gives an object that left it another loosened box.
+    /// Computes a new loosened box for an object that left its old one.
     #[inline]
     fn leave_loose(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let index = id as usize;
         let loose = Bounds::enclosing(&aabb.loosened(self.margin));
         if self.homes[index] == Home::Moving && loose.is_finite() {
-            // The tree knows the box of before, and fetches the new one in its refit.
+            // The tree keeps the old box, and reads the new one in its refit.
             self.last_change[index] = self.clock;
             self.mark(id, CHANGED);
             self.loose[index] = loose;
@@ -303,7 +303,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Moves an object to the tree of moving ones or to the list of unbounded ones.
+    /// Moves an object to the tree of moving objects or to the list of unbounded ones.
     #[inline(never)]
     fn move_home(&mut self, id: u32, loose: Bounds<D>) {
         let index = id as usize;
@@ -332,7 +332,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.previous[id as usize] = before;
     }
 
-    /// The loosened box at the last update.
+    /// Returns the loosened box at the last update; [`Bounds::NOWHERE`] if it must not overlap any
+    /// box.
     pub(super) fn before(&self, id: u32) -> Bounds<D> {
         let index = id as usize;
         let in_tree = match self.homes[index] {
@@ -342,7 +343,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             Home::Unbounded if self.marks[index] & CHANGED != 0 => Some(self.previous[index]),
             Home::Unbounded => Some(self.loose[index]),
         };
-        // What is empty there was not: an unbounded box must not meet it.
+        // The tree stores an empty box there, which an unbounded box would overlap.
         in_tree.filter(|before| *before != Bounds::EMPTY).unwrap_or(Bounds::NOWHERE)
     }
 
@@ -355,7 +356,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         *marks |= CHANGED | mark;
     }
 
-    /// Makes all pairs of the objects that are to be asked about again begin again.
+    /// Resets the old boxes of the objects to be filtered again, so that all their pairs begin
+    /// anew.
     pub(super) fn apply_again(&mut self) {
         let mut again = core::mem::take(&mut self.again);
         if core::mem::take(&mut self.is_all_again) {
@@ -375,13 +377,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.again = again;
     }
 
-    /// How many boxes wait to be applied.
+    /// Returns the number of boxes to be applied.
     pub(super) fn waiting(&self) -> usize {
         self.waiting.len()
     }
 
-    /// Gives back the memory of lists that have been short for some time, and what arrays by id have too
-    /// much. The tree of moving objects is left alone: it gives back by itself when it is empty.
+    /// Releases the memory of lists that have been short for some time, and surplus memory of
+    /// arrays by id. The tree of moving objects releases its own when it is empty.
     pub(super) fn give_back(&mut self, look: Look) {
         look.trim(&mut self.waiting);
         for list in [&mut self.leavers, &mut self.changes, &mut self.again] {
@@ -403,7 +405,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.pairs.fit(look);
     }
 
-    /// Nothing waits to be applied.
+    /// Returns `true` if nothing is left for the next update.
     pub(super) fn is_idle(&self) -> bool {
         let asked = self.is_all_again || !self.again.is_empty();
         self.waiting.is_empty() && self.changes.is_empty() && !asked
@@ -412,7 +414,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// Checks every invariant; for tests.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// A sentence that names the violated invariant.
     pub fn validate(&self) -> Result<(), String> {
         self.moving.validate()?;
         self.still.validate()?;
@@ -443,7 +445,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 }
 
-/// A count as an id.
+/// Converts a count to an id.
 #[inline]
 pub(super) fn small(value: usize) -> u32 {
     u32::try_from(value).expect("fewer than 2^32 objects")

@@ -1,9 +1,9 @@
-//! Names of objects that stay distinguishable after the object is gone.
+//! Handles of objects, which stay distinguishable after the object is removed.
 
 use crate::generation::Generation;
 use crate::memory::{Look, clone_fields};
 
-/// The name of an object in a broad phase.
+/// The handle of an object in a broad phase.
 ///
 /// A handle is never given out twice: that of a removed object stays distinct from those of all
 /// later objects. A [`DBVTBroadPhase`](super::DBVTBroadPhase) refuses the handles of another one like
@@ -30,20 +30,21 @@ pub struct ProxyHandle {
 }
 
 impl ProxyHandle {
-    /// The handle of the `generation`-th object at an index, for a broad phase of one's own; it must
-    /// give each pair of numbers once.
+    /// Creates the handle of the `generation`-th object at an index, for a custom broad phase,
+    /// which must give each pair of numbers once.
     #[must_use]
     pub const fn new(index: u32, generation: u16) -> Self {
         Self { index, generation: Generation::of_no_table(generation) }
     }
 
-    /// How many objects held this index before.
+    /// Returns the number of objects that had this index before.
     #[must_use]
     pub const fn generation(&self) -> u16 {
         self.generation.count()
     }
 
-    /// The index in the table of handles: dense, and in order of creation until the first removal.
+    /// Returns the index in the table of handles: dense, and in order of creation until the first
+    /// removal.
     ///
     /// Unique among the objects present at one time, but used again after a removal.
     #[inline]
@@ -53,14 +54,14 @@ impl ProxyHandle {
     }
 }
 
-/// Gives handles out and knows which are alive.
+/// Table of handles, which gives them out and recognises stale ones.
 #[derive(Debug)]
 pub(super) struct Handles {
-    /// That of the first object at an index.
+    /// Generation of the first object at each index.
     first: Generation,
     /// By index: the generation of the present or the next object.
     generations: Vec<Generation>,
-    /// By index: the object is present.
+    /// By index: there is an object.
     is_present: Vec<bool>,
     /// Indices without an object; the last one freed is used first.
     free: Vec<u32>,
@@ -84,12 +85,12 @@ impl Handles {
         self.at(index)
     }
 
-    /// The handle of the present or the next object at an index.
+    /// Returns the handle of the present or the next object at an index.
     pub(super) fn at(&self, index: u32) -> ProxyHandle {
         ProxyHandle { index, generation: self.generations[index as usize] }
     }
 
-    /// Gives memory back that handles which are not becoming more do not need.
+    /// Releases surplus memory if the number of handles no longer grows.
     pub(super) fn fit(&mut self, look: Look) {
         look.fit(&mut self.generations);
         look.fit(&mut self.is_present);
@@ -120,7 +121,7 @@ impl Handles {
         }
     }
 
-    /// Ends the handle. An index whose generations are used up is retired.
+    /// Ends the handle. An index whose generations are exhausted is never used again.
     pub(super) fn remove(&mut self, handle: ProxyHandle) {
         self.is_present[handle.uid()] = false;
         if let Some(next) = handle.generation.next() {

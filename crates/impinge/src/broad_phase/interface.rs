@@ -1,11 +1,11 @@
-//! The interface of every broad phase.
+//! The interface of all broad phases.
 
 use super::error::or_panic;
 use super::{BroadPhaseError, Proposal, ProxyHandle};
 use crate::bounding_volume::BoundingVolume;
 use crate::math::{Real, max};
 
-/// Gets several proposals at a time and returns the new limit of a search; see
+/// Receives several proposals at once and returns the new limit of a search; see
 /// [`BroadPhase::visit_ray_roughly`].
 pub type VisitProposals<'a, N, T> = dyn FnMut(&[Proposal<'_, N, T>]) -> N + 'a;
 
@@ -18,12 +18,12 @@ pub type VisitProposals<'a, N, T> = dyn FnMut(&[Proposal<'_, N, T>]) -> N + 'a;
 ///   [`Self::update`]. Removal is immediate.
 /// * **Complete**: after an update, every two objects whose volumes overlap are a pair, unless the
 ///   filter refused them. Pairs that do not overlap exactly may be reported too.
-/// * **Incremental**: a pair on which nothing changed is not reported again. Each pair that started
-///   stops once: in an update or in a removal.
-/// * **The filter is constant in time**: it is asked once when the volumes of a pair begin to
+/// * **Incremental**: an unchanged pair is not reported again. Each pair that started stops once:
+///   in an update or in a removal.
+/// * **The filter is constant in time**: it is called once, when the volumes of a pair begin to
 ///   overlap. When it changes, [`Self::deferred_recompute_all_proximities`] must be called.
-/// * **Canonical order**: data of the object with the smaller [`ProxyHandle::uid`] comes first, and
-///   pairs come in ascending order of the two uids, started and stopped ones mixed.
+/// * **Canonical order**: the data of the object with the smaller [`ProxyHandle::uid`] come first,
+///   and pairs come in ascending order of both uids, started and stopped ones mixed.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -46,13 +46,13 @@ pub type VisitProposals<'a, N, T> = dyn FnMut(&[Proposal<'_, N, T>]) -> N + 'a;
 /// # assert!(a < b);
 /// ```
 pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
-    /// Adds an object, or says why not.
+    /// Adds an object; see [`Self::create_proxy`].
     ///
     /// # Errors
-    /// If the volume is not one.
+    /// If the volume is inverted or NaN.
     fn try_create_proxy(&mut self, bv: BV, data: T) -> Result<ProxyHandle, BroadPhaseError>;
 
-    /// Removes a set of objects, or says why not; see [`Self::remove`].
+    /// Removes a set of objects; see [`Self::remove`].
     ///
     /// # Errors
     /// If a handle is stale or occurs twice. Nothing is removed then.
@@ -62,18 +62,17 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         callback: &mut dyn FnMut(&T, &T),
     ) -> Result<(), BroadPhaseError>;
 
-    /// Replaces the volume at the next update, or says why not; see
-    /// [`Self::deferred_set_bounding_volume`].
+    /// Replaces the volume at the next update; see [`Self::deferred_set_bounding_volume`].
     ///
     /// # Errors
-    /// If the handle is stale or the volume is not one.
+    /// If the handle is stale, or the volume inverted or NaN.
     fn try_deferred_set_bounding_volume(
         &mut self,
         handle: ProxyHandle,
         bv: BV,
     ) -> Result<(), BroadPhaseError>;
 
-    /// Asks the filter again about one object, or says why not; see
+    /// Filters the pairs of one object again at the next update; see
     /// [`Self::deferred_recompute_all_proximities_with`].
     ///
     /// # Errors
@@ -83,42 +82,41 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         handle: ProxyHandle,
     ) -> Result<(), BroadPhaseError>;
 
-    /// At the next update, the filter is asked again about every pair of overlapping volumes: pairs
-    /// that it now refuses stop, pairs that it now allows start. The request is spent by that
-    /// update.
+    /// Filters every pair of overlapping volumes again at the next update: pairs that the filter
+    /// now refuses stop, pairs that it now allows start. The request holds for that update only.
     fn deferred_recompute_all_proximities(&mut self);
 
-    /// Applies what is pending and reports what follows from it.
+    /// Applies all deferred changes and reports the pairs that started and stopped.
     ///
-    /// `filter` says whether a pair whose volumes begin to overlap is valid. `callback` then runs
-    /// once per pair that started (`true`) or stopped (`false`). The filter runs before anything is
-    /// reported; should it panic, the next update asks again.
+    /// `filter` returns whether a pair whose volumes begin to overlap is allowed. `callback` then
+    /// runs once for each pair that started (`true`) or stopped (`false`). The filter runs before
+    /// anything is reported; if it panics, the next update calls it again.
     fn update(
         &mut self,
         filter: &mut dyn FnMut(&T, &T) -> bool,
         callback: &mut dyn FnMut(&T, &T, bool),
     );
 
-    /// Pushes the data of each object whose exact volume, as of the last update, meets `bv`; by
+    /// Appends the data of each object whose exact volume, as of the last update, overlaps `bv`, by
     /// ascending uid.
     fn interferences_with_bounding_volume<'a>(&'a self, bv: &BV, out: &mut Vec<&'a T>);
 
-    /// Pushes the data of each object whose exact volume, as of the last update, meets the ray; by
+    /// Appends the data of each object whose exact volume, as of the last update, the ray meets, by
     /// ascending uid.
     fn interferences_with_ray<'a>(&'a self, ray: &BV::Ray, out: &mut Vec<&'a T>);
 
-    /// Pushes the data of each object whose exact volume, as of the last update, holds the point;
-    /// by ascending uid.
+    /// Appends the data of each object whose exact volume, as of the last update, contains the
+    /// point, by ascending uid.
     fn interferences_with_point<'a>(&'a self, point: &BV::Point, out: &mut Vec<&'a T>);
 
-    /// The number of pairs as of the last update, less those removed since.
+    /// Returns the number of pairs as of the last update without those removed since.
     fn num_interferences(&self) -> usize;
 
-    /// The exact volume, as of the last update, and the data of an object; `None` for a stale
-    /// handle. For an object that no update has seen, the volume it was created with.
+    /// Returns the exact volume, as of the last update, and the data of an object; `None` for a
+    /// stale handle. Before the first update of the object, the volume that it was created with.
     fn proxy(&self, handle: ProxyHandle) -> Option<(&BV, &T)>;
 
-    /// Adds an object; it takes part from the next update on.
+    /// Adds an object, which has pairs from the next update on.
     ///
     /// # Panics
     /// If the volume is inverted or NaN.
@@ -129,8 +127,8 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
 
     /// Removes a set of objects at once.
     ///
-    /// `callback` runs on each pair that involved a removed object at the last update, exactly once
-    /// also where both objects are removed, in canonical order, before anything is removed.
+    /// `callback` runs before the removal on each pair, as of the last update, that involves one of
+    /// the objects: exactly once even if both are removed, in canonical order.
     ///
     /// # Panics
     /// If a handle is stale or occurs twice. Nothing is removed then.
@@ -148,9 +146,9 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         or_panic(self.try_deferred_set_bounding_volume(handle, bv));
     }
 
-    /// At the next update, the filter is asked again about every object whose volume overlaps this
-    /// one's: pairs that it now refuses stop, pairs that it now allows start. A pair that stands
-    /// is not reported a second time.
+    /// Filters the pairs of this object with all that overlap it again at the next update: pairs
+    /// that the filter now refuses stop, pairs that it now allows start. A pair that stands is not
+    /// reported again.
     ///
     /// # Panics
     /// If the handle is stale.
@@ -159,25 +157,25 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         or_panic(self.try_deferred_recompute_all_proximities_with(handle));
     }
 
-    /// Calls `visit` for the objects whose exact volumes, as of the last update, the ray meets at or
-    /// before `max_time`, those it enters first first, ties by uid. `visit` returns the new `max_time`,
-    /// which is how a search for the nearest hit ends early; a negative one ends it at once.
+    /// Calls `visit` for the objects whose exact volumes, as of the last update, the ray meets at
+    /// or before `max_time`, in order of entry, ties by uid. `visit` returns the new `max_time`, by
+    /// which a search for the nearest hit ends early; a negative one ends it at once.
     ///
-    /// This default knows no times of entry: it visits all hits by uid until a negative time is
-    /// returned. Implementations with an order of their own override it.
+    /// The default does not compute times of entry: it visits all hits by uid until a negative time
+    /// is returned. Ordered implementations override it.
     fn visit_ray(&self, ray: &BV::Ray, max_time: N, visit: &mut dyn FnMut(&T) -> N) {
         let mut hits = Vec::new();
         self.interferences_with_ray(ray, &mut hits);
         visit_all(&hits, max_time, visit);
     }
 
-    /// [`Self::visit_ray`] in no promised order, several objects at a time, for those who sort what they
-    /// find and test what lies in the volumes: near ones first is better, and objects whose volumes the ray
-    /// passes closely may be among them. The default is [`Self::visit_ray`], one at a time, with
-    /// zero for all keys.
+    /// As [`Self::visit_ray`], but in unspecified order and several objects at a time, for callers
+    /// that sort the results and test the objects themselves. Near objects should come first, and
+    /// objects whose volumes the ray narrowly misses may be among them. The default calls
+    /// [`Self::visit_ray`], one object at a time, with the key zero.
     ///
-    /// A broad phase around another that gives handles of its own makes proposals of its own by
-    /// [`Proposal::of`]: those of the other know objects by its handles.
+    /// A broad phase that wraps another and gives handles of its own must create proposals by
+    /// [`Proposal::of`]: those of the wrapped one refer to its handles.
     fn visit_ray_roughly(&self, ray: &BV::Ray, max_time: N, visit: &mut VisitProposals<'_, N, T>) {
         self.visit_ray(ray, max_time, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
@@ -186,8 +184,9 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     /// `max_distance` from `bv`, the nearest first, ties by uid. `visit` returns the new
     /// `max_distance`; a negative one ends the search at once.
     ///
-    /// This default knows no distances: it visits what meets `bv` loosened by `max_distance`, by uid,
-    /// until a negative distance is returned. Implementations with an order of their own override it.
+    /// The default does not compute distances: it visits the objects that overlap `bv` loosened by
+    /// `max_distance`, by uid, until a negative distance is returned. Ordered implementations
+    /// override it.
     fn visit_nearest(&self, bv: &BV, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
         let (reach, mut near) = (max(max_distance, N::ZERO), Vec::new());
         self.interferences_with_bounding_volume(&bv.loosened(reach), &mut near);
@@ -195,11 +194,12 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     }
 
     /// Calls `visit` for the objects whose exact volumes, as of the last update, `bv` touches at or
-    /// before `max_time` while it moves with `velocity` (finite), those it touches first first, ties
-    /// by uid. `visit` returns the new `max_time`; a negative one ends the search at once.
+    /// before `max_time` while it moves with `velocity` (finite), in order of that time, ties by
+    /// uid. `visit` returns the new `max_time`; a negative one ends the search at once.
     ///
-    /// This default knows no times: it visits what meets the volume around the whole way, by uid, until
-    /// a negative time is returned. Implementations with an order of their own override it.
+    /// The default does not compute times: it visits the objects that overlap the volume swept
+    /// until `max_time`, by uid, until a negative time is returned. Ordered implementations
+    /// override it.
     fn visit_cast(
         &self,
         bv: &BV,
@@ -212,23 +212,22 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         visit_all(&met, max_time, visit);
     }
 
-    /// The volume that stands for an object while its pairs are kept, larger than the exact one: for
-    /// drawing. `None`, the default, of a broad phase that has none, for a stale handle, and for an object
-    /// that no update has seen.
+    /// Returns the loosened volume of an object, for drawing. `None`, the default, if the broad
+    /// phase has none, for a stale handle, and before the first update of the object.
     #[cfg(feature = "debug_render")]
     fn loosened(&self, handle: ProxyHandle) -> Option<BV> {
         let _ = handle;
         None
     }
 
-    /// Calls `visit` with the volume of each node above the objects, as of the last update and the same
-    /// order each time: for drawing. The default has no nodes.
+    /// Calls `visit` with the volume of each inner node, as of the last update, in an order that
+    /// does not change; for drawing. The default has no nodes.
     #[cfg(feature = "debug_render")]
     fn visit_nodes(&self, visit: &mut dyn FnMut(&BV)) {
         let _ = visit;
     }
 
-    /// [`Self::visit_nearest`] as [`Self::visit_ray_roughly`].
+    /// As [`Self::visit_nearest`], in groups and roughly in order; see [`Self::visit_ray_roughly`].
     fn visit_nearest_roughly(
         &self,
         bv: &BV,
@@ -238,7 +237,7 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         self.visit_nearest(bv, max_distance, &mut |data| visit(&[Proposal::of(data, N::ZERO)]));
     }
 
-    /// [`Self::visit_cast`] as [`Self::visit_ray_roughly`].
+    /// As [`Self::visit_cast`], in groups and roughly in order; see [`Self::visit_ray_roughly`].
     fn visit_cast_roughly(
         &self,
         bv: &BV,
@@ -250,7 +249,7 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     }
 }
 
-/// Visits all until the limit is negative (or NaN).
+/// Visits all objects until the limit is negative or NaN.
 fn visit_all<N: Real, T>(found: &[&T], mut limit: N, visit: &mut dyn FnMut(&T) -> N) {
     for data in found {
         let goes_on = limit >= N::ZERO;

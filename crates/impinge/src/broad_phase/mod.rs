@@ -1,17 +1,19 @@
-//! Which objects may touch: pairs whose bounding volumes overlap, kept up to date as they move.
+//! The broad phase: pairs of objects whose bounding volumes overlap, kept up to date as they move.
 //!
 //! [`BroadPhase`] is the interface; [`DBVTBroadPhase`] implements it with a packed tree over
 //! loosened boxes. A broad phase may report pairs that do not touch; it never misses one that does.
 //!
-//! Who owns what:
-//! * [`DBVTBroadPhase`] owns the user's data and the handles, by index of the handle;
-//! * [`PairFinder`] owns everything else, by the same index: exact boxes and loosened boxes in
-//!   arrays of their own, two trees (objects that move and objects that have long stood still), the
-//!   list of unbounded objects, and the table of pairs. It knows no user data.
+//! ```text
+//! DBVTBroadPhase   handles, users' data          by index of the handle
+//!   PairFinder     exact boxes, loosened boxes   by the same index
+//!                  moving: Tree   still: Tree    each object in one of both trees, or in
+//!                  unbounded: Vec                the list of unbounded objects
+//!                  pairs: PairTable
+//! ```
 //!
-//! Changes are collected by the `deferred_*` calls and take effect at the next update: many moves
-//! cost one update. Events come in canonical order, the same on every run, machine and number of
-//! threads.
+//! `deferred_*` calls collect changes, which take effect at the next update: many moves cost one
+//! update. Events come in canonical order, equal on every run, on every machine and for any number
+//! of threads.
 
 mod dbvt;
 mod error;

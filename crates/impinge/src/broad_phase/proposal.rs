@@ -1,13 +1,12 @@
-//! Objects that a search proposes.
+//! Objects proposed by a search.
 
 use super::dbvt::data_of;
 use crate::math::Real;
 
-/// The data of a broad phase's objects, by index of the handle; `None` where there is no object.
+/// Users' data by index of the handle; `None` where there is no object.
 pub(super) type Proxies<T> = Vec<Option<T>>;
 
-/// An object that a search proposes. What is kept about it is fetched when it is asked for: memory is
-/// slow.
+/// An object proposed by a search. Its data are loaded only on access.
 #[derive(Debug)]
 pub struct Proposal<'a, N, T> {
     source: Source<'a, T>,
@@ -37,18 +36,18 @@ impl<T> Clone for Source<'_, T> {
 }
 
 impl<'a, N: Real, T> Proposal<'a, N, T> {
-    /// An object whose data are at hand; see [`Self::key`].
+    /// Creates a proposal from data at hand; see [`Self::key`] for `key`.
     #[must_use]
     pub const fn of(data: &'a T, key: N) -> Self {
         Self { source: Source::Data(data), key }
     }
 
-    /// An object that is known to be there.
+    /// Creates a proposal for an object that exists.
     pub(super) const fn kept(proxies: &'a [Option<T>], id: u32, key: N) -> Self {
         Self { source: Source::Kept(proxies, id), key }
     }
 
-    /// What the object was created with.
+    /// Returns the data that the object was created with.
     #[must_use]
     pub fn data(&self) -> &'a T {
         match self.source {
@@ -57,14 +56,15 @@ impl<'a, N: Real, T> Proposal<'a, N, T> {
         }
     }
 
-    /// The time at which the volume of the object is met, or its distance, or less.
+    /// Returns the time at which the volume of the object is met, or its distance, or a lower bound
+    /// of these.
     #[must_use]
     pub const fn key(&self) -> N {
         self.key
     }
 
-    /// [`ProxyHandle::uid`](super::ProxyHandle::uid) of the object, where that is known without a look
-    /// at it.
+    /// Returns [`ProxyHandle::uid`](super::ProxyHandle::uid) of the object, if it is known without
+    /// loading its data.
     #[must_use]
     pub const fn uid(&self) -> Option<usize> {
         match self.source {

@@ -1,44 +1,44 @@
-//! Objects that have come to rest, and the order of the trees.
+//! Moving objects at rest to the tree of still ones, and keeping the trees in order.
 
 use super::PairFinder;
 use super::finder::Home;
 use crate::bvh::NONE;
 use crate::math::Real;
 
-/// Updates without a change after which an object counts as still.
+/// Number of updates without a change after which an object counts as still.
 const REST: u32 = 32;
-/// One in so many places of the tree of moving objects is looked at in an update, but no more than these, or one for so
-/// many objects that changed.
+/// An update scans `1 / WINDOW` of the slots of the tree of moving objects, but at most [`LOOKED_AT`], or one for each
+/// [`CHANGED_FOR_ONE`] changed objects if these are more.
 const WINDOW: usize = 32;
 const LOOKED_AT: usize = 512;
 const CHANGED_FOR_ONE: usize = 16;
-/// So many objects at rest go to the other tree in an update, or two for each that changed: more than can come.
+/// An update moves at most `TAKEN` objects at rest, or two for each changed object: more than can come to rest.
 const TAKEN: usize = 64;
-/// Up to so many still objects may begin to count as moving, where the trees change their roles.
+/// The trees are swapped only if there are at most `FEW` still objects, which then count as moving ...
 const FEW: usize = 64;
-/// From so many objects on.
+/// ... and at least `MANY` moving ones.
 const MANY: usize = 1024;
 
-/// What a pass over the tree of moving objects has seen.
+/// A pass over the slots of the tree of moving objects, from the last to the first, spread over updates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RestPass {
-    /// The places before this are to be looked at.
+    /// The slots before this one are still to be scanned.
     end: usize,
     resting: usize,
-    /// Updates since one in which many objects changed.
+    /// Number of updates since one in which many objects changed.
     calm: u32,
-    /// Those at rest are taken to the other tree, not just counted.
+    /// The pass moves objects at rest to the other tree instead of only counting them.
     takes: bool,
 }
 
 impl RestPass {
-    /// None yet.
+    /// No pass has begun.
     pub(super) const NONE: Self = Self { end: 0, resting: 0, calm: 0, takes: true };
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
-    /// Brings objects at rest to the tree of still ones and does this update's share of keeping both trees in order:
-    /// a constant amount of work, and a share of what changed. The outcome depends on the calls made alone.
+    /// Moves objects at rest to the tree of still ones and does this update's share of keeping both trees in order. The
+    /// work is bounded by a constant and a share of the changes. The result depends only on the calls made.
     pub(super) fn keep_order(&mut self, changed: usize) {
         let mut resting = core::mem::take(&mut self.resting);
         resting.clear();
@@ -59,9 +59,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Lists them from the last place to the first, so that the places that they leave are given up; in the order of a
-    /// tree, which is one of space. Where nearly all objects are in the tree of moving ones, as after they came all at
-    /// once, every other pass just counts: if most of them rest, the trees change their roles.
+    /// Continues the pass and lists objects at rest. Scanning from the last slot to the first lets the tree shrink, and
+    /// slots are in spatial order. If nearly all objects are in the tree of moving ones, as after a bulk insertion,
+    /// every other pass only counts: if at least three quarters rest, the trees are swapped.
     fn list_resting(&mut self, changed: usize, resting: &mut Vec<u32>) {
         let slots = self.moving.slots_in_order();
         let most = TAKEN.max(2 * changed);
@@ -94,7 +94,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// The tree of moving objects becomes that of still ones, and the reverse. Those that move leave it when they do.
+    /// Swaps the trees of moving and still objects. Objects that do move leave the tree of still ones when they do.
     fn exchange_trees(&mut self) {
         core::mem::swap(&mut self.moving, &mut self.still);
         self.moving.spend();

@@ -1,7 +1,8 @@
-//! Going back to a mark.
+//! Rewinding the broad phase to a mark.
 //!
-//! The state that decides about pairs comes back: the exact and the loosened boxes, which objects there are, what
-//! waits, and the pairs. Where an object is in the trees decides about time alone, and stays.
+//! The state that determines pairs is restored: exact and loosened boxes, the set of objects,
+//! waiting changes, and the pairs. The position of an object in the trees affects time alone, and
+//! stays.
 
 use super::finder::{Home, Waiting, small};
 use super::{DBVTBroadPhase, PairFinder, ProxyHandle};
@@ -9,15 +10,15 @@ use crate::bounding_volume::Aabb;
 use crate::bvh::{Bounds, NONE};
 use crate::math::{Real, Space};
 
-/// A change of the objects of a broad phase.
+/// One undoable change of the set of objects.
 #[derive(Clone, Debug)]
 pub(super) enum ProxyNote<T> {
     Created(ProxyHandle),
-    /// With its data.
+    /// A removed object with its data.
     Removed(ProxyHandle, Option<T>),
 }
 
-/// An object before it was first changed since a mark.
+/// An object before its first change since a mark.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoxNote<N: Real, const D: usize> {
     id: u32,
@@ -26,7 +27,7 @@ pub(super) struct BoxNote<N: Real, const D: usize> {
     home: Home,
 }
 
-/// The changes that waited for the next update when a mark was made.
+/// Changes that wait for the next update when a mark is set.
 #[derive(Clone, Debug)]
 pub(super) struct FinderHead<N: Real, const D: usize> {
     waiting: Vec<Waiting<N, D>>,
@@ -35,20 +36,20 @@ pub(super) struct FinderHead<N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
-    /// Adds a mark; see [`Journal`](crate::journal::Journal).
+    /// Sets a mark; see [`Journal`](crate::journal::Journal).
     pub(crate) fn mark(&mut self, number: u64) {
         self.journal.mark(number, ());
         self.finder.add_mark(number);
     }
 
-    /// Forgets the marks with smaller numbers.
+    /// Drops the marks with smaller numbers.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
         self.finder.journal.forget_before(number);
         self.finder.pairs.forget_before(number);
     }
 
-    /// Goes back to a mark. Costs O(changed · log n).
+    /// Undoes all changes since a mark. Costs O(changed · log n).
     pub(crate) fn rewind(&mut self, number: u64) {
         while let Some(note) = self.journal.undo(number) {
             match note {
@@ -68,14 +69,14 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
     fn add_mark(&mut self, number: u64) {
-        // Changes are left over only where a filter panicked.
+        // `changes` is not empty only after a filter panicked.
         let again = self.again.iter().chain(&self.changes).copied().collect();
         let (waiting, is_all_again) = (self.waiting.clone(), self.is_all_again);
         self.journal.mark(number, FinderHead { waiting, again, is_all_again });
         self.pairs.mark(number);
     }
 
-    /// Notes an object that is about to change.
+    /// Notes an object before it changes.
     pub(super) fn note(&mut self, id: u32) {
         let index = id as usize;
         if self.journal.is_first(index) {
@@ -118,7 +119,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.is_all_again = head.is_all_again;
     }
 
-    /// Gives an object the boxes that it had. One that was bounded and is keeps its tree.
+    /// Restores the boxes of an object. If it was and is bounded, it stays in its present tree.
     fn bring_back(&mut self, &BoxNote { id, exact, loose, home }: &BoxNote<N, D>) {
         let index = id as usize;
         (self.exact[index], self.loose[index]) = (exact, loose);

@@ -1,17 +1,17 @@
-//! Which of the objects that moved leave their loosened boxes.
+//! The sieve: which moved objects leave their loosened boxes.
 
 use super::finder::{Home, Waiting};
 use crate::bounding_volume::Aabb;
 use crate::bvh::{Bounds, NONE};
 use crate::math::Real;
 
-/// What the answer depends on, by id.
+/// Read-only input, by id.
 pub(super) struct KeptBounds<'a, const D: usize> {
     pub(super) homes: &'a [Home],
     pub(super) loose: &'a [Bounds<D>],
 }
 
-/// What is written beside it, by id less `first`.
+/// Output besides the list of leavers, by `id - first`.
 pub(super) struct Sieve<'a, N: Real, const D: usize> {
     pub(super) first: usize,
     pub(super) exact: &'a mut [Aabb<N, D>],
@@ -19,9 +19,9 @@ pub(super) struct Sieve<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Sieve<'_, N, D> {
-    /// Stores the exact boxes and lists the objects that leave their loosened boxes or have none in a
-    /// tree, by their place in the list of those that wait, the first of which is `first_at`. As many
-    /// as wait may leave; returns how many do.
+    /// Stores the exact boxes, and lists in `leavers` the objects that leave their loosened boxes
+    /// or are in no tree, by their index in the whole list of waiting boxes; `waiting` is its part
+    /// from `first_at` on. `leavers` must be as long as `waiting`. Returns the number of leavers.
     pub(super) fn run(
         self,
         kept: &KeptBounds<'_, D>,
@@ -36,8 +36,8 @@ impl<N: Real, const D: usize> Sieve<'_, N, D> {
         self.run_serial(kept, waiting, first_at, leavers)
     }
 
-    /// Whether an object leaves its box, no processor foresees: each is written down, and the next
-    /// one over it if it stays.
+    /// Whether an object leaves its box is unpredictable, so the loop is branch-free: each index is
+    /// written, and overwritten by the next if the object stays.
     fn run_serial(
         self,
         kept: &KeptBounds<'_, D>,
@@ -68,20 +68,21 @@ mod parallel {
     use super::{KeptBounds, NONE, Sieve, Waiting};
     use crate::math::Real;
 
-    /// The most objects that one thread looks at.
+    /// Greatest number of objects for one task.
     const PIECE: usize = 4096;
 
-    /// There are enough, and ids ascend: then halves of the list write to separate memory.
+    /// Returns `true` if there are enough objects, and ids ascend, so that halves of the list write
+    /// to disjoint slices.
     pub(super) fn can_be_cut<N: Real, const D: usize>(waiting: &[Waiting<N, D>]) -> bool {
         waiting.len() > PIECE
             && rayon::current_num_threads() > 1
             && waiting.is_sorted_by_key(|waiting| waiting.id)
-            // Removed ones, whose id says nothing, stand last if at all.
+            // A removed object has the id `NONE`; sorted, it would be last.
             && waiting.last().is_some_and(|last| last.id != NONE)
     }
 
     impl<N: Real, const D: usize> Sieve<'_, N, D> {
-        /// For a list that can be cut.
+        /// Splits the list in halves down to [`PIECE`]; [`can_be_cut`] must hold.
         pub(super) fn run_parallel(
             self,
             kept: &KeptBounds<'_, D>,
@@ -107,7 +108,7 @@ mod parallel {
     }
 
     impl<'a, N: Real, const D: usize> Sieve<'a, N, D> {
-        /// Two parts: before the id and from it on.
+        /// Splits the output before `id`.
         fn cut(self, id: usize) -> (Self, Self) {
             let (exact1, exact2) = self.exact.split_at_mut(id - self.first);
             let (at1, at2) = self.waiting_at.split_at_mut(id - self.first);

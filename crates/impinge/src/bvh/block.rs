@@ -1,4 +1,4 @@
-//! Sixteen boxes side by side.
+//! A block of sixteen boxes.
 
 use super::Bounds;
 use crate::math::filled;
@@ -6,11 +6,15 @@ use crate::math::filled;
 /// Boxes in a block.
 pub(crate) const LANES: usize = 16;
 
-/// Sixteen boxes as a structure of arrays: by axis, all least coordinates, then all greatest.
+/// Sixteen boxes as a structure of arrays:
 ///
-/// 384 bytes (six cache lines) in 3D, 256 in 2D. A lane without a box holds
-/// [`Bounds::EMPTY`], which no bounded query overlaps and which is neutral when bounds are taken,
-/// so that no count of lanes is needed.
+/// ```text
+/// lo[0]  x of lanes 0 ... 15      hi[0]  x of lanes 0 ... 15
+/// lo[1]  y of lanes 0 ... 15      hi[1]  y of lanes 0 ... 15
+/// ```
+///
+/// 384 bytes (six cache lines) in 3D, 256 in 2D. A lane without a box has [`Bounds::EMPTY`], which
+/// no bounded query overlaps and which is neutral in unions, so that no lane count is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct Block<const D: usize> {
@@ -23,15 +27,15 @@ impl<const D: usize> Block<D> {
     pub(crate) const EMPTY: Self =
         Self { lo: [[f32::INFINITY; LANES]; D], hi: [[f32::NEG_INFINITY; LANES]; D] };
 
-    /// The box in a lane.
+    /// Returns the box in a lane.
     #[inline]
     #[must_use]
     pub(crate) fn lane(&self, lane: usize) -> Bounds<D> {
         Bounds { lo: filled(|axis| self.lo[axis][lane]), hi: filled(|axis| self.hi[axis][lane]) }
     }
 
-    /// The lane whose box has its middle nearest to a place, the first of several; `None` if none has a finite middle, or
-    /// squares are too large for `f32`.
+    /// Returns the lane whose box has its centre nearest to `place`, the lowest of several; `None`
+    /// if no centre is finite, or all squared distances overflow `f32`.
     #[inline]
     pub(crate) fn nearest_lane(&self, place: &[f32; D]) -> Option<usize> {
         let mut squares = [0.0; LANES];
@@ -48,7 +52,7 @@ impl<const D: usize> Block<D> {
         nearest
     }
 
-    /// How far each box begins along a direction.
+    /// Returns the least coordinate of each box along a direction.
     #[inline]
     pub(crate) fn lowest_along(&self, along: &[f32; D]) -> [f32; LANES] {
         let mut lowest = [0.0; LANES];
@@ -61,7 +65,7 @@ impl<const D: usize> Block<D> {
         lowest
     }
 
-    /// Puts a box into a lane.
+    /// Writes the box of a lane.
     #[inline]
     pub(crate) fn set_lane(&mut self, lane: usize, bounds: &Bounds<D>) {
         for axis in 0..D {

@@ -1,28 +1,39 @@
-//! Slabs around what is in blocks, across the mean normal of its faces.
+//! Slabs around the contents of blocks, perpendicular to the mean normal of their faces.
 //!
-//! The box of a patch of a surface is as thick as the patch is wide, unless the surface lies along an axis. Its slab is
-//! thin, by the square of the width where the surface is smooth; and along any direction slab and box together reach
-//! little farther than the patch, as oriented boxes do (Gottschalk, Lin and Manocha, "`OBBTree`", 1996).
+//! ```text
+//! box of a slanted patch         its slab
+//!  +------------+                    / /
+//!  |          .´|                   / /
+//!  |       .´   |              low / / high
+//!  |    .´      |                 / /
+//!  | .´         |                / /
+//!  +------------+               / /
+//! ```
+//!
+//! The box of a patch is as thick as the patch is wide, unless the surface lies along an axis. A
+//! slab is thin: its thickness is of the order of the squared width where the surface is smooth.
+//! Slab and box together are almost as tight as oriented boxes along any direction (Gottschalk, Lin
+//! and Manocha, "`OBBTree`", 1996).
 
 use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 use crate::math::{Point, Real, Vector, filled, max, min, unit};
 
-/// A slab is of use if it is so many times thinner than the box along its normal.
+/// A slab is used if it is at least `THINNER` times thinner than the box along its normal.
 const THINNER: f64 = 4.0;
-/// What heights lose to rounding, in units of the coordinates.
+/// Error bound of heights, in rounding units of the coordinates.
 const ROUNDING: f64 = 32.0;
 
 /// The space between two planes, in the frame of a tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockSlab<const D: usize> {
-    /// About of unit length.
+    /// Normal of the planes, of unit length up to rounding.
     pub(super) across: [f32; D],
     pub(super) low: f32,
     pub(super) high: f32,
 }
 
-/// A box and a slab around the same.
+/// A box and a slab around the same objects.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SlabBox<'a, const D: usize> {
     pub(super) bounds: &'a Bounds<D>,
@@ -34,8 +45,8 @@ impl<const D: usize> BlockSlab<D> {
         Vector::from_fn(|axis, _| N::lit(self.across[axis].into()))
     }
 
-    /// The slab across a sum of normals, around what reaches so far along a direction; none if it is not thin beside a box
-    /// around the same.
+    /// Returns the slab perpendicular to a sum of normals. `reach` is the extent of the contents
+    /// along a direction. `None` if the slab is not thin compared with the box.
     fn around<N: Real>(
         sum: &Vector<N, D>,
         bounds: &Bounds<D>,
@@ -43,7 +54,7 @@ impl<const D: usize> BlockSlab<D> {
     ) -> Option<Self> {
         let (across, _) = unit(sum)?;
         let across = filled(|axis| across[axis].as_f32());
-        // The planes lie across the rounded direction.
+        // The planes are perpendicular to the rounded direction.
         let normal = Vector::from_fn(|axis, _| N::lit(f64::from(across[axis])));
         let (low, high) = (-reach(&-normal), reach(&normal));
         let of_box = bounds.reach(&normal) + bounds.reach(&-normal);
@@ -55,11 +66,12 @@ impl<const D: usize> BlockSlab<D> {
 }
 
 impl<const D: usize> SlabBox<'_, D> {
-    /// How far what is in both reaches along a direction, or more.
+    /// Returns an upper bound of the extent of the contents along a direction.
     pub(super) fn reach<N: Real>(&self, along: &Vector<N, D>) -> N {
         let whole = self.bounds.reach(along);
         let Some(slab) = self.slab else { return whole };
-        // Every share of the slab gives a bound; this one leaves what lies in its plane to the box.
+        // Any multiple of the slab's normal gives a bound; this one leaves the component in its
+        // plane to the box.
         let across = slab.across::<N>();
         let share = along.dot(&across);
         let height = N::lit(if share < N::ZERO { slab.low } else { slab.high }.into());
@@ -68,7 +80,7 @@ impl<const D: usize> SlabBox<'_, D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Puts slabs around what is in the blocks: objects with normals and corners.
+    /// Computes slabs around the contents of all blocks; objects have normals and three corners.
     pub(crate) fn add_slabs<N: Real>(
         &mut self,
         normals: &[Vector<N, D>],
@@ -104,7 +116,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Forgets the slabs.
+    /// Removes the slabs.
     pub(crate) fn drop_slabs(&mut self) {
         self.slabs.clear();
     }
@@ -114,7 +126,7 @@ impl<const D: usize> Tree<D> {
         SlabBox { bounds: &self.layers[layer].bounds[block as usize], slab }
     }
 
-    /// The blocks of a layer that a block of the layer above holds.
+    /// Iterates over the blocks of a layer below a block of the layer above.
     fn children(&self, layer: usize, above: u32) -> impl Iterator<Item = SlabBox<'_, D>> {
         let first = above * small(LANES);
         let blocks = (first..small(self.layers[layer].blocks.len())).take(LANES);
@@ -122,7 +134,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// The objects of a leaf block.
+/// Iterates over the objects of a leaf block.
 pub(super) fn in_use(ids: &[u32; LANES]) -> impl Iterator<Item = u32> {
     ids.iter().copied().filter(|&id| id != NONE)
 }

@@ -1,12 +1,12 @@
-//! The boxes that trees hold: `f32`, rounded outwards.
+//! The boxes of trees: `f32`, rounded outwards.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Point, Real, Vector, filled};
 
 /// A box of the tree: the points with `lo ≤ x ≤ hi` on every axis.
 ///
-/// It encloses the box of `N`s that it was made of: each face is rounded outwards to an `f32`, so
-/// that two boxes that touch always have enclosures that touch. Never NaN inside a tree.
+/// It encloses the box of `N`s that it was computed from: each face is rounded outwards to an
+/// `f32`, so that the enclosures of touching boxes touch. Never NaN inside a tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds<const D: usize> {
     /// The least coordinate, by axis.
@@ -16,13 +16,13 @@ pub struct Bounds<const D: usize> {
 }
 
 impl<const D: usize> Bounds<D> {
-    /// No point at all: overlaps no bounded box, and merging it changes nothing.
+    /// The empty set: overlaps no bounded box, and is neutral in unions.
     pub const EMPTY: Self = Self { lo: [f32::INFINITY; D], hi: [f32::NEG_INFINITY; D] };
 
-    /// A box that overlaps nothing, not even an unbounded box: the place of what was not there.
+    /// A box that overlaps nothing, not even an unbounded box: the old box of a new object.
     pub const NOWHERE: Self = Self { lo: [f32::NAN; D], hi: [f32::NAN; D] };
 
-    /// The smallest such box around a box of `N`s. Zeros lose their sign.
+    /// Returns the smallest such box around a box of `N`s. Zeros lose their sign.
     #[inline]
     #[must_use]
     pub fn enclosing<N: Real>(aabb: &Aabb<N, D>) -> Self {
@@ -32,7 +32,7 @@ impl<const D: usize> Bounds<D> {
         }
     }
 
-    /// The smallest such box around a point.
+    /// Returns the smallest such box around a point.
     #[must_use]
     pub fn enclosing_point<N: Real>(point: &Point<N, D>) -> Self {
         Self {
@@ -41,14 +41,15 @@ impl<const D: usize> Bounds<D> {
         }
     }
 
-    /// The box as one of `N`s; `None` if it is empty or nowhere.
+    /// Returns the box with coordinates in `N`; `None` if it is empty or NaN.
     #[cfg(feature = "debug_render")]
     pub(crate) fn to_aabb<N: Real>(self) -> Option<Aabb<N, D>> {
         let [lo, hi] = [self.lo, self.hi].mapped(|side| side.mapped(|x| N::lit(f64::from(x))));
         Aabb::try_new(lo.into(), hi.into()).ok()
     }
 
-    /// The two have a point in common. Both must not be empty and unbounded at once.
+    /// Returns `true` if the two have a common point. It must not be that one is empty and the
+    /// other unbounded.
     #[inline]
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
@@ -59,7 +60,7 @@ impl<const D: usize> Bounds<D> {
         all
     }
 
-    /// Every point of `other` is a point of this box.
+    /// Returns `true` if every point of `other` is in this box.
     #[inline]
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {
@@ -70,7 +71,7 @@ impl<const D: usize> Bounds<D> {
         all
     }
 
-    /// The smallest box around both.
+    /// Returns the smallest box around both.
     #[must_use]
     pub fn merged(&self, other: &Self) -> Self {
         let smaller = |a: f32, b: f32| if a < b { a } else { b };
@@ -81,7 +82,7 @@ impl<const D: usize> Bounds<D> {
         }
     }
 
-    /// Every face is a finite number.
+    /// Returns `true` if every face is finite.
     #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {
@@ -92,7 +93,7 @@ impl<const D: usize> Bounds<D> {
         all
     }
 
-    /// The largest magnitude of a coordinate; zero if a face is no finite number.
+    /// Returns the largest magnitude of a coordinate; zero if a face is not finite.
     #[inline]
     pub(super) fn size(&self) -> f32 {
         let larger = |a: f32, b: f32| if a > b { a } else { b };
@@ -101,9 +102,10 @@ impl<const D: usize> Bounds<D> {
         if self.is_finite() { most } else { 0.0 }
     }
 
-    /// The box without the points that no finite box reaches: equivalent as a query to a tree.
+    /// Returns the box clamped to finite coordinates: an equivalent query to a tree, whose boxes
+    /// are finite.
     ///
-    /// NaN, which is nowhere, becomes empty.
+    /// A NaN or inverted box becomes empty.
     #[must_use]
     pub fn clamped(&self) -> Self {
         let above = |x: f32| if x > -f32::MAX { x } else { -f32::MAX };
@@ -114,10 +116,10 @@ impl<const D: usize> Bounds<D> {
         Self { lo: self.lo.mapped(above), hi: self.hi.mapped(below) }
     }
 
-    /// Half the surface (in 2D half the perimeter): what a search pays for a node, up to a
-    /// factor (Goldsmith and Salmon 1987). Not the volume, which is zero for every flat box.
+    /// Returns half the surface (in 2D half the perimeter): the cost of a node in searches, up to a
+    /// factor (Goldsmith and Salmon 1987). Unlike the volume, it is not zero for flat boxes.
     ///
-    /// In `f64`, where no box of finite faces overflows; 0 for an empty box.
+    /// In `f64`, where no box with finite faces overflows; 0 for an empty box.
     #[must_use]
     pub fn half_surface(&self) -> f64 {
         let extent = |axis: usize| f64::from(self.hi[axis]) - f64::from(self.lo[axis]);
@@ -129,14 +131,14 @@ impl<const D: usize> Bounds<D> {
         (0..D).map(face).sum()
     }
 
-    /// The same box of another scalar, exactly. It must not be empty.
+    /// Returns the box with coordinates in `N`, exactly. It must not be empty.
     pub(super) fn as_aabb<N: Real>(&self) -> Aabb<N, D> {
         let corner =
             |faces: &[f32; D]| Point::from(Vector::from_fn(|axis, _| N::lit(faces[axis].into())));
         Aabb::new(corner(&self.lo), corner(&self.hi))
     }
 
-    /// How far the box reaches along a direction.
+    /// Returns the greatest coordinate of the box along a direction.
     pub(super) fn reach<N: Real>(&self, along: &Vector<N, D>) -> N {
         (0..D).fold(N::ZERO, |sum, axis| {
             let corner = if along[axis] < N::ZERO { self.lo[axis] } else { self.hi[axis] };
@@ -144,7 +146,7 @@ impl<const D: usize> Bounds<D> {
         })
     }
 
-    /// The middle; halves are added, so that no finite box overflows.
+    /// Returns the centre; halves are added, so that no finite box overflows.
     #[inline]
     #[must_use]
     pub fn center(&self) -> [f32; D] {

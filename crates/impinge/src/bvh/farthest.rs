@@ -1,23 +1,23 @@
-//! How far the objects of a tree reach along a direction.
+//! The extent of the objects of a tree along a direction.
 
 use super::{Bounds, LANES, Tree};
 use crate::math::{Real, Vector, filled, max};
 
-/// What is sought, and what was found so far.
+/// The search and its best result.
 struct Reach<'a, N: Real, const D: usize> {
     direction: Vector<N, D>,
-    /// Boxes that reach at most so much farther than what was found are not opened.
+    /// Skips nodes that extend less than `tolerance` beyond the best extent found so far.
     tolerance: N,
     best: N,
     reach_of: &'a mut dyn FnMut(u32) -> N,
 }
 
 impl<const D: usize> Tree<D> {
-    /// How far the objects reach along a direction: not less, and more by at most a few rounding
-    /// units of `f32` of their coordinates. `reach_of` tells it of one object, and what its box
-    /// reaches is never less. Minus infinity of an empty tree.
+    /// Returns the extent of the objects along `direction`, rounded up: it exceeds the exact one by
+    /// at most a few `f32` rounding units of the coordinates. `reach_of` returns the extent of one
+    /// object, which must not exceed that of its box. Minus infinity for an empty tree.
     ///
-    /// Branch and bound, the farthest box of each block first. Free of stale bounds after a refit only.
+    /// Branch and bound, the farthest box of each block first. The tree must be refitted.
     pub(crate) fn reach_along<N: Real>(
         &self,
         direction: Vector<N, D>,
@@ -26,7 +26,7 @@ impl<const D: usize> Tree<D> {
         let top = self.layers.len() - 1;
         let farthest = self.layers[top].bounds.iter().filter(|bounds| bounds.is_finite());
         let size = farthest.map(|bounds| size_along(bounds, &direction)).fold(N::ZERO, max);
-        // Without it all boxes of a flat floor would be opened, as they reach equally far.
+        // Without the tolerance a flat floor would open all boxes, since they are equally extreme.
         let tolerance = N::lit(4.0 * f64::from(f32::EPSILON)) * size;
         let mut reach = Reach { direction, tolerance, best: -N::INFINITY, reach_of };
         for block in 0..self.layers[top].blocks.len() {
@@ -35,7 +35,7 @@ impl<const D: usize> Tree<D> {
         reach.best + tolerance
     }
 
-    /// Goes down at most as many layers as there are, which is at most eight.
+    /// Searches a block. The recursion depth is the number of layers, at most eight.
     fn open<N: Real>(&self, layer: usize, block: usize, reach: &mut Reach<'_, N, D>) {
         let lanes = &self.layers[layer].blocks[block];
         let mut farthest: [(N, usize); LANES] = filled(|lane| {
@@ -46,7 +46,7 @@ impl<const D: usize> Tree<D> {
         });
         farthest.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(core::cmp::Ordering::Equal));
         for (far, lane) in farthest {
-            // False of NaN: and infinity end the search.
+            // False for NaN. An infinite extent ends the search.
             let is_farther = far > reach.best + reach.tolerance;
             if !is_farther {
                 break;
@@ -61,7 +61,8 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// What coordinates in the box may lose by rounding is a share of this.
+/// Returns the scale of rounding errors: the sum of the largest coordinates, weighted by the
+/// direction.
 fn size_along<N: Real, const D: usize>(bounds: &Bounds<D>, direction: &Vector<N, D>) -> N {
     let along = |axis: usize| {
         let largest = bounds.lo[axis].abs().max(bounds.hi[axis].abs());

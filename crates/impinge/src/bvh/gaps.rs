@@ -1,4 +1,5 @@
-//! A box at rest, made ready to be held against blocks: squares of distances in `f32`, never too large.
+//! A box at rest for distance tests against blocks: squared distances in `f32` that never exceed
+//! the exact ones.
 
 use super::kernel::{Scalar, WideBlock, low_half};
 use super::{Block, Bounds, LANES};
@@ -6,33 +7,34 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Real, f32_above, f32_below};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16};
 
-/// Coordinates from here on are too large for differences in `f32`: 2 to the power of 125.
+/// Coordinates from 2¹²⁵ on are too large for differences in `f32`.
 const LARGEST: f32 = f32::from_bits((125 + 127) << 23);
 
-/// Coordinates below this count as this, so that the unit has an inverse: 2 to the power of -120.
+/// Coordinates below 2⁻¹²⁰ count as this, so that the unit has a finite reciprocal.
 const SMALLEST: f32 = f32::from_bits((127 - 120) << 23);
 
-/// Rounding units of `f32` by which squares may be off, here and in the exact test.
+/// Error bound of squares in rounding units of `f32`, here and in the exact test.
 const SQUARE: f32 = 16.0;
 
-/// A box as blocks see it, for how far they are from it.
+/// A box in the representation for distances to blocks.
 ///
-/// Distances are in units of a power of two near the largest coordinate: then squares stay in range,
-/// whatever the scale.
+/// Distances are in units of a power of two near the largest coordinate, so that squares stay in
+/// range at any scale.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gaps<const D: usize> {
     lo: [f32; D],
     hi: [f32; D],
-    /// One over the unit.
+    /// Reciprocal of the unit.
     scale: f32,
-    /// What the square of a distance of the caller's may lose where it is hardly a number of the type.
+    /// Absolute error of the caller's squared distances by underflow.
     lost: f64,
 }
 
 impl<const D: usize> Gaps<D> {
-    /// A box that holds a finite point, for boxes with coordinates up to `size`.
+    /// Converts a box with a finite point, for trees with coordinates up to `size`.
     ///
-    /// One with coordinates beyond what `f32` can subtract is near everything.
+    /// If coordinates are beyond the range in which `f32` differences are finite, the box is near
+    /// everything.
     pub(crate) fn new<N: Real>(aabb: &Aabb<N, D>, size: f32) -> Self {
         let mut reach = size;
         for axis in 0..D {
@@ -49,7 +51,8 @@ impl<const D: usize> Gaps<D> {
         Self { lo: [-f32::MAX; D], hi: [f32::MAX; D], scale: 1.0, lost }
     }
 
-    /// Those of the boxes that overlap along each axis by a depth of zero or more; what overlaps less is at a distance.
+    /// Returns the gaps to boxes that overlap by at least `depth` along each axis: boxes that
+    /// overlap less are at a distance.
     pub(super) fn within<N: Real>(mut self, depth: N) -> Self {
         let depth = depth.as_f64();
         if depth > 0.0 {
@@ -59,8 +62,8 @@ impl<const D: usize> Gaps<D> {
         self
     }
 
-    /// The square of a distance of the caller's, or a little more, in the units of this; finite, and
-    /// negative for NaN.
+    /// Returns an upper bound of the square of the caller's distance in the units of the gaps;
+    /// finite, and negative for NaN.
     #[expect(clippy::cast_possible_truncation, reason = "the slack is more than the rounding")]
     pub(crate) fn limit<N: Real>(&self, distance: N) -> f32 {
         let (distance, scale) = (distance.as_f64(), f64::from(self.scale));
@@ -73,7 +76,7 @@ impl<const D: usize> Gaps<D> {
         f32::min((squared + squared * slack) as f32 + f32::MIN_POSITIVE, f32::MAX)
     }
 
-    /// A key of a block as a distance of the caller's, or a little less.
+    /// Returns a lower bound of the caller's distance for the key of a block.
     pub(crate) fn distance<N: Real>(&self, key: f32) -> N {
         let (key, scale) = (f64::from(key), f64::from(self.scale));
         let slack = f64::from(2.0 * SQUARE * f32::EPSILON);
@@ -83,7 +86,7 @@ impl<const D: usize> Gaps<D> {
 }
 
 impl Scalar {
-    /// One lane after another: see [`Kernel::apart`](super::kernel::Kernel::apart).
+    /// One lane after another; see [`Kernel::apart`](super::kernel::Kernel::apart).
     #[inline(always)]
     pub(super) fn apart_from_block<const D: usize>(
         self,
@@ -117,7 +120,7 @@ impl Scalar {
 }
 
 impl<S: Simd> WideBlock<S> {
-    /// All lanes at once: see [`Kernel::apart`](super::kernel::Kernel::apart).
+    /// All lanes at once; see [`Kernel::apart`](super::kernel::Kernel::apart).
     #[inline(always)]
     pub(super) fn apart_from_block<const D: usize>(
         self,
@@ -144,7 +147,7 @@ impl<S: Simd> WideBlock<S> {
     pub(super) fn least_key(self, keys: &[f32; LANES], mask: u32) -> usize {
         let (first, last) = (mask.trailing_zeros() as usize, 31 - mask.leading_zeros() as usize);
         if mask.count_ones() <= 2 {
-            // In place of a branch, which is a coin toss.
+            // Instead of an unpredictable branch.
             return [first, last][usize::from(keys[last] < keys[first])];
         }
         let simd = self.0;
@@ -162,7 +165,7 @@ mod tests {
     use super::*;
     use crate::math::{Point, Vector};
 
-    /// Numbers of all sizes up to `largest`, with repeats.
+    /// Returns numbers of all magnitudes up to `largest`, with repeats.
     fn number(state: &mut u64, largest: f32) -> f32 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040);
         let small = f32::from(i16::try_from(*state >> 56).expect("eight bits")) - 128.0;

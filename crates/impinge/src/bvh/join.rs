@@ -1,11 +1,11 @@
-//! The pairs that began and ended since trees were settled.
+//! The join: pairs that began and ended since trees were settled.
 //!
-//! Two ways to the same answer, chosen by how much changed:
-//! * many changes: a join of the tree with itself (or of two trees), layer by layer. The tasks of
-//!   a layer are pairs of blocks in a flat list; each becomes tasks of the layer below, and what
-//!   did not change on either side is dropped on the way. No recursion, and no branch that a
-//!   processor could not foresee but the loops' ends;
-//! * few changes: the changed boxes go down the tree together, layer by layer (see `query.rs`).
+//! Two algorithms with the same result, chosen by the number of changes:
+//! * many changes: a join of a tree with itself, or of two trees, layer by layer. The tasks of a
+//!   layer are pairs of blocks in a flat list; each becomes tasks of the layer below, and pairs of
+//!   unchanged blocks are dropped on the way. There is no recursion, and no unpredictable branch
+//!   but the ends of loops;
+//! * few changes: the changed boxes descend the tree together, layer by layer (see `query.rs`).
 //!
 //! Lists are cut into chunks of constant size whose outputs are concatenated in order, so that any
 //! number of threads yields the same list.
@@ -18,13 +18,13 @@ use super::{Block, Bounds, LANES, Tree};
 use crate::memory::Look;
 use crate::pairs::pack;
 
-/// Tasks per chunk in the upper layers, and block pairs per chunk in the lowest.
+/// Tasks in a chunk: for the upper layers, and block pairs in the lowest.
 const UPPER_CHUNK: usize = 256;
 const LEAF_CHUNK: usize = 512;
-/// Up to one object in so many changed, queries beat the join.
+/// If fewer than one object in `QUERIES_BELOW` changed, queries are faster than the join.
 const QUERIES_BELOW: usize = 4;
 
-/// Beside the slot of the first of two boxes: they ended to overlap.
+/// Flag beside the slot of the first of two boxes: the overlap ended.
 const ENDED: u32 = 1 << 31;
 
 /// The trees of a join: `first` with `second`, or one tree with itself.
@@ -32,47 +32,54 @@ const ENDED: u32 = 1 << 31;
 pub(super) struct JoinSides<'a, const D: usize> {
     pub(super) first: &'a Tree<D>,
     pub(super) second: &'a Tree<D>,
+    /// Both are the same tree: each pair of blocks or slots is then considered once.
     pub(super) is_self: bool,
 }
 
-/// Pairs of ids, [`pack`]ed, that differ between the boxes of before and those of now.
+/// Pairs of ids, [`pack`]ed, whose overlap differs between the old and the present boxes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Changes {
-    /// Overlap now and did not before.
+    /// Pairs that overlap now and did not before.
     pub began: Vec<u64>,
-    /// Overlapped before and do not now.
+    /// Pairs that overlapped before and do not now.
     pub ended: Vec<u64>,
 }
 
 impl Changes {
-    /// Forgets every pair and keeps the memory.
+    /// Removes all pairs and keeps the memory.
     pub(crate) fn clear(&mut self) {
         self.began.clear();
         self.ended.clear();
     }
 }
 
-/// Finds what began and ended; keeps the task lists from call to call.
+/// Finds the pairs that began and ended; keeps the memory of task lists from call to call.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Joiner<const D: usize> {
+    /// Tasks of the present layer: pairs of blocks.
     tasks: TaskList,
+    /// Tasks of the layer below.
     next: TaskList,
+    /// Pairs of slots that began or, with [`ENDED`], ended.
     found: TaskList,
-    /// Slots asked about.
+    /// Scratch: changed slots.
     slots: Vec<u32>,
     desks: Desks<D>,
 }
 
-/// Lists for the work inside a chunk.
+/// Scratch lists for one chunk.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch<const D: usize> {
+    /// Pairs of a query and a block, or of a leaf block and a slot.
     pub(super) tasks: TaskList,
+    /// Pairs of a query and a block of the layer below.
     pub(super) next: TaskList,
-    /// The boxes asked about.
+    /// Query boxes of a chunk.
     pub(super) reaches: Vec<Bounds<D>>,
 }
 
 impl<const D: usize> Scratch<D> {
+    /// Releases the memory of lists that have been short for some time.
     fn give_back(&mut self, look: Look) {
         self.tasks.give_back();
         self.next.give_back();
@@ -80,8 +87,7 @@ impl<const D: usize> Scratch<D> {
     }
 }
 
-/// Where chunks are worked on: the first list is for work on one thread, the others for one chunk
-/// each.
+/// Scratch lists: one for work on a single thread, and one for each chunk of parallel work.
 #[derive(Clone, Debug, Default)]
 struct Desks<const D: usize> {
     scratch: Scratch<D>,
@@ -90,7 +96,7 @@ struct Desks<const D: usize> {
 }
 
 impl<const D: usize> Joiner<D> {
-    /// Gives back the memory of lists that have been short for some time.
+    /// Releases the memory of lists that have been short for some time.
     pub(crate) fn give_back(&mut self, look: Look) {
         for list in [&mut self.tasks, &mut self.next, &mut self.found] {
             list.give_back();
@@ -104,8 +110,8 @@ impl<const D: usize> Joiner<D> {
         }
     }
 
-    /// Appends the pairs within the tree that began or ended, each once, in no particular (but
-    /// always the same) order. Of those that ended, some of [`Tree::escaped`] objects may be
+    /// Appends the pairs within the tree that began or ended, each once, in an order that is
+    /// unspecified but always the same. Some ended pairs of [`Tree::escaped`] objects may be
     /// missing. The tree must be refitted.
     pub(crate) fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first: tree, second: tree, is_self: true };
@@ -117,8 +123,8 @@ impl<const D: usize> Joiner<D> {
         self.report(sides, changes);
     }
 
-    /// Appends the pairs of an object of `first` with one of `second` that began or ended, like
-    /// [`Self::self_join`].
+    /// Appends the pairs of an object of `first` and one of `second` that began or ended, as
+    /// [`Self::self_join`] does.
     pub(crate) fn cross_join(&mut self, first: &Tree<D>, second: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first, second, is_self: false };
         let flipped = JoinSides { first: second, second: first, is_self: false };
@@ -135,12 +141,13 @@ impl<const D: usize> Joiner<D> {
         }
     }
 
+    /// Finds the pairs of the changed objects of the first tree by queries, and reports them.
     fn ask_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         self.ask_changed(sides);
         self.report(sides, changes);
     }
 
-    /// The found pairs of slots as pairs of ids, by what became of them.
+    /// Converts the found pairs of slots to pairs of ids, and sorts them into began and ended.
     fn report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         let [first, second] = self.found.parts();
         for (&a, &b) in first.iter().zip(second) {
@@ -154,8 +161,8 @@ impl<const D: usize> Joiner<D> {
         self.found.clear();
     }
 
-    /// Asks the second tree about each changed box of the first; nothing in the second may have
-    /// changed unless the two are one.
+    /// Queries the second tree with each changed box of the first. The second tree must be
+    /// unchanged, unless both are the same.
     fn ask_changed(&mut self, sides: JoinSides<'_, D>) {
         let mut slots = core::mem::take(&mut self.slots);
         sides.first.list_changed_slots(&mut slots);
@@ -171,6 +178,7 @@ impl<const D: usize> Joiner<D> {
         self.slots = slots;
     }
 
+    /// Finds the pairs that began or ended by a join, layer by layer.
     fn join(&mut self, sides: JoinSides<'_, D>) {
         let nothing_changed = sides.first.changed == 0 && sides.second.changed == 0;
         if nothing_changed || sides.first.live == 0 || sides.second.live == 0 {
@@ -202,8 +210,8 @@ impl<const D: usize> Joiner<D> {
         chunks.run(&mut self.found, &mut self.desks, run);
     }
 
-    /// The first tasks: all pairs of blocks at the highest layer that both trees have. One of the
-    /// trees has a single block there.
+    /// Lists the first tasks: all pairs of blocks at the highest layer that both trees have. One of
+    /// the trees has a single block there.
     fn seed(&mut self, sides: JoinSides<'_, D>, top: usize) {
         self.tasks.clear();
         for a in 0..sides.first.layers[top].blocks.len() {
@@ -221,7 +229,7 @@ struct Chunks {
 }
 
 impl Chunks {
-    /// Appends to `out` what `work` makes of every chunk, in the order of the chunks.
+    /// Runs `work` on every chunk, and appends the outputs to `out` in the order of the chunks.
     fn run<const D: usize, F>(&self, out: &mut TaskList, desks: &mut Desks<D>, work: F)
     where
         F: Fn(Range<usize>, &mut TaskList, &mut Scratch<D>) + Sync,
@@ -235,6 +243,7 @@ impl Chunks {
         }
     }
 
+    /// Returns the tasks of a chunk.
     fn range(&self, chunk: usize) -> Range<usize> {
         chunk * self.size..self.count.min((chunk + 1) * self.size)
     }
@@ -261,7 +270,7 @@ impl Chunks {
     }
 }
 
-/// Turns tasks of one layer into tasks of the layer below.
+/// Expands tasks of one layer to tasks of the layer below.
 #[inline(always)]
 fn expand<K: Kernel, const D: usize>(
     kernel: K,
@@ -279,6 +288,7 @@ fn expand<K: Kernel, const D: usize>(
         let changed_a = u32::from(changed_a[a as usize]);
         let changed_b = u32::from(changed_b[b as usize]);
         let mut lanes = kernel.overlaps(&blocks_a[a as usize], &bounds_b[b as usize]);
+        // One of the two children must have changed.
         if changed_b == 0 {
             lanes &= changed_a;
         }
@@ -288,14 +298,17 @@ fn expand<K: Kernel, const D: usize>(
             lanes &= lanes - 1;
             let child = a * small(LANES) + lane;
             let mask = kernel.overlaps(block_b, &children[child as usize]);
+            // On the diagonal only lanes from `lane` on: each pair of children once, and each child
+            // with itself.
             let upper = u32::MAX << lane | u32::from(is_diagonal).wrapping_sub(1);
+            // All lanes of `b` if child `lane` changed, else the changed ones.
             let changed = changed_b | 0_u32.wrapping_sub(changed_a >> lane & 1);
             kernel.push(out, child, b * small(LANES), mask & upper & changed);
         }
     }
 }
 
-/// Turns pairs of leaf blocks into pairs of slots that began or ended.
+/// Expands pairs of leaf blocks to pairs of slots that began or ended.
 #[inline(always)]
 fn join_leaves<K: Kernel, const D: usize>(
     kernel: K,
@@ -313,6 +326,7 @@ fn join_leaves<K: Kernel, const D: usize>(
     for (&a, &b) in first.iter().zip(second) {
         let reach = &reach_b[b as usize];
         let changed = u32::from(changed_a[a as usize]);
+        // Lanes of `a` whose boxes, now or before, overlap the reach of `b`.
         let mut mask = kernel.overlaps(&blocks_a[a as usize], reach);
         if changed != 0 {
             mask |= kernel.overlaps(&before_a[a as usize], reach);
@@ -324,7 +338,8 @@ fn join_leaves<K: Kernel, const D: usize>(
     }
     let [blocks, slots] = lanes.parts();
     for (&b, &slot) in blocks.iter().zip(slots) {
-        // Arithmetic in place of a branch: how it goes, no processor foresees.
+        // On the diagonal only lanes above that of the slot: each pair once. Arithmetic instead of an
+        // unpredictable branch.
         let is_diagonal = sides.is_self & (slot / small(LANES) == b);
         let upper = 0xfffe << (slot % small(LANES)) | u32::from(is_diagonal).wrapping_sub(1);
         let masks = boxes.differing(kernel, slot, b);
@@ -332,7 +347,7 @@ fn join_leaves<K: Kernel, const D: usize>(
     }
 }
 
-/// The boxes of both sides, now and before.
+/// Leaf boxes of both sides, now and before.
 #[derive(Clone, Copy)]
 pub(super) struct JoinBoxes<'a, const D: usize> {
     now_a: &'a [Block<D>],
@@ -341,7 +356,7 @@ pub(super) struct JoinBoxes<'a, const D: usize> {
     before_b: &'a [Block<D>],
 }
 
-/// The lanes of a block that a box overlaps.
+/// Lanes of a block that a box overlaps, now and before.
 #[derive(Clone, Copy)]
 pub(super) struct Overlaps {
     now: u32,
@@ -349,7 +364,7 @@ pub(super) struct Overlaps {
 }
 
 impl Overlaps {
-    /// Appends those of some lanes of block `b` that began or ended to overlap the box in the slot.
+    /// Appends the pairs of the slot with those `lanes` of block `b` whose overlap began or ended.
     #[inline(always)]
     pub(super) fn push<K: Kernel>(
         self,
@@ -368,18 +383,19 @@ impl Overlaps {
 }
 
 impl<'a, const D: usize> JoinBoxes<'a, D> {
+    /// Borrows the leaf blocks of both trees, now and at the last settle.
     #[inline(always)]
     pub(super) fn of(sides: JoinSides<'a, D>) -> Self {
         let (first, second) = (sides.first, sides.second);
         let (now_a, before_a) = (&first.layers[0].blocks[..], first.was());
         let (now_b, before_b) = (&second.layers[0].blocks[..], second.was());
-        // Of equal length: computed once rather than for each pair.
+        // Slices of equal length, so that bounds checks are hoisted out of the loop over pairs.
         let (now_a, now_b) = (&now_a[..before_a.len()], &now_b[..before_b.len()]);
         Self { now_a, before_a, now_b, before_b }
     }
 
-    /// The lanes of block `b` of the second tree that overlap the first tree's slot, now and before. The
-    /// same where neither changed.
+    /// Returns the lanes of block `b` of the second tree that overlap the box in the slot of the
+    /// first, now and before. Both masks are equal if neither changed.
     #[inline(always)]
     pub(super) fn differing<K: Kernel>(&self, kernel: K, slot: u32, b: u32) -> Overlaps {
         let (block, lane, b) = (slot as usize / LANES, slot as usize % LANES, b as usize);
@@ -393,11 +409,13 @@ impl<'a, const D: usize> JoinBoxes<'a, D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// The box around an object now and before, unless it escaped its fat AABB.
+    /// Returns the union of an object's boxes now and before; the present box alone if the object
+    /// moved far.
     #[inline]
     pub(super) fn slot_reach(&self, slot: u32) -> Bounds<D> {
         let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
         let (now, before) = (self.lane(slot as usize), self.was()[block].lane(lane));
+        // The reach of an escaped block covers the present boxes alone.
         let is_near = self.layers[0].reach[block].contains(&before);
         if is_near { now.merged(&before) } else { now }
     }

@@ -1,8 +1,8 @@
-//! The three operations on blocks that everything else is built of, scalar and in vectors.
+//! The elementary operations on blocks, scalar and with SIMD vectors.
 //!
-//! [`Scalar`] defines what they compute; [`WideBlock`] computes the same bits with whatever vectors the
-//! machine has. Only comparisons, minima and maxima are used, so equality is exact. Callers choose
-//! once per batch with `with_kernel!`, which compiles its body for every instruction set.
+//! [`Scalar`] defines the results; [`WideBlock`] computes the same bits with the vectors of the machine. The join uses
+//! comparisons, minima and maxima alone, so equality is exact. Callers choose once for each batch with `with_kernel!`,
+//! which compiles its body for every instruction set.
 
 use crate::math::filled;
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
@@ -13,31 +13,31 @@ use super::triangles::{ShearedLine, Triangles};
 use super::{Block, Bounds, LANES};
 use crate::math::simd::{Level, ON_ARRAYS};
 
-/// Which vectors the kernels use. The results do not depend on it.
+/// The vectors that the kernels use. They do not affect results.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes(pub(super) Level);
 
 impl Lanes {
-    /// The widest vectors of this machine.
+    /// Returns the widest vectors of this machine.
     #[must_use]
     pub fn detect() -> Self {
         Self(Level::new())
     }
 
-    /// More than the vectors that these are, if the machine has it.
+    /// Returns AVX-512, if the machine has it and these are its widest vectors.
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
     pub(super) fn avx512(self) -> Option<fearless_simd::Avx512> {
         let is_best = matches!(self.0, Level::Wide(_));
         is_best.then(|| fearless_simd::Level::new().as_avx512()).flatten()
     }
 
-    /// No vectors: the definition that the others are tested against.
+    /// Returns the scalar kernels, which define the results of the others.
     #[cfg(test)]
     pub(crate) const fn scalar() -> Self {
         Self(Level::Arrays)
     }
 
-    /// Everything that is compiled for this machine, for tests.
+    /// Returns all levels that are compiled for this machine, for tests.
     #[must_use]
     pub fn available() -> Vec<Self> {
         let is_compiled = |level: &Level| ON_ARRAYS || !matches!(level, Level::Arrays);
@@ -51,7 +51,7 @@ impl Default for Lanes {
     }
 }
 
-/// Runs `$body` with `$kernel` bound to the kernel that `$lanes` names.
+/// Runs `$body` with `$kernel` bound to the kernel of `$lanes`.
 macro_rules! with_kernel {
     ($lanes:expr, $kernel:ident => $body:expr) => {
         match $lanes.0 {
@@ -74,7 +74,7 @@ macro_rules! with_kernel {
         }
     };
 }
-/// [`with_kernel!`] with AVX-512 where the machine has it, for what gains from masks and wide registers.
+/// As [`with_kernel!`], but with AVX-512 where the machine has it, for code that gains from masks and wide registers.
 macro_rules! with_widest_kernel {
     ($lanes:expr, $kernel:ident => $body:expr) => {{
         #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
@@ -91,15 +91,15 @@ macro_rules! with_widest_kernel {
 }
 pub(super) use {with_kernel, with_widest_kernel};
 
-/// Pairs of numbers, in two arrays so that sixteen can be stored at once.
+/// A list of pairs of numbers, in two arrays, so that sixteen entries can be stored at once.
 ///
-/// Entries beyond `len` are leftovers.
+/// Entries beyond `len` are meaningless.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TaskList {
     first: Vec<u32>,
     second: Vec<u32>,
     len: usize,
-    /// The most that there were when it was emptied, since memory was given back.
+    /// The greatest length at a call of `clear` since memory was last released.
     longest: usize,
 }
 
@@ -109,7 +109,7 @@ impl TaskList {
         self.len = 0;
     }
 
-    /// Gives back the memory of a list that has been short for some time; forgets what is in it.
+    /// Clears the list and releases the memory of one that has been short for some time.
     pub(super) fn give_back(&mut self) {
         self.clear();
         let needed = (2 * self.longest).max(64 * LANES);
@@ -126,20 +126,20 @@ impl TaskList {
         self.len
     }
 
-    /// The pairs, as their two arrays.
+    /// Returns the pairs as two arrays.
     #[inline]
     pub(super) fn parts(&self) -> [&[u32]; 2] {
         [&self.first[..self.len], &self.second[..self.len]]
     }
 
-    /// Some of the pairs, as their two arrays.
+    /// Returns a range of the pairs as two arrays.
     #[inline]
     pub(super) fn part(&self, range: core::ops::Range<usize>) -> [&[u32]; 2] {
         let [first, second] = self.parts();
         [&first[range.clone()], &second[range]]
     }
 
-    /// Makes room for sixteen more.
+    /// Makes room for sixteen more pairs.
     #[inline]
     fn reserve(&mut self) {
         if self.len + LANES > self.first.len() {
@@ -157,7 +157,7 @@ impl TaskList {
         self.len += 1;
     }
 
-    /// Appends all of another list.
+    /// Appends all pairs of another list.
     #[cfg(feature = "parallel")]
     pub(super) fn append(&mut self, other: &Self) {
         self.first.truncate(self.len);
@@ -169,16 +169,16 @@ impl TaskList {
     }
 }
 
-/// The operations on blocks.
+/// The operations on blocks. Masks have lane 0 in the lowest bit.
 pub(super) trait Kernel: Copy {
-    /// The lanes of the block that overlap the query, lane 0 in the lowest bit.
+    /// Returns the lanes of the block that overlap the query.
     fn overlaps<const D: usize>(self, block: &Block<D>, query: &Bounds<D>) -> u32;
 
-    /// The smallest box around all lanes.
+    /// Returns the smallest box around all lanes.
     fn bounds<const D: usize>(self, block: &Block<D>) -> Bounds<D>;
 
-    /// The lanes that the moving box may enter by `limit`, and when, or a little before. Never
-    /// without a lane that it enters.
+    /// Returns the lanes that the moving box may enter by `limit`, and writes lower bounds of the times to `keys`. The
+    /// mask contains every lane that the box does enter.
     fn enter<const D: usize>(
         self,
         block: &Block<D>,
@@ -187,8 +187,8 @@ pub(super) trait Kernel: Copy {
         keys: &mut [f32; LANES],
     ) -> u32;
 
-    /// The lanes of [`Self::enter`], and the least of their keys; a key has its lane in the lowest four bits, which makes it
-    /// no later, and that of a lane that is not entered is the largest number.
+    /// Returns the lanes of [`Self::enter`] and the least of their keys. The lowest four bits of a key are its lane,
+    /// which makes the time no later. The key of a lane that is not entered is `u32::MAX`.
     fn enter_nearest<const D: usize>(
         self,
         block: &Block<D>,
@@ -197,11 +197,12 @@ pub(super) trait Kernel: Copy {
         keys: &mut [u32; LANES],
     ) -> (u32, u32);
 
-    /// The least of such keys.
+    /// Returns the least of sixteen keys of [`Self::enter_nearest`].
     fn least_lane_key(self, keys: &[u32; LANES]) -> u32;
 
-    /// The lanes that may be as near as `limit`, and the squares of their distances, or a little less,
-    /// in the units of the gaps. Never without a lane that is; a finite limit leaves out empty lanes.
+    /// Returns the lanes whose squared distance may be at most `limit`, and writes lower bounds of the squares to
+    /// `keys`, in the units of the gaps. The mask contains every lane that is so near; a finite limit excludes empty
+    /// lanes.
     fn apart<const D: usize>(
         self,
         block: &Block<D>,
@@ -210,19 +211,19 @@ pub(super) trait Kernel: Copy {
         keys: &mut [f32; LANES],
     ) -> u32;
 
-    /// The lane of the mask, which is not empty, with the least key; the first of equals. Keys are
-    /// finite.
+    /// Returns the lane of the mask with the least key; the lowest of equal ones. The mask must not be empty, and keys
+    /// must be finite.
     fn least(self, keys: &[f32; LANES], mask: u32) -> usize;
 
-    /// The triangles that the line may cross between zero and `limit`. Never without one of which an
-    /// exact test might say so.
+    /// Returns the triangles that the line may cross between zero and `limit`; contains every triangle that an exact
+    /// test may accept.
     fn crossed(self, triangles: &Triangles, line: &ShearedLine, limit: f32) -> u32;
 
     /// Appends `(first, base + lane)` for every lane of the mask, in ascending order.
     fn push(self, list: &mut TaskList, first: u32, base: u32, mask: u32);
 }
 
-/// The definition of the kernels, one lane after another.
+/// Reference implementation, one lane after another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scalar;
 
@@ -288,7 +289,7 @@ impl Kernel for Scalar {
     }
 }
 
-/// Walks over the bits of the mask: faster than packing vectors where there is no AVX2.
+/// Appends the bits of the mask one by one: faster than packing vectors without AVX2.
 #[inline(always)]
 fn push_bits(list: &mut TaskList, first: u32, base: u32, mut mask: u32) {
     while mask != 0 {
@@ -297,11 +298,11 @@ fn push_bits(list: &mut TaskList, first: u32, base: u32, mut mask: u32) {
     }
 }
 
-/// The kernels in vectors of sixteen (two registers or four).
+/// Implementation with vectors of sixteen lanes (one to four registers).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WideBlock<S>(pub(super) S);
 
-/// 0 to 15.
+/// The lane numbers.
 pub(super) const IOTA: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 impl<S: Simd> Kernel for WideBlock<S> {
@@ -393,7 +394,7 @@ impl<S: Simd> Kernel for WideBlock<S> {
     }
 }
 
-/// The lanes whose intervals on one axis overlap the query's.
+/// Returns the lanes whose intervals on one axis overlap the query's.
 #[inline(always)]
 fn overlaps_on<S: Simd, const D: usize>(
     simd: S,
@@ -407,7 +408,7 @@ fn overlaps_on<S: Simd, const D: usize>(
         & hi.simd_ge(f32x16::splat(simd, query.lo[axis]))
 }
 
-/// The instruction set moves selected lanes to the front quickly.
+/// Returns `true` if the instruction set packs selected lanes fast.
 #[inline(always)]
 fn packs_lanes(level: fearless_simd::Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -419,7 +420,7 @@ fn packs_lanes(level: fearless_simd::Level) -> bool {
     }
 }
 
-/// The lower half of a mask of sixteen lanes.
+/// Returns the lower half of a mask of sixteen lanes.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "sixteen lanes make sixteen bits")]
 pub(super) const fn low_half(mask: u64) -> u32 {
@@ -430,7 +431,7 @@ pub(super) const fn low_half(mask: u64) -> u32 {
 mod tests {
     use super::*;
 
-    /// A block of small boxes on a grid, so that touching is common, with some lanes empty.
+    /// Returns a block of small boxes on a grid, so that touching is common, with some lanes empty.
     fn block(seed: u64) -> Block<3> {
         let mut state = seed;
         let mut next = move || {

@@ -1,26 +1,33 @@
-//! A packed tree of boxes for objects that move: no pointers, sixteen boxes per block.
+//! A packed tree of boxes for objects that move: no pointers, sixteen boxes in a block.
 //!
-//! What lies where in memory:
-//! * layer 0 is an array of [`Block`]s of object boxes; block `i` of layer `k` holds the bounds of
-//!   blocks `16i … 16i + 15` of layer `k - 1`, up to a layer of one block. Child and parent are
-//!   arithmetic, so nothing is fixed up when objects change places;
-//! * beside each layer stand the bounds of its blocks one by one (the query side of a test of one
-//!   box against a block) and a mask of the lanes that changed since the last [`Tree::settle`];
-//! * beside layer 0 stand the boxes *before* the changes, again in blocks (not in a tree of objects that
-//!   stay, as long as they do), and the maps between slots (positions) and ids (the caller's numbers).
+//! ```text
+//! layer 2   [ block 0                                  ]     bounds of layer-1 blocks 0..16
+//! layer 1   [ block 0      ][ block 1      ] ...             bounds of layer-0 blocks 16i..16i + 16
+//! layer 0   [ block 0 | block 1 | ... ]                      boxes of objects, one for each lane
+//! slot      0 ... 15   16 ... 31                             lane = slot % 16, block = slot / 16
+//! ids       slot -> id (the caller's number)                 slots   id -> slot
+//! ```
 //!
-//! Slots are in a balanced k-d order, so that a block holds neighbours; which lane an object has
-//! is nobody's business but the tree's. The owner of the tree calls, in each step: [`Tree::set_later`],
-//! [`Tree::insert`], [`Tree::remove`], then [`Tree::refit`], then the [`Joiner`] for the pairs that
-//! began and ended, then [`Tree::settle`] and [`Tree::maintain`].
+//! Memory layout:
+//! * block `i` of layer `k` has the bounds of blocks `16i … 16i + 15` of layer `k - 1`, up to a
+//!   layer of one block. Child and parent are computed from the index, so no links change when
+//!   objects move between slots;
+//! * each layer also has the bounds of its blocks as an array (the query side of a test of one box
+//!   against a block), and a mask of the lanes that changed since the last [`Tree::settle`];
+//! * layer 0 also has the boxes *before* the changes, again in blocks. A sparing tree, whose
+//!   objects seldom change, has these only while something has changed.
 //!
-//! **No set of pairs is kept.** A pair began exactly if the boxes overlap and those of before did
-//! not, and ended if it is the other way round; so the join compares the two and reports what
-//! differs.
+//! Slots are in a balanced k-d order, so that a block holds neighbours. In each step the owner of
+//! the tree calls [`Tree::set_later`], [`Tree::insert`], [`Tree::remove`], then [`Tree::refit`],
+//! then the [`Joiner`] for the pairs that began and ended, then [`Tree::settle`] and
+//! [`Tree::maintain`].
 //!
-//! The tree knows no shapes and no user data. Its boxes are always `f32`; [`Bounds::enclosing`]
-//! rounds outwards. Every result is a function of the calls made: it does not depend on the
-//! instruction set nor on the number of threads.
+//! **No set of pairs is stored.** A pair began exactly if the boxes overlap and the old ones did
+//! not, and ended in the opposite case; so the join compares both and reports the differences.
+//!
+//! The tree has no shapes and no user data. Its boxes are always `f32`; [`Bounds::enclosing`]
+//! rounds outwards. Every result depends only on the calls made, not on the instruction set or the
+//! number of threads.
 
 #![cfg_attr(
     not(any(
@@ -73,5 +80,6 @@ pub(crate) use tree::{NONE, Tree};
 pub(crate) use triangles::{ShearedLine, TriangleAt, Triangles};
 pub(crate) use two::{Toward, TreeMeeting, TreePair, visit_meetings, visit_pairs};
 
-/// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.
+/// Number of objects below which nothing runs in parallel: waking a thread costs more than it
+/// saves.
 pub(crate) const PARALLEL_FROM: usize = 2000;

@@ -1,12 +1,10 @@
-//! Searches along the way of a moving box or ray and around a box at rest, near boxes before far ones, as
-//! deep as they go.
+//! Depth-first searches along a moving box or ray, and around a box at rest: near boxes before far ones.
 //!
-//! Depth first, of each block the nearest child next (as in all ray tracers; Roussopoulos, Kelley and
-//! Vincent, "Nearest neighbor queries", 1995), as long as that is within the limit, which shrinks with
-//! what is found. As many blocks lie open as there are layers, each with the keys of its children; which
-//! of them comes next is looked for only when its turn comes, since most never have one. The order is
-//! rough: objects of a block that comes later may be nearer than some before it. That saves the queue of
-//! [`Frontier`](super::Frontier), which costs more than the boxes it spares.
+//! In each block the nearest child comes next (as in all ray tracers; Roussopoulos, Kelley and Vincent, "Nearest
+//! neighbor queries", 1995), as long as it is within the limit, which shrinks with each result. One block for each
+//! layer is open, with the keys of its children; the next child is selected only when its turn comes, since most are
+//! never visited. The order is rough: objects of a later block may be nearer than some of an earlier one. This avoids
+//! the queue of [`Frontier`](super::Frontier), which costs more than the boxes that it saves.
 
 use super::gaps::Gaps;
 use super::kernel::{Kernel, with_kernel};
@@ -15,17 +13,17 @@ use super::tree::small;
 use super::triangles::{ShearedLine, TriangleAt, Triangles};
 use super::{Block, Bounds, LANES, Lanes, NONE, Tree};
 
-/// Layers that a tree may have: 2^32 objects make eight.
+/// Greatest number of layers: 2^32 objects need eight.
 pub(super) const LAYERS: usize = 8;
 
-/// Objects are handed out by so many at most: what is known about them lies anywhere in memory, and is
-/// fetched together faster than one by one.
+/// Greatest number of objects passed on at once: their data are scattered in memory, and loads for several objects
+/// overlap.
 pub(crate) const GROUP: usize = 4;
 
-/// What the lanes of a block are asked.
+/// A test of the lanes of a block.
 pub(super) trait Probe<const D: usize> {
-    /// The lanes that may have a key of at most `limit`, and their keys, or a little less. Never without
-    /// a lane that has. Keys are zero or more.
+    /// Returns the lanes that may have a key of at most `limit`, and writes lower bounds of the keys. The mask contains
+    /// every lane with such a key. Keys are zero or more.
     fn ask<K: Kernel>(
         &self,
         kernel: K,
@@ -35,7 +33,7 @@ pub(super) trait Probe<const D: usize> {
     ) -> u32;
 }
 
-/// By when they are entered.
+/// The key is the time of entry.
 impl<const D: usize> Probe<D> for Slabs<D> {
     #[inline(always)]
     fn ask<K: Kernel>(
@@ -49,7 +47,7 @@ impl<const D: usize> Probe<D> for Slabs<D> {
     }
 }
 
-/// By the squares of their distances.
+/// The key is the squared distance.
 impl<const D: usize> Probe<D> for Gaps<D> {
     #[inline(always)]
     fn ask<K: Kernel>(
@@ -63,21 +61,22 @@ impl<const D: usize> Probe<D> for Gaps<D> {
     }
 }
 
-/// A block that lies open.
+/// A block whose children are being visited.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Open {
-    /// Those of the children.
+    /// Keys of the children.
     pub(super) keys: [f32; LANES],
-    /// The children to be looked at.
+    /// Children not yet visited.
     pub(super) mask: u32,
-    /// The number of the first child.
+    /// Index of the first child.
     pub(super) first: u32,
 }
 
 impl Open {
+    /// A block without children left to visit.
     const NOTHING: Self = Self { keys: [0.0; LANES], mask: 0, first: 0 };
 
-    /// Takes out the child of least key, unless that is beyond the limit.
+    /// Removes and returns the child with the least key, unless that is beyond the limit.
     #[inline(always)]
     fn next<K: Kernel>(&mut self, kernel: K, limit: f32) -> Option<u32> {
         if self.mask == 0 {
@@ -91,10 +90,9 @@ impl Open {
 }
 
 impl Lanes {
-    /// Calls `found` with the objects of the trees that the moving box may touch by `limit` and their keys,
-    /// several at a time, near ones first but in no exact order; `found` returns the new limit, which never
-    /// grows.
-    /// Limits are in the units of the slabs. A negative limit ends the search.
+    /// Calls `found` with the objects of the trees that the moving box may touch by `limit`, in groups with their keys,
+    /// near ones roughly first. `found` returns the new limit, which must not increase. Limits are in the units of the
+    /// slabs. A negative limit ends the search.
     pub(crate) fn visit_along<const D: usize>(
         self,
         trees: &[&Tree<D>],
@@ -105,8 +103,7 @@ impl Lanes {
         self.visit_near_first(trees, slabs, limit, found);
     }
 
-    /// [`Self::visit_along`] with the objects that may be as near as `limit`, a square in the units of the
-    /// gaps.
+    /// As [`Self::visit_along`], for the objects that may be as near as `limit`, a square in the units of the gaps.
     pub(crate) fn visit_around<const D: usize>(
         self,
         trees: &[&Tree<D>],
@@ -117,6 +114,7 @@ impl Lanes {
         self.visit_near_first(trees, gaps, limit, found);
     }
 
+    /// Searches the trees one after the other; the limit that one search leaves bounds the next.
     #[inline(always)]
     fn visit_near_first<const D: usize>(
         self,
@@ -135,7 +133,7 @@ impl Lanes {
 }
 
 impl<const D: usize> Tree<D> {
-    /// See [`Lanes::visit_along`]; returns the last limit.
+    /// Searches one tree; see [`Lanes::visit_along`]. Returns the last limit.
     #[inline(always)]
     fn near_first<K: Kernel>(
         &self,
@@ -151,7 +149,7 @@ impl<const D: usize> Tree<D> {
             |block| self.touch_leaf(block),
             #[inline(always)]
             |block, limit| {
-                // At once, so that memory has both ready at the same time.
+                // Both loads first, so that they overlap.
                 let ids = self.leaves()[block as usize];
                 let mut open = self.opened(kernel, probe, 0, block, limit);
                 hand_out(kernel, &ids, &mut open, limit, found)
@@ -159,9 +157,8 @@ impl<const D: usize> Tree<D> {
         )
     }
 
-    /// Calls `leaf` with leaf blocks in which a key may be at most the limit, which it returns anew.
-    /// Opens each block at most once. Calls `touch` with leaf blocks that may come next, so that they are on
-    /// their way from memory while those before are looked at.
+    /// Calls `leaf` with leaf blocks in which a key may be at most the limit; `leaf` returns the new limit. Opens each
+    /// block at most once. Calls `touch` with leaf blocks that may come next, which prefetches them.
     #[inline(always)]
     fn descend<K: Kernel>(
         &self,
@@ -175,13 +172,16 @@ impl<const D: usize> Tree<D> {
         if top == 0 {
             return leaf(0, limit);
         }
+        // The open blocks by layer; those from `top` down to `layer` are in use.
         let (mut path, mut layer) = ([Open::NOTHING; LAYERS], top);
         path[top] = self.opened(kernel, probe, top, 0, limit);
         loop {
             match path[layer].next(kernel, limit) {
+                // No child within the limit is left: the search goes on in the parent, or ends.
                 None if layer == top => return limit,
                 None => layer += 1,
                 Some(block) if layer == 1 => {
+                    // Prefetches one of the remaining leaf blocks, though another one may come next.
                     if path[1].mask != 0 {
                         touch(path[1].first + path[1].mask.trailing_zeros());
                     }
@@ -195,6 +195,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
+    /// Opens block `number` of a layer: computes the keys of its lanes, and marks those whose child exists and may have
+    /// a key of at most `limit`.
     #[inline(always)]
     fn opened<K: Kernel>(
         &self,
@@ -211,8 +213,7 @@ impl<const D: usize> Tree<D> {
         Open { keys, mask, first }
     }
 
-    /// Opens a block of which the children are wanted that may be as near as `limit`, as
-    /// [`Lanes::visit_around`].
+    /// Opens a block for the children that may be as near as `limit`; see [`Lanes::visit_around`].
     pub(super) fn opened_around(
         &self,
         gaps: &Gaps<D>,
@@ -223,18 +224,19 @@ impl<const D: usize> Tree<D> {
         with_kernel!(self.lanes, kernel => self.opened(kernel, gaps, layer, number, limit))
     }
 
-    /// Reads something of a leaf block.
+    /// Touches the cache lines of a leaf block.
     #[inline(always)]
     fn touch_leaf(&self, block: u32) {
         let block = block as usize;
         let Block { lo, hi } = &self.layers[0].blocks[block];
+        // `black_box` keeps these loads, whose results are not used.
         for axis in 0..D {
             core::hint::black_box((lo[axis][0], hi[axis][0]));
         }
         core::hint::black_box(self.ids[block * LANES]);
     }
 
-    /// Without the lanes that have no block below them.
+    /// Clears the lanes without a block below them.
     #[inline(always)]
     fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
         let Some(below) = layer.checked_sub(1) else { return mask };
@@ -242,19 +244,19 @@ impl<const D: usize> Tree<D> {
         if left < LANES { mask & ((1 << left) - 1) } else { mask }
     }
 
-    /// The largest magnitude of a coordinate of the boxes. Right after a refit only.
+    /// Returns the largest magnitude of a coordinate of the boxes. Valid right after a refit.
     pub(crate) fn size(&self) -> f32 {
         let top = &self.layers[self.layers.len() - 1].bounds;
         top.iter().map(Bounds::size).fold(0.0, |most, x| if x > most { x } else { most })
     }
 
-    /// The ids in the sixteen slots of each leaf block; [`NONE`] for an empty slot.
+    /// Returns the ids in the sixteen slots of each leaf block; [`NONE`] for an empty slot.
     pub(crate) fn leaves(&self) -> &[[u32; LANES]] {
         self.ids.as_chunks().0
     }
 }
 
-/// Hands out the objects of a leaf block.
+/// Passes the objects of a leaf block to `found`, in groups; returns the new limit.
 #[inline(always)]
 fn hand_out<K: Kernel>(
     kernel: K,
@@ -265,6 +267,7 @@ fn hand_out<K: Kernel>(
 ) -> f32 {
     while open.mask != 0 {
         let (mut group, mut count) = ([(NONE, 0.0); GROUP], 0);
+        // Collects the nearest lanes left. `None` means that all others are beyond the limit.
         while count < GROUP {
             let Some(slot) = open.next(kernel, limit) else {
                 open.mask = 0;
@@ -272,6 +275,7 @@ fn hand_out<K: Kernel>(
             };
             let lane = (slot - open.first) as usize % LANES;
             group[count] = (ids[lane], open.keys[lane]);
+            // An empty slot is overwritten by the next object.
             count += usize::from(ids[lane] != NONE);
         }
         if count > 0 {
@@ -281,7 +285,7 @@ fn hand_out<K: Kernel>(
     limit
 }
 
-/// A ray among triangles: what [`Tree::visit_triangles`] asks the boxes and the triangles.
+/// A ray in the representations for boxes and for triangles, as [`Tree::visit_triangles`] needs it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayProbe {
     pub(crate) slabs: Slabs<3>,
@@ -289,8 +293,8 @@ pub(crate) struct RayProbe {
 }
 
 impl Tree<3> {
-    /// Calls `found` with each object whose triangle the ray may cross by `limit`, its id, block and
-    /// lane, as [`Lanes::visit_along`]. `triangles` are those of the leaf blocks.
+    /// Calls `found` with each object whose triangle the ray may cross by `limit`, in the order of
+    /// [`Lanes::visit_along`]. `triangles` are those of the leaf blocks.
     pub(crate) fn visit_triangles(
         &self,
         triangles: &[Triangles],
@@ -305,6 +309,8 @@ impl Tree<3> {
         }
     }
 
+    /// Searches the tree; see [`Self::visit_triangles`]. In a leaf block the triangles themselves are tested, not their
+    /// boxes, and reported by ascending lane.
     #[inline(always)]
     fn near_triangles<K: Kernel>(
         &self,

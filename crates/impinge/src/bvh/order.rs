@@ -1,17 +1,17 @@
 //! The order of slots: a balanced k-d order, so that blocks hold neighbours.
 //!
 //! The longest axis of the centres is cut so that the left part fills a power of two of blocks
-//! (whole subtrees of the layers above), and so on in both parts. Against Morton order this needs
-//! 2.2 times fewer block tests in a join, against Hilbert order 1.25 times fewer.
+//! (whole subtrees of the layers above), and so on in both parts. A join needs 2.2 times fewer
+//! block tests than with Morton order, 1.25 times fewer than with Hilbert order.
 
 use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 
-/// From this many items on the two parts are sorted on two threads.
+/// Number of items from which both parts are sorted on two threads.
 #[cfg(feature = "parallel")]
 const PARALLEL_SORT: usize = 4096;
 
-/// An object to be given a place.
+/// An object to be sorted.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item<const D: usize> {
     center: [f32; D],
@@ -19,15 +19,15 @@ pub(super) struct Item<const D: usize> {
 }
 
 impl<const D: usize> Item<D> {
-    /// Orders by the coordinate, ties by id: a total order, so that the result is unique up to
-    /// the order within blocks.
+    /// Returns the sort key on an axis, ties by id: a total order, so that the result is unique up
+    /// to the order within blocks.
     #[inline]
     fn key(&self, axis: usize) -> u64 {
         key(self.center[axis], self.id)
     }
 }
 
-/// A number that orders as the coordinates do, and where these are equal as the ids do.
+/// Returns a number that orders by coordinate, ties by id.
 #[inline]
 pub(super) fn key(coordinate: f32, id: u32) -> u64 {
     let bits = coordinate.to_bits();
@@ -35,12 +35,13 @@ pub(super) fn key(coordinate: f32, id: u32) -> u64 {
     u64::from(ordered) << 32 | u64::from(id)
 }
 
-/// How many of `items` go left: the largest power of two of blocks that leaves some for the right.
+/// Returns the number of items on the left: the largest power of two of blocks that leaves some for
+/// the right.
 fn left_count(items: usize) -> usize {
     items.div_ceil(LANES).next_power_of_two() / 2 * LANES
 }
 
-/// The axis along which the centres spread most; the first of equals.
+/// Returns the axis with the largest spread of centres; the first of equals.
 fn longest_axis<const D: usize>(items: &[Item<D>]) -> usize {
     let (mut lo, mut hi) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);
     for item in items {
@@ -54,7 +55,7 @@ fn longest_axis<const D: usize>(items: &[Item<D>]) -> usize {
     (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best })
 }
 
-/// Parts the items once; the number that went left, or `None` if they fit one block.
+/// Partitions the items once; returns the number on the left, or `None` if they fit in one block.
 pub(super) fn split<const D: usize>(items: &mut [Item<D>]) -> Option<usize> {
     if items.len() <= LANES {
         return None;
@@ -64,23 +65,24 @@ pub(super) fn split<const D: usize>(items: &mut [Item<D>]) -> Option<usize> {
     Some(left)
 }
 
-/// A plane across an axis.
+/// A plane across an axis, as the sort key of the first item beyond it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cut {
     axis: usize,
-    /// The key of the first item beyond it.
+    /// Key of the first item beyond the plane.
     key: u64,
 }
 
 impl Cut {
-    /// The item belongs to the part of the larger keys.
+    /// Returns `true` if the item is beyond the plane.
     #[inline]
     pub(super) fn is_beyond<const D: usize>(self, item: &Item<D>) -> bool {
         item.key(self.axis) >= self.key
     }
 }
 
-/// Parts items along the axis along which they spread most; answers where, and how many are on the near side.
+/// Partitions items in half along the axis with the largest spread; returns the cut and the number
+/// of items on the near side.
 pub(super) fn cut_in_half<const D: usize>(items: &mut [Item<D>]) -> (Cut, usize) {
     let (axis, half) = (longest_axis(items), items.len() / 2);
     if items.is_empty() {
@@ -90,7 +92,7 @@ pub(super) fn cut_in_half<const D: usize>(items: &mut [Item<D>]) -> (Cut, usize)
     (Cut { axis, key: first.key(axis) }, half)
 }
 
-/// Brings the items into k-d order. Each level halves the items, so it ends.
+/// Sorts the items in k-d order. Ends, since each level halves the items.
 pub(super) fn sort<const D: usize>(items: &mut [Item<D>]) {
     let Some(left) = split(items) else { return };
     let (first, second) = items.split_at_mut(left);
@@ -103,7 +105,7 @@ pub(super) fn sort<const D: usize>(items: &mut [Item<D>]) {
     sort(second);
 }
 
-/// What moves with an object from slot to slot.
+/// The data of an object that move with it from slot to slot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Load<const D: usize> {
     bounds: Bounds<D>,
@@ -113,21 +115,21 @@ pub(super) struct Load<const D: usize> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Lists the live objects in the slots from `start` on, in slot order.
+    /// Lists the objects in the slots from `start` on, in slot order.
     pub(super) fn list_items(&self, start: usize, items: &mut Vec<Item<D>>) {
         items.clear();
         items.extend((start..self.end).filter_map(|slot| self.item(self.ids[slot])));
     }
 
-    /// An object that is in the tree.
+    /// Returns the centre of an object, if it is in the tree.
     #[inline]
     pub(super) fn item(&self, id: u32) -> Option<Item<D>> {
         let center = self.lane(self.slot(id)?).center();
         Some(Item { center, id })
     }
 
-    /// Gives the slots from `start` (a block boundary) on to the listed ids, in that order, and
-    /// drops the blocks left over. Every object in those slots must be listed once.
+    /// Assigns the slots from `start` (a block boundary) on to the listed ids, in that order, and
+    /// drops surplus blocks. Every object in those slots must be listed once.
     pub(super) fn rearrange(&mut self, start: usize, ids: &[u32]) {
         let mut loads = core::mem::take(&mut self.loads);
         loads.clear();
@@ -171,7 +173,7 @@ impl<const D: usize> Tree<D> {
         self.layers[0].changed[block] |= u16::from(load.is_changed) << lane;
     }
 
-    /// Gives up the last slots if they are free.
+    /// Drops the last slots if they are free.
     pub(crate) fn drop_free_end(&mut self) {
         while self.end > 0 && self.ids[self.end - 1] == NONE {
             self.end -= 1;
@@ -180,7 +182,7 @@ impl<const D: usize> Tree<D> {
         self.drop_blocks_after_end();
     }
 
-    /// Empties the lanes of the last block beyond the end and gives later blocks up.
+    /// Empties the lanes of the last block beyond the end, and drops later blocks.
     fn drop_blocks_after_end(&mut self) {
         let blocks = self.end.div_ceil(LANES);
         for slot in self.end..blocks * LANES {

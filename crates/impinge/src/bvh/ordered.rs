@@ -1,9 +1,10 @@
-//! Searches in ascending order of a key: the first hit of a ray or a moving box, the nearest object.
+//! Best-first searches: objects in ascending order of a key, such as the first hits of a ray or the
+//! nearest objects.
 //!
-//! Best first (Hjaltason and Samet, "Distance browsing in spatial databases", 1999): one queue of
-//! blocks and objects by key. A block's key is never above those of what it encloses, so objects
-//! leave the queue in the order of their keys; a search that stops there has opened only blocks it
-//! could not do without.
+//! One queue of blocks and objects by key (Hjaltason and Samet, "Distance browsing in spatial
+//! databases", 1999). The key of a block is not above those of its contents, so objects leave the
+//! queue in the order of their keys. A search that stops there has opened only blocks that it
+//! needed.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -14,12 +15,12 @@ use super::{Block, LANES, Lanes, Tree};
 use crate::bounding_volume::Aabb;
 use crate::math::{Real, Vector, max, min};
 
-/// Entries made room for at the start: enough for most searches.
+/// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 64;
 
-/// What a queue holds: blocks and candidates by the key of their lane, objects by their own, which
-/// is computed only once a candidate comes up. At equal keys, objects go last, so that they leave
-/// by ascending id.
+/// Entries of the queue: blocks and candidates by the key of their lane, objects by their own key,
+/// which is computed only when a candidate comes up. At equal keys objects come last, so that they
+/// leave by ascending id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Entry {
     Block { tree: u8, layer: u8, block: u32 },
@@ -27,26 +28,26 @@ enum Entry {
     Object { id: u32 },
 }
 
-/// The keys of a search: zero or more.
+/// Functions that compute the keys of a search, which are zero or more.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Keys<B, O> {
-    /// Gives the keys of the lanes of a block, none above the key of anything that it encloses,
-    /// and the mask of the lanes that count.
+    /// Returns the mask of the lanes of a block that count, and keys that are not above those of
+    /// their contents.
     pub block: B,
-    /// Gives the key of an object, `None` to pass it over.
+    /// Returns the key of an object; `None` to skip it.
     pub object: O,
 }
 
-/// A queue of what a search has still to look at.
+/// The queue of blocks and objects that a search has still to visit.
 ///
-/// Keys are zero or more, so that their bits order as they do.
+/// Keys are zero or more, so the order of their bits is that of their values.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Frontier {
     queue: BinaryHeap<Reverse<(u64, Entry)>>,
 }
 
 impl Frontier {
-    /// An empty queue.
+    /// Creates an empty queue.
     #[must_use]
     pub(crate) fn new() -> Self {
         Self { queue: BinaryHeap::with_capacity(EXPECTED) }
@@ -58,13 +59,12 @@ impl Frontier {
     }
 
     fn push<N: Real>(&mut self, key: N, entry: Entry) {
-        // Adding zero takes the sign off a zero.
+        // Adding zero removes the sign of a negative zero.
         self.queue.push(Reverse(((key + N::ZERO).bits(), entry)));
     }
 
-    /// Hands out objects in ascending order of (key, id) until the key exceeds `limit`.
-    ///
-    /// `found` gets the object and its key and returns the new limit.
+    /// Passes objects to `found` in ascending order of (key, id) until the key exceeds `limit`.
+    /// `found` returns the new limit.
     pub(crate) fn search<N: Real, const D: usize>(
         mut self,
         trees: &[&Tree<D>],
@@ -86,7 +86,7 @@ impl Frontier {
             }
             match entry {
                 Entry::Object { id } => {
-                    // The key comes back exactly: it was computed by the same expression.
+                    // The key is the queued one exactly, since the same expression computes it.
                     let Some(key) = (keys.object)(id) else { continue };
                     limit = found(id, key);
                 }
@@ -106,7 +106,7 @@ impl Frontier {
         }
     }
 
-    /// Adds the lanes of a block that count and are within the limit.
+    /// Queues the lanes of a block that count and are within the limit.
     fn push_lanes<N: Real, const D: usize>(&mut self, lanes: &BlockLanes<'_, N, D>, limit: N) {
         let &BlockLanes { tree, index, layer, block, mut mask, ref keys } = lanes;
         while mask != 0 {
@@ -129,22 +129,22 @@ impl Frontier {
     }
 }
 
-/// A block of one of the trees with the keys of its lanes.
+/// A block of one of the trees, with the keys of its lanes.
 struct BlockLanes<'t, N, const D: usize> {
     tree: &'t Tree<D>,
-    /// The number of the tree.
+    /// Index of the tree.
     index: u8,
     layer: u8,
     block: u32,
-    /// The lanes that count.
+    /// Lanes that count.
     mask: u32,
     keys: [N; LANES],
 }
 
 impl Lanes {
-    /// The times at which a moving box touches the boxes of a block, and the mask of those it meets:
-    /// a measure for [`Frontier::search`], and with the mask alone a test for [`Tree::visit`]. A ray
-    /// is a box that is a point.
+    /// Returns the times at which a moving box touches the boxes of a block, and the mask of those
+    /// that it touches: for [`Frontier::search`], and by the mask alone for [`Tree::visit`]. A ray
+    /// is a box of a single point.
     pub(crate) fn times_of_block<N: Real, const D: usize>(
         self,
         block: &Block<D>,
@@ -154,7 +154,7 @@ impl Lanes {
         with_kernel!(self, _kernel => times_of_block(block, moving, velocity))
     }
 
-    /// The distances of a box from the boxes of a block, and the mask of lanes in use: a measure for
+    /// Returns the distances of a box from the boxes of a block, and the mask of lanes in use, for
     /// [`Frontier::search`].
     pub(crate) fn distance_of_block<N: Real, const D: usize>(
         self,
@@ -165,10 +165,11 @@ impl Lanes {
     }
 }
 
-/// The times at which a moving box touches the boxes of a block, and the mask of those it meets.
+/// Returns the times at which a moving box touches the boxes of a block, and the mask of those that
+/// it touches.
 ///
-/// The slab test of `Aabb::sweep_interval`, operation for operation: rounding is monotone, so a box
-/// that encloses another is never missed where the other is hit, nor entered later.
+/// The slab test of `Aabb::sweep_interval`, operation for operation. Rounding is monotone, so if a
+/// box is hit, a box that encloses it is hit too, and entered no later.
 #[inline(always)]
 fn times_of_block<N: Real, const D: usize>(
     block: &Block<D>,
@@ -198,9 +199,9 @@ fn times_of_block<N: Real, const D: usize>(
     (mask, enter)
 }
 
-/// The distances of a box from the boxes of a block, and the mask of all lanes.
+/// Returns the distances of a box from the boxes of a block, and the mask of lanes in use.
 ///
-/// The operations of `Aabb::distance_to_aabb`; the same monotony.
+/// The operations of `Aabb::distance_to_aabb`, with the same monotonicity.
 #[inline(always)]
 fn distance_of_block<N: Real, const D: usize>(
     block: &Block<D>,

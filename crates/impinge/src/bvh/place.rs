@@ -1,21 +1,22 @@
-//! Where an object that comes is put.
+//! The slot of a new object.
 
 use super::{Bounds, LANES, NONE, Tree};
 
-/// By how much the surface of a leaf block may grow with an object that comes or moves.
+/// Greatest relative growth of a leaf block's surface by an object that is added or moves.
 const ROOM: f64 = 0.3;
 
 impl<const D: usize> Tree<D> {
-    /// A free lane near the box where there is one, else the end.
+    /// Returns a free slot near the box if there is one, else the slot at the end.
     pub(super) fn find_place(&mut self, bounds: &Bounds<D>) -> usize {
         let has_holes = self.live < self.end;
         let hole = if has_holes { self.hole_near(bounds) } else { None };
         hole.unwrap_or_else(|| self.append_slot())
     }
 
-    /// A free lane near where a descent along the least growth ends: of the last sixteen blocks, that
-    /// with a free lane which grows least. None if that would grow much: a block that reaches far makes
-    /// every join dear, and at the end newcomers are sorted among themselves.
+    /// Returns a free slot in the block at which a descent by least growth ends: among its last
+    /// sixteen blocks, the one with a free lane that grows least. `None` if that grows much: a
+    /// large block makes every join expensive, whereas newcomers at the end are sorted among
+    /// themselves.
     fn hole_near(&self, bounds: &Bounds<D>) -> Option<usize> {
         let mut block = 0;
         for layer in (1..self.layers.len()).rev() {
@@ -37,7 +38,8 @@ impl<const D: usize> Tree<D> {
         Some(block * LANES + slots.iter().position(|&id| id == NONE)?)
     }
 
-    /// A leaf block does not grow much with a box in it; false if there is no such block.
+    /// Returns `true` if the surface of a leaf block hardly grows by a box; `false` if there is no
+    /// such block.
     pub(super) fn has_room_for(&self, block: usize, bounds: &Bounds<D>) -> bool {
         self.layers[0].bounds.get(block).is_some_and(|block| {
             let own = block.half_surface();
@@ -45,13 +47,14 @@ impl<const D: usize> Tree<D> {
         })
     }
 
-    /// A lane of the leaf block is free. The search keeps no count of it, since it is short.
+    /// Returns `true` if a lane of the leaf block is free. There is no counter, since the scan is
+    /// short.
     fn has_hole(&self, block: usize) -> bool {
         let slots = &self.ids[block * LANES..(block + 1) * LANES];
         slots.iter().fold(false, |found, &id| found | (id == NONE))
     }
 
-    /// The slot after the last one in use, in a new block if need be.
+    /// Returns the slot after the last one in use, in a new block if necessary.
     pub(super) fn append_slot(&mut self) -> usize {
         if self.end == self.ids.len() {
             self.resize_leaves(self.leaf_count() + 1);

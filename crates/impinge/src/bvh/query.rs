@@ -1,16 +1,16 @@
-//! Many boxes against a tree at once, breadth first.
+//! Queries of many boxes against a tree together, breadth first.
 //!
-//! A single search waits for memory at every block; a few hundred together do not, because the
-//! tests of one layer do not depend on each other.
+//! A single search waits for memory at every block; with a few hundred queries together the tests
+//! of one layer are independent, so their loads overlap.
 
 use super::LANES;
 use super::join::{JoinBoxes, JoinSides, Scratch};
 use super::kernel::Kernel;
 use super::tree::small;
 
-/// Appends `(slot of the first tree, slot of the second)` for each pair that began or ended with one
-/// of the listed changed slots. In a tree of its own, a pair of two changed slots is reported by the
-/// lower one.
+/// Appends `(slot of the first tree, slot of the second)` for each pair of one of the listed
+/// changed slots that began or ended. If both trees are the same, a pair of two changed slots is
+/// reported by the lower one.
 #[inline(always)]
 pub(super) fn ask<K: Kernel, const D: usize>(
     kernel: K,
@@ -23,10 +23,12 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     let Scratch { tasks, next, reaches } = scratch;
     tasks.clear();
     reaches.clear();
+    // Each query starts at the top block, with the reach of its slot.
     for (query, &slot) in (0..).zip(slots) {
         tasks.push(query, 0);
         reaches.push(sides.first.slot_reach(slot));
     }
+    // In each layer, the children that a query overlaps become the tasks of the layer below.
     for layer in sides.second.layers.iter().skip(1).rev() {
         next.clear();
         let [queries, blocks] = tasks.parts();
@@ -40,6 +42,7 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     let [queries, blocks] = tasks.parts();
     for (&query, &block) in queries.iter().zip(blocks) {
         let slot = slots[query as usize];
+        // A changed partner is left to the query with the lower slot.
         let mut lanes = 0xffff;
         if sides.is_self {
             lanes = !u32::from(leaves.changed[block as usize]) | later_lanes(slot, block);
@@ -48,7 +51,7 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     }
 }
 
-/// The lanes of the block whose slots are above `slot`.
+/// Returns the lanes of the block whose slots are above `slot`.
 #[inline(always)]
 fn later_lanes(slot: u32, block: u32) -> u32 {
     let own = slot / small(LANES);

@@ -1,8 +1,9 @@
-//! Objects of a tree by lower bounds of the caller's, least first.
+//! Best-first search with lower bounds computed by the caller.
 //!
-//! Best first (Hjaltason and Samet, "Distance browsing in spatial databases", 1999). The bounds may be negative, which
-//! ranks what overlaps, and they are dear: each is made when its turn comes, since most never have one. Until then the
-//! distance of the boxes counts, and the gap along one direction, which is made for all children of a block at once.
+//! Objects leave the queue by ascending bound (Hjaltason and Samet, "Distance browsing in spatial databases", 1999).
+//! Bounds may be negative, which ranks overlaps. They are expensive, so each is computed when its entry comes up; most
+//! never do. Until then the rank is the larger of the distance of the boxes and the gap along one direction, which is
+//! computed for all children of a block at once.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -14,46 +15,48 @@ use super::{LANES, Tree};
 use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Point, Real, Vector, filled, max};
 
-/// Entries made room for at the start: enough for most searches.
+/// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 128;
 
-/// What heights lose to rounding, in units of `f32` of the coordinates.
+/// Error bound of heights, in `f32` rounding units of the coordinates.
 const ROUNDING: f32 = 16.0;
 
-/// What is asked about the objects of a tree.
+/// A search, as the caller defines it.
 pub(crate) trait BoxRanking<N: Real, const D: usize> {
-    /// A unit vector along which a gap is likely to part what is in a box from what is asked about, and how far that reaches
-    /// along it, or more: a rank is not below the gap. `None` if no gap is known.
+    /// Returns a unit vector along which the contents of a box are probably separated from the query's solid, and an
+    /// upper bound of that solid's extent along it. A rank is not below the gap. `None` if no such direction is known.
     fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)>;
 
-    /// A number that the rank of the object is not below.
+    /// Returns a lower bound of the rank of the object.
     fn of_object(&self, id: u32) -> N;
 
-    /// The largest rank that matters; never grows. `None` ends the search.
+    /// Returns the largest rank that matters, which must not increase. `None` ends the search.
     fn limit(&self) -> Option<N>;
 
-    /// A point near which one object may be all that is asked for: such a one is visited first, and may be again.
+    /// Returns a point near which a single object may settle the search. That object is visited first, and may be
+    /// visited again.
     fn guess_near(&self) -> Option<Point<N, D>> {
         None
     }
 
-    /// Gets each object whose bound is within the limit.
+    /// Receives each object whose bound is within the limit.
     fn visit(&mut self, id: u32);
 }
 
-/// A block or an object by its bound. Of equal ones objects come first.
+/// A block or an object with its bound. At equal bounds objects come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct RankedNode {
-    /// In the order of the bounds.
+    /// The bound, as an integer in the same order.
     rank: i64,
-    /// Zero of an object, one more than its layer of a block.
+    /// Zero for an object; for a block, its layer plus one.
     height: u8,
-    /// The number of the block, or the slot of the object.
+    /// Index of the block, or slot of the object.
     at: u32,
-    /// The bound is not that of the question yet.
+    /// The bound is a rough one: the caller has not computed its own yet.
     is_rough: bool,
 }
 
+/// A search under way.
 struct RankedSearch<'a, 'q, N: Real, const D: usize> {
     tree: &'a Tree<D>,
     gaps: Gaps<D>,
@@ -61,8 +64,8 @@ struct RankedSearch<'a, 'q, N: Real, const D: usize> {
     question: &'q mut dyn BoxRanking<N, D>,
 }
 
-/// Visits the objects of a tree whose ranks may be within the limit of the question, those of least bound first.
-/// Positive ranks are not below the distance of an object's box from one that is `around` what is asked about.
+/// Visits the objects of a tree whose ranks may be within the limit of the question, by ascending bound. `around` is a
+/// box of the query's solid: a positive rank must not be below the distance of an object's box from it.
 pub(crate) fn visit_ranked<N: Real, const D: usize>(
     tree: &Tree<D>,
     around: &Aabb<N, D>,
@@ -80,7 +83,7 @@ pub(crate) fn visit_ranked<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
-    /// Ends: each block is opened once, and each entry refined once.
+    /// Runs the search. It ends, since each block is opened once and each entry refined once.
     fn run(&mut self) {
         while let Some(Reverse(entry)) = self.queue.pop() {
             let Some(limit) = self.question.limit() else { return };
@@ -95,7 +98,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits an object that may be all that is asked for, if its box is within a distance of the gaps.
+    /// Visits the object that may settle the search, if its box is within the distance `within`, in the units of the
+    /// gaps.
     fn guess(&mut self, within: f32) {
         let likely = self
             .question
@@ -109,13 +113,14 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
+    /// Passes the object in a slot to the question, if there is one.
     fn visit(&mut self, slot: u32) {
         if let Some(id) = self.tree.id_in(slot) {
             self.question.visit(id);
         }
     }
 
-    /// Puts an object into the queue by its own bound.
+    /// Queues an object by the caller's bound.
     fn refine(&mut self, entry: RankedNode, limit: N) {
         let Some(id) = self.tree.id_in(entry.at) else { return };
         let bound = self.question.of_object(id);
@@ -125,7 +130,7 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
-    /// Puts what is in a block into the queue; or the block, if others come before it by its own bound.
+    /// Queues the children of a block, or the block again if other entries come before its refined bound.
     fn open(&mut self, mut entry: RankedNode, limit: N) {
         let (layer, block) = (usize::from(entry.height - 1), entry.at);
         let within = self.gaps.limit(max(limit, N::ZERO));
@@ -150,8 +155,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         self.push_all(&entry, open, &gaps, limit);
     }
 
-    /// A block with a bound of its own, if that is within the limit and no other block or object comes before it; it goes
-    /// back into the queue if one does.
+    /// Refines the bound of a block. Returns the block if the bound is within the limit and no other entry comes before
+    /// it; queues it again if one does.
     fn first(&mut self, entry: RankedNode, bound: N, limit: N) -> Option<RankedNode> {
         let (entry, is_beyond) = (entry.refined(bound), bound > limit);
         let is_first = self.queue.peek().is_none_or(|Reverse(other)| entry <= *other);
@@ -161,7 +166,7 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         (!is_beyond && is_first).then_some(entry)
     }
 
-    /// The gaps that a direction leaves to what is in a block, or less.
+    /// Returns lower bounds of the gaps along a direction between the query's solid and the children of a block.
     fn gaps_along(&self, layer: usize, block: u32, along: &Vector<N, D>, reach: N) -> [N; LANES] {
         let along = filled(|axis| along[axis].as_f32());
         let reach = reach + N::lit(f64::from(self.tree.size() * f32::EPSILON * ROUNDING));
@@ -172,14 +177,14 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         })
     }
 
-    /// Puts what is in an open block into the queue, by distances and gaps.
+    /// Queues the children of an open block, by distances and gaps.
     fn push_all(&mut self, above: &RankedNode, open: Open, gaps: &[N; LANES], limit: N) {
         let Open { keys, mut mask, first } = open;
         while mask != 0 {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
             let (gap, distance) = (gaps[lane as usize], self.gaps.distance(keys[lane as usize]));
-            // Boxes that overlap have the distance zero, however deep.
+            // Overlapping boxes have distance zero, whatever the depth.
             let bound = if distance > N::ZERO { max(gap, distance) } else { gap };
             let is_beyond = bound > limit;
             if !is_beyond {
@@ -191,15 +196,15 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
 }
 
 impl RankedNode {
-    /// With a bound of its own, which does not take it before what it lies in.
+    /// Returns the entry with a refined bound, which is not less than its old one.
     fn refined<N: Real>(self, bound: N) -> Self {
         Self { rank: rank_of(bound).max(self.rank), is_rough: false, ..self }
     }
 }
 
-/// A number in the order of the values; the greatest for NaN.
+/// Returns an integer that orders as the values do; the greatest for a positive NaN.
 fn rank_of<N: Real>(value: N) -> i64 {
-    // Adding zero takes the sign off a zero. Bits below the sign are turned round in negative numbers.
+    // Adding zero removes the sign of a negative zero. In negative numbers the bits below the sign are inverted.
     let bits = (value.as_f64() + 0.0).to_bits().cast_signed();
     if bits < 0 { bits ^ i64::MAX } else { bits }
 }
@@ -210,7 +215,7 @@ mod tests {
     use crate::bvh::{Bounds, Lanes};
     use crate::math::noise::Noise;
 
-    /// Ranks are the least of the first coordinates of a box, as far as they are near a place.
+    /// A ranking in which an object near `place` has the rank of its least x coordinate, any other its distance.
     struct ByFirst<'a> {
         boxes: &'a [Aabb<f64, 3>],
         place: Aabb<f64, 3>,

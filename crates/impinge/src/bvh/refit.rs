@@ -1,30 +1,31 @@
-//! The pass that makes the upper layers true again, and the end of a step.
+//! The refit of the upper layers, and the end of a step.
 //!
-//! An object that was put elsewhere is listed as far moved: the join need not see which of its pairs ended, since
-//! the table of pairs knows.
+//! A leaf block with an object that moved far is listed as escaped: the join may miss its ended
+//! pairs, which are then read from the table of pairs.
 
 use super::kernel::{Kernel, with_kernel};
 use super::tree::{Layer, small};
 use super::{Block, Bounds, LANES, Lanes, Tree};
 
-/// By how much the boxes of before may enlarge the surface of a leaf block. Beyond that, something
-/// was put elsewhere, and a reach from there to here would meet everything in between.
+/// Greatest ratio by which old boxes may enlarge the surface of a leaf block. Beyond it an object
+/// was teleported, and a reach from its old to its new box would overlap everything in between.
 const FAR_MOVED: f64 = 2.0;
-/// Up to this many leaf blocks are refitted by one thread.
+/// Number of leaf blocks up to which a single thread refits.
 #[cfg(feature = "parallel")]
 const PARALLEL_LEAVES: usize = 256;
 
 impl<const D: usize> Tree<D> {
-    /// Brings new objects into order and makes the upper layers enclose the lower ones exactly.
+    /// Sorts new objects into place and updates the upper layers, which then enclose the lower ones
+    /// exactly.
     pub(crate) fn refit(&mut self) {
         self.refit_from(&[]);
     }
 
-    /// The same, after it has fetched the boxes of changed objects from a list by id; an empty list
-    /// stands for those that the tree was given.
+    /// As [`Self::refit`], after reading the boxes of changed objects from `by_id`; an empty list
+    /// if the tree has the boxes already.
     ///
-    /// Objects come in no spatial order: to look for the box of each slot takes reads that a processor
-    /// does many of at once, to write each box to its slot does not.
+    /// Objects come in no spatial order. Reading the box of each slot causes independent loads,
+    /// which overlap; writing each box to its slot would not.
     pub(crate) fn refit_from(&mut self, mut by_id: &[Bounds<D>]) {
         if self.has_new() {
             self.fetch_boxes(by_id);
@@ -34,6 +35,8 @@ impl<const D: usize> Tree<D> {
         self.refit_layers(by_id);
     }
 
+    /// Refits the touched leaf blocks and the layers above them, and lists the escaped blocks.
+    /// Reads changed boxes from `by_id`, unless that is empty or the tree has them already.
     pub(super) fn refit_layers(&mut self, by_id: &[Bounds<D>]) {
         self.escaped.clear();
         if !self.touched.is_empty() || self.is_restructured {
@@ -54,11 +57,12 @@ impl<const D: usize> Tree<D> {
         self.is_stale = false;
     }
 
-    /// Brings the list of touched blocks into ascending order.
+    /// Sorts the list of touched blocks.
     fn order_touched(&mut self) {
         if self.touched.is_sorted() {
             return;
         }
+        // If many blocks are touched, a pass over the flags replaces the sort.
         let are_many = self.touched.len() * 4 > self.leaf_count();
         if are_many {
             self.touched.clear();
@@ -69,6 +73,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
+    /// Reads the changed boxes of the touched blocks from `by_id`, unless that is empty or the tree
+    /// has them already.
     fn fetch_boxes(&mut self, by_id: &[Bounds<D>]) {
         if by_id.is_empty() || !self.is_stale {
             return;
@@ -80,8 +86,9 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Fits the upper layers to the number of leaf blocks. What is above the first block and above the last is left to
-    /// a refit of these ([`Self::add_ends`]): a new top layer, and lanes of blocks that are no more.
+    /// Resizes the upper layers to the number of leaf blocks. The path above the first and the last
+    /// block must then be refitted ([`Self::add_ends`]): for a new top layer, and for lanes of
+    /// blocks that no longer exist.
     pub(super) fn shape_layers(&mut self) {
         let (mut layer, mut blocks) = (0, self.leaf_count());
         while blocks > 1 {
@@ -95,7 +102,7 @@ impl<const D: usize> Tree<D> {
         self.layers.truncate(layer + 1);
     }
 
-    /// Adds the first leaf block and the last to an ascending list of them.
+    /// Adds the first and the last leaf block to an ascending list.
     fn add_ends(&self, blocks: &mut Vec<u32>) {
         let Some(last) = self.leaf_count().checked_sub(1).map(small) else { return };
         if blocks.first() != Some(&0) {
@@ -106,7 +113,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Fetches the changed boxes of the listed leaf blocks, and takes their bounds.
+    /// Reads the changed boxes of the listed leaf blocks, and computes bounds and reach.
     fn refit_leaves(&mut self, blocks: &[u32], by_id: &[Bounds<D>]) {
         let Layer { blocks: leaves, bounds, reach, changed, .. } = &mut self.layers[0];
         let (before, ids) = (&self.before[..], &self.ids[..]);
@@ -116,7 +123,7 @@ impl<const D: usize> Tree<D> {
         leaves.refit(&source, blocks, &mut self.escaped);
     }
 
-    /// Walks up from the listed leaf blocks.
+    /// Refits the ancestors of the listed leaf blocks.
     #[inline(always)]
     fn refit_above<K: Kernel>(&mut self, kernel: K, blocks: &mut Vec<u32>) {
         for index in 1..self.layers.len() {
@@ -129,6 +136,7 @@ impl<const D: usize> Tree<D> {
                 parent.reaches[above].set_lane(lane, &layer.reach[block]);
                 parent.changed[above] |= u16::from(layer.changed[block] != 0) << lane;
             }
+            // Bounds of parents are computed once all their lanes are written.
             to_parents(blocks);
             for &block in blocks.iter() {
                 let block = block as usize;
@@ -138,7 +146,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Declares the present boxes those of before: nothing has changed.
+    /// Makes the present boxes the old ones, and clears all change bits.
     pub(crate) fn settle(&mut self) {
         if self.touched.is_empty() {
             return;
@@ -153,6 +161,7 @@ impl<const D: usize> Tree<D> {
             }
             self.is_touched[block] = false;
         }
+        // Without changes there is no change bit in any layer.
         if self.changed > 0 {
             let mut dirty = core::mem::take(&mut self.touched);
             for layer in &mut self.layers {
@@ -170,27 +179,31 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// A run of leaf blocks and what is beside them, to be written.
+/// A run of leaf blocks with their bounds and reach, to be written.
 struct Leaves<'a, const D: usize> {
-    /// The number of the first block.
+    /// Index of the first block.
     first: usize,
     blocks: &'a mut [Block<D>],
     bounds: &'a mut [Bounds<D>],
     reach: &'a mut [Bounds<D>],
 }
 
-/// What all leaf blocks are computed from.
+/// Read-only input of the refit of leaf blocks.
 struct RefitSource<'a, const D: usize> {
+    /// Boxes at the last settle.
     before: &'a [Block<D>],
     ids: &'a [u32],
+    /// Change bits by block.
     changed: &'a [u16],
+    /// Present boxes by id; empty if the blocks have them already.
     by_id: &'a [Bounds<D>],
     is_stale: bool,
     lanes: Lanes,
 }
 
 impl<const D: usize> Leaves<'_, D> {
-    /// Refits the listed blocks, ascending, which are all in this run. Appends those whose objects escaped their fat AABBs.
+    /// Refits the listed blocks, ascending and all in this run. Appends those with objects that
+    /// moved far to `escaped`.
     fn refit(mut self, source: &RefitSource<'_, D>, listed: &[u32], escaped: &mut Vec<u32>) {
         #[cfg(feature = "parallel")]
         if listed.len() > PARALLEL_LEAVES && rayon::current_num_threads() > 1 {
@@ -210,6 +223,8 @@ impl<const D: usize> Leaves<'_, D> {
         });
     }
 
+    /// Refits one leaf block: its bounds enclose the present boxes, and its reach also the old
+    /// ones, unless the block is escaped.
     #[inline(always)]
     fn refit_block<K: Kernel>(
         &mut self,
@@ -236,7 +251,7 @@ impl<const D: usize> Leaves<'_, D> {
         }
     }
 
-    /// Cuts the run before the block.
+    /// Splits the run before `block`.
     #[cfg(feature = "parallel")]
     fn split(&mut self, block: usize) -> (Leaves<'_, D>, Leaves<'_, D>) {
         let (first, count) = (self.first, block - self.first);
@@ -248,7 +263,7 @@ impl<const D: usize> Leaves<'_, D> {
     }
 }
 
-/// Copies the boxes of changed lanes of a block from a list by id.
+/// Copies the boxes of changed lanes of a block from `by_id`.
 #[inline(always)]
 fn fetch<const D: usize>(mut changed: u16, ids: &[u32], block: &mut Block<D>, by_id: &[Bounds<D>]) {
     let ids = &ids[..LANES];
@@ -260,6 +275,7 @@ fn fetch<const D: usize>(mut changed: u16, ids: &[u32], block: &mut Block<D>, by
 }
 
 impl<const D: usize> Layer<D> {
+    /// Clears the change bits of a block; its reach becomes its bounds.
     fn settle(&mut self, block: usize) {
         self.changed[block] = 0;
         self.reach[block] = self.bounds[block];
@@ -269,7 +285,7 @@ impl<const D: usize> Layer<D> {
     }
 }
 
-/// Replaces ascending block numbers by those of their parents, each once.
+/// Replaces ascending block indices by those of their parents, each once.
 fn to_parents(blocks: &mut Vec<u32>) {
     for block in blocks.iter_mut() {
         *block /= small(LANES);

@@ -1,7 +1,7 @@
-//! A tree of boxes that stay, brought into order anew aside, a bounded part of it in each step.
+//! Renewal of a sparing tree: its boxes are copied in order to another tree, a bounded number in each step.
 //!
-//! Objects that came since the last renewal stand at the end, or in lanes that others left. A renewal fills another
-//! tree with the same objects, and then that takes the place of the first:
+//! Objects that came since the last renewal are at the end, or in lanes that others left. A renewal fills another tree
+//! with the same objects, which then replaces the first:
 //!
 //! ```text
 //!   this tree        | all slots, in any order                       |
@@ -13,9 +13,9 @@
 //!   the other tree   | sorted                              | late    |  3. Follow: objects that came in the meantime
 //! ```
 //!
-//! The regions are those of a k-d tree over a sample (a sample sort), so that the order is nearly that of
-//! [`sort`], whatever was before. What is removed from this tree in the meantime, or gets another box, is so in the
-//! other one at once. The outcome depends on the calls alone, never on the time taken.
+//! The regions are those of a k-d tree over a sample (a sample sort), so that the order is nearly that of [`sort`],
+//! whatever it was before. Removals and changed boxes are applied to both trees at once. The result depends only on the
+//! calls, never on measured time.
 
 use super::order::{Cut, Item, cut_in_half, sort};
 use super::tree::{Layer, small};
@@ -24,14 +24,15 @@ use super::{Bounds, LANES, NONE, Tree};
 /// Slots that one step routes, and objects that it sorts and copies.
 const ROUTED: usize = 1024;
 const COPIED: usize = 512;
-/// Late objects that one step adds, or one in so many of them, so that there is an end however many come.
+/// Late objects that one step adds: at least [`FOLLOWED`], and at least one in [`FOLLOWED_OF`], so that the stage ends
+/// however many come.
 const FOLLOWED: usize = 128;
 const FOLLOWED_OF: usize = 16;
-/// What an object that came asks of the next call, one that changed, and how much a step does of it.
+/// Work units that a new object and a changed one add to the next call, and units for each further step of that call.
 const OF_INSERT: usize = 64;
 const OF_SET: usize = 1;
 const OF_STEP: usize = 4096;
-/// Cuts one below the other, at most; and objects of the sample for each region.
+/// Greatest depth of the k-d tree, and sampled objects for each region.
 const MAX_DEPTH: u32 = 10;
 const SAMPLES: usize = 4;
 
@@ -39,29 +40,34 @@ const SAMPLES: usize = 4;
 #[derive(Clone, Debug)]
 pub(super) struct Renewal<const D: usize> {
     stage: Stage,
-    /// The cut below a cut of number `n` are `2 n + 1` and `2 n + 2`; regions follow in the same way.
+    /// A binary tree of cuts: the children of cut `n` are `2 n + 1` and `2 n + 2`; regions follow the cuts in the same
+    /// numbering.
     cuts: Vec<Cut>,
-    /// By region the last object routed to it, and by object the one before it: places in the list.
+    /// Linked lists as indices in `ids`: by region the last object routed to it, and by object the previous one.
     last_of: Vec<u32>,
     before: Vec<u32>,
     ids: Vec<u32>,
+    /// The tree being filled.
     other: Tree<D>,
-    /// Objects that came since the renewal began. Some may have gone.
+    /// Objects that came since the renewal began. Some may be gone.
     late: Vec<u32>,
-    /// What came and changed since the last call asks of the next.
+    /// Work units added by changes since the last call.
     asked: usize,
 }
 
+/// A stage, with its progress.
 #[derive(Clone, Copy, Debug)]
 enum Stage {
-    /// Route the slots from the first on, up to the second.
+    /// Route the slots from the first number up to the second.
     Route(usize, usize),
-    /// Copy an object and those before it ([`NONE`]: none), then the regions from this one on.
+    /// Copy the list that ends with this object ([`NONE`]: empty), then the regions from this one on.
     Copy(u32, usize),
+    /// Add the objects that came in the meantime.
     Follow,
 }
 
 impl<const D: usize> Renewal<D> {
+    /// Begins a renewal: chooses the regions by a sample of the objects.
     pub(super) fn begin(tree: &Tree<D>) -> Self {
         let wanted = tree.live.div_ceil(COPIED).next_power_of_two();
         let depth = wanted.trailing_zeros().min(MAX_DEPTH);
@@ -82,13 +88,13 @@ impl<const D: usize> Renewal<D> {
         }
     }
 
-    /// The object has come.
+    /// Notes that an object was inserted in this tree.
     pub(super) fn insert(&mut self, id: u32) {
         self.late.push(id);
         self.asked += OF_INSERT;
     }
 
-    /// The object has another box.
+    /// Notes that an object of this tree has another box.
     pub(super) fn set(&mut self, id: u32, bounds: &Bounds<D>) {
         if self.other.contains(id) {
             self.other.set_still(id, bounds);
@@ -96,19 +102,20 @@ impl<const D: usize> Renewal<D> {
         self.asked += OF_SET;
     }
 
-    /// The object has gone.
+    /// Notes that an object was removed from this tree.
     pub(super) fn remove(&mut self, id: u32) {
         if self.other.contains(id) {
             self.other.remove(id);
         }
     }
 
-    /// Does the next part, and more if much came or changed; answers whether the other tree holds what this one does.
+    /// Does the next step, and more if many objects came or changed. Returns `true` if the other tree is complete.
     pub(super) fn proceed(&mut self, tree: &Tree<D>) -> bool {
         let steps = 1 + core::mem::take(&mut self.asked) / OF_STEP;
         (0..steps).any(|_| self.step(tree))
     }
 
+    /// Does one step of the present stage; the other tree is settled afterwards. Returns `true` if it is complete.
     fn step(&mut self, tree: &Tree<D>) -> bool {
         match self.stage {
             Stage::Route(slot, end) => self.route(tree, slot, end),
@@ -120,15 +127,17 @@ impl<const D: usize> Renewal<D> {
         false
     }
 
-    /// The other tree, once it holds what this one does; settled, as it is after each step.
+    /// Returns the other tree once it is complete; settled, as it is after each step.
     pub(super) fn into_tree(self) -> Tree<D> {
         self.other
     }
 
+    /// Routes the objects in the next slots, from `slot` on, to their regions.
     fn route(&mut self, tree: &Tree<D>, slot: usize, end: usize) {
         let next = end.min(slot + ROUTED);
         for item in tree.ids[slot..next].iter().filter_map(|&id| tree.item(id)) {
             let mut at = 0;
+            // Down the tree of cuts: an index beyond the cuts is that of a region.
             while let Some(cut) = self.cuts.get(at) {
                 at = 2 * at + 1 + usize::from(cut.is_beyond(&item));
             }
@@ -139,6 +148,7 @@ impl<const D: usize> Renewal<D> {
         self.stage = if next < end { Stage::Route(next, end) } else { Stage::Copy(NONE, 0) };
     }
 
+    /// Copies the next objects of a region, sorted, to the end of the other tree.
     fn copy(&mut self, tree: &Tree<D>, mut object: u32, mut region: usize) {
         if object == NONE {
             object = self.last_of[region];
@@ -161,7 +171,7 @@ impl<const D: usize> Renewal<D> {
         };
     }
 
-    /// Adds objects that came late; answers whether there are no more.
+    /// Adds late objects; returns `true` if there are no more.
     fn follow(&mut self, tree: &Tree<D>) -> bool {
         let count = FOLLOWED.max(self.late.len() / FOLLOWED_OF);
         let rest = self.late.len().saturating_sub(count);
@@ -173,7 +183,7 @@ impl<const D: usize> Renewal<D> {
         rest == 0
     }
 
-    /// Adds an object to the other tree, at the end or where it fits, unless it has gone or is there.
+    /// Adds an object to the other tree, at the end or where it fits, unless it is gone or there already.
     fn add(&mut self, tree: &Tree<D>, id: u32, at_end: bool) {
         let bounds = tree.bounds(id).filter(|_| !self.other.contains(id));
         if let Some(bounds) = bounds {
@@ -186,7 +196,7 @@ impl<const D: usize> Renewal<D> {
     }
 }
 
-/// Cuts a sample in half, and so on below. Each call is one cut further down, so it ends.
+/// Cuts a sample in half, and both halves recursively. Ends, since each call is one level deeper.
 fn fill<const D: usize>(cuts: &mut [Cut], at: usize, sample: &mut [Item<D>]) {
     if at >= cuts.len() {
         return;
@@ -199,7 +209,7 @@ fn fill<const D: usize>(cuts: &mut [Cut], at: usize, sample: &mut [Item<D>]) {
 }
 
 impl<const D: usize> Tree<D> {
-    /// A sparing tree without objects that has memory for as many as this one.
+    /// Creates a sparing tree without objects and with memory for as many as this one.
     fn empty_twin(&self) -> Self {
         let (mut twin, blocks) = (Self::sparing(self.lanes), self.live.div_ceil(LANES) + 1);
         let Layer { blocks: leaves, bounds, reach, changed, .. } = &mut twin.layers[0];
@@ -220,10 +230,10 @@ mod tests {
     use super::super::{Bounds, Lanes};
     use super::*;
 
-    /// What a tree should hold, by id.
+    /// Expected content of a tree, by id.
     type List = Vec<Option<Bounds<3>>>;
 
-    /// Objects come, go and change in a tree that is renewed all the time.
+    /// Adds, removes and changes objects in one step of a tree.
     fn play(state: &mut u64, tree: &mut Tree<3>, list: &mut List, came: u32) {
         for _ in 0..came {
             list.push(Some(random_box(state, 60)));
@@ -254,7 +264,8 @@ mod tests {
             let came = if step < 900 { 16 } else { 0 };
             play(&mut state, &mut tree, &mut list, came);
             let placed = take_placed();
-            // Newcomers, a run that is sorted with them, and a chunk or a small tree.
+            // The bound: 16 newcomers, a run of up to 1024 sorted with them, and a copied chunk or a small tree of up
+            // to 1024.
             assert!(placed <= 16 + 2 * 1024, "{placed} objects in step {step}");
             renewed += usize::from(was_renewing && tree.renewal.is_none());
             was_renewing = tree.renewal.is_some();

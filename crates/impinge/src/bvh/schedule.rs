@@ -1,55 +1,59 @@
-//! When the order of slots is renewed, and how much of that work one step does.
+//! The schedule of renewals: when the order of slots is renewed, and how much of that work one step
+//! does.
 //!
-//! Moving objects spoil the order: the leaf blocks grow. When their surface is a fifth above what
-//! it was after the last renewal (or many objects came or went), a snapshot of all centres is
-//! sorted over several steps, and applied when it is done: work in proportion to the objects, which move. A tree of
-//! objects that seldom change is renewed aside ([`super::renewal`]), a constant amount of work in each step. No
-//! step depends on the time taken, so results are the same on every machine.
+//! Moving objects spoil the order: the leaf blocks grow. When their surface for each object is a
+//! fifth above that after the last renewal (or many objects came or went), a snapshot of all
+//! centres is sorted over several steps and then applied: work proportional to the number of
+//! objects, which move anyway. A sparing tree is renewed in a copy ([`super::renewal`]), with a
+//! constant amount of work in each step. No step depends on measured time, so results are equal on
+//! every machine.
 
 use super::order::{Item, sort, split};
 use super::renewal::Renewal;
 use super::{LANES, Tree};
 
-/// Growth of the leaf surface per object that starts a renewal.
+/// Growth of the leaf surface per object at which a renewal starts.
 const WORN: f64 = 1.2;
-/// One call in so many looks whether the order is worn.
+/// Period, in calls, of the check whether the order is worn.
 const LOOK_EVERY: u32 = 4;
-/// A part of the snapshot this small is sorted at once.
+/// Size up to which a part of the snapshot is sorted at once.
 const SORTED_AT_ONCE: usize = 1024;
-/// The least number of items that a step handles, so that small trees renew in few steps.
+/// Least number of items that a step handles, so that small trees renew in few steps.
 const MIN_BUDGET: usize = 2048;
-/// One object in so many came or went elsewhere while the snapshot was sorted: it is worth nothing.
+/// If more than one object in `LATE` came or moved far while the snapshot was sorted, the snapshot
+/// is discarded.
 const LATE: usize = 4;
-/// Objects that may come or go in any case before the order is renewed.
+/// Number of objects that may always come or go before the order is renewed.
 const SLACK: usize = 64;
-/// A tree of objects that seldom change is sorted at once up to so many, and newcomers with no more others.
+/// A sparing tree of at most `SMALL` objects is sorted at once; newcomers are sorted in runs of at
+/// most as many.
 const SMALL: usize = 1024;
 
 /// The state of the renewal.
 #[derive(Clone, Debug)]
 pub(super) struct Schedule<const D: usize> {
-    /// Leaf surface per object after the last renewal; `None` if it is to be taken.
+    /// Leaf surface per object after the last renewal; `None` if it must be measured.
     base: Option<f64>,
-    /// Slots from here on have come since the last renewal.
+    /// First slot that came since the last renewal.
     ordered: usize,
-    /// Slots from here on have come since the last [`Tree::refit`].
+    /// First slot that came since the last [`Tree::refit`].
     fresh: usize,
-    /// Where the slots begin that were sorted together since the last renewal, ascending: each run is
-    /// longer than twice the next.
+    /// First slots of the runs sorted since the last renewal, ascending: each run is longer than
+    /// twice the next.
     runs: Vec<usize>,
-    /// The centres being sorted, and the parts of them still to be.
+    /// The centres being sorted, and the parts not yet sorted.
     snapshot: Vec<Item<D>>,
     parts: Vec<(usize, usize)>,
-    /// Calls without a renewal; wraps.
+    /// Calls since the last renewal; wraps.
     calls: u32,
-    /// Blocks were written to since the surface was looked at.
+    /// Blocks were written since the last check of the surface.
     is_used: bool,
-    /// Objects that came, or went elsewhere, since the snapshot was taken: it knows nothing of where
-    /// they are. Some may be listed twice or have gone.
+    /// Objects that came or moved far since the snapshot was taken, whose positions in it are
+    /// wrong. May have repeats and removed objects.
     late: Vec<u32>,
-    /// Memory for those that came.
+    /// Scratch: new objects.
     newcomers: Vec<Item<D>>,
-    /// Memory for a new order, and by id whether an object has its place in it.
+    /// Scratch: a new order, and by id whether an object has a position in it.
     order: Vec<u32>,
     is_placed: Vec<bool>,
 }
@@ -74,21 +78,22 @@ impl<const D: usize> Default for Schedule<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Objects came since the last refit.
+    /// Returns `true` if objects came since the last refit.
     pub(super) const fn has_new(&self) -> bool {
         self.end > self.schedule.fresh
     }
 
-    /// Sorts the objects that came since the last refit among themselves, or everything if they
-    /// are a third of all. Those that came before them are sorted with them if they are not many more: so
-    /// that there are few runs, and each object is sorted anew but a few times (the logarithmic method of
-    /// Bentley and Saxe 1980).
+    /// Sorts the objects that came since the last refit among themselves, or all objects if the new
+    /// ones are a third. Earlier runs are merged in if they are not much longer, so that there are
+    /// few runs and each object is sorted again only a few times (the logarithmic method of Bentley
+    /// and Saxe 1980).
     pub(super) fn sort_new(&mut self) {
         let new = self.end - self.schedule.fresh.min(self.end);
         if new * 3 > self.live {
             self.rebuild();
         } else if self.is_sparing && (new <= LANES || self.renewal.is_some()) {
-            // They wait for others, since objects that come one by one have nothing in common, or for the renewal.
+            // These wait for more objects, since a few single ones are not neighbours, or for the
+            // renewal.
             return;
         } else if new > LANES {
             let most = if self.is_sparing { SMALL } else { usize::MAX };
@@ -112,12 +117,12 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Notes that boxes changed, so that the surface is worth a look.
+    /// Notes that boxes changed, so that the surface must be checked.
     pub(super) fn note_use(&mut self) {
         self.schedule.is_used = true;
     }
 
-    /// Sorts everything at once.
+    /// Sorts all objects at once.
     pub(crate) fn rebuild(&mut self) {
         let mut items = core::mem::take(&mut self.schedule.snapshot);
         self.list_items(0, &mut items);
@@ -132,7 +137,7 @@ impl<const D: usize> Tree<D> {
         self.give_back();
     }
 
-    /// Notes that an object has come, where a snapshot or a renewal does not know it.
+    /// Notes a new object that a snapshot or a renewal under way does not contain.
     #[inline]
     pub(super) fn note_late(&mut self, id: u32) {
         if !self.schedule.snapshot.is_empty() {
@@ -143,7 +148,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Notes the same of all changed objects of blocks that were escaped.
+    /// Notes the changed objects of escaped blocks, whose positions in a snapshot are wrong.
     pub(super) fn note_strayed(&mut self) {
         if !self.schedule.snapshot.is_empty() {
             let mut late = core::mem::take(&mut self.schedule.late);
@@ -152,12 +157,12 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// The objects in the slots before `end` are in order; the others, and those that come, are new.
+    /// Declares the objects in the slots before `end` sorted; later ones count as new.
     pub(super) fn declare_ordered(&mut self, end: usize) {
         self.schedule.begin(end, end);
     }
 
-    /// Does this step's share of keeping the order; call it after [`Self::settle`].
+    /// Does this step's share of keeping the order; must be called after [`Self::settle`].
     pub(crate) fn maintain(&mut self) {
         debug_assert_eq!(self.changed, 0, "maintenance comes after settling");
         if self.live == 0 {
@@ -179,7 +184,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Does the next steps of a renewal aside, or begins one where the order asks for it.
+    /// Continues a renewal in a copy, or begins one if the order is worn.
     fn renew_aside(&mut self) {
         if let Some(mut renewal) = self.renewal.take() {
             if renewal.proceed(self) {
@@ -196,13 +201,14 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Sorts everything, and leaves the tree settled as it was.
+    /// Sorts all objects, and settles the tree again.
     fn rebuild_at_once(&mut self) {
         self.rebuild();
         self.refit_layers(&[]);
         self.settle();
     }
 
+    /// Takes a snapshot of all objects, to be sorted in steps, if the order should be renewed.
     fn start_if_worn(&mut self) {
         if self.wants_order() {
             let mut snapshot = core::mem::take(&mut self.schedule.snapshot);
@@ -212,8 +218,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Looks at the surface in some calls only: the sum over all blocks is what an otherwise idle
-    /// step would spend its time on.
+    /// Returns `true` if the order should be renewed. Checks the surface in some calls only,
+    /// because the sum over all blocks would dominate an otherwise idle step.
     fn wants_order(&mut self) -> bool {
         self.schedule.calls = self.schedule.calls.wrapping_add(1);
         let is_due = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
@@ -221,6 +227,8 @@ impl<const D: usize> Tree<D> {
         self.is_spoilt() || (looks && self.is_worn())
     }
 
+    /// Returns `true` if the surface of leaf blocks for each object exceeds [`WORN`] times that of
+    /// the first check since the renewal.
     #[expect(clippy::cast_precision_loss, reason = "a count that weighs a heuristic")]
     fn is_worn(&mut self) -> bool {
         let surface = self.leaf_surface() / self.live as f64;
@@ -228,14 +236,14 @@ impl<const D: usize> Tree<D> {
         surface > WORN * base
     }
 
-    /// Too many objects came or went since the last renewal.
+    /// Returns `true` if too many objects came or went since the last renewal.
     fn is_spoilt(&self) -> bool {
         let (came, holes) = (self.end - self.schedule.ordered.min(self.end), self.end - self.live);
         came > self.live / 16 + SLACK || holes > self.live / 4 + SLACK
     }
 
-    /// Moves the objects to the sorted places: those removed since are skipped, and those that the
-    /// snapshot does not know follow at the end, sorted among themselves.
+    /// Moves the objects to their sorted positions. Objects removed since are skipped; those
+    /// missing in the snapshot follow at the end, sorted among themselves.
     fn apply_snapshot(&mut self) {
         let mut ids = core::mem::take(&mut self.schedule.order);
         let mut is_placed = core::mem::take(&mut self.schedule.is_placed);
@@ -263,7 +271,7 @@ impl<const D: usize> Tree<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Gives back memory that a tree in which little happens would keep for nothing.
+    /// Releases the scratch memory of a sparing tree.
     pub(super) fn give_back(&mut self) {
         if self.is_sparing {
             let Schedule { base, ordered, fresh, calls, is_used, .. } = self.schedule;
@@ -276,7 +284,7 @@ impl<const D: usize> Tree<D> {
 }
 
 impl<const D: usize> Schedule<D> {
-    /// Begins a new round after the order was renewed; keeps the memory.
+    /// Begins a new period after the order was renewed; keeps the memory.
     fn begin(&mut self, ordered: usize, fresh: usize) {
         (self.base, self.ordered, self.fresh) = (None, ordered, fresh);
         self.runs.clear();
@@ -289,13 +297,13 @@ impl<const D: usize> Schedule<D> {
         self.late.clear();
     }
 
-    /// There are no slots from `end` on.
+    /// Notes that there are no slots from `end` on.
     pub(super) fn forget_slots_from(&mut self, end: usize) {
         (self.ordered, self.fresh) = (self.ordered.min(end), self.fresh.min(end));
     }
 
-    /// Where the slots begin that are to be sorted together, as far as `end`: newcomers, and others if they are `most`
-    /// in all.
+    /// Returns the first slot of the run to be sorted up to `end`: the newcomers, merged with
+    /// earlier runs while these are short and the total is at most `most`.
     fn next_run(&mut self, end: usize, most: usize) -> usize {
         let mut start = self.fresh / LANES * LANES;
         self.runs.retain(|&run| run < start);
@@ -308,7 +316,8 @@ impl<const D: usize> Schedule<D> {
         start
     }
 
-    /// Sorts parts of the snapshot until `budget` items have been handled; always at least one.
+    /// Sorts parts of the snapshot until `budget` items have been handled; always at least one
+    /// part.
     fn sort_some(&mut self, budget: usize) {
         let mut done = 0;
         while done < budget {
@@ -316,7 +325,7 @@ impl<const D: usize> Schedule<D> {
             let items = &mut self.snapshot[start..end];
             if items.len() <= SORTED_AT_ONCE {
                 sort(items);
-                // As many levels as there are halvings down to one block.
+                // The number of levels is that of halvings down to one block.
                 let levels = items.len().div_ceil(LANES).next_power_of_two().trailing_zeros();
                 done += items.len() * (levels.max(1) as usize);
             } else if let Some(left) = split(items) {

@@ -1,4 +1,4 @@
-//! A box that moves, made ready to be held against blocks: the slab test in `f32`, never too strict.
+//! A moving box for slab tests against blocks: in `f32`, and never too strict.
 
 use super::kernel::{IOTA, Scalar, WideBlock, low_half};
 use super::{Block, LANES};
@@ -6,50 +6,52 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Real, Vector, filled, max_component};
 use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdMask, f32x16, u32x16};
 
-/// Slower than this, in units of the fastest component, counts as this: on the way past a tree that
-/// leads astray by less than the padding.
+/// Least speed on an axis, in units of the fastest component. On the way past a tree the deviation
+/// of a slower component is less than the padding.
 const SLOWEST: f32 = f32::from_bits(27 << 23);
 
-/// Rounding units of `f32` by which the moving box is padded, in units of all coordinates.
+/// Padding of the moving box, in rounding units of `f32` of the largest coordinate.
 const PADDING: f32 = 5.0;
 
-/// Rounding units of `f32` by which quotients may be off.
+/// Error bound of quotients in rounding units of `f32`.
 const QUOTIENT: f32 = 8.0;
 
-/// A number or a limit, whichever is less; NaN stays.
+/// Returns the smaller of a number and a limit; NaN stays.
 #[inline(always)]
 fn at_most(x: f32, limit: f32) -> f32 {
     if x > limit { limit } else { x }
 }
 
-/// A number or a limit, whichever is more; NaN stays.
+/// Returns the larger of a number and a limit; NaN stays.
 #[inline(always)]
 fn at_least(x: f32, limit: f32) -> f32 {
     if x < limit { limit } else { x }
 }
 
-/// A moving box as blocks see it. A ray is a box that is a point.
+/// A moving box in the representation for slab tests. A ray is a box of a single point.
 ///
-/// Times are in units of the velocity divided by a power of two, which brings its largest component
-/// between 1 and 2: then squares and quotients stay in range, whatever the scale.
+/// The velocity is divided by a power of two, which brings its largest component between 1 and 2,
+/// so that quotients stay in range at any scale; times are in the corresponding unit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slabs<const D: usize> {
-    /// The face that meets a box first, by axis, and the other one.
+    /// By axis: the face that meets a box first, and the opposite face.
     front: [f32; D],
     back: [f32; D],
-    /// One over the velocity, never zero and never infinite.
+    /// Reciprocal of the velocity, never zero and never infinite.
     inverse: [f32; D],
     /// The power of two.
     unit: f64,
 }
 
 impl<const D: usize> Slabs<D> {
-    /// The box `moving` with a finite velocity, for boxes with coordinates up to `size`.
+    /// Converts the box `moving` with a finite velocity, for trees with coordinates up to `size`.
     #[inline(always)]
     pub(crate) fn new<N: Real>(moving: &Aabb<N, D>, velocity: &Vector<N, D>, size: f32) -> Self {
         let speed = max_component(velocity);
+        // Division by a power of two changes exponents alone.
         let unit = if speed > N::ZERO { speed.power_of_two_below() } else { N::ONE };
         let direction = velocity.map(|x| (x / unit).as_f32());
+        // The largest finite magnitude of a coordinate of the tree or the box.
         let mut reach = size;
         for axis in 0..D {
             for face in [moving.mins()[axis], moving.maxs()[axis]] {
@@ -58,7 +60,8 @@ impl<const D: usize> Slabs<D> {
             }
         }
         let pad = PADDING * f32::EPSILON * reach + f32::MIN_POSITIVE;
-        // All first and selected then: which way a ray goes is a coin toss that no processor foresees.
+        // Both cases are computed and then selected, since the sign of a direction is
+        // unpredictable.
         let low = filled(|axis| at_most(moving.mins()[axis].as_f32(), f32::MAX) - pad);
         let high = filled(|axis| at_least(moving.maxs()[axis].as_f32(), -f32::MAX) + pad);
         let inverse = filled(|axis| 1.0 / f32::max(direction[axis].abs(), SLOWEST));
@@ -73,7 +76,7 @@ impl<const D: usize> Slabs<D> {
         }
     }
 
-    /// A time of the caller's, or a little more, in the units of this; negative for NaN.
+    /// Returns an upper bound of the caller's time in the units of the slabs; negative for NaN.
     #[expect(clippy::cast_possible_truncation, reason = "the slack is more than the rounding")]
     pub(crate) fn limit<N: Real>(&self, time: N) -> f32 {
         let scaled = time.as_f64() * self.unit;
@@ -82,14 +85,14 @@ impl<const D: usize> Slabs<D> {
         if is_time { (scaled + scaled * slack) as f32 + f32::MIN_POSITIVE } else { -1.0 }
     }
 
-    /// A key of a block as a time of the caller's, or a little less.
+    /// Returns a lower bound of the caller's time for the key of a block.
     pub(crate) fn time<N: Real>(&self, key: f32) -> N {
         let slack = f64::from(2.0 * QUOTIENT * f32::EPSILON);
         let exact = f64::from(key) / self.unit;
         N::lit(exact - exact * slack)
     }
 
-    /// The faces of a block that the box meets first on an axis, and the others.
+    /// Returns the faces of a block that the box meets first on an axis, and the opposite ones.
     #[inline(always)]
     fn faces<'a>(&self, block: &'a Block<D>, axis: usize) -> [&'a [f32; LANES]; 2] {
         let (lo, hi) = (&block.lo[axis], &block.hi[axis]);
@@ -97,10 +100,11 @@ impl<const D: usize> Slabs<D> {
     }
 }
 
-/// Times of leaving are stretched by so much: neither they nor those of entering are exact.
+/// Factor by which times of leaving are enlarged, since times of entering and leaving are rounded.
 const STRETCH: f32 = 1.0 + QUOTIENT * f32::EPSILON;
 
 impl Scalar {
+    /// One lane after another; see [`Kernel::enter`](super::kernel::Kernel::enter).
     #[inline(always)]
     pub(super) fn enter_block<const D: usize>(
         self,
@@ -127,6 +131,7 @@ impl Scalar {
 }
 
 impl<S: Simd> WideBlock<S> {
+    /// All lanes at once; see [`Kernel::enter`](super::kernel::Kernel::enter).
     #[inline(always)]
     pub(super) fn enter_block<const D: usize>(
         self,
@@ -153,13 +158,16 @@ impl<S: Simd> WideBlock<S> {
         let (enter, leave) = self.times(block, slabs, limit);
         let is_entered = enter.simd_le(leave);
         let lanes = u32x16::load_array_ref(simd, &IOTA);
+        // The lowest four bits of each time are replaced by the lane, so that one minimum gives the
+        // nearest lane. Times are not negative: their bits have the order of the times.
         let with_lane = enter.bitcast::<u32x16<S>>() & u32x16::splat(simd, !15) | lanes;
         let all = is_entered.select(with_lane, u32x16::splat(simd, u32::MAX));
         all.store_slice(keys);
         (low_half(is_entered.to_bitmask()), all.reduce_min())
     }
 
-    /// When the box enters and leaves those of the block, from zero to `limit`.
+    /// Returns the times at which the box enters and leaves those of the block, between zero and
+    /// `limit`.
     #[inline(always)]
     fn times<const D: usize>(
         self,
@@ -189,7 +197,7 @@ mod tests {
     use super::*;
     use crate::math::Point;
 
-    /// Numbers of all sizes, with repeats.
+    /// Returns numbers of all magnitudes, with repeats.
     fn number(state: &mut u64) -> f32 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040);
         let small = f32::from(i16::try_from(*state >> 56).expect("eight bits")) - 128.0;
@@ -201,7 +209,8 @@ mod tests {
         }
     }
 
-    /// All instruction sets tell the same lanes and times, the nearest first, of those that are entered at some times.
+    /// Asserts that all instruction sets find the same lanes and keys, and that keys are no later
+    /// than the times of entry.
     fn check_nearest(
         block: &Block<3>,
         slabs: &Slabs<3>,

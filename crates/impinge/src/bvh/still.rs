@@ -1,24 +1,25 @@
-//! Trees of boxes without a past: made at once, in an order that costs more and serves longer, and changed box by box.
+//! Trees of static boxes: built at once, in an order that costs more to compute and less to search, and then changed
+//! box by box.
 //!
-//! Ranges of slots are cut where the surface area heuristic likes it best (Goldsmith and Salmon 1987;
-//! binned as by Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), but only
-//! between whole blocks of the layer at hand: all blocks but the last stay full, and child and parent
-//! arithmetic. Above a few hundred boxes a sample decides.
+//! Ranges of slots are cut by the surface area heuristic (Goldsmith and Salmon 1987; binned as by Wald, "On fast
+//! construction of SAH-based bounding volume hierarchies", 2007), but only between whole blocks of the layer: so all
+//! blocks but the last are full, and child and parent are computed from the index. Ranges of more than [`SAMPLE`] boxes
+//! are cut by a sample.
 
 use super::order::key;
 use super::tree::small;
 use super::{Bounds, LANES, Lanes, NONE, Tree};
 use crate::math::filled;
 
-/// Bins along each axis.
+/// Number of bins along each axis.
 const BINS: usize = 16;
-/// Boxes that are looked at to choose a cut.
+/// Greatest number of boxes by which a cut is chosen.
 const SAMPLE: usize = 512;
-/// From this many boxes on the two parts are sorted on two threads.
+/// Number of boxes from which both parts are sorted on two threads.
 #[cfg(feature = "parallel")]
 const PARALLEL_SORT: usize = 4096;
 
-/// A box to be given a place.
+/// A box to be sorted.
 #[derive(Clone, Copy, Debug)]
 struct StillItem<const D: usize> {
     bounds: Bounds<D>,
@@ -26,12 +27,13 @@ struct StillItem<const D: usize> {
 }
 
 impl<const D: usize> StillItem<D> {
+    /// Returns the centre on an axis. Halves come first, so that the sum does not overflow.
     #[inline]
     fn middle(&self, axis: usize) -> f32 {
         self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
     }
 
-    /// Orders by the middle, ties by id: a total order, so that the result is unique.
+    /// Returns the sort key on an axis: the centre, ties by id. A total order, so that the result is unique.
     #[inline]
     fn key(&self, axis: usize) -> u64 {
         key(self.middle(axis), self.id)
@@ -39,7 +41,7 @@ impl<const D: usize> StillItem<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// The tree of boxes with different ids, settled.
+    /// Builds the tree of boxes with different ids, settled.
     pub(crate) fn of_still(lanes: Lanes, boxes: impl Iterator<Item = (u32, Bounds<D>)>) -> Self {
         let mut items: Vec<_> = boxes.map(|(id, bounds)| StillItem { bounds, id }).collect();
         arrange(&mut items);
@@ -62,10 +64,10 @@ impl<const D: usize> Tree<D> {
         tree
     }
 
-    /// Gives an object a box as if it had always had it, whether it is in the tree or not. Searches are right at
-    /// once: what is above its block follows, which takes as many steps as there are layers.
+    /// Sets the box of an object, new or known, as if it had always had it. Searches are valid at once: the path from
+    /// its block to the top is refitted.
     ///
-    /// An object that would make its block much larger gets another place.
+    /// An object that would enlarge its block much moves to another one.
     pub(crate) fn put(&mut self, id: u32, bounds: &Bounds<D>) {
         let slot = self.slot(id);
         if slot.is_some_and(|slot| self.has_room_for(slot / LANES, bounds)) {
@@ -81,9 +83,9 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Brings items that start at a whole subtree into order. Each call leaves fewer or smaller children, so
-/// it ends.
+/// Sorts items that start at the boundary of a whole subtree. Ends, since each call has fewer or smaller children.
 fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
+    // The boxes in one child: the least power of 16 with which at most 16 children hold all items.
     let mut child = LANES;
     while child * LANES < items.len() {
         child *= LANES;
@@ -93,6 +95,7 @@ fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     }
     let children = items.len().div_ceil(child);
     let (axis, left) = best_cut(items, child, children);
+    // Whole children go to the left; only the last child on the right may be partial.
     items.select_nth_unstable_by_key(left * child, |item| item.key(axis));
     let (first, second) = items.split_at_mut(left * child);
     #[cfg(feature = "parallel")]
@@ -104,8 +107,8 @@ fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     arrange(second);
 }
 
-/// The axis to cut along, and how many of the children go left; the middle of the longest axis, the
-/// first of equals, where no cut has a cost.
+/// Returns the axis to cut and the number of children on the left. If no cut has a finite cost, halves the longest
+/// axis, the first of equals.
 fn best_cut<const D: usize>(
     items: &[StillItem<D>],
     child: usize,
@@ -117,6 +120,7 @@ fn best_cut<const D: usize>(
         let middle = filled(|axis| item.middle(axis));
         middles = middles.merged(&Bounds { lo: middle, hi: middle });
     }
+    // Halves come first, so that the difference does not overflow.
     let spread = |axis: usize| middles.hi[axis] * 0.5 - middles.lo[axis] * 0.5;
     let longest =
         (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best });
@@ -133,13 +137,16 @@ fn best_cut<const D: usize>(
     best
 }
 
-/// The boxes of a sample by the place of their middles.
+/// The boxes of a sample, in bins by their centres.
 struct Bins<const D: usize> {
+    /// Union of the boxes in each bin.
     bounds: [Bounds<D>; BINS],
+    /// Number of sampled boxes in each bin.
     counts: [usize; BINS],
 }
 
 impl<const D: usize> Bins<D> {
+    /// Sorts boxes into bins of equal width on an axis; `middles` are the bounds of their centres.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -161,8 +168,8 @@ impl<const D: usize> Bins<D> {
         bins
     }
 
-    /// Calls `visit` with the number of children on the left and the cost of each cut: what is left of
-    /// it up to the end of the bin that it falls into, and what is right of it from there on.
+    /// Calls `visit` with the number of children on the left and the cost of each cut. A cut within a bin counts that
+    /// bin on both sides.
     #[expect(clippy::cast_precision_loss, reason = "counts that weigh a heuristic")]
     fn each_cut(
         &self,
@@ -171,6 +178,7 @@ impl<const D: usize> Bins<D> {
         children: usize,
         mut visit: impl FnMut(usize, f64),
     ) {
+        // `right[bin]` becomes the half surface of the boxes in `bin` and all later bins.
         let mut right = [0.0; BINS];
         let mut all = Bounds::EMPTY;
         for bin in (0..BINS).rev() {
@@ -180,14 +188,17 @@ impl<const D: usize> Bins<D> {
         let (mut all, mut count, mut next) = (Bounds::EMPTY, 0, 1);
         for (bin, bounds) in self.bounds.iter().enumerate() {
             all = all.merged(bounds);
+            // Each sampled box stands for `step` boxes.
             count += self.counts[bin] * step;
             if next >= children || next * child > count {
                 continue;
             }
             let left = all.half_surface();
             while next < children && next * child <= count {
+                // A cut at the end of this bin; one within it counts the bin on the right too.
                 let is_even = next * child == count && bin + 1 < BINS;
                 let rest = right[if is_even { bin + 1 } else { bin }];
+                // The heuristic: surface times number of children, summed over both sides.
                 visit(next, left * next as f64 + rest * (children - next) as f64);
                 next += 1;
             }
@@ -199,7 +210,7 @@ impl<const D: usize> Bins<D> {
 mod tests {
     use super::*;
 
-    /// Unit boxes in rows, and every tenth a thousand times as large.
+    /// Returns unit boxes at scattered places, and every tenth a thousand times as large.
     fn boxes(count: u32) -> Vec<Bounds<3>> {
         let place = |id: u32| {
             let x = f32::from(u16::try_from(id * 7919 % 1000).expect("small"));

@@ -1,9 +1,15 @@
-//! Many rays among triangles at once, step by step.
+//! Many rays among triangles together, in lockstep.
 //!
-//! The next step of a ray depends on what it has just read, which memory delivers late and no processor foresees. So all
-//! rays that are to open a block do so one after the other, then all that look at triangles, then all that go back to a
-//! block that lies open: within such a step nothing hangs on the ray before, no branch is taken by chance, and memory
-//! has several blocks on their way. The order of each ray on its own is that of [`near_first`](super::near_first).
+//! The next step of a ray depends on data that arrive late from memory and on unpredictable branches. So all rays that
+//! open a block do so one after the other, then all rays at leaves test triangles, then all others return to an open
+//! block. Within such a phase no ray depends on the one before, there is no unpredictable branch, and loads of several
+//! blocks overlap. The order of each single ray is that of [`near_first`](super::near_first).
+//!
+//! ```text
+//! to_open   ── open_blocks ────> to_open | at_leaf | to_return
+//! at_leaf   ── look_at_leaves ─> to_return
+//! to_return ── go_back ────────> to_open | at_leaf | to_return      a ray in no list is done
+//! ```
 
 use super::kernel::{Kernel, with_widest_kernel};
 use super::near_first::{LAYERS, RayProbe};
@@ -11,43 +17,43 @@ use super::tree::small;
 use super::triangles::{TriangleAt, Triangles};
 use super::{LANES, NONE, Slabs, Tree};
 
-/// Rays that are on their way at a time.
+/// Greatest number of rays processed together.
 pub(crate) const RAYS: usize = 64;
 
-/// Is called with the triangles that rays may cross.
+/// Receives the triangles that rays may cross.
 pub(crate) trait RayVisitor {
-    /// Reads something of an object that [`Self::visit`] looks at soon.
+    /// Prefetches an object that [`Self::visit`] will read soon.
     fn touch(&self, id: u32);
 
-    /// Looks at a triangle that the ray may cross by its limit, which is returned anew, in the units of the slabs.
+    /// Tests a triangle that the ray may cross by its limit; returns the new limit, in the units of the slabs.
     fn visit(&mut self, ray: usize, slabs: &Slabs<3>, at: TriangleAt<'_>) -> f32;
 }
 
-/// A ray on its way.
+/// The state of one ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walk {
     probe: RayProbe,
     limit: f32,
-    /// A bit for each layer in which a block lies open that has children left.
+    /// Bit mask of the layers with an open block that has children left.
     open: u32,
-    /// The block that comes next and its layer; a leaf block has none.
+    /// Next block and its layer. At a leaf the layer is wrapped and unused.
     layer: usize,
     block: u32,
-    /// Triangles of a leaf block that it may cross.
+    /// Triangles of the leaf block that the ray may cross.
     crossed: u32,
-    /// By layer: the first child of the block that lies open.
+    /// By layer: index of the first child of the open block.
     first: [u32; LAYERS],
 }
 
 impl Walk {
-    /// A ray that has not started.
+    /// Creates the state of a ray at its start.
     #[inline(always)]
     pub(crate) const fn new(probe: RayProbe, limit: f32) -> Self {
         Self { probe, limit, open: 0, layer: 0, block: 0, crossed: 0, first: [0; LAYERS] }
     }
 }
 
-/// Numbers of rays.
+/// A list of ray numbers.
 #[derive(Clone, Copy)]
 struct List {
     rays: [u8; 2 * RAYS],
@@ -55,28 +61,29 @@ struct List {
 }
 
 impl List {
+    /// A list without rays.
     const EMPTY: Self = Self { rays: [0; 2 * RAYS], len: 0 };
 
-    /// Appends a ray or not, without a branch.
+    /// Appends a ray if `is_in`, without a branch.
     #[inline(always)]
     fn push_if(&mut self, ray: u8, is_in: bool) {
         self.rays[self.len % (2 * RAYS)] = ray;
         self.len += usize::from(is_in);
     }
 
+    /// Returns the rays in the list.
     fn rays(&self) -> &[u8] {
         &self.rays[..self.len]
     }
 }
 
-/// Keys of the children of a block with their lanes in the lowest bits; the largest number for what is not asked any
-/// more.
+/// Keys of the children of a block, with lanes in the lowest bits; `u32::MAX` for children that are done.
 type LaneKeys = [u32; LANES];
 
-/// The rays, and what they do next: each is in one list at most.
+/// The rays, and the next action of each: a ray is in at most one list.
 struct Stream<'a> {
     walks: &'a mut [Walk],
-    /// By ray, then by layer.
+    /// Keys by ray, then by layer.
     keys: Vec<LaneKeys>,
     layers: usize,
     to_open: List,
@@ -85,7 +92,7 @@ struct Stream<'a> {
 }
 
 impl Tree<3> {
-    /// [`Self::visit_triangles`] for at most [`RAYS`] rays together.
+    /// As [`Self::visit_triangles`], for at most [`RAYS`] rays together.
     pub(crate) fn visit_triangles_of_many(
         &self,
         triangles: &[Triangles],
@@ -109,6 +116,7 @@ impl Tree<3> {
         with_widest_kernel!(self.lanes, kernel => self.run(kernel, triangles, &mut stream, visitor));
     }
 
+    /// Advances all rays until every list is empty.
     #[inline(always)]
     fn run<K: Kernel>(
         &self,
@@ -124,7 +132,7 @@ impl Tree<3> {
         }
     }
 
-    /// Each ray opens its block and goes to the nearest child.
+    /// Opens the block of each ray, which continues with the nearest child.
     #[inline(always)]
     fn open_blocks<K: Kernel>(&self, kernel: K, stream: &mut Stream<'_>) {
         while stream.to_open.len > 0 {
@@ -138,6 +146,7 @@ impl Tree<3> {
                     kernel.enter_nearest(block, &walk.probe.slabs, walk.limit, keys);
                 let (first, lane) = (walk.block * small(LANES), least % small(LANES));
                 keys[lane as usize] = u32::MAX;
+                // With a second lane to visit, the ray will return to this block.
                 let (is_any, has_more) = (mask != 0, mask & mask.wrapping_sub(1) != 0);
                 walk.open |= u32::from(has_more) << layer;
                 walk.first[layer] = first;
@@ -149,7 +158,7 @@ impl Tree<3> {
         }
     }
 
-    /// Each ray that has come to a leaf block visits the triangles that it may cross.
+    /// Tests the triangles of the leaf block of each ray at a leaf.
     #[inline(always)]
     fn look_at_leaves<K: Kernel>(
         &self,
@@ -192,8 +201,8 @@ impl Tree<3> {
 }
 
 impl Stream<'_> {
-    /// Each ray that has seen all below a block goes to the next child of the lowest block that lies open, if that is
-    /// within its limit; else what is left of that block is nothing to it, and it goes on looking in the next round.
+    /// Moves each ray to the next child of its lowest open block, if that is within its limit. Otherwise the rest of
+    /// the block is skipped, and the ray looks for another open block in the next round.
     #[inline(always)]
     fn go_back<K: Kernel>(&mut self, kernel: K) {
         let rays = core::mem::replace(&mut self.to_return, List::EMPTY);
@@ -204,7 +213,7 @@ impl Stream<'_> {
             let least = kernel.least_lane_key(keys);
             let lane = least % small(LANES);
             keys[lane as usize] = u32::MAX;
-            // The largest number is no number as a key.
+            // `u32::MAX` as a key is NaN, so the comparison is false.
             let is_within = f32::from_bits(least - lane) <= walk.limit;
             walk.open &= !(u32::from(!is_within) << layer);
             (walk.block, walk.layer) = (walk.first[layer] + lane, layer.wrapping_sub(1));

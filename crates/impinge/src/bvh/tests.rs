@@ -1,4 +1,5 @@
-//! Trees alone against lists: joins in every regime, searches, and the order of the nearest.
+//! Tests of trees against lists: joins with few and many changes, searches, and the order of the
+//! nearest.
 
 use core::cell::Cell;
 
@@ -11,17 +12,17 @@ thread_local! {
     static PLACED: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Counts objects that are given a slot on this thread.
+/// Counts objects that get a slot on this thread, to bound the work of a step.
 pub(super) fn count_placed(count: usize) {
     PLACED.set(PLACED.get() + count);
 }
 
-/// How many objects were given a slot on this thread since the last call.
+/// Returns the number of objects that got a slot on this thread since the last call.
 pub(crate) fn take_placed() -> usize {
     PLACED.take()
 }
 
-/// Numbers from a linear congruential generator, below `bound`.
+/// Returns a number below `bound` from a linear congruential generator.
 pub(super) fn next(state: &mut u64, bound: u32) -> u32 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     u32::try_from((*state >> 33) % u64::from(bound)).expect("below a u32")
@@ -31,13 +32,13 @@ fn small_float(value: u32) -> f32 {
     f32::from(u16::try_from(value).expect("small"))
 }
 
-/// A box of up to two units on a grid of halves.
+/// Returns a box of up to two units on a grid of halves, exact in `f32`.
 pub(super) fn random_box<const D: usize>(state: &mut u64, side: u32) -> Bounds<D> {
     let lo: [f32; D] = filled(|_| small_float(next(state, 2 * side)) / 2.0);
     Bounds { lo, hi: lo.map(|x| x + small_float(next(state, 5)) / 2.0) }
 }
 
-/// A box as large, up to `reach` halves away along each axis.
+/// Returns the box shifted by up to `reach` halves along each axis.
 fn near<const D: usize>(old: &Bounds<D>, state: &mut u64, reach: u32) -> Bounds<D> {
     let shift: [f32; D] =
         filled(|_| small_float(next(state, 2 * reach + 1)) / 2.0 - small_float(reach) / 2.0);
@@ -47,16 +48,16 @@ fn near<const D: usize>(old: &Bounds<D>, state: &mut u64, reach: u32) -> Bounds<
     }
 }
 
-/// A tree and what it should hold: by id, the box now and the box at the last settling.
+/// A tree and its expected content: by id, the box now and the box at the last settling.
 struct Twin<const D: usize> {
     tree: Tree<D>,
     list: Vec<Option<(Bounds<D>, Bounds<D>)>>,
-    /// The least id of this tree.
+    /// The least id in this tree.
     first: usize,
 }
 
 impl<const D: usize> Twin<D> {
-    /// Ids from `first` on.
+    /// Creates a tree of `count` random boxes with ids from `first` on.
     fn new(state: &mut u64, first: u32, count: u32, side: u32) -> Self {
         let (tree, list) = (Tree::new(Lanes::detect()), vec![None; first as usize]);
         let mut twin = Self { tree, list, first: first as usize };
@@ -68,8 +69,8 @@ impl<const D: usize> Twin<D> {
         twin
     }
 
-    /// Moves, removes or adds about one object in `rarity`; moves go up to `reach` halves along each
-    /// axis, or anywhere.
+    /// Moves, removes or adds about one object in `rarity`; moves go up to `reach` halves along
+    /// each axis, or anywhere if `reach` is at least `2 * side`.
     fn change(&mut self, state: &mut u64, side: u32, reach: u32, rarity: u32) {
         for id in self.first..self.list.len() {
             let number = u32::try_from(id).expect("small");
@@ -113,7 +114,7 @@ impl<const D: usize> Twin<D> {
     }
 }
 
-/// The pairs of different objects that overlap and did not before, and those that did and do not.
+/// Returns by brute force the pairs of different objects that began and ended to overlap.
 fn differences<const D: usize>(first: &Twin<D>, second: &Twin<D>) -> Changes {
     let mut changes = Changes::default();
     for (a, (now1, before1)) in first.objects() {
@@ -137,7 +138,8 @@ fn sorted(mut keys: Vec<u64>) -> Vec<u64> {
     keys
 }
 
-/// Compares what a join found with what it must find; returns how many of each kind it found.
+/// Asserts that a join found all began pairs, and all ended pairs but those of escaped objects;
+/// returns the numbers of both.
 fn check_changes<const D: usize>(
     found: Changes,
     (first, second): (&Twin<D>, &Twin<D>),
@@ -156,8 +158,8 @@ fn check_changes<const D: usize>(
     counts
 }
 
-/// `rarity1` and `rarity2`: how many of the objects of the two trees change in a step; `reach`: how
-/// far those go that stay.
+/// Checks joins over 25 steps in which about one object in `rarity1` and `rarity2` of both trees
+/// changes, and moves go up to `reach` halves.
 fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, reach: u32) {
     let mut state = u64::from(side * 100 + rarity1 * 10 + rarity2);
     let mut first = Twin::<D>::new(&mut state, 0, 700, side);
@@ -242,7 +244,7 @@ fn the_nearest_come_first() {
     }
 }
 
-/// A tree that shrinks to nothing and grows again keeps its invariants.
+/// A tree that is emptied and filled again three times keeps its invariants.
 #[test]
 fn emptied_and_filled() {
     let mut state = 5;

@@ -1,4 +1,4 @@
-//! The tree: storage and single changes.
+//! The tree: storage, and changes of single objects.
 
 use super::block_slabs::BlockSlab;
 use super::order::Load;
@@ -9,27 +9,29 @@ use crate::memory::{Look, clone_fields};
 
 /// No id, or no slot.
 pub(crate) const NONE: u32 = u32::MAX;
-/// A tree of more leaf blocks than this gives its memory back when it is empty.
+/// Number of leaf blocks above which an empty tree releases its memory.
 const KEPT_LEAVES: usize = 256;
 
-/// One layer: blocks, and beside each its bounds and which of its lanes changed.
+/// One layer: blocks, and for each block its bounds and the mask of changed lanes.
 ///
-/// A join looks for what was near as well as for what is: for it stand beside all that the bounds of
-/// the boxes now and before. Where nothing changed, the two are the same.
+/// A join searches old and present overlaps, so each block also has a `reach`: the union of its
+/// boxes now and before. Where nothing changed, bounds and reach are equal.
 #[derive(Debug)]
 pub(super) struct Layer<const D: usize> {
     pub(super) blocks: Vec<Block<D>>,
     pub(super) bounds: Vec<Bounds<D>>,
-    /// By block: the bounds of its boxes now and before.
+    /// By block: union of its boxes now and before.
     pub(super) reach: Vec<Bounds<D>>,
-    /// Above the lowest layer: the reach of the blocks below, in blocks.
+    /// Above the lowest layer: the reach of the blocks below, as blocks.
     pub(super) reaches: Vec<Block<D>>,
+    /// By block: the lanes with a change in or below them.
     pub(super) changed: Vec<u16>,
 }
 
 clone_fields!([const D: usize] Layer<D> { blocks, bounds, reach, reaches, changed });
 
 impl<const D: usize> Layer<D> {
+    /// Creates a layer without blocks.
     pub(super) const fn new() -> Self {
         Self {
             blocks: Vec::new(),
@@ -48,7 +50,8 @@ impl<const D: usize> Layer<D> {
         self.changed.resize(blocks, 0);
     }
 
-    /// Gives a layer above the lowest one the blocks for so many children; lanes without a child are empty.
+    /// Resizes a layer above the lowest one for `children` blocks below; lanes without a child are
+    /// empty.
     pub(super) fn fit_above(&mut self, children: usize) {
         let blocks = children.div_ceil(LANES);
         self.resize(blocks);
@@ -62,9 +65,9 @@ impl<const D: usize> Layer<D> {
     }
 }
 
-/// A packed tree over boxes with ids; see the module's page for the layout.
+/// A packed tree over boxes with ids; see the module for the layout.
 ///
-/// Ids are dense small numbers of the caller's. Boxes must be finite and not inverted.
+/// Ids are dense small numbers of the caller. Boxes must be finite and not inverted.
 #[derive(Debug)]
 pub(crate) struct Tree<const D: usize> {
     pub(super) lanes: Lanes,
@@ -72,12 +75,12 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) layers: Vec<Layer<D>>,
     /// By leaf block: the boxes at the last [`Self::settle`]; see [`Self::was`].
     pub(super) before: Vec<Block<D>>,
-    /// The boxes at the last settling are those of now unless something is said to have changed: so
-    /// that a tree in which this seldom happens has no memory for them.
+    /// `before` is stored only while a box has changed since the last settling. Saves memory in a
+    /// tree whose objects seldom change.
     pub(super) is_sparing: bool,
-    /// By layer and block, if the owner of the tree asked for them: good until the boxes change.
+    /// By layer and block, if the owner added slabs; valid until the boxes change.
     pub(super) slabs: Vec<Vec<Option<BlockSlab<D>>>>,
-    /// [`Self::before`] is in use. Always, unless the tree is sparing.
+    /// [`Self::before`] is in use: always, unless the tree is sparing.
     pub(super) remembers: bool,
     /// Slot to id.
     pub(super) ids: Vec<u32>,
@@ -85,25 +88,25 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) slots: Vec<u32>,
     /// One more than the last slot in use.
     pub(super) end: usize,
-    /// Objects.
+    /// Number of objects.
     pub(super) live: usize,
-    /// Leaf blocks written to since the last [`Self::settle`], and the same as flags.
+    /// Leaf blocks written since the last [`Self::settle`], as a list and as flags.
     pub(super) touched: Vec<u32>,
     pub(super) is_touched: Vec<bool>,
-    /// Leaf blocks whose reach leaves out what was before; see [`Self::escaped`].
+    /// Leaf blocks whose reach does not contain the old boxes; see [`Self::escaped`].
     pub(super) escaped: Vec<u32>,
-    /// Memory for objects on the move from slot to slot.
+    /// Scratch: boxes of objects that move between slots.
     pub(super) loads: Vec<Load<D>>,
-    /// Memory for lists of blocks.
+    /// Scratch: lists of blocks.
     pub(super) dirty: Vec<u32>,
-    /// Lanes with their change bit set.
+    /// Number of lanes with their change bit set.
     pub(super) changed: usize,
-    /// The number of leaf blocks changed, so that the upper layers must be laid out anew.
+    /// The number of leaf blocks has changed, so that the upper layers must be resized.
     pub(super) is_restructured: bool,
-    /// Something was written since the last [`Self::refit`] that searches must see.
+    /// A box was written since the last [`Self::refit`], so that searches would be wrong.
     pub(super) is_stale: bool,
     pub(super) schedule: Schedule<D>,
-    /// Of a sparing tree.
+    /// The renewal of a sparing tree, while one is under way.
     pub(super) renewal: Option<Box<Renewal<D>>>,
 }
 
@@ -118,14 +121,14 @@ impl<const D: usize> Default for Tree<D> {
     }
 }
 
-/// A position as the `u32` it is stored as.
+/// Converts an index to `u32`.
 #[inline]
 pub(super) fn small(value: usize) -> u32 {
     u32::try_from(value).expect("a tree holds fewer than 2^32 objects")
 }
 
 impl<const D: usize> Tree<D> {
-    /// A tree without objects.
+    /// Creates a tree without objects.
     #[must_use]
     pub(crate) fn new(lanes: Lanes) -> Self {
         Self {
@@ -152,12 +155,12 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// A tree without objects, for objects that seldom change: it spares memory.
+    /// Creates a tree without objects, for objects that seldom change: it saves memory.
     pub(crate) fn sparing(lanes: Lanes) -> Self {
         Self { is_sparing: true, remembers: false, ..Self::new(lanes) }
     }
 
-    /// From here on the objects count as such that seldom change.
+    /// Makes the tree a sparing one, for objects that seldom change. It must be settled.
     pub(crate) fn spare(&mut self) {
         debug_assert_eq!(self.changed, 0, "a settled tree");
         (self.is_sparing, self.remembers, self.before) = (true, false, Vec::new());
@@ -165,44 +168,45 @@ impl<const D: usize> Tree<D> {
         self.give_back();
     }
 
-    /// From here on the objects count as such that change often.
+    /// Makes the tree one for objects that change often.
     pub(crate) fn spend(&mut self) {
         (self.is_sparing, self.renewal) = (false, None);
         self.remember();
     }
 
-    /// The number of objects.
+    /// Returns the number of objects.
     #[must_use]
     pub(crate) const fn len(&self) -> usize {
         self.live
     }
 
-    /// There is no object.
+    /// Returns `true` if there is no object.
     #[must_use]
     pub(crate) const fn is_empty(&self) -> bool {
         self.live == 0
     }
 
-    /// The object is in the tree.
+    /// Returns `true` if the object is in the tree.
     #[must_use]
     pub(crate) fn contains(&self, id: u32) -> bool {
         self.slot(id).is_some()
     }
 
-    /// The box of the object, if it is in the tree.
+    /// Returns the box of the object, if it is in the tree.
     #[must_use]
     pub(crate) fn bounds(&self, id: u32) -> Option<Bounds<D>> {
         self.slot(id).map(|slot| self.lane(slot))
     }
 
-    /// The box in a slot.
+    /// Returns the box in a slot.
     #[inline]
     pub(super) fn lane(&self, slot: usize) -> Bounds<D> {
         self.layers[0].blocks[slot / LANES].lane(slot % LANES)
     }
 
-    /// The slot of an object that is likely to be near a point: in each block the child whose middle is nearest comes next,
-    /// so that each layer is seen once. `None` where nothing is finite, or squares of distances are too large for `f32`.
+    /// Returns the slot of an object that is probably near a point: descends to the child with the
+    /// nearest centre, one block in each layer. `None` if no box is finite, or squared distances
+    /// overflow `f32`.
     pub(super) fn slot_near(&self, place: &[f32; D]) -> Option<u32> {
         self.layers.iter().rev().try_fold(0, |at, layer| {
             let lane = layer.blocks[at as usize].nearest_lane(place)?;
@@ -210,25 +214,26 @@ impl<const D: usize> Tree<D> {
         })
     }
 
-    /// Calls `visit` with the bounds of each block that holds something, the lowest layer first.
+    /// Calls `visit` with the bounds of each block that is not empty, the lowest layer first.
     #[cfg(feature = "debug_render")]
     pub(crate) fn each_node(&self, visit: &mut dyn FnMut(&Bounds<D>)) {
         let bounds = self.layers.iter().flat_map(|layer| &layer.bounds);
         bounds.filter(|bounds| bounds.is_finite()).for_each(visit);
     }
 
-    /// The number of leaf blocks.
+    /// Returns the number of leaf blocks.
     pub(super) fn leaf_count(&self) -> usize {
         self.layers[0].blocks.len()
     }
 
-    /// By leaf block: the boxes at the last [`Self::settle`].
+    /// Returns the boxes at the last [`Self::settle`], by leaf block.
     #[inline]
     pub(super) fn was(&self) -> &[Block<D>] {
         if self.remembers { &self.before } else { &self.layers[0].blocks }
     }
 
-    /// From here on the boxes may differ from those at the last settling.
+    /// Stores the present boxes as `before`, because they are about to differ from those at the
+    /// last settling.
     #[inline]
     fn remember(&mut self) {
         if !self.remembers {
@@ -237,22 +242,24 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// The box of the object at the last [`Self::settle`]: empty for one that is new.
+    /// Returns the box of the object at the last [`Self::settle`]: empty for a new object.
     pub(crate) fn before(&self, id: u32) -> Option<Bounds<D>> {
         self.slot(id).map(|slot| self.was()[slot / LANES].lane(slot % LANES))
     }
 
+    /// Returns the slot of an object; `None` if the tree does not have it.
     pub(super) fn slot(&self, id: u32) -> Option<usize> {
         let slot = self.slots.get(id as usize).copied().filter(|&slot| slot != NONE)?;
         Some(slot as usize)
     }
 
+    /// Returns the slot of an object that the tree must have.
     fn expect_slot(&self, id: u32) -> usize {
         self.slot(id).expect("the object is in the tree")
     }
 
-    /// Adds an object. `before` is the box it had at the last [`Self::settle`]: pairs that
-    /// overlapped then do not begin now. It is [`Bounds::NOWHERE`] for an object that is new.
+    /// Adds an object. `before` is its box at the last [`Self::settle`]: pairs that overlapped then
+    /// do not begin now. It is [`Bounds::NOWHERE`] for a new object.
     ///
     /// # Panics
     /// If the object is in the tree already.
@@ -263,8 +270,8 @@ impl<const D: usize> Tree<D> {
         self.mark_changed(slot);
     }
 
-    /// Adds an object that has stood there, in another tree, since before the last
-    /// [`Self::settle`]: it begins no pairs. Returns its slot.
+    /// Adds an object that has had this box, in another tree, since before the last
+    /// [`Self::settle`]: no pairs begin. Returns its slot.
     pub(crate) fn insert_still(&mut self, id: u32, bounds: &Bounds<D>) -> usize {
         assert!(!self.contains(id), "object {id} is in the tree already");
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
@@ -297,7 +304,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Gives the object another box as if it had always had it: it begins no pairs.
+    /// Sets the box of an object as if it had always had it: no pairs begin.
     ///
     /// # Panics
     /// If the object is not in the tree.
@@ -313,7 +320,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Announces that the object has another box, which the next [`Self::refit_from`] fetches.
+    /// Marks an object whose box has changed; the next [`Self::refit_from`] reads the new box.
     ///
     /// # Panics
     /// If the object is not in the tree.
@@ -327,13 +334,13 @@ impl<const D: usize> Tree<D> {
         self.changed += usize::from(*mask & bit == 0);
         *mask |= bit;
         self.is_stale = true;
-        // A block with changed lanes is listed already.
+        // A block with changed lanes is in the list already.
         if was_unchanged {
             self.touch(block);
         }
     }
 
-    /// Makes all pairs of the object begin anew: as if it had not been there before.
+    /// Makes all pairs of the object begin anew, as if it had not been there before.
     ///
     /// # Panics
     /// If the object is not in the tree.
@@ -345,7 +352,7 @@ impl<const D: usize> Tree<D> {
         self.mark_changed(slot);
     }
 
-    /// Takes the object out. Searches do not find it from now on.
+    /// Removes the object. Searches do not find it from now on.
     ///
     /// # Panics
     /// If the object is not in the tree.
@@ -368,7 +375,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Writes the box; what is above follows in the next refit.
+    /// Writes the box; the next refit updates the layers above.
     #[inline]
     fn write(&mut self, slot: usize, bounds: &Bounds<D>) {
         self.layers[0].blocks[slot / LANES].set_lane(slot % LANES, bounds);
@@ -403,7 +410,7 @@ impl<const D: usize> Tree<D> {
         self.is_restructured = true;
     }
 
-    /// Forgets every object. Keeps the memory if it is little.
+    /// Removes all objects. Keeps the memory if it is little.
     pub(crate) fn clear(&mut self) {
         if self.leaf_count() > KEPT_LEAVES {
             let empty = if self.is_sparing { Self::sparing } else { Self::new };
@@ -420,7 +427,7 @@ impl<const D: usize> Tree<D> {
         (self.is_restructured, self.is_stale) = (false, false);
     }
 
-    /// Gives back memory that a tree that has stopped to grow does not need.
+    /// Releases surplus memory of a tree that has stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
         let Layer { blocks, bounds, reach, changed, .. } = &mut self.layers[0];
         look.fit(blocks);
@@ -435,17 +442,18 @@ impl<const D: usize> Tree<D> {
         look.trim(&mut self.dirty);
     }
 
-    /// The half surfaces of all leaf blocks, summed in their order: what a search pays.
+    /// Returns the sum of the half surfaces of all leaf blocks, in their order: proportional to the
+    /// cost of a search.
     pub(crate) fn leaf_surface(&self) -> f64 {
         self.layers[0].bounds.iter().map(Bounds::half_surface).sum()
     }
 
-    /// The ids by slot, which is an order of space; [`NONE`] for free slots.
+    /// Returns the ids by slot, which is a spatial order; [`NONE`] for free slots.
     pub(crate) fn slots_in_order(&self) -> &[u32] {
         &self.ids[..self.end]
     }
 
-    /// The slots of changed lanes, ascending if the touched blocks are.
+    /// Lists the slots of changed lanes, ascending if the touched blocks are.
     pub(super) fn list_changed_slots(&self, slots: &mut Vec<u32>) {
         slots.clear();
         for &block in &self.touched {
@@ -457,8 +465,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Changed objects (by id) of whose pairs the [`super::Joiner`] need not have reported those
-    /// that ended: objects that were elsewhere before, and their changed neighbours. As of the last
+    /// Iterates over the ids of changed objects whose ended pairs the [`super::Joiner`] may not
+    /// have reported: objects that moved far, and changed objects in their blocks. As of the last
     /// refit.
     pub(crate) fn escaped(&self) -> impl Iterator<Item = u32> + '_ {
         let changed = move |&block: &u32| {

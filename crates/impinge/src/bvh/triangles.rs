@@ -1,8 +1,8 @@
-//! Sixteen triangles side by side, and which of them a line may cross.
+//! Sixteen triangles side by side, and the test which of them a line may cross.
 //!
-//! The test is that of signs of areas around the line (Woop, Benthin and Wald, "Watertight
-//! Ray/Triangle Intersection", 2013), in `f32`, with a bound for all that rounding does here and in
-//! whatever test decides: what is sorted out is certainly not crossed.
+//! The test uses the signs of areas around the line (Woop, Benthin and Wald, "Watertight
+//! Ray/Triangle Intersection", 2013), in `f32`, with a bound for all rounding errors here and in
+//! the exact test that follows: a rejected triangle is certainly not crossed.
 
 use super::LANES;
 use super::kernel::{Scalar, WideBlock, low_half};
@@ -12,7 +12,7 @@ use fearless_simd::{Simd, SimdBase, f32x16};
 
 /// Sixteen triangles in 3D as a structure of arrays: by corner, then by axis, rounded to nearest.
 ///
-/// 576 bytes. Lanes without a triangle hold zeros, and may be proposed.
+/// 576 bytes. Lanes without a triangle are zero, and may be proposed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct Triangles {
@@ -20,10 +20,10 @@ pub(crate) struct Triangles {
 }
 
 impl Triangles {
-    /// Sixteen triangles that are the origin.
+    /// Sixteen triangles at the origin.
     pub(crate) const EMPTY: Self = Self { corners: [[[0.0; LANES]; 3]; 3] };
 
-    /// Puts a triangle into a lane.
+    /// Writes the triangle of a lane.
     #[inline]
     pub(crate) fn set_lane(&mut self, lane: usize, corners: &[[f32; 3]; 3]) {
         for (own, corner) in self.corners.iter_mut().zip(corners) {
@@ -33,7 +33,7 @@ impl Triangles {
         }
     }
 
-    /// Reads something of each row, so that all are on their way from memory.
+    /// Touches each row, so that all are prefetched.
     #[inline(always)]
     pub(super) fn touch(&self) {
         for axis in self.corners.as_flattened() {
@@ -41,14 +41,14 @@ impl Triangles {
         }
     }
 
-    /// The triangle in a lane.
+    /// Returns the triangle in a lane.
     #[inline]
     pub(crate) fn lane(&self, lane: usize) -> [[f32; 3]; 3] {
         self.corners.each_ref().mapped(|corner| corner.each_ref().mapped(|axis| axis[lane]))
     }
 }
 
-/// Where a triangle is: its id and its lane of a block.
+/// A triangle, by its id and its lane of a block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TriangleAt<'a> {
     pub(crate) id: u32,
@@ -56,35 +56,36 @@ pub(crate) struct TriangleAt<'a> {
     pub(crate) lane: usize,
 }
 
-/// What rounding does to the position of a corner beside the line, in units of `f32`'s rounding and
-/// of how far the corner is from the origin of the line along it and across it.
+/// Error bound of a corner's position relative to the line, in `f32` rounding units of the corner's
+/// distance from the line's origin along and across the line.
 ///
-/// In halves of that unit: 12 here and 16 in the exact test, for differences, runs along the line and
-/// sums, which make 112 in an area of two such positions; and 83 within which the sides of a triangle
-/// seen edge on are met, which make 235. The rest is reserve.
+/// In halves of that unit: 12 here and 16 in the exact test, for differences, shears and sums,
+/// which make 112 in an area of two such positions; and 83 within which the sides of a triangle
+/// seen edge on are hit, which make 235. The rest is reserve.
 const NEAR: f32 = 256.0;
 
-/// The same, in units of all coordinates: those of `f64` are rounded to be here, which makes 8, and a ray
-/// starts on a triangle that is within eight units, which makes 40.
+/// Error bound in `f32` rounding units of the largest coordinate: 8 for the conversion from `f64`,
+/// and 40 because a ray that starts within eight units of a triangle starts on it.
 const FAR: f32 = 64.0;
 
 /// A line, sheared so that it runs along the third of its axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShearedLine {
-    /// Two axes across the line, and the one that it mostly runs along.
+    /// Two axes across the line, and the one with the largest component of its direction.
     axes: [usize; 3],
     origin: [f32; 3],
-    /// How far the line runs along the first two axes per unit of the third.
+    /// Displacement of the line along the first two axes for a unit of the third.
     shear: [f32; 2],
-    /// Units of time per length along the third axis, at most 1: those of [`Slabs`](super::Slabs).
+    /// Time for a unit of length along the third axis, at most 1, in the units of
+    /// [`Slabs`](super::Slabs).
     inverse: f32,
-    /// What rounding does anyway.
+    /// Absolute part of the error bound.
     slack: f32,
 }
 
 impl ShearedLine {
-    /// The line of a ray that is finite and has a direction, for corners with coordinates up to `size`.
-    /// `around` is a box around its origin that holds what rounding made of it before.
+    /// Converts the line of a ray that is finite and has a direction, for corners with coordinates
+    /// up to `size`. `around` is a box around its origin that covers earlier rounding errors.
     #[inline(always)]
     pub(crate) fn new<N: Real>(ray: &Ray<N, 3>, around: &Aabb<N, 3>, size: f32) -> Self {
         let along = ray.dir.iamax();
@@ -105,7 +106,7 @@ impl ShearedLine {
 }
 
 impl Scalar {
-    /// One lane after another: see [`Kernel::crossed`](super::kernel::Kernel::crossed).
+    /// One lane after another; see [`Kernel::crossed`](super::kernel::Kernel::crossed).
     pub(super) fn crossed_triangles(
         self,
         triangles: &Triangles,
@@ -134,7 +135,9 @@ impl Scalar {
             let times = seen.mapped(|corner| corner[2] * line.inverse);
             let first = smaller(smaller(times[0], times[1]), times[2]);
             let last = larger(larger(times[0], times[1]), times[2]);
+            // Areas of both signs, by more than rounding: the line passes beside the triangle.
             let beside = (most > margin) & (least < -margin);
+            // All corners lie beyond the limit, or all behind the origin.
             let outside = (first - slack > limit) | (last + slack < 0.0);
             mask |= u32::from(!(beside | outside)) << lane;
         }
@@ -143,7 +146,7 @@ impl Scalar {
 }
 
 impl<S: Simd> WideBlock<S> {
-    /// All lanes at once: see [`Kernel::crossed`](super::kernel::Kernel::crossed).
+    /// All lanes at once; see [`Kernel::crossed`](super::kernel::Kernel::crossed).
     #[inline(always)]
     pub(super) fn crossed_triangles(
         self,
@@ -151,7 +154,7 @@ impl<S: Simd> WideBlock<S> {
         line: &ShearedLine,
         limit: f32,
     ) -> u32 {
-        // Spelled out: what arrays are mapped by is not compiled for the instruction set.
+        // Written out, since closures passed to `map` are not compiled for the instruction set.
         let [a, b, c] = &triangles.corners;
         let (a, b, c) = (seen(self.0, a, line), seen(self.0, b, line), seen(self.0, c, line));
         let areas = [area(b, c), area(c, a), area(a, b)];
@@ -169,7 +172,8 @@ impl<S: Simd> WideBlock<S> {
     }
 }
 
-/// A corner of each triangle, across the line and along it.
+/// Returns a corner of each triangle in the coordinates of the line: two across it and one along
+/// it.
 #[inline(always)]
 fn seen<S: Simd>(simd: S, corner: &[[f32; LANES]; 3], line: &ShearedLine) -> [f32x16<S>; 3] {
     let [x, y, along] = line.axes;
@@ -179,11 +183,13 @@ fn seen<S: Simd>(simd: S, corner: &[[f32; LANES]; 3], line: &ShearedLine) -> [f3
     [x - depth * line.shear[0], y - depth * line.shear[1], depth]
 }
 
+/// Returns the cross product of two corners across the line.
 #[inline(always)]
 fn area<S: Simd>(p: [f32x16<S>; 3], q: [f32x16<S>; 3]) -> f32x16<S> {
     p[0] * q[1] - p[1] * q[0]
 }
 
+/// Returns the larger of the distances of a corner from the line on the two axes across it.
 #[inline(always)]
 fn wide<S: Simd>(p: [f32x16<S>; 3]) -> f32x16<S> {
     p[0].abs().max(p[1].abs())

@@ -1,13 +1,13 @@
-//! The invariants of the tree, checked one by one; for tests.
+//! Checks of the tree's invariants; for tests.
 
 use super::{Block, Bounds, LANES, NONE, Tree};
 
 impl<const D: usize> Tree<D> {
-    /// Checks every invariant. Between a removal and the next refit, bounds may be too large;
-    /// otherwise, and unless something was added or moved since, they are exact.
+    /// Checks every invariant. After a removal, until the next refit, bounds may be too large;
+    /// otherwise they are exact, unless something was added or moved since.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// A sentence that names the violated invariant.
     pub(crate) fn validate(&self) -> Result<(), String> {
         self.validate_maps()?;
         self.validate_leaves()?;
@@ -18,7 +18,7 @@ impl<const D: usize> Tree<D> {
         self.validate_changes()
     }
 
-    /// Slots and ids are inverse to each other and counted rightly.
+    /// Checks that slots and ids are inverse to each other, and their counts.
     fn validate_maps(&self) -> Result<(), String> {
         let live = self.ids.iter().filter(|&&id| id != NONE).count();
         let mapped = self.slots.iter().filter(|&&slot| slot != NONE).count();
@@ -38,7 +38,8 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// Boxes are bounded; free lanes are empty, before and after.
+    /// Checks that boxes are bounded, that free lanes are empty now and before, and that changes
+    /// are marked.
     fn validate_leaves(&self) -> Result<(), String> {
         for (slot, &id) in self.ids.iter().enumerate() {
             let (block, lane) = (slot / LANES, slot % LANES);
@@ -60,8 +61,9 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// Every layer holds the bounds of the one below, up to one block.
+    /// Checks that every layer has the bounds of the one below, up to one block.
     fn validate_layers(&self) -> Result<(), String> {
+        // Until the next refit, bounds above a touched block may be too large.
         let is_exact = self.touched.is_empty();
         let agrees = |kept: &Bounds<D>, real: &Bounds<D>| {
             let is_empty = *real == Bounds::EMPTY;
@@ -69,6 +71,7 @@ impl<const D: usize> Tree<D> {
         };
         for (index, layer) in self.layers.iter().enumerate() {
             let lengths = [layer.bounds.len(), layer.reach.len(), layer.changed.len()];
+            // The lowest layer has no `reaches`.
             let reaches = if index > 0 { layer.blocks.len() } else { 0 };
             if lengths != [layer.blocks.len(); 3] || layer.reaches.len() != reaches {
                 return Err(format!("the arrays of layer {index} differ in length"));
@@ -86,6 +89,7 @@ impl<const D: usize> Tree<D> {
             if parent.blocks.len() != layer.blocks.len().div_ceil(LANES) {
                 return Err(format!("layer {} has the wrong length", index + 1));
             }
+            // Lanes without a child must be empty.
             for lane in 0..parent.blocks.len() * LANES {
                 let kept = parent.blocks[lane / LANES].lane(lane % LANES);
                 let real = layer.bounds.get(lane).copied().unwrap_or(Bounds::EMPTY);
@@ -99,7 +103,8 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// A join's bounds hold what is and, but for blocks whose objects escaped their fat AABBs, what was.
+    /// Checks that the reach of each leaf block contains its boxes now and, unless it is listed as
+    /// escaped, before.
     fn validate_reach(&self) -> Result<(), String> {
         for (block, reach) in self.layers[0].reach.iter().enumerate() {
             let has_left = self.escaped.iter().any(|&other| other as usize == block);
@@ -113,7 +118,8 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// Change marks are counted, lie in touched blocks, and reach the top after a refit.
+    /// Checks that change marks are counted and in touched blocks, and that none is left in upper
+    /// layers without changes.
     fn validate_changes(&self) -> Result<(), String> {
         let marked: u32 = self.layers[0].changed.iter().map(|mask| mask.count_ones()).sum();
         if marked as usize != self.changed {
@@ -136,6 +142,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
+/// Returns the union of the boxes of a block.
 fn bounds_of<const D: usize>(block: &Block<D>) -> Bounds<D> {
     (0..LANES).fold(Bounds::EMPTY, |all, lane| all.merged(&block.lane(lane)))
 }

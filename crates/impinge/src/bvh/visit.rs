@@ -1,19 +1,19 @@
-//! Searches of one volume: every object whose box passes a test.
+//! Searches with a test of boxes, without an order.
 
 use super::kernel::{Kernel, with_kernel};
 use super::tree::small;
 use super::{Block, Bounds, LANES, NONE, Tree};
 
-/// Blocks that a search may have put off: each of at most seven layers below the top leaves at
-/// most fifteen siblings, and the lowest expansion all sixteen.
+/// Capacity of the stack of blocks to be opened: each of at most seven layers below the top leaves
+/// at most fifteen siblings, and the lowest expansion all sixteen.
 const STACK: usize = 128;
 
 impl<const D: usize> Tree<D> {
-    /// Calls `leaf` with the id of each object whose lane passes `test`, in no particular (but
-    /// always the same) order.
+    /// Calls `leaf` with the id of each object whose lane passes `test`, in an order that is
+    /// unspecified but always the same.
     ///
-    /// `test` gets a block and returns the mask of lanes that pass. It must be monotone: a lane
-    /// whose box encloses one that passes must pass. Empty lanes may pass, they are skipped.
+    /// `test` receives a block and returns the mask of lanes that pass. It must be monotone: a lane
+    /// whose box encloses one that passes must pass too. Empty lanes may pass; they are skipped.
     #[inline(always)]
     pub(crate) fn visit(&self, mut test: impl FnMut(&Block<D>) -> u32, mut leaf: impl FnMut(u32)) {
         debug_assert!(!self.is_stale, "searches need a refitted tree");
@@ -39,19 +39,19 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// The highest layer, that of one block.
+    /// Returns the index of the highest layer, which has one block.
     pub(super) fn top_layer(&self) -> u8 {
         u8::try_from(self.layers.len() - 1).expect("2^32 objects make eight layers")
     }
 
-    /// The object in the slot, if there is one.
+    /// Returns the object in the slot, if there is one.
     #[inline]
     pub(super) fn id_in(&self, slot: u32) -> Option<u32> {
         let id = self.ids[slot as usize];
         (id != NONE).then_some(id)
     }
 
-    /// The layer has such a block: upper lanes beyond the last one have not.
+    /// Returns `true` if the layer has such a block; upper lanes beyond the last one have none.
     pub(super) fn is_block(&self, layer: u8, block: u32) -> bool {
         (block as usize) < self.layers[usize::from(layer)].blocks.len()
     }

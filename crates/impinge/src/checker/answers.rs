@@ -1,4 +1,4 @@
-//! The three questions about many configurations.
+//! The three queries of many configurations.
 
 use crate::math::order::sort_few;
 use core::ops::Range;
@@ -12,11 +12,12 @@ use crate::batch::{BatchError, Control, Progress};
 use crate::math::simd::Level;
 use crate::math::{Real, Space, max};
 
-/// Angles up to this need no reduction; beyond the other they have none in `f32`.
+/// Angles up to `NEAR_ANGLE` need no reduction; beyond `FAR_ANGLE` they are too coarse to reduce to
+/// `f32`.
 const NEAR_ANGLE: f64 = 4.0;
 const FAR_ANGLE: f64 = 1e8;
 
-/// What treats eight configurations after the other.
+/// Processes configurations in packets of eight.
 struct EightByEight<'a, N: Space<D>, const D: usize> {
     checker: &'a Checker<N, D>,
     configurations: &'a [N],
@@ -40,7 +41,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
-    /// Calls with up to eight configurations at a time, after the scan.
+    /// Calls `settle` with each packet of up to eight configurations, after the scan.
     fn each(
         &mut self,
         range: Range<usize>,
@@ -57,6 +58,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
+    /// Scans a packet: reads its numbers in `f32` and collects candidate pairs up to `limit`.
     fn scan(&mut self, eight: &Range<usize>, limit: N) {
         let slides = self.read_numbers(eight);
         let lanes = u8::MAX >> (LANES - eight.len());
@@ -66,7 +68,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         scan_at(self.level, robot, &self.checker.surroundings, scratch, search);
     }
 
-    /// The numbers of the nodes in `f32`; returns how far things slide in each lane.
+    /// Reads the numbers of the nodes in `f32`; returns the total slide of all joints in each lane.
     fn read_numbers(&mut self, eight: &Range<usize>) -> LaneRow<f32> {
         let tree = &self.checker.tree;
         let (width, mut slides) = (tree.columns(), [0.0; LANES]);
@@ -89,7 +91,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         slides
     }
 
-    /// The pairs that are near in a lane in their order; of a lane in which the filter is blind all.
+    /// The candidate pairs of a lane in their order; all pairs for a blind lane.
     fn candidates(&self, lane: usize) -> Vec<NearPair> {
         if self.search.blind >> lane & 1 == 0 {
             let near = self.search.near.iter();
@@ -103,13 +105,15 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
     }
 }
 
-/// An angle in `f32`, off by little more than a rounding error of 4; NaN for what is too large.
+/// An angle in `f32`, with an error of little more than the rounding error of 4; NaN above
+/// `FAR_ANGLE`.
 #[inline(always)]
 fn angle<N: Real>(value: N) -> f32 {
     let size = value.as_f64().abs();
     if size <= NEAR_ANGLE { value.as_f32() } else { reduced(value) }
 }
 
+/// The angle modulo a full turn, reduced in `f64`; NaN above `FAR_ANGLE`.
 #[cold]
 fn reduced<N: Real>(value: N) -> f32 {
     let value = value.as_f64();
@@ -142,7 +146,7 @@ pub(super) fn are_free<N: Space<D>, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
-    /// The lanes that are not free.
+    /// Returns the lanes that are not free, as bits.
     fn hits(&mut self, clearance: N) -> u8 {
         let mut hits = self.search.hits;
         let mut put_off = Vec::new();
@@ -175,14 +179,14 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
         hits
     }
 
-    /// Whether parts of a pair are not farther apart than the clearance.
+    /// Whether a search of parts finds a pair within the clearance; counts the result in the odds.
     fn search_parts(&mut self, pair: (u32, Other), lane: usize, clearance: N) -> bool {
         let is_hit = self.exact.searched(pair, lane, clearance).is_some();
         self.odds.count(pair, is_hit);
         is_hit
     }
 
-    /// The first pair of a lane that is not farther apart than the clearance.
+    /// Returns the first pair of a lane within the clearance.
     fn first(&mut self, lane: usize, clearance: N) -> Option<(u32, Other)> {
         let found = self.candidates(lane).into_iter().find(|near| {
             near.is_certain || self.exact.distance(near.pair, lane, clearance).is_some()
@@ -241,10 +245,11 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
-    /// The nearest pair of a lane up to a limit, of equally near ones the first.
+    /// Returns the nearest pair of a lane up to a limit, of equally near ones the first.
     ///
-    /// The pairs are asked by their lower bounds, those that may touch in their order; so all that follow one that is
-    /// nearer than their bound are farther, and of two that touch the first comes first.
+    /// Candidates are computed in the order of their lower bounds, those that may touch in pair
+    /// order. So the search ends once the best distance is below the next bound, and of two pairs
+    /// that touch the first is found.
     fn nearest(&mut self, lane: usize, limit: N) -> Option<(N, (u32, Other))> {
         let bound = |near: &NearPair| max(near.lower, 0.0);
         let mut candidates = self.candidates(lane);
@@ -287,7 +292,7 @@ mod tests {
         ShapeHandle::new(TriMesh::new(corners, faces))
     }
 
-    /// Surfaces of some sizes and places, of which the last slides along the diagonal.
+    /// Surfaces of given sizes and positions, of which the last slides along the diagonal.
     fn slider(surfaces: &[(f64, [f64; 3])], pairs: &[[u32; 2]]) -> Checker<f64, 3> {
         let diagonal = Unit::new_normalize(Vector::<f64, 3>::repeat(1.0));
         let frame = |joint| Frame { parent: None, origin: Pose::identity(), joint };
@@ -301,7 +306,8 @@ mod tests {
         Checker::try_new(tree, bodies.collect(), pairs).expect("bodies")
     }
 
-    /// The configurations that are not free, by bits, and how often parts of each pair of bodies were searched.
+    /// The configurations that are not free, as bits, and the number of part searches of each pair
+    /// of bodies.
     fn searches(checker: &Checker<f64, 3>, rows: &[f64]) -> (u64, Vec<u32>) {
         let mut sweep = EightByEight::new(checker, rows, SearchMode::Any);
         let mut all = 0;
@@ -315,7 +321,8 @@ mod tests {
     #[test]
     fn parts_are_searched_where_hulls_touch() {
         let checker = slider(&[(1.0, [0.0; 3]), (1.0, [0.0; 3])], &[[0, 1]]);
-        // They touch up to the height of the corner above the opposite face, 0.577; balls around them up to 1.7.
+        // They touch up to the height of the corner above the opposite face, 0.577; balls around
+        // them up to 1.7.
         let rows = [0.6, 0.25, 0.75, 0.5, 1.0, 0.57, 1.25, 0.58, 1.5, 1.65];
         assert_eq!(searches(&checker, &rows).0, 0b10_1010);
         assert_eq!(searches(&checker, &rows), (0b10_1010, vec![6]), "of the first six all");
@@ -324,7 +331,7 @@ mod tests {
 
     #[test]
     fn pairs_that_seldom_touch_are_asked_last() {
-        // One within another, whose hulls overlap; and two that touch in all rows but the last.
+        // One inside another, whose hulls overlap; and two that touch in all rows but the last.
         let surfaces = [(8.0, [0.0; 3]), (0.5, [1.0; 3]), (1.0, [20.0; 3]), (1.0, [20.0; 3])];
         let checker = slider(&surfaces, &[[0, 1], [2, 3]]);
         let mut rows = [0.3; 17];

@@ -1,4 +1,4 @@
-//! What moves with the frames, and what stands still.
+//! Bodies that move with the frames, and obstacles at rest.
 
 use crate::math::{Pose, Real};
 use crate::shape::ShapeHandle;
@@ -17,13 +17,13 @@ use crate::shape::ShapeHandle;
 pub struct Body<N: Real, const D: usize> {
     /// The number of the frame.
     pub frame: usize,
-    /// What it is.
+    /// Its shape.
     pub shape: ShapeHandle<N, D>,
-    /// Where it is in the frame.
+    /// Its pose in the frame.
     pub pose: Pose<N, D>,
 }
 
-/// A shape that stands in the world.
+/// A shape at rest in the world.
 ///
 /// ```
 /// use impinge::dim2::checker::Obstacle;
@@ -36,8 +36,8 @@ pub struct Body<N: Real, const D: usize> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Obstacle<N: Real, const D: usize> {
-    /// What it is.
+    /// Its shape.
     pub shape: ShapeHandle<N, D>,
-    /// Where it is.
+    /// Its pose in the world.
     pub pose: Pose<N, D>,
 }

@@ -15,7 +15,7 @@ use crate::math::simd::Simd;
 use crate::math::trigonometry::sine_cosine;
 use crate::math::{Matrix, Pose, Real, Vector, Wide, filled};
 
-/// How many configurations are treated at once.
+/// Configurations that are computed at once.
 pub(super) const LANES: usize = 8;
 
 /// A number for each of eight configurations.
@@ -29,27 +29,28 @@ pub(super) struct PoseRows<N, const D: usize> {
     translation: [LaneRow<N>; D],
 }
 
-/// A frame that moves, on another or on the world.
+/// A frame that moves, on another frame or on the world.
 #[derive(Clone, Debug)]
 pub(super) struct Node<N: Real, const D: usize> {
-    /// Which block of rows it moves on: 0 is the world, its own is one more than its index.
+    /// The index of the parent's block of rows: 0 is the world; a node's own block is its index
+    /// plus one.
     pub(super) parent: usize,
-    /// Where its joint is on the parent.
+    /// The position of its joint on the parent.
     pub(super) origin: Vector<N, D>,
     rotation: Swing<N, D>,
 }
 
-/// What a number does to a node.
+/// The motion of a node by its number.
 #[derive(Clone, Debug)]
 enum Swing<N: Real, const D: usize> {
     /// A, B and C of the rotation.
     Turn([Matrix<N, D>; 3]),
-    /// The constant rotation, and the shift in the parent.
+    /// The constant rotation, and the direction of the shift in the parent.
     Slide(Matrix<N, D>, Vector<N, D>),
 }
 
 impl<N: Real, const D: usize> Node<N, D> {
-    /// A frame with a joint that moves, `origin` being that on the parent node; `None` without motion.
+    /// A frame with a joint at `origin` on the parent node; `None` for a fixed joint.
     pub(super) fn new(parent: usize, origin: &Pose<N, D>, frame: &Frame<N, D>) -> Option<Self> {
         let turned = origin.rotation;
         let rotation = match frame.joint.motion {
@@ -64,7 +65,7 @@ impl<N: Real, const D: usize> Node<N, D> {
         Some(Self { parent, origin: origin.translation, rotation })
     }
 
-    /// Its rotation on its parent, if no number changes it.
+    /// Its rotation on its parent, if it is constant.
     pub(super) const fn constant_rotation(&self) -> Option<Matrix<N, D>> {
         match &self.rotation {
             Swing::Slide(turned, _) => Some(*turned),
@@ -72,12 +73,12 @@ impl<N: Real, const D: usize> Node<N, D> {
         }
     }
 
-    /// Its number is a length.
+    /// Whether its number is a length.
     pub(super) const fn slides(&self) -> bool {
         matches!(self.rotation, Swing::Slide(..))
     }
 
-    /// The same in `f32`, moved by a shift if it moves on the world.
+    /// Converts the node to `f32`, with its origin moved by `-shift` if its parent is the world.
     pub(super) fn in_f32(&self, shift: &Vector<N, D>) -> Node<f32, D> {
         let origin = if self.parent == 0 { self.origin - shift } else { self.origin };
         let rotation = match &self.rotation {
@@ -87,7 +88,7 @@ impl<N: Real, const D: usize> Node<N, D> {
         Node { parent: self.parent, origin: origin.map(N::as_f32), rotation }
     }
 
-    /// One column of its rotation on its parent, by the sine and the cosine of its number.
+    /// One column of its rotation on its parent, from the sine and the cosine of its number.
     #[inline(always)]
     fn column<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -108,7 +109,7 @@ impl<N: Real, const D: usize> Node<N, D> {
         )
     }
 
-    /// Where it is on its parent.
+    /// Its position on its parent.
     #[inline(always)]
     fn place<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> [V; D] {
         filled(
@@ -125,7 +126,7 @@ impl<N: Real, const D: usize> Node<N, D> {
 }
 
 impl<N: Real, const D: usize> PoseRows<N, D> {
-    /// The world, or nothing yet.
+    /// The identity in all lanes: the world's block, or a block to be written.
     pub(super) fn identity() -> Self {
         let mut rows =
             Self { rotation: [[[N::ZERO; LANES]; D]; D], translation: [[N::ZERO; LANES]; D] };
@@ -144,7 +145,7 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         }
     }
 
-    /// A local direction in each lane, in the outer frame.
+    /// Rotates a local direction in each lane to the outer frame.
     #[inline(always)]
     fn vector<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, local: &[V; D]) -> [V; D] {
         filled(
@@ -159,13 +160,13 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         )
     }
 
-    /// A local point in each lane, in the outer frame.
+    /// Transforms a local point in each lane to the outer frame.
     #[inline(always)]
     pub(super) fn point<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, local: &[V; D]) -> [V; D] {
         plus(&self.vector(simd, local), &load(simd, &self.translation))
     }
 
-    /// Eight local points by the pose in one lane, in the outer frame.
+    /// Transforms eight local points by the pose in one lane to the outer frame.
     #[inline(always)]
     pub(super) fn points_in<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -185,11 +186,11 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         )
     }
 
-    /// The lanes in which no coordinate is above a length, or NaN.
+    /// The lanes, as bits, in which no coordinate is NaN or above `most` in magnitude.
     #[inline(always)]
     pub(super) fn lanes_within<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, most: N) -> u8 {
         let most = V::all(simd, most);
-        // What is no angle makes no number of the rotation.
+        // A NaN or infinite angle makes the rotation NaN.
         let mut within = V::load(simd, &self.rotation[0][0]).abs().simd_le(most);
         for axis in 0..D {
             within &= V::load(simd, &self.translation[axis]).abs().simd_le(most);
@@ -198,8 +199,8 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
     }
 }
 
-/// The poses of all nodes for eight configurations: `numbers` has the number of each node, `rows` the world and a block
-/// for each node.
+/// Computes the poses of all nodes for eight configurations. `numbers` has one row for each node;
+/// `rows` has the world's block and one for each node.
 #[inline(always)]
 pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -212,7 +213,7 @@ pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         let swing = if node.slides() { [number; 2] } else { sine_cosine(simd, number) };
         let (before, own) = rows.split_at_mut(index + 1);
         let (parent, own) = (&before[node.parent], &mut own[0]);
-        // On the world as it is: that changes no bit.
+        // Directly on the world the product with the identity is skipped, which changes no bit.
         let is_inner = node.parent != 0;
         for column in 0..D {
             let inner = node.column(simd, column, &swing);
@@ -225,7 +226,7 @@ pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     }
 }
 
-/// Writes vectors, one in each lane.
+/// Stores vectors, one in each lane.
 #[inline(always)]
 pub(super) fn store<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     from: &[V; D],

@@ -9,17 +9,18 @@ use super::{Body, CheckerError, FrameTree, NearestColumns, Obstacle};
 use crate::batch::{BatchError, Control};
 use crate::math::{Pose, Real, Space};
 
-/// The pair of a configuration that has none.
+/// The entry for a configuration without a pair.
 pub const NO_PAIR: [u32; 2] = [u32::MAX; 2];
 
 /// Bodies on moving frames, pairs of them that must not touch, and obstacles.
 ///
-/// Bodies and obstacles have numbers in common: those of the obstacles begin with the number of bodies. Pairs come in
-/// the order of their numbers, the lower of the two first: those of body 0 with other bodies, then with obstacles, then
-/// those of body 1.
+/// Bodies and obstacles share one numbering: obstacles follow the bodies. Pairs are ordered by
+/// their numbers, the lower of the two first: those of body 0 with other bodies, then with
+/// obstacles, then those of body 1.
 ///
-/// A configuration is free if no pair touches, with a clearance if all are farther apart than that. If a frame has a pose
-/// that is not finite, the configuration is not free, has no pair, and the distance NaN.
+/// A configuration is free if no pair touches, or, with a clearance, if all pairs are farther apart
+/// than the clearance. If a frame has a pose that is not finite, the configuration is not free, has
+/// no pair, and its distance is NaN.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control};
@@ -59,7 +60,7 @@ pub const NO_PAIR: [u32; 2] = [u32::MAX; 2];
 pub struct Checker<N: Real, const D: usize> {
     pub(super) tree: FrameTree<N, D>,
     pub(super) bodies: Vec<Body<N, D>>,
-    /// Where each body is on the node that moves it.
+    /// The place of each body on the node that moves it.
     pub(super) places: Vec<OnNode<N, D>>,
     /// Ascending, the lower number first.
     pairs: Vec<[u32; 2]>,
@@ -67,18 +68,19 @@ pub struct Checker<N: Real, const D: usize> {
     pub(super) hulls: BodyHulls<N, D>,
     pub(super) robot: RobotFilter<D>,
     pub(super) surroundings: Surroundings<D>,
-    /// Bodies and obstacles that may touch, ascending.
+    /// Pairs of a body and an obstacle that may touch, ascending.
     ignored: Vec<[u32; 2]>,
 }
 
 impl<N: Space<D>, const D: usize> Checker<N, D> {
-    /// Bodies on the frames of a tree, and the pairs of bodies that must not touch, in any order; without obstacles.
+    /// Builds a checker from bodies on the frames of a tree and the pairs of bodies that must not
+    /// touch, in any order. It has no obstacles.
     ///
     /// Cost: O(n log n) for n bodies and pairs.
     ///
     /// # Errors
-    /// [`CheckerError::BodyFrame`], [`CheckerError::NotFinite`], [`CheckerError::Pair`] or [`CheckerError::TooMany`],
-    /// for the first that is wrong.
+    /// [`CheckerError::BodyFrame`], [`CheckerError::NotFinite`], [`CheckerError::Pair`] or
+    /// [`CheckerError::TooMany`], for the first fault.
     pub fn try_new(
         tree: FrameTree<N, D>,
         bodies: Vec<Body<N, D>>,
@@ -108,13 +110,14 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         })
     }
 
-    /// Replaces all obstacles; `ignored` has pairs `[body, obstacle]`, each from zero, that may touch.
+    /// Replaces all obstacles; `ignored` has pairs `[body, obstacle]` that may touch, each numbered
+    /// from zero.
     ///
-    /// Cost: the distance of each obstacle from a point for each link.
+    /// Cost: the distance of each obstacle from a point for each group of balls.
     ///
     /// # Errors
-    /// [`CheckerError::NotFinite`], [`CheckerError::Pair`] or [`CheckerError::TooMany`], for the first that is wrong;
-    /// then nothing is replaced.
+    /// [`CheckerError::NotFinite`], [`CheckerError::Pair`] or [`CheckerError::TooMany`], for the
+    /// first fault; then nothing is replaced.
     pub fn try_set_obstacles(
         &mut self,
         obstacles: Vec<Obstacle<N, D>>,
@@ -162,10 +165,11 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         &self.obstacles
     }
 
-    /// The poses of all bodies for each configuration, row by row, as [`FrameTree::place`] gives those of frames.
+    /// Writes the poses of all bodies for each configuration, row by row, as [`FrameTree::place`]
+    /// does for frames.
     ///
     /// # Errors
-    /// As [`FrameTree::place`].
+    /// As for [`FrameTree::place`].
     pub fn place_bodies(
         &self,
         configurations: &[N],
@@ -186,18 +190,20 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         )
     }
 
-    /// Whether each configuration is free: all pairs are farther apart than `clearance`, or with zero do not touch.
+    /// Writes whether each configuration is free: all pairs are farther apart than `clearance`, or
+    /// do not touch if it is zero.
     ///
-    /// `configurations` has a number for each column of the tree, row by row. A `clearance` that is negative or NaN
-    /// counts as zero.
+    /// `configurations` has a number for each column of the tree, row by row. A `clearance` that is
+    /// negative or NaN counts as zero.
     ///
-    /// Cost: some microseconds for eight configurations of a robot of some fifty balls among ten obstacles. Some tens of
-    /// microseconds for each of a robot of meshes, most of it for those pairs whose convex hulls touch. The hull of a mesh is
-    /// made once, in O(n log n) for n vertices, when some configurations have asked for it.
+    /// Cost: some microseconds for eight configurations of a robot of some fifty balls among ten
+    /// obstacles. Some tens of microseconds for each configuration of a robot of meshes, most of it
+    /// for pairs whose convex hulls touch. The hull of a mesh is computed once, in O(n log n) for n
+    /// vertices, after it was needed for some configurations.
     ///
     /// # Errors
-    /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` has not as many rows as `out` has slots,
-    /// [`BatchError::Cancelled`].
+    /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` does not have as
+    /// many rows as `out` has slots, [`BatchError::Cancelled`].
     pub fn are_free(
         &self,
         configurations: &[N],
@@ -209,10 +215,11 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         entries::are_free(self, (configurations, clearance), control, out)
     }
 
-    /// The first pair of each configuration that is not farther apart than `clearance`; [`NO_PAIR`] if it is free.
+    /// Writes the first pair of each configuration that is within `clearance`; [`NO_PAIR`] if the
+    /// configuration is free.
     ///
     /// # Errors
-    /// As [`Self::are_free`].
+    /// As for [`Self::are_free`].
     pub fn first_pairs(
         &self,
         configurations: &[N],
@@ -224,14 +231,15 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         entries::first_pairs(self, (configurations, clearance), control, out)
     }
 
-    /// The distance of the nearest pair of each configuration up to `limit`, and that pair: of several the first.
+    /// Writes the distance of the nearest pair of each configuration up to `limit`, and that pair:
+    /// the first of equally near ones.
     ///
-    /// A `limit` that is negative or NaN counts as zero. It never changes a distance, only whether there is one; a low one
-    /// saves time.
+    /// A `limit` that is negative or NaN counts as zero. It never changes a distance, only whether
+    /// there is one; a low limit saves time.
     ///
     /// # Errors
-    /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` has not as many rows as each column that is
-    /// not empty has slots, [`BatchError::Cancelled`].
+    /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` does not have as
+    /// many rows as each column that is not empty has slots, [`BatchError::Cancelled`].
     pub fn nearest(
         &self,
         configurations: &[N],
@@ -245,7 +253,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         entries::nearest(self, (configurations, limit, count), control, out)
     }
 
-    /// There are as many configurations as slots.
+    /// Checks that there are as many configurations as slots.
     fn check(
         &self,
         argument: &'static str,
@@ -256,7 +264,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         if given == needed { Ok(()) } else { Err(BatchError::Length { argument, given, needed }) }
     }
 
-    /// A pair by the numbers that bodies and obstacles have in common.
+    /// A pair in the shared numbering of bodies and obstacles.
     pub(super) fn numbers_of(&self, (body, other): (u32, Other)) -> [u32; 2] {
         let bodies = u32::try_from(self.bodies.len()).expect("32 bits can number the bodies");
         match other {
@@ -265,7 +273,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         }
     }
 
-    /// All pairs in their order.
+    /// Bodies' pairs in order, then all pairs of a body and an obstacle.
     pub(super) fn pairs_in_order(&self) -> impl Iterator<Item = (u32, Other)> + '_ {
         let pairs = self.pairs.iter().map(|&[one, other]| (one, Other::Body(other)));
         let bodies = 0..u32::try_from(self.bodies.len()).expect("32 bits can number the bodies");
@@ -291,7 +299,7 @@ pub(super) fn robot<N: Space<D>, const D: usize>(
     RobotFilter::new(tree, placed, pairs)
 }
 
-/// Bodies are on frames and have poses.
+/// Checks that bodies are on existing frames and have finite poses.
 fn check_bodies<N: Real, const D: usize>(
     bodies: &[Body<N, D>],
     frames: usize,
@@ -311,6 +319,7 @@ fn check_bodies<N: Real, const D: usize>(
     Ok(())
 }
 
+/// Checks that `is_pair` holds for all pairs; `argument` names the list in the error.
 fn check_pairs(
     argument: &'static str,
     pairs: &[[u32; 2]],

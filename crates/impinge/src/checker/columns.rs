@@ -1,10 +1,10 @@
-//! Where the distances go.
+//! Output columns of the distances.
 
 use crate::batch::BatchError;
 use crate::chunks::Cut;
 use crate::math::Real;
 
-/// Slots for the answers of [`Checker::nearest`](super::Checker::nearest).
+/// Slots for the results of [`Checker::nearest`](super::Checker::nearest).
 ///
 /// ```
 /// use impinge::checker::NearestColumns;
@@ -15,15 +15,15 @@ use crate::math::Real;
 /// ```
 #[derive(Debug, Default)]
 pub struct NearestColumns<'a, N: Real> {
-    /// How far apart the nearest pair is: zero if it touches, infinite without a pair within the limit, NaN for a
-    /// configuration that is not finite.
+    /// The distance of the nearest pair: zero if it touches, infinite without a pair within the
+    /// limit, NaN for a configuration that is not finite.
     pub distance: &'a mut [N],
-    /// That pair, numbered as by [`Checker::first_pairs`](super::Checker::first_pairs).
+    /// The nearest pair, numbered as by [`Checker::first_pairs`](super::Checker::first_pairs).
     pub pair: &'a mut [[u32; 2]],
 }
 
 impl<N: Real> NearestColumns<'_, N> {
-    /// Each column has so many slots, or none.
+    /// Checks that each column has `needed` slots or none.
     pub(super) const fn check(&self, needed: usize) -> Result<(), BatchError> {
         let (distances, pairs) = (self.distance.len(), self.pair.len());
         if distances != 0 && distances != needed {
@@ -35,6 +35,7 @@ impl<N: Real> NearestColumns<'_, N> {
         Ok(())
     }
 
+    /// Writes the result of one configuration to the columns that are not empty.
     pub(super) fn put(&mut self, slot: usize, distance: N, pair: [u32; 2]) {
         if let Some(place) = self.distance.get_mut(slot) {
             *place = distance;

@@ -14,7 +14,7 @@ compiled! {
     /// Checkers.
     trait CheckerEntries where feature = "batch";
 
-    /// The poses of what is on the nodes of a tree.
+    /// Writes the poses of objects on the nodes of a tree.
     fn place(
         tree: (&FrameTree<N, D>, &[OnNode<N, D>]),
         values: &[N],
@@ -50,7 +50,7 @@ compiled! {
         out: &mut [[u32; 2]],
     ) -> Done = answers::first_pairs;
 
-    /// `asked` has the configurations, the limit, and the number of pairs wanted for each.
+    /// `asked` has the configurations, the limit, and the number of configurations.
     fn nearest(
         checker: &Checker<N, D>,
         asked: (&[N], N, usize),

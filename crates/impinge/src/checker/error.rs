@@ -1,4 +1,4 @@
-//! Why there is no checker.
+//! Errors of the checker's input.
 
 use core::fmt;
 
@@ -16,21 +16,21 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CheckerError {
-    /// A frame moves on one that there is not.
+    /// The parent of a frame does not exist.
     Parent {
         /// The frame.
         frame: usize,
-        /// What it moves on.
+        /// Its parent.
         parent: usize,
         /// How many frames there are.
         frames: usize,
     },
-    /// A frame moves on itself by way of its parents.
+    /// A frame is its own ancestor.
     Loop {
         /// The frame.
         frame: usize,
     },
-    /// A joint is driven by a column that there is not.
+    /// The column that drives a joint does not exist.
     Column {
         /// The frame of the joint.
         frame: usize,
@@ -39,19 +39,19 @@ pub enum CheckerError {
         /// How many columns there are.
         columns: usize,
     },
-    /// The axis of a joint is no unit vector, or its generator none of a turn about one.
+    /// The axis of a joint is not a unit vector, or its generator not that of a rotation about one.
     Axis {
         /// The frame of the joint.
         frame: usize,
     },
     /// A pose or a joint has a number that is infinite or NaN.
     NotFinite {
-        /// What it is a pose of: `frames`, `bodies` or `obstacles`.
+        /// The list with the pose: `frames`, `bodies` or `obstacles`.
         argument: &'static str,
-        /// The index of what has it.
+        /// The index within the list.
         index: usize,
     },
-    /// A body is on a frame that there is not.
+    /// The frame of a body does not exist.
     BodyFrame {
         /// The body.
         body: usize,
@@ -60,9 +60,10 @@ pub enum CheckerError {
         /// How many frames there are.
         frames: usize,
     },
-    /// A pair of bodies, or of a body and an obstacle, names one that there is not, or a body twice.
+    /// A pair of bodies, or of a body and an obstacle, refers to one that does not exist, or to a
+    /// body twice.
     Pair {
-        /// What the list of pairs is called: `pairs` or `ignored`.
+        /// The list of pairs: `pairs` or `ignored`.
         argument: &'static str,
         /// The index of the pair.
         index: usize,

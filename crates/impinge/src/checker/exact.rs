@@ -1,4 +1,4 @@
-//! The single calls that decide what the filter leaves open.
+//! The exact queries that decide the pairs left open by the filter.
 
 use core::ops::Range;
 
@@ -9,7 +9,7 @@ use crate::collide::Placed;
 use crate::math::Space;
 use crate::query::distance_within;
 
-/// The poses of up to eight configurations in the scalar, computed when the first is needed.
+/// The poses of up to eight configurations in the user's scalar, computed on first use.
 pub(super) struct Exact<'a, N: Space<D>, const D: usize> {
     checker: &'a Checker<N, D>,
     configurations: &'a [N],
@@ -32,13 +32,13 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         }
     }
 
-    /// Turns to other configurations.
+    /// Switches to other configurations.
     pub(super) const fn begin(&mut self, range: Range<usize>) {
         self.range = range;
         self.is_placed = false;
     }
 
-    /// The poses of all nodes.
+    /// The poses of all nodes, computed on first use.
     fn rows(&mut self) -> &[PoseRows<N, D>] {
         if !self.is_placed {
             let tree = &self.checker.tree;
@@ -49,14 +49,14 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         &self.rows
     }
 
-    /// The frames of a configuration have poses.
+    /// Whether all frames of a configuration have finite poses.
     pub(super) fn is_finite(&mut self, lane: usize) -> bool {
         let frames = &self.checker.tree.frames;
         let rows = self.rows();
         frames.iter().all(|frame| frame.at(rows, lane).is_finite())
     }
 
-    /// What is known of a pair in a configuration without a search of parts: its distance up to a limit, or nothing.
+    /// Computes the distance of a pair up to a limit, unless that needs a search of parts.
     pub(super) fn glance(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Glance<N> {
         let [(one, number1), (other, number2)] = self.solids(pair, lane);
         let is_convex = |solid: &Placed<'_, N, D>| solid.shape.as_composite().is_none();
@@ -76,13 +76,13 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         }
     }
 
-    /// The same by a search of parts, if it has any.
+    /// The distance of a pair up to a limit, by a search of parts where it has any.
     pub(super) fn searched(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Option<N> {
         let [(one, _), (other, _)] = self.solids(pair, lane);
         distance_within(&one, &other, limit)
     }
 
-    /// The solids of a pair, with their numbers if they are bodies.
+    /// The solids of a pair, with their body numbers; `None` for an obstacle.
     fn solids(
         &mut self,
         (first, other): (u32, Other),
@@ -107,7 +107,8 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
     }
 }
 
-/// What is known of a pair at a glance.
+/// The result of [`Exact::glance`]: the distance up to a limit, or unknown without a search of
+/// parts.
 pub(super) enum Glance<N> {
     Known(Option<N>),
     Unknown,

@@ -1,4 +1,4 @@
-//! A tree of frames, and where they are.
+//! Trees of frames, and their poses.
 
 use super::entries;
 use core::ops::Range;
@@ -14,11 +14,11 @@ use crate::math::{Pose, Real, Space};
 
 /// Frames that move on each other, by the numbers of a configuration.
 ///
-/// A configuration is a row of `columns` numbers: radians or lengths, as the joints have it. Frames are numbered as
-/// they are given, in any order; a parent may come after its child.
+/// A configuration is a row of `columns` numbers: radians or lengths, according to the joints.
+/// Frames are numbered as given, in any order; a parent may come after its child.
 ///
-/// Sines and cosines are polynomials of the library's own: they have the same bits on every machine, and are off by
-/// at most two units of the last place of 1.
+/// Sines and cosines are polynomials of the library: they have the same bits on every machine, with
+/// an error of at most two units of the last place of 1.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control};
@@ -45,12 +45,12 @@ pub struct FrameTree<N: Real, const D: usize> {
     pub(super) nodes: Vec<Node<N, D>>,
     /// The joint of each node.
     pub(super) joints: Vec<Joint<N, D>>,
-    /// Where each frame is.
+    /// The place of each frame.
     pub(super) frames: Vec<OnNode<N, D>>,
     columns: usize,
 }
 
-/// A constant pose on a node: on the world for 0, else on the node of the index that is one less.
+/// A constant pose on a node: 0 is the world, else node index plus one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OnNode<N: Real, const D: usize> {
     pub(super) node: usize,
@@ -59,13 +59,13 @@ pub(super) struct OnNode<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> OnNode<N, D> {
-    /// What stands at a constant pose on this.
+    /// The place of an object at a constant pose on this.
     pub(super) fn then(&self, inner: &Pose<N, D>) -> Self {
         let pose = self.pose.map_or(*inner, |outer| outer.compose(inner));
         Self { node: self.node, pose: Some(pose) }
     }
 
-    /// Where it is in a lane.
+    /// Its pose in a lane.
     pub(super) fn at(&self, rows: &[PoseRows<N, D>], lane: usize) -> Pose<N, D> {
         let on_world = self.node == 0;
         match (&self.pose, on_world) {
@@ -77,11 +77,13 @@ impl<N: Real, const D: usize> OnNode<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> FrameTree<N, D> {
-    /// The tree of these frames, moved by configurations of so many columns. No joint needs to use a column.
+    /// Builds the tree of these frames, moved by configurations of `columns` numbers. Columns may
+    /// be unused.
     ///
     /// # Errors
-    /// [`CheckerError::Parent`], [`CheckerError::Loop`], [`CheckerError::Column`], [`CheckerError::Axis`], and
-    /// [`CheckerError::NotFinite`] of an origin or a joint, each for the first frame that has it.
+    /// [`CheckerError::Parent`], [`CheckerError::Loop`], [`CheckerError::Column`],
+    /// [`CheckerError::Axis`], and [`CheckerError::NotFinite`] for an origin or a joint, each for
+    /// the first faulty frame.
     pub fn try_new(frames: &[Frame<N, D>], columns: usize) -> Result<Self, CheckerError> {
         for (index, frame) in frames.iter().enumerate() {
             check(index, frame, [frames.len(), columns])?;
@@ -101,7 +103,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         Ok(tree)
     }
 
-    /// Adds a node for a frame that moves, `origin` being where its joint is.
+    /// Adds a node for a frame that moves; `origin` is the place of its joint.
     fn with_frame(&mut self, origin: &OnNode<N, D>, frame: &Frame<N, D>) -> OnNode<N, D> {
         let at = origin.pose.unwrap_or_else(Pose::identity);
         let Some(node) = Node::new(origin.node, &at, frame) else { return *origin };
@@ -110,33 +112,35 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         OnNode { node: self.nodes.len(), pose: None }
     }
 
-    /// How many frames there are.
+    /// The number of frames.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.frames.len()
     }
 
-    /// There is no frame.
+    /// Whether there is no frame.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.frames.is_empty()
     }
 
-    /// How many numbers a configuration has.
+    /// The number of numbers in a configuration.
     #[inline]
     #[must_use]
     pub const fn columns(&self) -> usize {
         self.columns
     }
 
-    /// The poses of all frames for each configuration, row by row: `poses[configuration * len + frame]`.
+    /// Writes the poses of all frames for each configuration, row by row: `poses[configuration *
+    /// len + frame]`.
     ///
-    /// `configurations` has [`Self::columns`] numbers for each configuration, row by row. Numbers that are not finite
-    /// give poses that are not.
+    /// `configurations` has [`Self::columns`] numbers for each configuration, row by row. Numbers
+    /// that are not finite give poses that are not.
     ///
     /// # Errors
-    /// [`BatchError::PartialRow`] if `configurations` ends within a row, or has numbers where there are no columns,
-    /// [`BatchError::Length`] if there is not a pose for each, [`BatchError::Cancelled`].
+    /// [`BatchError::PartialRow`] if `configurations` ends within a row, or has numbers where there
+    /// are no columns, [`BatchError::Length`] if `poses` does not have one pose for each,
+    /// [`BatchError::Cancelled`].
     pub fn place(
         &self,
         configurations: &[N],
@@ -152,7 +156,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         entries::place((self, &self.frames), configurations, control, rows)
     }
 
-    /// How many configurations these are; without columns as many as are wanted.
+    /// Returns the number of configurations; `wanted` if there are no columns.
     pub(super) fn count_of(
         &self,
         configurations: &[N],
@@ -167,7 +171,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         }
     }
 
-    /// The numbers of all nodes for up to eight configurations; the last one fills what is left.
+    /// Reads the numbers of all nodes for up to eight configurations; the last one fills the rest.
     pub(super) fn numbers(
         &self,
         configurations: &[N],
@@ -183,14 +187,14 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         }
     }
 
-    /// The poses of all nodes by their numbers.
+    /// Computes the poses of all nodes from their numbers.
     pub(super) fn forward(&self, numbers: &[LaneRow<N>], rows: &mut [PoseRows<N, D>]) {
         let (level, nodes) = (Level::new(), &*self.nodes);
         with_lanes!(level, simd => forward::<_, N, N::Lanes<_>, D>(simd, nodes, numbers, rows));
     }
 }
 
-/// See [`FrameTree::place`]: the poses of what is on the nodes of a tree.
+/// See [`FrameTree::place`]: writes the poses of objects on the nodes of a tree.
 pub(super) fn place<N: Space<D>, const D: usize>(
     (tree, placed): (&FrameTree<N, D>, &[OnNode<N, D>]),
     configurations: &[N],
@@ -214,6 +218,7 @@ pub(super) fn place<N: Space<D>, const D: usize>(
     Progress::new(control).run(count, poses, work)
 }
 
+/// Checks the parent, the column, the numbers and the axis of a frame.
 fn check<N: Real, const D: usize>(
     index: usize,
     frame: &Frame<N, D>,
@@ -234,13 +239,13 @@ fn check<N: Real, const D: usize>(
     Ok(())
 }
 
-/// The numbers of the frames by how many parents they have, then by themselves.
+/// Returns the indices of the frames sorted by the number of their ancestors, then by index.
 fn parents_first<N: Real, const D: usize>(
     frames: &[Frame<N, D>],
 ) -> Result<Vec<usize>, CheckerError> {
     let depth = |frame: usize| {
         let mut above = frames[frame].parent;
-        // A way that is longer than there are frames has a loop.
+        // A path longer than the number of frames has a loop.
         for depth in 0..frames.len() {
             let Some(parent) = above else { return Ok(depth) };
             above = frames[parent].parent;

@@ -1,7 +1,8 @@
-//! Convex hulls of bodies that are made of triangles or segments: what is far from the hull is far from the body.
+//! Convex hulls of bodies made of triangles or segments: if the hulls are apart, so are the bodies.
 //!
-//! Two hulls are told apart at once, two meshes by a descent of their trees. The hulls of a robot's meshes hardly ever
-//! touch where the meshes do not, so the descents that are left are those that find something.
+//! Two hulls are separated by one query, two meshes by a descent of their trees. The hulls of a
+//! robot's meshes rarely touch where the meshes do not, so nearly all remaining descents find a
+//! contact.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -12,22 +13,23 @@ use crate::query::distance_within;
 use crate::shape::{CompositeShape, Geometry, PartSolid, ShapeHandle, TriMesh};
 use crate::tables::ByDimension;
 
-/// By how many rounding errors of all lengths hulls must be farther apart than the limit. The corners of a mesh are at
-/// most 32 outside of its hull, and the algorithms for pairs are off by some hundred.
+/// The margin, in rounding errors of all lengths, by which hulls must be farther apart than the
+/// limit. The corners of a mesh are at most 32 outside of its hull, and the pair algorithms are off
+/// by some hundred.
 const ROUNDING_ERRORS: f64 = 1024.0;
 
-/// How often a hull is asked for before it is made, which takes as long as some descents: those who ask about one
-/// configuration do not wait for it.
+/// How often a hull is requested before it is computed, which costs as much as some descents: a
+/// query of a single configuration does not wait for it.
 const ASKED_BEFORE: u32 = 16;
 
-/// The hulls of the bodies of a robot, each made when it has been asked for often enough: that changes no answer.
+/// The hulls of the bodies of a robot, each computed after some requests. They change no answer.
 #[derive(Clone, Debug)]
 pub(super) struct BodyHulls<N: Real, const D: usize>(Vec<LazyHull<N, D>>);
 
 #[derive(Debug)]
 struct LazyHull<N: Real, const D: usize> {
     asked: AtomicU32,
-    /// No hull of a body that is not made of corners, or has no volume.
+    /// `None` inside for a body that is not made of corners, or whose hull has no volume.
     made: OnceLock<Option<ShapeHandle<N, D>>>,
 }
 
@@ -37,7 +39,8 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
         Self((0..bodies).map(hull).collect())
     }
 
-    /// Two solids, of which bodies have numbers, are certainly farther apart than a limit, since their hulls are.
+    /// Whether two solids, each with the number of its body, are certainly farther apart than a
+    /// limit, by their hulls.
     pub(super) fn are_beyond(
         &self,
         solids: [(&Placed<'_, N, D>, Option<u32>); 2],
@@ -55,7 +58,7 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
         slack.is_finite_number() && distance_within(&one, &other, limit + slack).is_none()
     }
 
-    /// The hull of a body where the body is, if it is made of parts and has one.
+    /// The hull of a body at the body's pose, if the body is a composite with a hull.
     fn of<'a>(&'a self, body: &Placed<'_, N, D>, number: Option<u32>) -> Option<Placed<'a, N, D>> {
         let parts = body.shape.as_composite()?;
         let hull = self.0[number? as usize].get(parts)?;
@@ -79,14 +82,14 @@ impl<N: Real, const D: usize> Clone for LazyHull<N, D> {
     }
 }
 
-/// How far a solid is from the origin of its frame at most.
+/// An upper bound of the distance of a solid's points from the origin of its frame.
 fn reach<N: Real, const D: usize>(shape: &Geometry<'_, N, D>) -> N {
     let Some(parts) = shape.as_composite() else { return shape.extent() };
     let bounds = parts.search().bounds();
     (bounds.center().coords.abs() + bounds.half_extents()).norm()
 }
 
-/// The hull of what is made of triangles and segments alone.
+/// The hull of a composite of triangles and segments only.
 fn hull_of<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
 ) -> Option<ShapeHandle<N, D>> {
@@ -116,7 +119,7 @@ mod tests {
         Placed { pose: Pose::from_translation(place.into()), shape: shape.geometry() }
     }
 
-    /// The answer when the hull has been asked for often enough.
+    /// The answer after enough requests for the hull to be computed.
     fn last_of<const D: usize>(
         hulls: &BodyHulls<f64, D>,
         solids: [(&Placed<'_, f64, D>, Option<u32>); 2],
@@ -132,7 +135,7 @@ mod tests {
     fn a_mesh_is_as_far_as_its_hull_at_least() {
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let corners = corners.mapped(Point::<f64, 3>::from).to_vec();
-        // Of four faces the one across is missing: the hull is nearer to the ball than the mesh.
+        // The face across is missing: the hull is nearer to the ball than the mesh.
         let flat = TriMesh::new(corners[..3].to_vec(), vec![[0, 2, 1]]);
         let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 3, 2], [0, 1, 3]]);
         let ball = Ball::new(0.5);

@@ -1,12 +1,13 @@
-//! Joints: how one frame moves on another.
+//! Joints: the motion of one frame on another.
 
 use crate::math::{Matrix, Pose, Real, Unit, Vector};
 
-/// How a frame moves on its parent: by a number of the configuration, or not at all.
+/// The motion of a frame on its parent: by a number of the configuration, or none.
 ///
-/// A revolute joint turns by radians about an axis through the frame's origin, in 2D counter-clockwise; a prismatic
-/// joint shifts along an axis. The axis is in the frame of the joint. The number is that of a column of the
-/// configuration, times a factor, plus an offset: so one column drives several joints.
+/// A revolute joint rotates by radians about an axis through the frame's origin, in 2D
+/// counter-clockwise; a prismatic joint shifts along an axis. The axis is in the frame of the
+/// joint. The number is that of a column of the configuration, times a factor, plus an offset: so
+/// one column can drive several joints.
 ///
 /// ```
 /// use impinge::dim3::checker::Joint;
@@ -24,31 +25,31 @@ pub struct Joint<N: Real, const D: usize> {
     offset: N,
 }
 
-/// What a joint does with its number.
+/// The motion of a joint by its number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum JointMotion<N: Real, const D: usize> {
     Fixed,
-    /// Turns by the rotation whose generator this is: v ↦ axis × v, in 2D a quarter turn.
+    /// A rotation with this generator: v ↦ axis × v, in 2D a rotation by 90°.
     Turn(Matrix<N, D>),
-    /// Shifts along a unit vector.
+    /// A shift along a unit vector.
     Slide(Vector<N, D>),
 }
 
 impl<N: Real, const D: usize> Joint<N, D> {
-    /// No motion.
+    /// A joint without motion.
     #[must_use]
     pub fn fixed() -> Self {
         Self::driven(JointMotion::Fixed, 0)
     }
 
-    /// Shifts along an axis by the number in a column.
+    /// A joint that shifts along an axis by the number in a column.
     #[must_use]
     pub fn prismatic(axis: Unit<Vector<N, D>>, column: usize) -> Self {
         Self::driven(JointMotion::Slide(axis.into_inner()), column)
     }
 
-    /// Turns by the rotation exp(θ K) with the number θ in a column and the generator K: v ↦ axis × v of a unit axis in
-    /// 3D, a quarter turn in 2D.
+    /// A joint with the rotation exp(θ K), for the number θ in a column and the generator K: v ↦
+    /// axis × v for a unit axis in 3D, a rotation by 90° in 2D.
     ///
     /// ```
     /// use impinge::dim2::checker::Joint;
@@ -65,33 +66,33 @@ impl<N: Real, const D: usize> Joint<N, D> {
         Self { motion, column, factor: N::ONE, offset: N::ZERO }
     }
 
-    /// With a number that is multiplied by this; 1 at first.
+    /// Returns the joint with a factor for its number; 1 by default.
     #[must_use]
     pub const fn with_factor(self, factor: N) -> Self {
         Self { factor, ..self }
     }
 
-    /// With a number to which this is added; 0 at first.
+    /// Returns the joint with an offset added to its number; 0 by default.
     #[must_use]
     pub const fn with_offset(self, offset: N) -> Self {
         Self { offset, ..self }
     }
 
-    /// The column of the configuration that moves it; `None` of a fixed joint.
+    /// The column of the configuration that drives it; `None` for a fixed joint.
     #[must_use]
     pub fn column(&self) -> Option<usize> {
         (self.motion != JointMotion::Fixed).then_some(self.column)
     }
 
-    /// What a number in its column means for it: radians or a length.
+    /// Converts the number in its column to its own value: radians or a length.
     #[inline]
     #[must_use]
     pub fn value_at(&self, number: N) -> N {
         number * self.factor + self.offset
     }
 
-    /// Its axis is a unit vector, or its generator that of a turn about one, up to rounding: other numbers would stretch
-    /// what they move.
+    /// Whether its axis is a unit vector, or its generator that of a rotation about one, up to
+    /// rounding: other numbers would stretch the bodies.
     pub(super) fn has_unit_axis(&self) -> bool {
         let is_one = |x: N| (x - N::ONE).abs() <= N::lit(64.0) * N::EPSILON;
         match &self.motion {
@@ -104,7 +105,7 @@ impl<N: Real, const D: usize> Joint<N, D> {
         }
     }
 
-    /// All its numbers are finite.
+    /// Whether all its numbers are finite.
     pub(super) fn is_finite(&self) -> bool {
         let of_motion = match &self.motion {
             JointMotion::Fixed => true,
@@ -116,7 +117,7 @@ impl<N: Real, const D: usize> Joint<N, D> {
 }
 
 impl<N: Real> Joint<N, 2> {
-    /// Turns counter-clockwise by the radians in a column.
+    /// A joint that rotates counter-clockwise by the radians in a column.
     #[must_use]
     pub fn revolute(column: usize) -> Self {
         let quarter = Matrix::<N, 2>::new(N::ZERO, -N::ONE, N::ONE, N::ZERO);
@@ -125,7 +126,7 @@ impl<N: Real> Joint<N, 2> {
 }
 
 impl<N: Real> Joint<N, 3> {
-    /// Turns about an axis by the radians in a column, by the rule of the right hand.
+    /// A joint that rotates about an axis by the radians in a column, by the right-hand rule.
     #[must_use]
     pub fn revolute(axis: Unit<Vector<N, 3>>, column: usize) -> Self {
         Self::turning(axis.cross_matrix(), column)
@@ -134,7 +135,7 @@ impl<N: Real> Joint<N, 3> {
 
 /// A frame on its parent, or on the world.
 ///
-/// It stands at `parent ∘ origin ∘ motion of the joint`.
+/// Its pose is `parent ∘ origin ∘ motion of the joint`.
 ///
 /// ```
 /// use impinge::dim2::checker::{Frame, Joint};
@@ -149,10 +150,10 @@ impl<N: Real> Joint<N, 3> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<N: Real, const D: usize> {
-    /// The number of the frame that it moves on; `None` for the world.
+    /// The index of its parent frame; `None` for the world.
     pub parent: Option<usize>,
-    /// Where its joint is in the frame of the parent.
+    /// The pose of its joint in the parent's frame.
     pub origin: Pose<N, D>,
-    /// How it moves.
+    /// Its motion.
     pub joint: Joint<N, D>,
 }

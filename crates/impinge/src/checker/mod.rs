@@ -1,4 +1,4 @@
-//! The configuration checker: a robot on moving frames, and which of many configurations are free.
+//! The configuration checker: which of many configurations of a robot are free of collisions.
 //!
 //! ```text
 //!   FrameTree ── frames on joints, driven by the columns of a configuration ──┐
@@ -12,14 +12,16 @@
 //!   distance        [ 0.3 ]  [ 0.0 ]  [ 0.1 ]   …        Checker::nearest
 //! ```
 //!
-//! Eight configurations are moved and looked at side by side, in `f32` with a margin for all rounding errors. What that
-//! leaves open is asked of [`proximity`](crate::query::proximity()) and [`distance`](crate::query::distance()) on the
-//! poses of [`Checker::place_bodies`]; so all answers are theirs, to the bit, on any number of threads.
+//! Eight configurations are moved and tested side by side, in `f32` with a margin for all rounding
+//! errors. Undecided pairs are left to [`proximity`](crate::query::proximity()) and
+//! [`distance`](crate::query::distance()) at the poses of [`Checker::place_bodies`]; so all answers
+//! equal theirs, to the bit, on any number of threads.
 //!
-//! Balls are decided in lanes against balls, boxes, capsules, segments, cylinders and half-spaces; other bodies are held
-//! by balls and other obstacles by their boxes, and what these do not tell apart takes a single call for each pair. Bodies
-//! of triangles or segments are held by their convex hulls besides: parts are searched only where hulls touch, and where
-//! any pair will do, those pairs last of which most searches found nothing.
+//! Balls are tested in lanes against balls, boxes, capsules, segments, cylinders and half-spaces.
+//! Other bodies are covered by balls and other obstacles by their boxes; pairs that these do not
+//! separate take one exact query each. Bodies of triangles or segments also have convex hulls:
+//! parts are searched only where hulls touch. Where any pair suffices, pairs whose searches mostly
+//! found nothing come last.
 //!
 //! The idea of lanes across configurations is that of W. Thomason, Z. Kingston and L. E. Kavraki, "Motions in
 //! Microseconds via Vectorized Sampling-Based Planning" (2024).

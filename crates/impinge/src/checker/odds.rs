@@ -1,12 +1,13 @@
-//! Which pairs are likely to be found touching.
+//! Statistics of part searches by pair.
 
 use std::collections::BTreeMap;
 
 use super::filter::Other;
 
-/// How often parts of a pair were searched, and how often with success.
+/// The number of part searches of each pair, and how many of them found a contact.
 ///
-/// A configuration is decided by any pair that touches, so pairs that seldom do are asked last: that changes no answer.
+/// Any pair that touches decides a configuration, so pairs that seldom touch are searched last. The
+/// order changes no answer.
 #[derive(Debug, Default)]
 pub(super) struct PairOdds(BTreeMap<(u32, Other), [u32; 2]>);
 
@@ -17,13 +18,13 @@ impl PairOdds {
         *hits += u32::from(is_hit);
     }
 
-    /// How often parts of a pair were searched.
+    /// The number of part searches of a pair.
     #[cfg(test)]
     pub(super) fn searches(&self, pair: (u32, Other)) -> u32 {
         self.0.get(&pair).map_or(0, |[searches, _]| *searches)
     }
 
-    /// More than half of the searches found nothing.
+    /// Whether more than half of the searches found nothing.
     pub(super) fn are_poor(&self, pair: (u32, Other)) -> bool {
         self.0.get(&pair).is_some_and(|[searches, hits]| 2 * hits < *searches)
     }

@@ -1,8 +1,8 @@
-//! Slots for several answers about each configuration.
+//! Output slots with several values per configuration.
 
 use crate::chunks::Cut;
 
-/// A slice whose rows belong to configurations.
+/// A slice with one row of `width` slots per configuration.
 pub(super) struct RowsOf<'a, T> {
     slots: &'a mut [T],
     width: usize,
@@ -13,7 +13,7 @@ impl<'a, T> RowsOf<'a, T> {
         Self { slots, width }
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub(super) fn rows(&self) -> usize {
         self.slots.len().checked_div(self.width).unwrap_or(0)
     }

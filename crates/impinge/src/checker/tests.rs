@@ -1,4 +1,4 @@
-//! Every instruction set finds the same.
+//! All instruction sets give the same results.
 
 use super::chain::{LANES, LaneRow};
 use super::filter::{CollisionSearch, ScanScratch, SearchMode, scan_at};
@@ -8,7 +8,7 @@ use crate::math::simd::Level;
 use crate::math::{Pose, Space, Unit, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Plane, Segment, ShapeHandle};
 
-/// An arm of six joints, of which each third slides, with a ball and a box on each frame.
+/// An arm of six joints, every third of which slides, with a ball and a box on each frame.
 fn arm<N: Space<D>, const D: usize>(turn: fn(usize) -> Joint<N, D>) -> Checker<N, D> {
     let at = |axis: usize, by: f64| {
         let mut translation = Vector::<N, D>::zeros();
@@ -46,7 +46,7 @@ fn arm<N: Space<D>, const D: usize>(turn: fn(usize) -> Joint<N, D>) -> Checker<N
     checker
 }
 
-/// All that a search has found, as a text.
+/// The result of a search, as text.
 fn found<N: Space<D>, const D: usize>(
     (level, mode): (Level, SearchMode),
     checker: &Checker<N, D>,

@@ -1,22 +1,28 @@
-//! Shapes that are certainly too far apart, rejected before anything is rotated.
+//! Rejects shapes that are certainly too far apart, before anything is rotated.
 //!
-//! A ball around the origin of its frame holds a solid however it is turned. So the balls of two solids,
-//! whose radii are known at once, and the difference of the positions tell most pairs apart that the
-//! algorithms need not look at: without a rotation, an order of the two, or a feature.
+//! ```text
+//!     (  o1  ) - - - - between - - - - (   o2   )      balls around the origins hold the shapes
+//!       extent1                          extent2       at any rotation
 //!
-//! What is rejected here is what the algorithms would have answered. They are off by some hundred rounding
-//! errors of the lengths of the pair, and all of these are at most twice the distance of the origins
-//! where the balls do not meet. The squares are compared with a factor of 1 + 2⁻⁶: the balls of solids
-//! that are rejected are farther from each other than the limit by 2⁻⁸ of that distance, which is
-//! 2¹⁵ rounding errors of `f32`.
+//!       rejected if between² > (extent1 + extent2 + limit)² (1 + 2⁻⁶)
+//! ```
+//!
+//! A ball around the origin of its frame contains a solid at any rotation. So the balls of two
+//! solids, whose radii are known at once, and the difference of their positions reject most pairs,
+//! without a rotation, an order of the two, or a feature.
+//!
+//! A pair is rejected only if the algorithms would reject it. Their errors are some hundred epsilon
+//! of the lengths of the pair, and all of these are at most twice the distance of the origins if
+//! the balls do not overlap. Squares are compared with a factor of 1 + 2⁻⁶: the balls of rejected
+//! solids are farther apart than the limit by 2⁻⁸ of that distance, which is 2¹⁵ epsilon of `f32`.
 
 use crate::math::{Mapped, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Geometry, Kind, Shape};
 
-/// By how much the square of a distance must exceed that of the lengths it is held against.
+/// Factor by which a squared distance must exceed the squared lengths that it is compared with.
 const ROOM: f64 = 1.0 + 1.0 / 64.0;
 
-/// Two shapes and the way from the origin of the first to that of the second, in any frame.
+/// Two shapes and the vector from the origin of the first to that of the second, in any frame.
 #[derive(Clone, Copy)]
 pub(crate) struct Apart<'a, N: Real, const D: usize> {
     pub(crate) shapes: [Geometry<'a, N, D>; 2],
@@ -24,7 +30,7 @@ pub(crate) struct Apart<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Apart<'_, N, D> {
-    /// A ball is known around both shapes.
+    /// Returns whether a ball is known around both shapes.
     #[inline]
     pub(crate) fn has_balls(&self) -> bool {
         let is_without = |shape: &Geometry<'_, N, D>| {
@@ -33,8 +39,8 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         !self.shapes.iter().any(is_without)
     }
 
-    /// [`Self::is_beyond`], where to ask for that would cost more than the answer: of what has no balls, and of
-    /// what is one.
+    /// Returns [`Self::is_beyond`] where the answer costs less than the call: for two balls, and
+    /// for shapes without balls, which are never beyond. `None` for other pairs.
     #[inline]
     pub(crate) fn is_known_beyond(&self, limit: N) -> Option<bool> {
         if let [Kind::Ball(one), Kind::Ball(other)] = self.shapes.mapped(|shape| shape.0) {
@@ -44,30 +50,31 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         (!self.has_balls()).then_some(false)
     }
 
-    /// [`Self::is_known_beyond`] where that says something, else [`Self::is_beyond`].
+    /// Returns [`Self::is_known_beyond`] if that is known, else [`Self::is_beyond`].
     #[inline]
     pub(crate) fn is_certainly_beyond(&self, limit: N) -> bool {
         self.is_known_beyond(limit).unwrap_or_else(|| are_beyond(self, limit))
     }
 
-    /// The shapes are certainly farther apart than `limit`; a negative limit and NaN count as zero.
+    /// Returns whether the shapes are certainly farther apart than `limit`; a negative limit and
+    /// NaN count as zero.
     ///
-    /// `false` says nothing; it is the answer for half-spaces, composites and support maps of users, of
-    /// which no ball is known.
+    /// `false` proves nothing; it is the answer for half-spaces, composites and users' support
+    /// maps, for which no ball is known.
     pub(crate) fn is_beyond(&self, limit: N) -> bool {
         exceeds(self.between.norm_squared(), reach(self.extents(), limit))
     }
 
-    /// The sum of the radii of the balls.
+    /// Sum of the radii of the balls.
     fn extents(&self) -> N {
         self.shapes[0].extent() + self.shapes[1].extent()
     }
 
-    /// The same at all times up to `end`, zero included, while the second shape moves with `velocity`
-    /// against the first.
+    /// Returns whether the shapes stay certainly farther apart than `limit` from time zero to
+    /// `end`, both included, while the second moves with `velocity` relative to the first.
     pub(crate) fn stays_beyond(&self, limit: N, velocity: &Vector<N, D>, end: N) -> bool {
         let (speed_squared, along) = (velocity.norm_squared(), self.between.dot(velocity));
-        // A speed whose square is no number of the type says nothing about when they are nearest.
+        // If the squared speed overflows or underflows, the time of closest approach is unknown.
         let is_still = max_component(velocity) <= N::ZERO;
         let is_known = speed_squared > N::MIN_POSITIVE
             && speed_squared.is_finite_number()
@@ -77,16 +84,16 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         }
         let nearest = if is_still { N::ZERO } else { -along / speed_squared };
         let way = self.between + velocity * max(min(nearest, end), N::ZERO);
-        // The way is off by some rounding errors of the distance that it began with.
+        // The vector has an error of some epsilon of the distance that it began with.
         let rounding = max_component(&self.between) * N::lit(4096.0) * N::EPSILON;
         exceeds(way.norm_squared(), reach(self.extents(), limit) + rounding)
     }
 }
 
-/// What holds a shape in its own frame: a ball around the origin and a box.
+/// Bounds of a shape in its own frame: a ball around the origin and a box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReachBounds<N: Real, const D: usize> {
-    /// The radius of the ball; infinite where none is known, and the box then says nothing.
+    /// Radius of the ball; infinite if none is known, and the box then proves nothing.
     extent: N,
     middle: Vector<N, D>,
     half: Vector<N, D>,
@@ -94,7 +101,7 @@ pub(crate) struct ReachBounds<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> ReachBounds<N, D> {
-    /// Those of a shape.
+    /// Returns the bounds of a shape.
     pub(crate) fn of(shape: &dyn Shape<N, D>) -> Self {
         let (geometry, aabb) = (shape.geometry(), shape.local_aabb());
         Self {
@@ -105,30 +112,32 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
         }
     }
 
-    /// See [`Geometry::turns`].
+    /// Returns [`Geometry::turns`].
     #[inline]
     pub(crate) const fn turns(&self) -> bool {
         self.turns
     }
 
-    /// How far the points of the shape are from the origin of its frame at most; infinite where that is not
-    /// known.
+    /// Returns a bound of the distance of the shape's points from the origin of its frame; infinite
+    /// if none is known.
     pub(crate) fn reach(&self) -> N {
-        // No number for the box of a half-space, which says nothing.
+        // NaN for the box of a half-space, which proves nothing.
         let corner = (self.middle.abs() + self.half).norm();
         if corner < self.extent { corner } else { self.extent }
     }
 
-    /// [`Apart::is_beyond`] for the shapes that these hold.
+    /// Returns [`Apart::is_beyond`] for the shapes with these bounds.
     #[inline]
     pub(crate) fn is_clear_of(&self, other: &Self, between: &Vector<N, D>, limit: N) -> bool {
         exceeds(between.norm_squared(), reach(self.extent + other.extent, limit))
     }
 
-    /// The boxes are farther apart than `limit` along an axis of one of them, by 2⁻⁸ of all lengths of the
-    /// pair: 2¹⁵ rounding errors of `f32`. `pose12` is the pose of the other shape in the frame of this one.
+    /// Returns whether the boxes are farther apart than `limit` along an axis of one of them, by
+    /// 2⁻⁸ of all lengths of the pair: 2¹⁵ epsilon of `f32`. `pose12` is the pose of the other
+    /// shape in the frame of this one.
     ///
-    /// `false` says nothing; it is the answer for NaN and where the lengths have no sum.
+    /// `false` proves nothing; it is the answer for NaN and if the sum of the lengths is not
+    /// finite.
     pub(crate) fn has_box_clear_of(&self, other: &Self, pose12: &Pose<N, D>, limit: N) -> bool {
         let turn = &pose12.rotation;
         let away = turn * other.middle + pose12.translation - self.middle;
@@ -144,25 +153,26 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
             }
             widest = max(widest, max(away[one].abs() - first, back[one].abs() - second));
         }
-        // Lengths that are subnormal numbers are not precise.
+        // Subnormal lengths are not precise.
         widest > least && least > N::MIN_POSITIVE
     }
 }
 
-/// How far apart the origins are at most where the shapes are no farther apart than `limit`.
+/// Largest distance of the origins at which the shapes can be within `limit`.
 #[inline]
 fn reach<N: Real>(extents: N, limit: N) -> N {
     extents + max(limit, N::ZERO)
 }
 
-/// Squares that are subnormal numbers are not precise, which they are beside one that is not. NaN
-/// and infinities on the right are never exceeded; one on the left is too large for its type.
+/// Returns whether the square exceeds that of `reach` by `ROOM`. Subnormal squares are not precise
+/// and never exceed. NaN and infinity on the right are never exceeded; infinity on the left exceeds
+/// finite numbers.
 #[inline]
 fn exceeds<N: Real>(squared: N, reach: N) -> bool {
     squared > reach * reach * N::lit(ROOM) && squared > N::MIN_POSITIVE
 }
 
-/// [`Apart::is_beyond`], to be reached from elsewhere.
+/// Calls [`Apart::is_beyond`] out of line.
 pub(crate) fn are_beyond<N: Real, const D: usize>(apart: &Apart<'_, N, D>, limit: N) -> bool {
     apart.is_beyond(limit)
 }
@@ -191,7 +201,7 @@ mod tests {
         assert_eq!(ReachBounds::of(&plane).reach(), f64::INFINITY, "it has no end");
     }
 
-    /// A solid of any kind that has a ball, with sizes between nothing and one.
+    /// A solid of any kind that has a ball, with sizes from zero to one.
     type Draw<N, const D: usize> = fn(&mut Random, usize) -> Box<dyn Shape<N, D>>;
 
     fn of_plane<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 2>> {
@@ -236,8 +246,8 @@ mod tests {
         }
     }
 
-    /// Whatever is rejected is beyond the limit for the algorithms: close to where rejection begins, at all
-    /// scales, and where the world's numbers are coarse.
+    /// Asserts that rejected pairs are beyond the limit for the algorithms: close to where
+    /// rejection begins, at all scales, and where world coordinates are coarse.
     fn rejects_no_more<N: Space<D>, const D: usize>(
         (draw, kinds): (Draw<N, D>, usize),
         turn: fn(&mut Random) -> Pose<N, D>,
@@ -255,7 +265,7 @@ mod tests {
             let share =
                 N::lit(0.97 + 0.0005 * f64::from(u32::try_from(round % 120).expect("small")));
             let away = pose12.translation.normalize() * (reach * share);
-            // As positions in a world would give it that far from its origin.
+            // Computed as from positions that far from the world's origin.
             let far = Vector::<N, D>::repeat(N::lit([0.0, 1e6][round % 2]));
             let between = (far + away) - far;
             let pair = Pair {
@@ -271,7 +281,7 @@ mod tests {
                     pair_poses = pair.pose12
                 );
             }
-            // Nearer than the balls tell.
+            // Nearer than the balls allow.
             let mut nearer = pair;
             nearer.pose12.translation *= N::lit([1.0, 0.8, 0.6, 0.4][round % 4]);
             if bounds[0].has_box_clear_of(&bounds[1], &nearer.pose12, limit) {

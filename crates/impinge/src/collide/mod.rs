@@ -1,15 +1,15 @@
-//! Computing contacts: from two shapes and their poses to the points of a manifold.
+//! Computes contacts: from two shapes and their poses to the points of a manifold.
 //!
-//! The floor between the algorithms that know no shapes ([`crate::convex`]) and the questions of users
-//! ([`crate::query`]). From bottom to top:
+//! This is the floor between the algorithms that know no shapes ([`crate::convex`]) and the queries
+//! of users ([`crate::query`]). From bottom to top:
 //!
 //! - [`pair`] puts two shapes in canonical order, and one in the frame of the other;
-//! - [`separation`] computes how far apart or how deep two solids are, at which points and along which normal;
-//! - [`manifold`] makes contact points of it: supporting features, clipping, the choice of points, ids;
-//! - [`batch`] does both for eight pairs at a time, of the kinds that worlds are full of;
+//! - [`separation`] computes the signed distance, normal and nearest points of two solids;
+//! - [`manifold`] computes contact points from them: supporting features, clipping, reduction, ids;
+//! - [`batch`] does both for eight pairs at a time, of the kinds that are most frequent in worlds;
 //! - [`parts`] finds the pairs of parts of two composites that matter, and their separation;
-//! - [`mesh`] makes manifolds of a composite: parts are gathered, culled in packets ([`packet`]), separated, their
-//!   normals filtered by the surface, and their points merged into patches.
+//! - [`mesh`] builds manifolds of a composite: parts are gathered, culled in packets ([`packet`]),
+//!   separated, their normals filtered by the surface, and their points merged into patches.
 
 pub(crate) mod batch;
 pub(crate) mod far;

@@ -1,15 +1,23 @@
 //! Parts of a surface side by side, for computing with eight at a time.
+//!
+//! ```text
+//!   corners[c][axis][lane]     c: corner 0, 1, 2 of the part; a segment has its second end twice
+//!                              lane: part `tile * 8 + lane` of a list; the last part fills up
+//! ```
+//!
+//! `mesh/part_cache.rs` keeps lists of them, called tiles. `mesh/cull.rs`, `separation/triangles`,
+//! `separation/chain` and `manifold/face_lanes` read them eight lanes at a time.
 
 use crate::math::{Point, Real};
 
-/// How many parts lie side by side.
+/// Parts in one packet.
 pub(crate) const LANES: usize = 8;
 
-/// The corners of eight parts in the frame of their composite. A segment has its second end twice; where
-/// there are fewer parts the last stands for the rest.
+/// Corners of eight parts in the frame of their composite. A segment has its second end twice; if
+/// there are fewer parts, the last one fills the rest.
 #[derive(Clone, Debug)]
 pub(crate) struct PartPacket<N, const D: usize> {
-    /// By corner and coordinate.
+    /// Indexed by corner and coordinate.
     pub(crate) corners: [[[N; LANES]; D]; 3],
 }
 
@@ -18,7 +26,7 @@ impl<N: Real, const D: usize> PartPacket<N, D> {
         Self { corners: [[[N::ZERO; LANES]; D]; 3] }
     }
 
-    /// Copies a part from other tiles.
+    /// Copies part `lane` of another packet to the lane `at`.
     #[inline]
     pub(crate) fn copy(&mut self, at: usize, given: &Self, lane: usize) {
         for (rows, given) in self.corners.iter_mut().zip(&given.corners) {

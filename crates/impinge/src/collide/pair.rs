@@ -1,7 +1,13 @@
-//! Two solids and how one lies to the other: what every pair algorithm is given.
+//! Two solids and their relative pose: the input of every pair algorithm.
 //!
-//! `pose12` comes from the difference of the positions, so two solids near each other lose nothing by being far
-//! from the origin. A ball has no rotation, wherever two solids are placed.
+//! ```text
+//!   given order      canonical order                 pose12: of `second` in the frame of `first`
+//!   (A, B)  --->     first <= second by kind,        answers are computed in canonical order, and
+//!   (B, A)  --->     then position, pose, numbers    flipped back if `swapped`
+//! ```
+//!
+//! `pose12` is computed from the difference of the positions, so two solids near each other lose no
+//! digits far from the world's origin. A ball has no rotation, wherever it is placed.
 
 use core::cmp::Ordering;
 
@@ -9,7 +15,7 @@ use crate::math::order::askew;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, SupportMap};
 
-/// Two solids, the first at the origin of the frame that the answer is given in.
+/// Two solids, the first at the origin of the frame of the answer.
 ///
 /// The kinds are in the fixed order of [`crate::shape::ShapeKind`]: `first ≤ second`.
 #[derive(Clone, Copy)]
@@ -21,7 +27,7 @@ pub(crate) struct Pair<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Pair<'a, N, D> {
-    /// Two solids in canonical order at poses in the world; the rotation of a ball is none.
+    /// Pairs two solids in canonical order at poses in the world; a ball counts as unrotated.
     #[inline]
     pub(crate) fn new(
         [first, second]: [Geometry<'a, N, D>; 2],
@@ -32,7 +38,7 @@ impl<'a, N: Real, const D: usize> Pair<'a, N, D> {
     }
 }
 
-/// The pose of a solid in the frame of the first one, which turns or not.
+/// Returns the pose of a solid in the frame of the first one; `first_turns` is false for a ball.
 #[inline]
 pub(crate) fn pose_between<N: Real, const D: usize>(
     first_turns: bool,
@@ -44,18 +50,19 @@ pub(crate) fn pose_between<N: Real, const D: usize>(
     Pose { rotation: pose2.rotation, translation: pose2.translation - pose1.translation }
 }
 
-/// A solid where it stands in the world. The rotation of a ball counts as none.
+/// A solid at its pose in the world. The rotation of a ball counts as none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a, N: Real, const D: usize> {
     pub(crate) pose: Pose<N, D>,
     pub(crate) shape: Geometry<'a, N, D>,
 }
 
-/// A shape that is placed when it is near enough: its position is read before its rotation is made a matrix.
+/// A shape that is placed when it is near enough: its position is read before its rotation is
+/// converted to a matrix.
 pub(crate) trait Placing<'a, N: Real, const D: usize> {
     fn shape(&self) -> Geometry<'a, N, D>;
 
-    /// Where the origin of its frame is.
+    /// Position of the origin of its frame.
     fn translation(&self) -> Vector<N, D>;
 
     fn placed(&self) -> Placed<'a, N, D>;
@@ -78,15 +85,16 @@ impl<'a, N: Real, const D: usize> Placing<'a, N, D> for Placed<'a, N, D> {
     }
 }
 
-/// The pair in an order that does not depend on the order of the arguments, and whether that order
-/// is the opposite of theirs.
+/// Returns the pair in an order that does not depend on the order of the arguments, and whether
+/// that is the reverse of theirs.
 ///
-/// Every answer about two solids is computed in this order and turned round at the end, so that
-/// swapping the arguments flips the answer bit for bit. Kinds come in the order of
-/// [`crate::shape::ShapeKind`]; equal kinds in that of their world translations along a direction that is askew, then
-/// of all coordinates, then of rotations, of which a ball has none, then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
-/// (Of a support map of the user's own the numbers are its rounding and its support points along the
-/// axes and the diagonals; of a composite they are those of its parts.)
+/// Every answer about two solids is computed in this order and flipped at the end, so that swapping
+/// the arguments flips the answer bit for bit. Kinds come in the order of
+/// [`crate::shape::ShapeKind`]. Equal kinds are ordered by their world translations along an
+/// [`askew`] direction, then by all coordinates, then by rotation (a ball has none), then by their
+/// own numbers. Solids that agree in all of these are the same, and so is the answer. (The numbers
+/// of a user's support map are its rounding and its support points along the axes and the
+/// diagonals; those of a composite are its parts'.)
 #[inline]
 pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -108,7 +116,7 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
 pub(crate) struct Ordered<'p, 'a, N: Real, const D: usize> {
     pub(crate) first: &'p Placed<'a, N, D>,
     pub(crate) second: &'p Placed<'a, N, D>,
-    /// The order is the opposite of that of the arguments.
+    /// This order is the reverse of that of the arguments.
     pub(crate) swapped: bool,
 }
 
@@ -122,14 +130,15 @@ impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
         }
     }
 
-    /// The canonical pair.
+    /// Returns the canonical pair.
     #[inline]
     pub(crate) fn pair(&self) -> Pair<'a, N, D> {
         let Self { first, second, .. } = self;
         Pair::new([first.shape, second.shape], [&first.pose, &second.pose])
     }
 
-    /// One of the two is made of parts: [`Between`](super::parts::Between) has the answers.
+    /// Returns whether one of the two is a composite, for which [`Between`](super::parts::Between)
+    /// computes the answers.
     #[inline]
     pub(crate) fn has_composite(&self) -> bool {
         let is_composite = |placed: &Placed<'a, N, D>| placed.shape.as_composite().is_some();
@@ -137,10 +146,10 @@ impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
     }
 }
 
-/// The order of [`canonical`] is the opposite of that of the arguments.
+/// Returns whether the order of [`canonical`] is the reverse of that of the arguments.
 ///
-/// Solids of one kind stand either way round: the answer is a number here, not a way through the
-/// program, so that a processor that guesses ways does not wait for places far off in memory.
+/// Solids of one kind come in either order equally often. The answer is computed as a value, not by
+/// a branch, so that mispredictions do not stall on distant memory.
 #[inline]
 pub(crate) fn is_swapped<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -157,7 +166,8 @@ pub(crate) fn is_swapped<N: Real, const D: usize>(
     if kind1 == kind2 { is_beyond } else { kind1 > kind2 }
 }
 
-/// The order of [`canonical`]: equal if the solids are the same at the same place, as far as that can tell.
+/// Compares by the order of [`canonical`]: equal if nothing distinguishes the solids and their
+/// poses.
 #[inline]
 pub(crate) fn order<N: Real, const D: usize>(
     placed1: &Placed<'_, N, D>,
@@ -166,7 +176,7 @@ pub(crate) fn order<N: Real, const D: usize>(
     compare(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape)
 }
 
-/// The order of [`canonical`]. Nearly always the places of solids of one kind tell.
+/// Compares by the order of [`canonical`]. Nearly always positions decide for solids of one kind.
 #[inline]
 fn compare<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -188,14 +198,14 @@ fn compare<N: Real, const D: usize>(
     }
 }
 
-/// How far it is from a solid to another along a direction that is [`askew`]: so the order of two that tremble on one
-/// another, or stand in a grid, does not change.
+/// Signed distance from one solid to another along an [`askew`] direction. So the order of two
+/// solids that vibrate on each other, or stand in a grid, does not change.
 #[inline]
 fn way<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> N {
     askew(&(pose2.translation - pose1.translation))
 }
 
-/// [`compare`] for solids of one kind.
+/// Compares solids of one kind whose positions do not decide.
 #[cold]
 fn compare_at_length<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -206,13 +216,13 @@ fn compare_at_length<N: Real, const D: usize>(
     compare_poses(pose1, pose2).then_with(|| compare_solids(&shape1.0, &shape2.0))
 }
 
-/// By translation, then by rotation.
+/// Compares by translation, then by rotation.
 fn compare_poses<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> Ordering {
     compare_numbers(pose1.translation.as_slice(), pose2.translation.as_slice())
         .then_with(|| compare_numbers(pose1.rotation.as_slice(), pose2.rotation.as_slice()))
 }
 
-/// By the numbers that make solids of one kind what they are.
+/// Compares solids of one kind by their defining numbers.
 fn compare_solids<N: Real, const D: usize>(
     solid1: &Kind<'_, N, D>,
     solid2: &Kind<'_, N, D>,
@@ -223,7 +233,7 @@ fn compare_solids<N: Real, const D: usize>(
     }
 }
 
-/// By how many parts there are, then part by part up to the first difference.
+/// Compares the number of parts, then part by part up to the first difference.
 fn compare_parts<N: Real, const D: usize>(
     parts1: &dyn CompositeShape<N, D>,
     parts2: &dyn CompositeShape<N, D>,
@@ -237,7 +247,7 @@ fn compare_parts<N: Real, const D: usize>(
     counts.then_with(|| orders.find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
 }
 
-/// Lexicographic; what cannot be compared by value (NaN, zeros of two signs) is compared by bits.
+/// Compares lexicographically; NaN and zeros of two signs by their bits.
 fn compare_numbers<N: Real>(numbers1: &[N], numbers2: &[N]) -> Ordering {
     for (number1, number2) in numbers1.iter().zip(numbers2) {
         let by_value = number1.partial_cmp(number2).unwrap_or(Ordering::Equal);
@@ -249,7 +259,7 @@ fn compare_numbers<N: Real>(numbers1: &[N], numbers2: &[N]) -> Ordering {
     numbers1.len().cmp(&numbers2.len())
 }
 
-/// The numbers that make a solid what it is. Only asked for where kinds and poses agree.
+/// Returns the defining numbers of a solid. Only called if kinds and poses agree.
 fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
     match kind {
         Kind::Ball(ball) => vec![ball.radius()],
@@ -282,13 +292,13 @@ fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
     }
 }
 
-/// The coordinates of some points in a row.
+/// Returns the coordinates of some points in a row.
 fn coordinates<N: Real, const D: usize>(points: &[Point<N, D>]) -> Vec<N> {
     points.iter().flat_map(|point| point.coords.as_slice().to_vec()).collect()
 }
 
-/// What can be learnt of an unknown solid: its rounding and its support points along both
-/// directions of each axis and along the diagonals.
+/// Returns numbers of an unknown solid: its rounding and its support points along both directions
+/// of each axis and along the diagonals.
 fn probed<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> Vec<N> {
     let mut numbers = vec![map.rounding()];
     for axis in 0..D {

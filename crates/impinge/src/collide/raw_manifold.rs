@@ -1,28 +1,35 @@
 //! Manifolds as the narrow phase keeps them: small, flat, in the frame of the first solid.
 //!
-//! The code of a point names its features and its slot in a batch, or is 0: whoever makes or renames a point
-//! otherwise sets it to 0.
+//! ```text
+//!   RawManifold  normal | ids | points: [RawPoint; 4 in place] ...    sorted by id
+//!   RawPoint     point1 | distance | feature1, feature2 | id | code
+//!                point2 = point1 + normal · distance
+//! ```
+//!
+//! The `code` of a point names its features and its slot in a batch
+//! (`collide/batch/boxes/choose.rs`), or is 0: all other code that makes a point or changes its
+//! features sets it to 0.
 
 use smallvec::SmallVec;
 
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::FeatureId;
 
-/// Which points a manifold shall hold.
+/// Request for a manifold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ManifoldRequest<N: Real> {
-    /// Points farther apart than this are left out; zero or more.
+    /// Points farther apart than this are dropped; zero or more.
     pub(crate) prediction: N,
-    /// The sine of the angle by which the solids may turn: a point is also kept if turning about the
+    /// Sine of the angle by which the solids may turn. A point is also kept if turning about the
     /// nearest point by that angle would bring it within `prediction`.
     pub(crate) sine: N,
-    /// At most this many points are kept.
+    /// Largest number of points.
     pub(crate) max_points: usize,
 }
 
 impl<N: Real> ManifoldRequest<N> {
-    /// For solids that may turn by `angle` radians: above a right angle no point comes nearer than
-    /// at a right angle, and a negative angle or NaN counts as zero.
+    /// Request for solids that may turn by `angle` radians. Angles above a right angle count as a
+    /// right angle, where points come nearest; a negative angle or NaN counts as zero.
     pub(crate) fn new(prediction: N, angle: N, max_points: usize) -> Self {
         let sine = if angle > N::frac_pi_2() {
             N::ONE
@@ -39,21 +46,22 @@ impl<N: Real> ManifoldRequest<N> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RawPoint<N: Real, const D: usize> {
     pub(crate) point1: Point<N, D>,
-    /// Signed, along the manifold's normal: negative when penetrating.
+    /// Signed distance along the manifold's normal: negative for an overlap.
     pub(crate) distance: N,
     pub(crate) feature1: FeatureId,
     pub(crate) feature2: FeatureId,
-    /// The number of the contact within its pair; kept while it lasts.
+    /// Number of the contact within its pair; kept while it lasts.
     pub(crate) id: u32,
-    /// What the builder that made the point knows its features again by; 0 for most.
+    /// Code by which the builder recognises the point's features; 0 for most builders.
     pub(crate) code: u32,
 }
 
-/// The points of many manifolds, one after the other.
+/// Points of many manifolds, one after the other.
 pub(crate) type RawPoints<N, const D: usize> = SmallVec<[RawPoint<N, D>; 32]>;
 
 impl<N: Real, const D: usize> RawPoint<N, D> {
-    /// The same contact with the second solid first, in the frame of which the first one lies.
+    /// Swaps the solids: moves the point to the frame of the second solid, in which the first lies
+    /// at `pose21`.
     pub(crate) fn flip(&mut self, pose21: &Pose<N, D>, normal: &Vector<N, D>) {
         self.point1 = pose21.point(&(self.point1 + normal * self.distance));
         core::mem::swap(&mut self.feature1, &mut self.feature2);
@@ -68,19 +76,20 @@ impl<N: Real, const D: usize> Default for RawPoint<N, D> {
     }
 }
 
-/// A set of points with one normal, in the frame of the first solid. The points stand behind what readers need: who
-/// reads few of them reads one piece of memory.
+/// Points with one normal, in the frame of the first solid. The points follow the fields that most
+/// readers need, so that few points are read from one cache line.
 #[derive(Debug, PartialEq)]
 #[repr(C)]
 pub(crate) struct RawManifold<N: Real, const D: usize> {
     /// Unit, from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
-    /// Where the numbers of new points come from.
+    /// Source of the ids of new points.
     pub(crate) ids: PairIds,
-    /// No point means that the solids are farther apart than the prediction.
+    /// Empty if the solids are farther apart than the prediction.
     pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
-    /// The second solid in the frame of the first when the points were found, by which they are found again on the
-    /// second. `None` where that is not kept: of boxes, balls and segments, whose vertices are known by their ids.
+    /// Pose of the second solid in the frame of the first when the points were computed, which
+    /// places old points on the second. `None` if it is not kept: for boxes, balls and segments,
+    /// whose vertices are recognised by their ids.
     pub(crate) pose12: Option<Pose<N, D>>,
 }
 
@@ -97,17 +106,17 @@ impl<N: Real, const D: usize> Clone for RawManifold<N, D> {
     }
 }
 
-/// The numbers given to the contacts of one pair, each once.
+/// Counter of the ids given to the contacts of one pair.
 ///
-/// It outlives the contacts: a contact that ended and comes back gets a new number. A pair that owns
-/// several manifolds passes one counter through all of them.
+/// It outlives the contacts: a contact that ended and comes back gets a new id. A pair with several
+/// manifolds passes one counter through all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PairIds {
     given: u32,
 }
 
 impl PairIds {
-    /// A number not given before. After four billion numbers they start again.
+    /// Returns an id not given before; wraps around after 2³².
     pub(crate) fn next(&mut self) -> u32 {
         let number = self.given;
         self.given = number.wrapping_add(1);
@@ -123,7 +132,7 @@ impl<N: Real, const D: usize> Default for RawManifold<N, D> {
 }
 
 impl<N: Real, const D: usize> RawManifold<N, D> {
-    /// Puts the points in the order of their numbers: few, and most are.
+    /// Sorts the points by id; they are few, and mostly sorted.
     #[inline(never)]
     pub(crate) fn sort_points(&mut self) {
         for next in 1..self.points.len() {
@@ -135,8 +144,8 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
         }
     }
 
-    /// The same contacts with the second solid first; `pose21` is how the solids lie now, the first in the frame of the
-    /// second. Where the old pose is not kept, the points stay where they are on the first solid.
+    /// Swaps the solids; `pose21` is the current pose of the first in the frame of the second. If
+    /// the old pose is not kept, the points stay where they are on the first solid.
     pub(crate) fn flip(&mut self, pose21: &Pose<N, D>) {
         let Self { normal, pose12, points, .. } = self;
         let old21 = pose12.as_ref().map_or(*pose21, Pose::inverse);
@@ -145,7 +154,7 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
         *pose12 = pose12.map(|_| old21);
     }
 
-    /// The index of the deepest point, the first of equals; 0 for an empty manifold.
+    /// Returns the index of the deepest point, the first of equals; 0 for an empty manifold.
     #[cfg(test)]
     pub(crate) fn deepest(&self) -> usize {
         let mut deepest = 0;

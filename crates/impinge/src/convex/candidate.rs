@@ -9,12 +9,12 @@ pub(super) struct SupportCandidate<N: Real, const D: usize> {
     pub(super) normal: Vector<N, D>,
     /// `min n·b − max n·a`: a lower bound of the signed distance, whatever the normal.
     pub(super) height: N,
-    /// The point of the difference that the height is that of.
+    /// The point of the difference at that height.
     pub(super) vertex: Vertex<N, D>,
 }
 
 impl<N: Real, const D: usize> SupportCandidate<N, D> {
-    /// The certificate of a unit vector.
+    /// Computes the certificate of a unit vector.
     #[inline]
     pub(super) fn along<S>(difference: &S, normal: Vector<N, D>) -> Self
     where
@@ -24,7 +24,7 @@ impl<N: Real, const D: usize> SupportCandidate<N, D> {
         Self { normal, height: normal.dot(&vertex.point), vertex }
     }
 
-    /// Takes over `other` if it proves more; says whether it did.
+    /// Replaces this by `other` if that proves more; returns whether it did.
     #[inline]
     pub(super) fn improve(&mut self, other: &Self) -> bool {
         let better = other.height > self.height;
@@ -34,7 +34,7 @@ impl<N: Real, const D: usize> SupportCandidate<N, D> {
         better
     }
 
-    /// Takes over `other` if it proves as much but for `slack`.
+    /// Replaces this by `other` if that proves as much, up to `slack`.
     pub(super) fn prefer(&mut self, other: Self, slack: N) {
         if other.height >= self.height - slack {
             *self = other;

@@ -13,13 +13,13 @@ const DOUBLINGS: usize = 16;
 
 /// Raises the height of `best` as far as a local search can.
 ///
-/// The difference is moved along the normal until it is free of the origin; the normal `m` of its
-/// nearest point then maximises `h(m) + D m·n` for the way `D` it was moved along `n`. As `m·n` is
-/// largest at `n`, the height of `m` is no less than that of `n`: this is the proximal point method
-/// (R. T. Rockafellar, "Monotone Operators and the Proximal Point Algorithm", 1976), and kinks of
-/// `h`, the flat faces, are no trouble to it. Where the heights around hardly differ its steps are
-/// short; so each is doubled while that helps. Where it does not help, the way up may be a ridge that
-/// bends: then each trial is first brought back to the ridge by a step of its own.
+/// The difference is moved along the normal `n` by `D` until it is free of the origin. The normal
+/// `m` of its nearest point then maximises `h(m) + D m·n`. As `m·n` is largest at `n`, the height
+/// of `m` is at least that of `n`. This is the proximal point method (R. T. Rockafellar, "Monotone
+/// Operators and the Proximal Point Algorithm", 1976), which is not disturbed by kinks of `h`, the
+/// flat faces. If heights hardly differ nearby, its steps are short, so each is doubled while that
+/// helps. If that does not help, the ascent may follow a curved ridge: then each trial is first
+/// brought back to the ridge by a step of its own.
 pub(super) fn climb<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -40,8 +40,8 @@ pub(super) fn climb<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Goes on in the direction of a step that was made, twice as far each time, while that helps; says
-/// whether it did. `trial` makes a candidate of a normal.
+/// Continues in the direction of a step, twice as far each time, while that helps; returns whether
+/// it did. `trial` makes a candidate from a normal.
 fn stride<N: Simplicial<D>, const D: usize>(
     best: &mut SupportCandidate<N, D>,
     step: &Vector<N, D>,
@@ -58,7 +58,7 @@ fn stride<N: Simplicial<D>, const D: usize>(
     true
 }
 
-/// One step of the method.
+/// Computes one step of the method.
 fn raised<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     from: &SupportCandidate<N, D>,

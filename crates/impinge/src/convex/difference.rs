@@ -1,24 +1,24 @@
-//! The difference of two cores as one convex set, in units in which it is about 1 large.
+//! Difference of two cores as one convex set, in units in which it is about 1 large.
 
 use super::peak::{Peak, Peaks};
 use super::{Separation, Units};
 use crate::math::{Matrix, Point, Pose, Real, Vector, max, max_component, unit_or};
 use crate::shape::SupportMap;
 
-/// What arithmetic cannot resolve, in units of the pair.
+/// Returns the rounding error of arithmetic, in units of the pair.
 pub(super) fn noise<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// The gap between the bounds of an answer that the iterations strive for, in units of the pair.
+/// Returns the gap between the bounds of an answer that iterations aim for, in units of the pair.
 ///
-/// Cores with flat faces are solved exactly after finitely many steps; this is what curved ones are
-/// cut off at: 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
+/// Flat-faced cores are solved exactly after finitely many steps; curved ones stop at this gap:
+/// 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
 pub(super) fn tolerance<N: Real>() -> N {
     max(noise(), N::lit(1.0 / 1_099_511_627_776.0))
 }
 
-/// A point of the difference and the points of the two cores that it is the difference of.
+/// A point of the difference, and the points of the two cores that it comes from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex<N: Real, const D: usize> {
     /// `on2 − on1`.
@@ -35,44 +35,46 @@ impl<N: Real, const D: usize> Vertex<N, D> {
     }
 }
 
-/// A point of one of the cores that stays extreme in its surroundings as the normal turns.
+/// A point of one core that stays extreme nearby as the normal turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Branch<N: Real, const D: usize> {
     pub(super) is_second: bool,
     pub(super) on: Vector<N, D>,
-    /// How the point moves as the normal turns outwards, from its own core; `None` for a corner.
+    /// Derivative of the point by the outward normal of its own core; `None` for a corner.
     pub(super) bend: Option<Matrix<N, D>>,
 }
 
-/// A convex set of differences `b − a`, known by its lowest points.
+/// A convex set of differences `b − a`, given by its lowest points.
 pub(crate) trait Difference<N: Real, const D: usize> {
-    /// The point of the set that lies lowest along the unit vector `normal`.
+    /// Returns the point of the set that is lowest along the unit vector `normal`.
     fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D>;
 
-    /// Both cores are hulls of points: there are neither round faces nor branches with a bend.
+    /// Returns whether both cores are hulls of points: without round faces or branches with a
+    /// `bend`.
     fn is_flat(&self) -> bool;
 
-    /// Neither core has edges or rims; a segment may be one of them. Then normals of which no other nearby is better
-    /// lie well apart.
+    /// Returns whether neither core has edges or rims; one may be a segment. Local maxima of the
+    /// height are well apart then.
     fn is_smooth(&self) -> bool {
         false
     }
 
-    /// The normals of the flat round faces of either core that a normal is nearly perpendicular to, as
-    /// normals from the first core to the second.
+    /// Returns the normals of flat round faces of either core close to `normal`, as normals from
+    /// the first core to the second.
     fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2];
 
-    /// The axes of the round sides of both cores, and the sines by which their normals, as normals from the
-    /// first core to the second, lean along them.
+    /// Returns the axes of the round sides of both cores, with the component of their normals along
+    /// the axis; as normals from the first core to the second.
     fn round_sides(&self) -> [Option<(Vector<N, D>, N)>; 2] {
         [None, None]
     }
 
-    /// The point of the first or second core that is lowest along the unit vector `normal`, or
-    /// highest, on the part of the core that `on` lies on.
+    /// Returns the point of the first core that is highest along the unit vector `normal`, or of
+    /// the second that is lowest, on the part of the core that `on` lies on.
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D>;
 
-    /// The best normal of a difference that holds the origin, where there are means to name it.
+    /// Returns the best normal of a difference that contains the origin, if the caller can compute
+    /// it.
     fn peak(&self) -> Option<Peak<N, D>> {
         None
     }
@@ -92,7 +94,7 @@ pub(super) struct CorePair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
     peaks: Option<&'a dyn Peaks<N, D>>,
 }
 
-/// A solid's reach; found without squaring where that leaves the range of the numbers.
+/// Returns a solid's reach, without squaring where squares would overflow or underflow.
 pub(crate) fn safe_reach<N: Real, S: SupportMap<N, D> + ?Sized, const D: usize>(solid: &S) -> N {
     let reach = solid.reach();
     if reach.is_finite_number() && reach * reach > N::MIN_POSITIVE {
@@ -114,7 +116,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    /// `None` if anything in the pose is infinite or NaN.
+    /// `None` if a number of the pose is infinite or NaN.
     pub(super) fn new(solid1: &'a A, solid2: &'a B, pose12: &Pose<N, D>) -> Option<Self> {
         if !pose12.is_finite() {
             return None;
@@ -134,17 +136,17 @@ where
         })
     }
 
-    /// The same where both cores are known to be hulls of points.
+    /// Marks both cores as hulls of points.
     pub(super) fn between_flat_cores(self) -> Self {
         Self { is_flat: true, ..self }
     }
 
-    /// The same where neither core is known to have edges or rims, but that one may be a segment.
+    /// Marks the cores as having neither edges nor rims; one may be a segment.
     pub(super) fn between_smooth_cores(self) -> Self {
         Self { is_smooth: true, ..self }
     }
 
-    /// The same with means to name the best normal where the cores overlap.
+    /// Adds a known set of possible normals, used if the cores overlap.
     pub(super) fn with_peaks(self, peaks: &'a dyn Peaks<N, D>) -> Self {
         Self { peaks: Some(peaks), ..self }
     }
@@ -154,7 +156,8 @@ where
         self.scale
     }
 
-    /// A first guess of the normal: from the middle of the first core to that of the second.
+    /// Returns a first guess of the normal: from the middle of the first core to that of the
+    /// second.
     pub(super) fn start(&self) -> Vector<N, D> {
         let middle2 = self.rotation * (self.solid2.center().coords * self.shrink);
         let away = middle2 + self.translation - self.solid1.center().coords * self.shrink;
@@ -163,7 +166,7 @@ where
         unit_or(&away, first_axis)
     }
 
-    /// An answer in units of the pair, in those of the caller.
+    /// Converts an answer from units of the pair to those of the caller.
     pub(super) fn restored(&self, found: &Separation<N, D>) -> Separation<N, D> {
         found.scaled(self.scale)
     }
@@ -229,9 +232,9 @@ where
     }
 }
 
-/// A symmetric matrix in the frame that a rotation leads to.
+/// Rotates a symmetric matrix: `R S Rᵀ`.
 ///
-/// In loops, since products of small matrices are not inlined.
+/// Written as loops, since products of small matrices are not inlined.
 fn turned<N: Real, const D: usize>(
     rotation: &Matrix<N, D>,
     symmetric: &Matrix<N, D>,
@@ -243,7 +246,7 @@ fn turned<N: Real, const D: usize>(
     Matrix::<N, D>::from_fn(|i, j| product(&half, i, rotation, j))
 }
 
-/// A difference moved away from the origin; the points of the cores are still where they were.
+/// A difference moved by `by`; the points of the cores stay.
 pub(super) struct Moved<'a, N: Real, const D: usize> {
     pub(super) inner: &'a dyn Difference<N, D>,
     pub(super) by: Vector<N, D>,

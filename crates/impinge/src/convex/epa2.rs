@@ -1,9 +1,17 @@
-//! The nearest supporting line of a difference that holds the origin, in 2D.
+//! Nearest supporting line of a difference that contains the origin, in 2D.
+//!
+//! ```text
+//!         .-------.            polygon inside the difference; outward: normal of its nearest side
+//!        / .-----. \           offset: signed distance of the side from the origin o
+//!       | |   o   |-*          *: support point along outward, at -height
+//!        \ '-----' /           grown there until -height - offset <= tolerance
+//!         '-------'
+//! ```
 //!
 //! G. van den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects"
 //! (2001): a polygon inside the difference grows outwards at its side nearest to the origin. Here
-//! the polygon need not hold the origin: sides that see the origin in front of them have a negative
-//! offset, are nearest of all, and grow first.
+//! the polygon need not contain the origin: sides with the origin in front of them have a negative
+//! offset, count as nearest, and grow first.
 
 use smallvec::SmallVec;
 
@@ -25,13 +33,13 @@ const ROUNDS: usize = 96;
 #[derive(Clone, Copy)]
 struct PolygonEdge<N: Real> {
     start: Vertex<N, 2>,
-    /// The unit normal out of the polygon.
+    /// Outward unit normal of the polygon.
     outward: Vector<N, 2>,
-    /// How far the side lies beyond the origin; infinite if it is too short to have a normal.
+    /// Signed distance of the side from the origin; infinite if it is too short to have a normal.
     offset: N,
 }
 
-/// Counter-clockwise.
+/// The sides, counter-clockwise.
 type EpaRing<N> = SmallVec<[PolygonEdge<N>; 16]>;
 
 impl<N: Real> PolygonEdge<N> {
@@ -47,7 +55,7 @@ impl<N: Real> PolygonEdge<N> {
     }
 }
 
-/// See [`super::Simplicial::deepest`].
+/// Computes [`super::Simplicial::deepest`].
 pub(super) fn deepest<N: Real>(
     difference: &dyn Difference<N, 2>,
     simplex: &Simplex<N, 2>,
@@ -63,7 +71,7 @@ fn ring_of<N: Real>(corners: &[Vertex<N, 2>]) -> EpaRing<N> {
     corners.iter().zip(next).map(|(&start, end)| PolygonEdge::new(start, end)).collect()
 }
 
-/// The triangle that is known to hold the origin, if there is one and it is not a sliver.
+/// Returns the triangle that contains the origin, if there is one and it is no sliver.
 fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<EpaRing<N>> {
     let &[a, b, c] = simplex.vertices() else { return None };
     let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
@@ -78,7 +86,7 @@ fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<EpaRing<N>> {
     }
 }
 
-/// A polygon of extreme points; or the answer at once, if the difference is a segment or a point.
+/// Returns a polygon of extreme points; or the answer, if the difference is a segment or a point.
 fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>, Separation<N, 2>> {
     let [a, b] = widest_pair(difference);
     let edge = b.point - a.point;
@@ -95,11 +103,11 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>,
     if ring.len() > 2 {
         return Ok(ring_of(&ring));
     }
-    // A segment through the origin, or nearly: its depth is across it, and zero.
+    // A segment through the origin, or nearly: its depth across is zero.
     Err(locate(difference, &best_of(difference, &[left]), &ring))
 }
 
-/// Where the polygon lies nearest to the origin, once it has grown to the difference there.
+/// Grows the polygon until it reaches the difference at its nearest side.
 fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Separation<N, 2> {
     let mut best = SupportCandidate::along(difference, -ring[0].outward);
     for _ in 0..ROUNDS {
@@ -120,14 +128,14 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Se
                 let mix = Mix::nearest(&best, &[side.start, next]);
                 return settle(difference, &best, &mix, &vertices(ring, &best));
             }
-            // Flat sides are not far; what is smooth is found faster than by growing.
+            // Flat sides are not far; smooth parts are found faster than by growing.
             if settles(difference, &mut best) {
                 return locate(difference, &best, &vertices(ring, &best));
             }
         }
         let known = ring.iter().any(|other| other.start.point == candidate.vertex.point);
         if known {
-            // It grows no more: what counts from now on is its certificate.
+            // It grows no more: from now on its certificate counts.
             ring[index].offset = -candidate.height;
             continue;
         }
@@ -138,7 +146,7 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Se
     locate(difference, &best, &vertices(ring, &best))
 }
 
-/// All points that are known.
+/// Returns all known points.
 fn vertices<N: Real>(
     ring: &EpaRing<N>,
     best: &SupportCandidate<N, 2>,

@@ -1,10 +1,10 @@
-//! The nearest supporting plane of a difference that holds the origin, in 3D.
+//! Nearest supporting plane of a difference that contains the origin, in 3D.
 //!
 //! G. van den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects"
-//! (2001): a polytope inside the difference grows outwards at its face nearest to the origin. Here
-//! the polytope need not hold the origin: faces that see the origin in front of them have a negative
-//! offset, are nearest of all, and grow first. Every normal it comes by is certified, and the best
-//! one is the answer however the growth ends.
+//! (2001): a polytope inside the difference ([`Hull`]) grows outwards at its face nearest to the
+//! origin; `epa2` has the figure in 2D. The polytope need not contain the origin: faces with the
+//! origin in front of them have a negative offset, count as nearest, and grow first. Every normal
+//! tried has a certificate, and the best one is the answer however the growth ends.
 
 use super::Separation;
 use super::candidate::SupportCandidate;
@@ -20,23 +20,24 @@ use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
 use crate::math::{Mapped, Real, Vector, cross, max, orthonormal_basis, unit};
 
-/// Cap on the local searches where the hull ends without an answer, and the cosine of the angle within
-/// which one does for another.
+/// Cap on the local searches if the hull ends without an answer, and the cosine of the angle within
+/// which one stands for another.
 const CLIMBS: usize = 6;
 const SAME_CLIMB: f64 = 0.95;
-/// Cap on the number of support points. Flat faces take about ten, smooth cores about twenty, rims up to a hundred;
-/// where a whole ring of normals is about as good and nothing names it, the cap is what stops.
+/// Cap on the number of support points. Flat faces take about ten, smooth cores about twenty, rims
+/// up to a hundred. If a whole ring of normals is about as good and no `peak` is known, the cap
+/// stops it.
 const ROUNDS: usize = 128;
 
-/// The gap between a face and a smooth difference at which Newton's method is tried, and the cosine of the angle
-/// within which the normal that it leads to is the only one of its kind.
+/// Gap between a face and a smooth difference at which Newton's method is tried, and cosine of the
+/// angle within which the normal that it finds is the only local maximum.
 const COARSE: f64 = 1.0 / 1024.0;
 const SAME_SUMMIT: f64 = 1.0 - 1.0 / 64.0;
-/// The same about a normal that was found, where the method need not be asked again.
+/// Gap and cosine near a normal already found, where the method need not be run again.
 const FINE: f64 = 1.0 / 65536.0;
 const SAME_PLACE: f64 = 1.0 - 1.0 / 2048.0;
 
-/// See [`super::Simplicial::deepest`].
+/// Computes [`super::Simplicial::deepest`].
 pub(super) fn deepest<N: Real>(
     difference: &dyn Difference<N, 3>,
     simplex: &Simplex<N, 3>,
@@ -56,7 +57,7 @@ pub(super) fn deepest<N: Real>(
     }
 }
 
-/// What the rings of round sides have that is better than what growing led to.
+/// Returns a better answer from the rings of round sides, if there is one.
 fn beside<N: Real>(
     difference: &dyn Difference<N, 3>,
     vertices: &[Vertex<N, 3>],
@@ -70,14 +71,14 @@ fn beside<N: Real>(
     })
 }
 
-/// The corners of a tetrahedron to start with; or the answer at once, if the difference is flat.
+/// Corners of a tetrahedron to start with; or the answer, if the difference is flat.
 type Start<N> = Result<[Vertex<N, 3>; 4], Separation<N, 3>>;
 
-/// How thick a simplex must be to be built on, in parts of its length.
+/// Least thickness of a simplex to build on, as a share of its length.
 const THICK: f64 = 1.0 / 1024.0;
 
-/// The simplex that holds the origin, or nearly, brought to full dimension by extreme points; if it is
-/// a sliver a new one.
+/// Extends the simplex that contains the origin, or nearly, to a tetrahedron by extreme points; a
+/// sliver is replaced by a new one.
 fn from_simplex<N: Real>(difference: &dyn Difference<N, 3>, simplex: &Simplex<N, 3>) -> Start<N> {
     match *simplex.vertices() {
         [a, b, c, d] if is_thick(&[a, b, c, d]) => Ok([a, b, c, d]),
@@ -87,7 +88,7 @@ fn from_simplex<N: Real>(difference: &dyn Difference<N, 3>, simplex: &Simplex<N,
     }
 }
 
-/// The volume is not small for the largest face and the longest edge at the first corner.
+/// Returns whether the volume is not small for the largest face and the longest edge at `a`.
 fn is_thick<N: Real>([a, b, c, d]: &[Vertex<N, 3>; 4]) -> bool {
     let (e, f, g) = (b.point - a.point, c.point - a.point, d.point - a.point);
     let (ef, fg, ge) = (cross(&e, &f), cross(&f, &g), cross(&g, &e));
@@ -96,7 +97,7 @@ fn is_thick<N: Real>([a, b, c, d]: &[Vertex<N, 3>; 4]) -> bool {
     ef.dot(&g).abs() > N::lit(THICK) * area * length
 }
 
-/// The area is not small for the longest edge, nor that for the pair.
+/// Returns whether the area is not small for the longest edge, nor that edge for the pair.
 fn is_wide<N: Real>([a, b, c]: &[Vertex<N, 3>; 3]) -> bool {
     let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
     let length = max(max(e.norm(), f.norm()), g.norm());
@@ -118,7 +119,7 @@ fn from_segment<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3
     if found > noise() {
         return from_triangle(difference, [a, b, c]);
     }
-    // A segment through the origin, or nearly: all that is across it is as good.
+    // A segment through the origin, or nearly: all directions across are equal.
     Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
 }
 
@@ -135,11 +136,11 @@ fn from_triangle<N: Real>(
     if max(height, depth) > noise() {
         return Ok([a, b, c, if height > depth { above } else { below }]);
     }
-    // A flat disk through the origin, or nearly: its depth is across it, and zero.
+    // A flat disk through the origin, or nearly: its depth across is zero.
     Err(locate(difference, &best_of(difference, &[normal]), &[a, b, c]))
 }
 
-/// The answer where the points found lie on a line: across it.
+/// Returns the answer if the points found lie on a line: across it.
 fn from_needle<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>; 2]) -> Start<N> {
     let along = unit(&(b.point - a.point)).map(|(along, _)| along);
     let axis = Vector::<N, 3>::new(N::ONE, N::ZERO, N::ZERO);
@@ -147,7 +148,7 @@ fn from_needle<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>
     Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
 }
 
-/// Where the hull lies nearest to the origin, once it has grown to the difference there.
+/// Grows the hull until it reaches the difference at its nearest face.
 fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separation<N, 3> {
     let Some(first) = hull.nearest() else { return locate_any(difference, hull) };
     let mut best = SupportCandidate::along(difference, -hull.face(first).outward);
@@ -182,14 +183,14 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
                 let mix = Mix::nearest(&best, &corners);
                 return settle(difference, &best, &mix, hull.vertices());
             }
-            // Flat faces are not far; what is smooth is found faster than by growing.
+            // Flat faces are not far; smooth parts are found faster than by growing.
             if settles(difference, &mut best) {
                 hull.keep(&[best.vertex]);
                 return locate(difference, &best, hull.vertices());
             }
         }
         if hull.contains(&candidate.vertex) {
-            // Rounding has bent the hull. What counts from now on is the certificate.
+            // Rounding has bent the hull. From now on the certificate counts.
             hull.settle(index, -candidate.height);
         } else {
             hull.extend(index, candidate.vertex);
@@ -204,10 +205,10 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
     }
 }
 
-/// What Newton's method has led to from the faces of a hull in a smooth difference.
+/// Local maxima that Newton's method found from the faces of a hull in a smooth difference.
 struct Summits<N: Real> {
     highest: Option<Summit<N>>,
-    /// It is tried from faces whose gap is no larger.
+    /// Largest gap of a face from which it is tried.
     coarse: N,
 }
 
@@ -217,7 +218,8 @@ impl<N: Real> Summits<N> {
         Self { highest: None, coarse }
     }
 
-    /// The answer, if no face is left that is nearer to the origin, and no normal was met that is better.
+    /// Returns the answer, if no face is nearer to the origin than the highest maximum and no
+    /// better normal was found.
     fn answer(
         &self,
         nearest: &EpaFace<N>,
@@ -229,7 +231,7 @@ impl<N: Real> Summits<N> {
         is_answer.then(|| placed(top, mix, N::HALF))
     }
 
-    /// The best normal beyond a face with this candidate, where there is but one.
+    /// Returns the local maximum beyond a face with this candidate, if it is the only one.
     fn beyond(
         &mut self,
         difference: &dyn Difference<N, 3>,
@@ -256,19 +258,20 @@ impl<N: Real> Summits<N> {
     }
 }
 
-/// A normal with points that lie across from each other along it: the slope of the height is zero there.
+/// A normal with points across from each other along it: a stationary point of the height.
 struct Summit<N: Real> {
     top: SupportCandidate<N, 3>,
     mix: Mix<N, 3>,
 }
 
 impl<N: Real> Summit<N> {
-    /// Whether a face that is so near to the difference lies at the very place.
+    /// Returns whether a face with this gap lies at this very maximum.
     fn stands_for(&self, face: &EpaFace<N>, gap: N) -> bool {
         gap <= N::lit(FINE) && -self.top.normal.dot(&face.outward) >= N::lit(SAME_PLACE)
     }
 
-    /// The one that Newton's method leads to from a face, if that is close by: then there is no other between.
+    /// Returns the maximum that Newton's method finds from a face, if it is close: then none lies
+    /// between.
     fn beside(
         difference: &dyn Difference<N, 3>,
         hull: &Hull<N>,
@@ -282,15 +285,15 @@ impl<N: Real> Summit<N> {
     }
 }
 
-/// Goes on from the best normals of the faces, where the hull is of no more use: at the cap, or bent
-/// by rounding. Of a small solid deep in a large round one many normals far apart are nearly as good as
-/// the best, so several are tried.
+/// Continues from the best normals of the faces if the hull is of no more use: at the cap, or bent
+/// by rounding. For a small solid deep in a large round one, many normals far apart are nearly as
+/// good as the best, so several are tried.
 fn climb_on<N: Real>(
     difference: &dyn Difference<N, 3>,
     hull: &Hull<N>,
     best: &mut SupportCandidate<N, 3>,
 ) {
-    // What is better than the best is beyond a face that lies nearer.
+    // A better normal than the best is beyond a face that is nearer.
     let nearer = hull.nearer_than(-best.height - tolerance());
     let mut starts: Vec<_> =
         nearer.map(|outward| SupportCandidate::along(difference, -outward)).collect();
@@ -298,7 +301,7 @@ fn climb_on<N: Real>(
     for _ in 0..CLIMBS {
         let Some(mut start) = starts.iter().copied().reduce(higher) else { break };
         starts.retain(|other| other.normal.dot(&start.normal) < N::lit(SAME_CLIMB));
-        // Where Newton's method leads to points that prove a peak, there is nothing left to climb.
+        // If Newton's method proves a maximum, there is nothing left to climb.
         let near = lowest(hull.vertices(), &start.normal);
         if polish(difference, &mut start, &near).is_none() {
             climb(difference, &mut start);
@@ -308,7 +311,7 @@ fn climb_on<N: Real>(
     settles(difference, best);
 }
 
-/// The candidate that proves more, the first of equals.
+/// Returns the candidate with the larger height, the first of equals.
 fn higher<N: Real>(
     first: SupportCandidate<N, 3>,
     second: SupportCandidate<N, 3>,
@@ -316,7 +319,7 @@ fn higher<N: Real>(
     if second.height > first.height { second } else { first }
 }
 
-/// What is left to say when no face of the hull has a normal.
+/// Returns an answer if no face of the hull has a normal.
 fn locate_any<N: Real>(difference: &dyn Difference<N, 3>, hull: &Hull<N>) -> Separation<N, 3> {
     let axes = [
         Vector::<N, 3>::new(N::ONE, N::ZERO, N::ZERO),

@@ -1,10 +1,10 @@
-//! How far a difference stretches, and which of its points show it.
+//! Extent of a difference, and the points that attain it.
 
 use super::candidate::SupportCandidate;
 use super::difference::{Difference, Vertex};
 use crate::math::{Real, Vector};
 
-/// The two points of a difference that are farthest apart along a coordinate axis.
+/// Returns the two points of a difference that are farthest apart along a coordinate axis.
 ///
 /// They are at least the diameter of the set over the square root of `D` apart.
 pub(super) fn widest_pair<N: Real, const D: usize>(
@@ -23,8 +23,8 @@ pub(super) fn widest_pair<N: Real, const D: usize>(
     pair
 }
 
-/// The point of a difference that lies farthest along the unit vector `outward`, and how far beyond
-/// `base`.
+/// Returns the point of a difference farthest along the unit vector `outward`, and how far it is
+/// beyond `base`.
 pub(super) fn farthest<N: Real, const D: usize>(
     difference: &dyn Difference<N, D>,
     outward: &Vector<N, D>,
@@ -34,7 +34,7 @@ pub(super) fn farthest<N: Real, const D: usize>(
     (vertex, outward.dot(&(vertex.point - base)))
 }
 
-/// The best of some normals, each tried to both sides.
+/// Returns the best of some normals, each tried in both directions.
 pub(super) fn best_of<N: Real, const D: usize>(
     difference: &dyn Difference<N, D>,
     normals: &[Vector<N, D>],

@@ -1,8 +1,16 @@
 //! The point of a difference nearest to the origin.
 //!
+//! ```text
+//!              difference                upper = |nearest point of the simplex|
+//!           .-------.                    along = nearest / upper, the next normal
+//!    o - - -|*      |                    lower = height of `along`: its lowest support point
+//!      lower '.     |                    upper - lower <= gap: done
+//!             '-----'
+//! ```
+//!
 //! E. Gilbert, D. Johnson and S. Keerthi, "A Fast Procedure for Computing the Distance Between
-//! Complex Objects in Three-Dimensional Space" (1988); the way to stop on the gap between the bounds
-//! is that of G. van den Bergen, "A Fast and Robust GJK Implementation for Collision Detection of
+//! Complex Objects in Three-Dimensional Space" (1988). Stopping on the gap between the bounds
+//! follows G. van den Bergen, "A Fast and Robust GJK Implementation for Collision Detection of
 //! Convex Objects" (1999).
 
 use smallvec::SmallVec;
@@ -17,51 +25,51 @@ use super::simplex::{NearestOfSimplex, Simplex, Simplicial};
 use super::witness::{Mix, locate, placed, settle};
 use crate::math::{Real, Vector, max, unit_or};
 
-/// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty;
-/// whoever comes here is refined from the best normal so far.
+/// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty.
+/// A search that reaches it is refined from the best normal so far.
 const ROUNDS: usize = 64;
 
-/// A depth, in units of the pair, that is not down to rounding: 2⁻¹⁰.
+/// A depth, in units of the pair, that is far more than rounding: 2⁻¹⁰.
 const CLEAR: f64 = 1.0 / 1024.0;
 
 /// How the search ended.
 enum Outcome {
-    /// The difference lies beyond the limit, certainly.
+    /// The difference is certainly beyond the limit.
     Beyond,
-    /// The origin is in the difference, or nearer to it than the noise.
+    /// The difference contains the origin, or is nearer to it than the noise.
     Overlap,
-    /// The nearest point is found, or the arithmetic comes no closer.
+    /// The nearest point is found, or arithmetic comes no closer.
     Apart,
-    /// A point is as near as was asked for.
+    /// A point is nearer than `near`.
     Near,
 }
 
 struct GjkSearch<N: Real, const D: usize> {
     simplex: Simplex<N, D>,
-    /// The best normal so far; its height is a lower bound of the distance.
+    /// Best normal so far; its height is a lower bound of the distance.
     best: SupportCandidate<N, D>,
-    /// The normal of the nearest point so far.
+    /// Normal of the nearest point so far.
     last: SupportCandidate<N, D>,
-    /// The length of the nearest point so far: an upper bound.
+    /// Length of the nearest point so far: an upper bound of the distance.
     upper: N,
-    /// The gap between the bounds at which the search stops.
+    /// Gap between the bounds at which the search stops.
     gap: N,
-    /// The lower bound that counts is that of the last normal, across which the points lie, not that
-    /// of the best.
+    /// The lower bound used is that of `last`, whose points lie across from each other, not that of
+    /// `best`.
     for_points: bool,
     /// A point nearer than this ends the search.
     near: N,
 }
 
-/// What is known of two cores.
+/// Result for two cores.
 pub(super) enum Answer<N: Real, const D: usize> {
     Signed(Separation<N, D>),
-    /// Inflated they certainly overlap; how deep was not asked.
+    /// The cores inflated by their radii certainly overlap; the depth was not asked for.
     Overlap,
 }
 
-/// The signed distance of the difference from the origin, starting with the unit vector `start`, in
-/// units of the pair; `None` if it is above `limit`.
+/// Returns the signed distance of the difference from the origin, searched from the unit vector
+/// `start`, in units of the pair; `None` if it is above `limit`.
 pub(super) fn solve<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -77,8 +85,8 @@ where
     }
 }
 
-/// As [`solve`], but if a rounding is given, content with a certain overlap of what is inflated by it: see
-/// [`overlaps`]. What is apart is found by the same steps.
+/// Computes [`solve`]; with a `rounding`, a certain overlap of the cores inflated by it is enough
+/// (see [`overlaps`]). If they are apart, the steps are the same.
 pub(super) fn answer<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -118,14 +126,14 @@ where
     }
 }
 
-/// Points of two cores that are nearer than this prove that the rounded solids overlap.
+/// Returns the distance of points below which solids with this radius certainly overlap.
 fn near<N: Real>(rounding: N) -> N {
     rounding - N::lit(CLEAR)
 }
 
-/// Whether the difference, inflated by a radius, certainly holds the origin: found by a simplex that holds
-/// a ball around it, or by a point nearer than the radius. Not looked for where the way out along `start`
-/// is shorter than `min_depth`.
+/// Returns whether the difference inflated by `radius` certainly contains the origin: by a simplex
+/// that contains a ball around it, or by a point nearer than the radius. `false` without a search
+/// if the depth along `start` is less than `min_depth`.
 pub(super) fn overlaps<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -148,7 +156,7 @@ where
     }
 }
 
-/// The normal of the nearest point of a difference that lies well away from the origin.
+/// Returns the normal of the nearest point of a difference well away from the origin.
 pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     difference: &impl Difference<N, D>,
     start: &Vector<N, D>,
@@ -159,7 +167,7 @@ pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     search.best.normal
 }
 
-/// As [`nearest_normal`], as far as the arithmetic goes, with the points around the nearest one.
+/// Computes [`nearest_normal`] to the limit of arithmetic, with the points around the nearest one.
 pub(super) fn nearest_simplex<N: Simplicial<D>, const D: usize>(
     difference: &impl Difference<N, D>,
     start: &Vector<N, D>,
@@ -183,13 +191,14 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         }
     }
 
-    /// The difference, inflated by a radius, certainly holds a ball around the origin. In solids that lie
-    /// symmetrically the search from their middles ends at a corner, edge or face; another start leads off it.
+    /// Returns whether the inflated difference certainly contains a ball around the origin. For
+    /// solids that lie symmetrically the search from their middles ends at a corner, edge or face;
+    /// another start avoids that.
     fn clears(&self, difference: &impl Difference<N, D>, radius: N) -> bool {
         self.is_clear() || overlaps(difference, &skew_axis(), radius, N::ZERO)
     }
 
-    /// The simplex holds a ball around the origin.
+    /// Returns whether the simplex contains a ball around the origin.
     fn is_clear(&self) -> bool {
         let points = self.simplex.points();
         N::nearest(points).enclosed && N::clears(points, N::lit(CLEAR))
@@ -198,7 +207,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     fn run(&mut self, difference: &impl Difference<N, D>, limit: N) -> Outcome {
         let mut nearest = N::nearest(self.simplex.points());
         for _ in 0..ROUNDS {
-            // Written so that NaN counts as an overlap, which ends by caps alone.
+            // Written so that NaN counts as an overlap, whose loops end by their caps.
             let away = nearest.squared > noise::<N>() * noise();
             if nearest.enclosed || !away {
                 return Outcome::Overlap;
@@ -227,8 +236,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         Outcome::Apart
     }
 
-    /// Takes the last support point into the simplex; `None`, and nothing done, if that brings the
-    /// origin no nearer: the arithmetic is at its end.
+    /// Adds the last support point to the simplex; `None`, and no change, if that brings the origin
+    /// no nearer: arithmetic is at its limit.
     fn advanced(&mut self, nearest: &NearestOfSimplex<N, D>) -> Option<NearestOfSimplex<N, D>> {
         self.simplex.push(self.last.vertex);
         let next = N::nearest(self.simplex.points());
@@ -240,21 +249,21 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         Some(next)
     }
 
-    /// The bounds lie farther apart than they should.
+    /// Returns whether the bounds lie farther apart than they should.
     fn open(&self) -> bool {
         let closed = self.upper - self.best.height <= N::TWO * tolerance();
         !closed
     }
 
-    /// The bounds meet, up to rounding. Rounding may also have put the one that should be above below
-    /// the other: slivers give poor nearest points.
+    /// Returns whether the bounds meet, up to rounding. Rounding may also have put the upper below
+    /// the lower: slivers give poor nearest points.
     fn met(&self) -> bool {
         (self.upper - self.best.height).abs() <= N::TWO * gap()
     }
 
-    /// The answer from the features found; refined first where the bounds do not meet. That is the
-    /// case near touching, where the direction of the nearest point is mostly rounding errors, and
-    /// where one solid is much larger than the other.
+    /// Returns the answer from the features found, refined first if the bounds do not meet. That
+    /// happens near touching, where the direction of the nearest point is mostly rounding, and if
+    /// one solid is much larger than the other.
     fn finish(&mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.met() {
             return self.settled(difference);
@@ -278,8 +287,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         if deep.distance > apart.distance { deep } else { apart }
     }
 
-    /// The answer where the origin is in the difference, or all but: at once if a normal is known
-    /// along which it lies on the boundary.
+    /// Returns the answer if the difference contains the origin, or nearly: at once if a normal is
+    /// known with the origin on its supporting plane.
     fn finish_overlap(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.best.height >= -noise::<N>() {
             return self.settled(difference);
@@ -287,8 +296,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         N::deepest(difference, &self.simplex)
     }
 
-    /// The answer by Newton's method from where the search stands, if it leads to points that prove it:
-    /// these lie as far apart as the normal says, so no other does better.
+    /// Returns the answer of Newton's method from the current normal, if it leads to points that
+    /// prove it: they are as far apart as the height of the normal.
     fn polished(&self, difference: &dyn Difference<N, D>) -> Option<Separation<N, D>> {
         let mut best = self.best;
         let mix = polish(difference, &mut best, self.simplex.vertices())?;
@@ -296,8 +305,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         is_apart.then(|| placed(&best, &mix, N::HALF))
     }
 
-    /// The answer where the bounds meet. Of normals that do, that of the nearest point is taken if
-    /// the points of the nearest point lie across from each other along no other.
+    /// Returns the answer if the bounds meet. Of several valid normals, that of the nearest point
+    /// is taken if its points lie across from each other along no other.
     fn settled(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         let (mix, mut best) = (Mix::of(&self.simplex), self.best);
         if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {
@@ -305,7 +314,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         }
         let raised = best.height > self.best.height;
         if !raised && !mix.meets(&best) {
-            // The points of a sliver are no proof that its plane is as near as it seems.
+            // The points of a sliver do not prove that its plane is as near as it seems.
             if settles(difference, &mut best) {
                 return locate(difference, &best, &[best.vertex]);
             }
@@ -315,7 +324,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     }
 }
 
-/// A unit vector that is no axis of symmetry of anything that lies along the axes.
+/// Returns a unit vector that is no axis of symmetry of solids aligned with the axes.
 fn skew_axis<N: Real, const D: usize>() -> Vector<N, D> {
     let mut next = N::ONE;
     let skew = Vector::<N, D>::from_fn(|_, _| {
@@ -325,17 +334,17 @@ fn skew_axis<N: Real, const D: usize>() -> Vector<N, D> {
     unit_or(&skew, skew)
 }
 
-/// The gap at which curved cores are handed to Newton's method first: from there it mostly leads to an answer.
+/// Gap at which curved cores first go to Newton's method, which mostly finds the answer from there.
 fn coarse_gap<N: Real>() -> N {
     max(rough_gap(), N::lit(1.0 / 128.0))
 }
 
-/// The gap at which they are handed to it once more, which takes it from there: 2⁻⁹ in `f32`, 2⁻¹⁹ in `f64`.
+/// Gap at which they go to it once more, which succeeds from there: 2⁻⁹ in `f32`, 2⁻¹⁹ in `f64`.
 fn rough_gap<N: Real>() -> N {
     N::TWO * tolerance::<N>().sqrt()
 }
 
-/// The gap that is good enough: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`.
+/// Gap that is good enough: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`.
 fn gap<N: Real>() -> N {
     max(noise(), N::lit(1.0 / 70_368_744_177_664.0))
 }

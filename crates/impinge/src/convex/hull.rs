@@ -1,9 +1,16 @@
 //! A polytope of triangles that grows, for `epa3`.
 //!
-//! There are no links between faces: to add a point, the faces around that it sees are taken away, and the
-//! sides that only one of them had are joined to the point. So the orientation of new faces follows
-//! from that of old ones, never from a sign that rounding could turn, and the surface stays closed
-//! whatever the arithmetic thinks is visible.
+//! ```text
+//!       a ----- b              a ----- b
+//!       | x  /  |              | \   / |      x: faces that the apex * lies beyond: removed
+//!       |  /  x |     --->     |   *   |      horizon: the sides ab, bc, cd, da of one removed face
+//!       d ----- c              | /   \ |      only; each becomes the face [start, end, apex]
+//!                              d ----- c
+//! ```
+//!
+//! There are no links between faces. The orientation of new faces follows from that of old ones,
+//! never from a sign that rounding could turn, and the surface stays closed whatever rounding makes
+//! visible. Indices of vertices are `u16`: the rounds of `epa3` are capped.
 
 use smallvec::SmallVec;
 
@@ -14,18 +21,18 @@ use crate::math::{Mapped, Real, Vector, cross, max, unit};
 #[derive(Clone, Copy)]
 pub(super) struct EpaFace<N: Real> {
     pub(super) corners: [u16; 3],
-    /// The unit normal out of the polytope.
+    /// Outward unit normal.
     pub(super) outward: Vector<N, 3>,
-    /// How far the face lies beyond the origin; infinite if it is too thin to have a normal.
+    /// Signed distance of the face from the origin; infinite if it is too thin to have a normal.
     pub(super) offset: N,
-    /// Moved to where the difference is known to end; it grows no more.
+    /// `offset` has been set to the difference's certificate; the face grows no more.
     pub(super) settled: bool,
 }
 
-/// The sides of a hole in the surface, each running as in the face that is gone.
+/// Directed sides of a hole in the surface, each running as in the removed face.
 type Horizon = SmallVec<[[u16; 2]; 24]>;
 
-/// Numbers of faces.
+/// Indices of faces.
 type FaceIndices = SmallVec<[usize; 16]>;
 
 pub(super) struct Hull<N: Real> {
@@ -34,7 +41,7 @@ pub(super) struct Hull<N: Real> {
 }
 
 impl<N: Real> Hull<N> {
-    /// A tetrahedron, its corners in any order.
+    /// Creates a tetrahedron, its corners in any order.
     pub(super) fn new(corners: [Vertex<N, 3>; 4]) -> Self {
         let [a, b, c, d] = corners.mapped(|corner| corner.point);
         let volume = cross(&(b - a), &(c - a)).dot(&(d - a));
@@ -61,12 +68,12 @@ impl<N: Real> Hull<N> {
         &self.faces[index]
     }
 
-    /// Whether the very point is a vertex already.
+    /// Returns whether exactly this point is a vertex.
     pub(super) fn contains(&self, vertex: &Vertex<N, 3>) -> bool {
         self.vertices.iter().any(|known| known.point == vertex.point)
     }
 
-    /// The face nearest to the origin; `None` if all are too thin.
+    /// Returns the face nearest to the origin; `None` if all are too thin.
     pub(super) fn nearest(&self) -> Option<usize> {
         let (mut nearest, mut offset) = (None, N::INFINITY);
         for (index, face) in self.faces.iter().enumerate() {
@@ -77,24 +84,24 @@ impl<N: Real> Hull<N> {
         nearest
     }
 
-    /// The unit normals out of the faces that are nearer to the origin than this.
+    /// Outward unit normals of the faces that are nearer to the origin than `offset`.
     pub(super) fn nearer_than(&self, offset: N) -> impl Iterator<Item = Vector<N, 3>> + '_ {
         let faces = self.faces.iter().filter(move |face| face.offset < offset);
         faces.map(|face| face.outward)
     }
 
-    /// Moves a face outwards to where the difference is known to end.
+    /// Moves a face outwards to `offset`, where the difference is known to end.
     pub(super) fn settle(&mut self, index: usize, offset: N) {
         self.faces[index].offset = offset;
         self.faces[index].settled = true;
     }
 
-    /// Keeps points for the mixing of witnesses, without a face.
+    /// Keeps points for mixing witnesses, without a face.
     pub(super) fn keep(&mut self, vertices: &[Vertex<N, 3>]) {
         self.vertices.extend_from_slice(vertices);
     }
 
-    /// Grows to a point that lies beyond the face `from`.
+    /// Grows to a point beyond the face `from`.
     pub(super) fn extend(&mut self, from: usize, vertex: Vertex<N, 3>) {
         let apex = u16::try_from(self.vertices.len()).expect("the number of rounds is capped");
         self.vertices.push(vertex);
@@ -102,8 +109,8 @@ impl<N: Real> Hull<N> {
         let (mut outline, mut free) = (Horizon::new(), FaceIndices::new());
         self.uncover(from, &mut outline);
         free.push(from);
-        // Only what is connected to `from` goes: a face elsewhere that rounding makes visible would
-        // tear a second hole.
+        // Only faces connected to `from` are removed: a face elsewhere that rounding makes visible
+        // would tear a second hole.
         while let Some(next) = visible.iter().position(|&face| self.adjoins(face, &outline)) {
             let face = visible.swap_remove(next);
             self.uncover(face, &mut outline);
@@ -122,7 +129,8 @@ impl<N: Real> Hull<N> {
         }
     }
 
-    /// The faces other than `from` that a point lies beyond; those too thin to tell count.
+    /// Returns the faces other than `from` that a point lies beyond; faces too thin to decide
+    /// count.
     fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> FaceIndices {
         let mut visible = FaceIndices::new();
         for (index, face) in self.faces.iter().enumerate() {
@@ -134,13 +142,13 @@ impl<N: Real> Hull<N> {
         visible
     }
 
-    /// Whether a face shares a side with the hole.
+    /// Returns whether a face shares a side with the hole.
     fn adjoins(&self, face: usize, outline: &Horizon) -> bool {
         let [a, b, c] = self.faces[face].corners;
         outline.iter().any(|side| [[b, a], [c, b], [a, c]].contains(side))
     }
 
-    /// Takes a face away: its sides become the hole's, or cancel against them.
+    /// Removes a face: its sides are added to the hole's, or cancel against them.
     fn uncover(&self, face: usize, outline: &mut Horizon) {
         let [a, b, c] = self.faces[face].corners;
         for [start, end] in [[a, b], [b, c], [c, a]] {

@@ -1,21 +1,30 @@
-//! Algorithms on convex sets, known by their support points: no shapes, no pairs, no state.
+//! Algorithms on convex sets given by their support points: no shapes, no pairs, no state.
 //!
-//! [`separation`] gives the signed distance of two rounded convex solids. They
-//! run on the cores: the difference of the cores (all `b − a`) is searched for its point nearest to
-//! the origin ([`gjk`]) or, where it holds the origin, for its nearest supporting plane (`epa2`,
-//! `epa3`). A normal `n` is never trusted for how it was found, but for its *certificate*: the
-//! height `h(n) = min n·b − max n·a`, by two support points, up to which `n` separates the cores.
-//! The signed distance is the largest height over all unit vectors. Where the cores are curved and say
-//! how, Newton's method brings the last digits (`polish`).
+//! ```text
+//!         core 1                core 2             difference: all b - a
+//!        .-----.    normal n   .-----.             h(n) = min n · b - max n · a: the certificate
+//!        |    a|-------------->|b    |             signed distance = max h(n) over unit n
+//!        '-----'               '-----'
+//!    found by     apart: `gjk`          overlapping: `epa2`, `epa3`, or a known `peak`
+//!    improved by  `refine`  `climb`  `newton`  `polish`  `side`        points: `witness`
+//! ```
+//!
+//! [`separation`] returns the signed distance of two convex solids with radii. It runs on their
+//! cores: the difference of the cores (all `b − a`) is searched for its point nearest to the origin
+//! ([`gjk`]) or, if it contains the origin, for its nearest supporting plane (`epa2`, `epa3`). A
+//! normal `n` is never trusted for how it was found, only for its *certificate*: the height
+//! `h(n) = min n·b − max n·a`, by two support points, up to which `n` separates the cores. The
+//! signed distance is the largest height over all unit vectors. For curved cores that provide their
+//! curvature, Newton's method computes the last digits (`polish`).
 //!
 //! All this happens in units in which the pair is about 1 large (`difference`), reached by an exact
-//! power of two; so every tolerance is a plain multiple of the machine epsilon, and scaling both
-//! solids by a power of two scales the answer bit by bit.
+//! power of two. So every tolerance is a plain multiple of the machine epsilon, and scaling both
+//! solids by a power of two scales the answer exactly.
 //!
-//! [`gjk`] and `epa` find a normal from nothing; `refine` (support points), `climb` (apart from each other),
-//! `newton` and `polish` (curvature) and `side` (the ring of a round side) find a better normal near a good one;
-//! `witness` finds the points that belong to it. Every loop has a cap, and the answer at the cap is certified
-//! like any other.
+//! [`gjk`] and `epa` find a normal from nothing. `refine` (support points), `climb` (apart from
+//! each other), `newton` and `polish` (curvature) and `side` (the ring of a round side) improve a
+//! good normal; `witness` finds the points that belong to it. Every loop has a cap, and the answer
+//! at the cap has a certificate like any other.
 
 mod candidate;
 mod climb;
@@ -50,28 +59,27 @@ pub(crate) use difference::safe_reach;
 use difference::{CorePair, noise};
 use gjk::Answer;
 
-/// The signed distance of two rounded solids, its normal and the points it lies between, in the
-/// frame of the first; `pose12` is the pose of the second in that frame.
+/// Returns the signed distance of two solids with radii, its normal and its points, in the frame of
+/// the first; `pose12` is the pose of the second in that frame.
 ///
-/// `None` if the solids are certainly farther apart than `limit`: a plane was found that shows it,
-/// by more than rounding errors. At a distance of just `limit` the answer is `Some`; with an
-/// infinite limit it always is, for finite input. Not a number anywhere in the pose gives `None`.
+/// `None` if the solids are certainly farther apart than `limit`: a plane separates them by more,
+/// beyond rounding. At a distance of exactly `limit` the answer is `Some`; with an infinite limit
+/// it always is, for finite input. NaN or infinity in the pose gives `None`.
 ///
-/// `distance` is the certificate of `normal`. With `s` the sum of the reaches of the cores and of
-/// the distance of their origins, it falls short of the exact signed distance by a few
-/// `N::EPSILON · s` for cores with flat faces and for curved ones that say how they bend
-/// ([`SupportMap::curved_support`]); for others that are curved by about the larger of that and
-/// `2⁻⁴⁰ · s`; where a whole ring of normals is nearly as good, as deep in nearly coaxial cylinders or cones, the
-/// ring of a round side is searched ([`SupportMap::round_side`]), and only where that is none and all around is
-/// about as good, as in the middle of a ball, a local search ends the work, which may fall short by more. The
-/// points lie on the cores to the same accuracy, on curved ones that do not say how they bend to about its
-/// square root at worst.
-/// Where several normals are equally good (coincident centres, say) one is picked, the
-/// same each time. Cores that are single coincident points have no direction at all: the first
-/// axis is taken.
+/// `distance` is the certificate of `normal`. Let `s` be the sum of the reaches of the cores and of
+/// the distance of their origins. `distance` falls short of the exact value by a few
+/// `N::EPSILON · s` for flat-faced cores and for curved ones that provide their curvature
+/// ([`SupportMap::curved_support`]); for other curved ones by about the larger of that and
+/// `2⁻⁴⁰ · s`. If a whole ring of normals is nearly as good, as deep in nearly coaxial cylinders or
+/// cones, the ring of a round side is searched ([`SupportMap::round_side`]). Only if there is none,
+/// and all normals around are about as good, as in the middle of a ball, a local search ends the
+/// work, which may fall short by more. The points lie on the cores to the same accuracy; on curved
+/// cores without curvature to about its square root at worst. Of several equally good normals (for
+/// coincident centres, say) the same one is chosen each time. Cores that are single coincident
+/// points have no direction: the first axis is taken.
 ///
-/// Costs about ten support points of each solid where the cores are apart, a few dozen where they
-/// overlap; at most some hundreds.
+/// Cost: about ten support points of each solid if the cores are apart, a few dozen if they
+/// overlap, some hundreds at most.
 pub(crate) fn separation<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -87,8 +95,8 @@ where
     of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
-/// [`separation`] of solids whose cores have neither edges nor rims, but that one may be a segment: the best normal
-/// of an overlap is found in fewer steps.
+/// Computes [`separation`] for solids whose cores have neither edges nor rims; one may be a
+/// segment. The best normal of an overlap takes fewer steps then.
 pub(crate) fn smooth_separation<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -104,8 +112,8 @@ where
     of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
-/// [`separation`] of solids whose cores are hulls of points, which is found the same way but for all
-/// that is done about curved ones. The search starts along a unit vector, if one is given.
+/// Computes [`separation`] for solids whose cores are hulls of points, in the same way but without
+/// the steps for curved cores. The search starts along the unit vector `start`, if it is given.
 pub(crate) fn flat_separation<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -123,8 +131,8 @@ where
     of_pair(&pair, &start, [a.rounding(), b.rounding()], limit)
 }
 
-/// [`separation`] of solids of which it is known where the best normal of an overlap can lie: that is found
-/// without growing a polytope, and the same up to rounding.
+/// Computes [`separation`] for solids with a known set of possible normals of an overlap: these are
+/// found without growing a polytope, and equal up to rounding.
 pub(crate) fn separation_by<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -141,13 +149,14 @@ where
     of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
-/// Whether two solids certainly overlap: points of the difference of their cores span a simplex that holds
-/// a ball around the origin, of a size that no rounding comes near, or points of the cores are nearer to each
-/// other than their rounding by as much. `false` says nothing, and is the answer where the way out along the
-/// line of their middles is shorter than `min_depth`, in units of the pair.
+/// Returns whether two solids certainly overlap: points of the difference of their cores span a
+/// simplex that contains a ball around the origin, far larger than rounding, or points of the cores
+/// are nearer to each other than their radii by as much. `false` proves nothing. It is also
+/// returned if the depth along the line of their middles is less than `min_depth`, in units of the
+/// pair.
 ///
-/// Where it is `true`, [`separation`] gives a negative distance. Costs as many support points as it takes to
-/// find a separating plane or such a simplex, about four.
+/// If it is `true`, [`separation`] returns a negative distance. Cost: the support points up to a
+/// separating plane or such a simplex, about four.
 pub(crate) fn overlap<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -164,8 +173,8 @@ where
     gjk::overlaps(&pair, &pair.start(), radius, min_depth)
 }
 
-/// The distance in [`separation`] of two solids, or zero if they certainly overlap, as [`overlap`] finds it on
-/// the way.
+/// Returns the distance of [`separation`], or zero if the solids certainly overlap by [`overlap`],
+/// which is tested on the way.
 pub(crate) fn distance<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -180,7 +189,7 @@ where
     distance_of_pair(&CorePair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
 }
 
-/// The distance in [`flat_separation`], or zero if the solids certainly overlap, as [`distance`].
+/// Returns the distance of [`flat_separation`], or zero if the solids certainly overlap.
 pub(crate) fn flat_distance<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -196,7 +205,7 @@ where
     distance_of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
-/// The distance in [`separation_by`], or zero if the solids certainly overlap, as [`distance`].
+/// Returns the distance of [`separation_by`], or zero if the solids certainly overlap.
 pub(crate) fn distance_by<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -246,7 +255,7 @@ where
     Some(pair.restored(&found).rounded(radii[0], radii[1]))
 }
 
-/// A limit of the solids as one of their cores, in units of the pair.
+/// Returns the limit for the distance of the cores, in units of the pair, raised by rounding.
 fn limit_of_cores<N, A, B, const D: usize>(
     pair: &CorePair<'_, N, A, B, D>,
     radii: [N; 2],

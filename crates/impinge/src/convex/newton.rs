@@ -1,19 +1,20 @@
-//! From a good normal to one that is right to the last bits, where surfaces are curved.
+//! From a good normal to one that is accurate to rounding, where surfaces are curved.
 
 use super::candidate::SupportCandidate;
 use super::difference::{Difference, noise};
 use super::simplex::Simplicial;
 use crate::math::{Vector, unit};
 
-/// Cap on the number of steps; from where iterations stop, one or two are enough.
+/// Cap on the number of steps; one or two are enough after the iterations.
 const STEPS: usize = 6;
 
-/// Newton's method on the sphere of normals; whether it has ended at a normal across which the two
-/// support points lie.
+/// Runs Newton's method on the sphere of normals; returns whether it ended at a normal along which
+/// the two support points lie across from each other.
 ///
-/// The height of a normal `n` is `n·w` for its lowest point `w`, so the slope of the height is what is
-/// left of `w` across `n`, and zero at the answer. Each step is judged by what it proves and by that
-/// slope: at kinks of the height, the flat faces and sharp edges, steps fail and nothing is lost.
+/// The height of a normal `n` is `n·w` for its lowest point `w`, so the slope of the height is the
+/// part of `w` perpendicular to `n`, and zero at the answer. Each step is judged by its certificate
+/// and by that slope: at kinks of the height (flat faces, sharp edges) steps fail and nothing is
+/// lost.
 pub(super) fn settles<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -37,14 +38,14 @@ pub(super) fn settles<N: Simplicial<D>, const D: usize>(
     slope.norm() <= noise::<N>() * N::lit(64.0)
 }
 
-/// What is left of a vector across a unit vector.
+/// Returns the part of a vector perpendicular to a unit vector.
 fn across<N: Simplicial<D>, const D: usize>(v: &Vector<N, D>, n: &Vector<N, D>) -> Vector<N, D> {
     v - n * n.dot(v)
 }
 
-/// The step that takes the slope to zero, by conjugate gradients (M. Hestenes and E. Stiefel, 1952):
-/// across a normal there are `D − 1` directions, and as many rounds are exact. `None` where the height
-/// is not curved downwards.
+/// Returns the step that takes the slope to zero, by conjugate gradients (M. Hestenes and E.
+/// Stiefel, 1952). Perpendicular to a normal there are `D − 1` directions, so as many rounds are
+/// exact. `None` if the height is not concave.
 fn step<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -71,8 +72,8 @@ fn step<N: Simplicial<D>, const D: usize>(
     Some(step)
 }
 
-/// How the slope changes along a direction across the normal, for one unit of turning: by a difference
-/// to both sides.
+/// Returns the derivative of the slope along a direction perpendicular to the normal, by a
+/// difference to both sides.
 fn bend<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,

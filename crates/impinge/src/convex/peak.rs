@@ -1,4 +1,4 @@
-//! The best normal of an overlap, named by those who know where such normals can lie.
+//! The best normal of an overlap, from callers that know where it can lie.
 
 use smallvec::SmallVec;
 
@@ -10,27 +10,30 @@ use super::simplex::Simplicial;
 use super::witness::{locate, placed};
 use crate::math::{Real, Vector};
 
-/// The best normal of two cores that overlap, in the frame of the first and units of the pair.
+/// Best normal of two overlapping cores, in the frame of the first and in units of the pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Peak<N: Real, const D: usize> {
-    /// From the first core to the second: no other is better by more than was asked for.
+    /// Unit vector from the first core to the second; no other is better by more than the requested
+    /// gap.
     pub(crate) normal: Vector<N, D>,
-    /// It is that of a flat face: there is none a little better beside it.
+    /// It is the normal of a flat face, so none beside it is slightly better.
     pub(crate) is_exact: bool,
-    /// It is one of a ring of normals of a round side, and others of it may be a little better.
+    /// It is one of a ring of normals of a round side, and others of the ring may be slightly
+    /// better.
     pub(crate) is_ring: bool,
-    /// Points of each core, mixes of which lie across from each other along the normal.
+    /// Points of each core whose mixes lie across from each other along the normal.
     pub(crate) on1: SmallVec<[Vector<N, D>; 8]>,
     pub(crate) on2: SmallVec<[Vector<N, D>; 8]>,
 }
 
-/// Two cores of which it is known where the best normal of an overlap can lie.
+/// Two cores with a known set of possible normals of an overlap.
 pub(crate) trait Peaks<N: Real, const D: usize> {
-    /// The best normal up to `gap`, in units of 1 / `shrink`; `None` leaves it to a search.
+    /// Returns the best normal up to `gap`; lengths times `shrink` are in units of the pair. `None`
+    /// leaves it to a search.
     fn best(&self, shrink: N, gap: N) -> Option<Peak<N, D>>;
 }
 
-/// The answer with the normal that was named, brought to the last digits where cores are curved.
+/// Returns the answer with this normal, polished if cores are curved.
 pub(super) fn at_peak<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     peak: &Peak<N, D>,

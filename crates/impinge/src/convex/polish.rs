@@ -1,14 +1,14 @@
 //! Curved cores: from half of the digits of a normal to all of them.
 //!
 //! Support points alone find a normal of curved cores up to about the root of the accuracy of its
-//! height, and the last digits of the height slowly. A core that says how its support points move
-//! ([`SupportMap::curved_support`](crate::shape::SupportMap::curved_support)) lets Newton's method
-//! finish. At the best normal `n` a few points `a` of the first core are equally extreme, a few
-//! points `b` of the second, and some mix of them lies across: `Σ w b − Σ u a = λ n`, with weights that
-//! are not negative and sum to one. Derived by `n`, the weights and `λ`, these are linear equations
-//! for a step; that active sets and curvature go together like this is the VU-decomposition of
-//! C. Lemaréchal, F. Oustry and C. Sagastizábal, "The U-Lagrangian of a Convex Function" (2000).
-//! As everywhere, the normal that a step leads to is trusted for its certificate only.
+//! height, and the last digits of the height slowly. If a core says how its support points move
+//! ([`SupportMap::curved_support`](crate::shape::SupportMap::curved_support)), Newton's method
+//! finishes. At the best normal `n` a few points `a` of the first core are equally extreme, a few
+//! points `b` of the second, and some mix of them lies across: `Σ w b − Σ u a = λ n`, with weights
+//! that are not negative and sum to one. Their derivatives by `n`, the weights and `λ` are linear
+//! equations for a step. Combining active sets and curvature in this way is the VU-decomposition of
+//! C. Lemaréchal, F. Oustry and C. Sagastizábal, "The U-Lagrangian of a Convex Function" (2000). As
+//! everywhere, the normal that a step leads to is trusted for its certificate only.
 
 use smallvec::SmallVec;
 
@@ -18,33 +18,34 @@ use super::simplex::Simplicial;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, max, min, unit};
 
-/// Cap on the steps; a normal with a quarter of its digits takes two, and one for each point that turns
-/// out to be active or not to be. Along a ring of normals that are about as good, as of solids whose axes
-/// all but coincide, long steps leave the ring and the next lead back to it: that takes up to twenty.
+/// Cap on the steps. A normal with a quarter of its digits takes two, and one for each point that
+/// becomes active or inactive. Along a ring of equally good normals, as for solids with almost the
+/// same axis, long steps leave the ring and the next ones return to it: up to twenty.
 const STEPS: usize = 24;
-/// How much less extreme than the most extreme point others may be along a normal that has yet to be
-/// polished, in units of the root of the tolerance: that is what a normal may be off by.
+/// How much less extreme than the most extreme point an active point may be along a normal that is
+/// not yet polished, in units of the root of the tolerance: the error of such a normal.
 const SLACK: f64 = 8.0;
-/// The longest step: Newton's method is of no use farther away.
+/// Length of the longest step; Newton's method does not converge from farther away.
 const LONGEST: f64 = 0.25;
-/// The most equations, in three dimensions: of the step, and of a weight for each active point but the first of each core.
+/// Most equations, in 3D: of the step, and of a weight for each active point but the first of each
+/// core.
 const ROWS: usize = 5;
-/// A column for each unknown, and the right side.
+/// A column for each unknown, and one for the right side.
 const COLUMNS: usize = ROWS + 1;
 const RIGHT: usize = ROWS;
 
-/// What a core contributes: points that are, or move to be, equally extreme, and their shares in the mix.
+/// Active points of one core, which are or become equally extreme, and their weights in the mix.
 struct ActiveSet<N: Real, const D: usize> {
     branches: SmallVec<[Branch<N, D>; 4]>,
     weights: SmallVec<[N; 4]>,
 }
 
-/// Raises the height of `best`, given points of the difference that lie lowest along it or nearly so;
-/// the points across from each other, if they were found on the way. These are as near to their
-/// places as the normal was to its own; without them, a normal may have been found all the same.
+/// Raises the height of `best`, given points of the difference that are lowest along it, or nearly.
+/// Returns the points across from each other, if they were found; these are as accurate as the
+/// normal was before. `best` may be improved without them.
 ///
-/// Does nothing where nothing is curved. A point that the next normal finds lower than the active
-/// ones becomes active; one that would have to pull instead of push is no more.
+/// Does nothing for flat cores. A point that the next normal finds below the active ones becomes
+/// active; one with a negative weight becomes inactive.
 pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -67,8 +68,8 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
         current = SupportCandidate::along(difference, unit(&(current.normal + turn))?.0);
         best.improve(&current);
         sides.iter_mut().for_each(|side| side.turn(difference, &current.normal));
-        // What is left after a step is about its square, and the weights are as good as the step: a
-        // point outside its core, by however little, is none in the end.
+        // The error after a step is about the square of the step, and weights are as accurate as
+        // the step. In the end no point may be outside its core by however little.
         let ends = squared <= N::EPSILON;
         let slack = if ends { noise() } else { noise::<N>().sqrt() };
         let changed = add_lower(difference, &current, &mut sides) || drop_worst(&mut sides, slack);
@@ -81,7 +82,8 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
             if mix.meets(best) {
                 return Some(mix);
             }
-            // A rim runs fast where the normal is close to its axis: then its points take a step more.
+            // A rim point moves fast if the normal is close to its axis: its points take one more
+            // step.
             if squared >= left {
                 return None;
             }
@@ -91,8 +93,8 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     None
 }
 
-/// Tries the very normals of round faces that the normal is close to: the height has a peak there, and
-/// no derivative.
+/// Tries the exact normals of round faces close to the normal, where the height has a maximum
+/// without a derivative.
 fn try_round_faces<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -105,7 +107,7 @@ fn try_round_faces<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// The points that lie lowest along a normal, or nearly so: those that [`polish`] may need.
+/// Returns the points that are lowest along a normal, or nearly: those that [`polish`] may need.
 pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
     vertices: &[Vertex<N, D>],
     normal: &Vector<N, D>,
@@ -116,7 +118,7 @@ pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
     vertices.iter().filter(|vertex| height(vertex) <= least + slack).copied().collect()
 }
 
-/// Finds the active points of both cores; `None` if all are corners, or if so large that their extents are no numbers.
+/// Finds the active points of both cores; `None` if all are corners, or if extents are not finite.
 fn activate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -142,8 +144,8 @@ fn activate<N: Simplicial<D>, const D: usize>(
     sides.iter().all(|side| !side.branches.is_empty()).then_some(())
 }
 
-/// Drops the points that are not extreme, even if the normal is off by the root of the noise, and of
-/// the others the least extreme, until there are no more than can determine a normal.
+/// Drops points that are not extreme even if the normal is off by the root of the noise; then the
+/// least extreme ones, until no more are left than determine a normal.
 fn keep_extreme<N: Simplicial<D>, const D: usize>(
     sides: &mut [ActiveSet<N, D>; 2],
     normal: &Vector<N, D>,
@@ -175,7 +177,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         Self { branches: SmallVec::new(), weights: SmallVec::new() }
     }
 
-    /// Adds a point, if it is not known.
+    /// Adds a point unless it is known.
     fn insert(&mut self, branch: Branch<N, D>) {
         if !self.branches.iter().any(|known| known.on == branch.on) {
             self.branches.push(branch);
@@ -188,7 +190,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         self.weights.resize(self.branches.len(), share);
     }
 
-    /// The points as they are for another normal.
+    /// Moves the points to another normal.
     fn turn(&mut self, difference: &dyn Difference<N, D>, normal: &Vector<N, D>) {
         for branch in &mut self.branches {
             *branch = difference.branch(branch.is_second, &branch.on, normal);
@@ -200,7 +202,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         self.branches.iter().zip(&self.weights).fold(zero, |sum, (b, &weight)| sum + b.on * weight)
     }
 
-    /// Adds how the mix moves with the normal.
+    /// Adds the derivative of the mix by the normal.
     fn add_bend(&self, rows: &mut [[N; COLUMNS]; ROWS]) {
         for (branch, &weight) in self.branches.iter().zip(&self.weights) {
             let Some(bend) = &branch.bend else { continue };
@@ -212,12 +214,12 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         }
     }
 
-    /// From the first point to each of the others.
+    /// Vectors from the first point to each of the others.
     fn ways(&self) -> impl Iterator<Item = Vector<N, D>> {
         self.branches[1..].iter().map(|branch| branch.on - self.branches[0].on)
     }
 
-    /// The place of the least weight that is negative by more than the slack.
+    /// Returns the least weight that is below `-slack`, with its index.
     fn worst(&self, slack: N) -> Option<(usize, N)> {
         let (mut worst, mut least) = (None, -slack);
         for (index, &weight) in self.weights.iter().enumerate() {
@@ -234,8 +236,8 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
     }
 }
 
-/// Adds the points that the last normal has found beyond the active ones, by more than noise, as long
-/// as these can determine a normal; says whether there were any.
+/// Adds the points that the last normal found beyond the active ones, by more than noise, as long
+/// as they can determine a normal; returns whether there were any.
 fn add_lower<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     current: &SupportCandidate<N, D>,
@@ -256,7 +258,7 @@ fn add_lower<N: Simplicial<D>, const D: usize>(
     added
 }
 
-/// Drops the point that would have to pull instead of push; says whether there was one.
+/// Drops the point with the most negative weight; returns whether there was one.
 fn drop_worst<N: Simplicial<D>, const D: usize>(
     sides: &mut [ActiveSet<N, D>; 2],
     slack: N,
@@ -271,18 +273,18 @@ fn drop_worst<N: Simplicial<D>, const D: usize>(
     true
 }
 
-/// A step of the normal; the weights are set to those that go with it.
+/// Returns a step of the normal, and sets the weights that go with it.
 ///
-/// With `t` for the step, `P` for what projects across the normal, `B` for the bends of both mixes, `h` for the height,
-/// `w` for the weights of all active points but the first of each core, and `D` for the ways to these from the first, of
-/// the first core backwards:
+/// Let `t` be the step, `P` the projection across the normal, `B` the sum of the weighted bends,
+/// `h` the height, `w` the weights of all active points but the first of each core, and `D` the
+/// vectors to these from the first (for the first core negated):
 ///
 /// ```text
 /// | B + hP + nnᵀ  PD | |  t |   | P (b − a) |
 /// |    (PD)ᵀ       0 | | −w | = |  −D·n     |
 /// ```
 ///
-/// Bends take the normal to zero; so `nnᵀ` keeps the step across it, and changes nothing else.
+/// Bends map the normal to zero; `nnᵀ` keeps the step across it and changes nothing else.
 fn step<N: Simplicial<D>, const D: usize>(
     current: &SupportCandidate<N, D>,
     sides: &mut [ActiveSet<N, D>; 2],
@@ -326,7 +328,7 @@ fn step<N: Simplicial<D>, const D: usize>(
     Some(Vector::from_fn(|axis, _| solution[axis]))
 }
 
-/// Solves the first `count` equations, each with its right side in the column [`RIGHT`], by elimination
+/// Solves the first `count` equations, with the right sides in the column [`RIGHT`], by elimination
 /// with row pivoting; `None` if they are dependent.
 fn solve<N: Real>(mut rows: [[N; COLUMNS]; ROWS], count: usize) -> Option<[N; ROWS]> {
     for column in 0..count {
@@ -346,7 +348,8 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; ROWS], count: usize) -> Option<[N; RO
         }
         for row in &mut rows[column + 1..count] {
             let factor = row[column] / above[column];
-            // What is to the left is not looked at again: whole rows are quicker than their rests.
+            // Entries to the left are not read again; updating whole rows is faster than parts of
+            // them.
             for (entry, above) in row.iter_mut().zip(&above) {
                 *entry -= factor * *above;
             }

@@ -1,4 +1,4 @@
-//! Better normals from a handful of support points.
+//! Better normals from a few support points.
 
 use smallvec::SmallVec;
 
@@ -7,22 +7,21 @@ use super::difference::{Difference, Vertex, noise};
 use super::simplex::Simplicial;
 use crate::math::{Vector, min, unit};
 
-/// Support points near the place of interest.
+/// Support points near the one of interest.
 pub(super) type Bundle<N, const D: usize> = SmallVec<[Vertex<N, D>; 16]>;
 
-/// Cap on the number of support points asked for.
+/// Cap on the number of support points computed.
 const ROUNDS: usize = 40;
-/// As many points are kept; the one that matters least makes room.
+/// Number of points kept; the highest one makes room.
 const KEPT: usize = 8;
 
-/// Raises the height of `best` as far as it goes, for a difference without the origin.
+/// Raises the height of `best` as far as possible, for a difference without the origin.
 ///
-/// The height of a normal over a few support points is at least its height over the whole set. So:
-/// take the normal that is best over the bundle, among those of its points, edges and facets; ask
-/// for its support point; add that to the bundle; until the set agrees with the bundle. This is the
-/// cutting-plane method of J. Kelley (1960) on the sphere of normals. Over a set without the origin
-/// it is global; a set that holds the origin needs other means. All points found are added to
-/// `seen`.
+/// The height of a normal over a few support points is at least its height over the whole set. So
+/// the best normal over the bundle is computed, among those of its points, edges and facets, and
+/// its support point added, until the set agrees with the bundle. This is the cutting-plane method
+/// of J. Kelley (1960) on the sphere of normals. Over a set without the origin it is global; a set
+/// that contains the origin needs other methods. All points found are added to `seen`.
 pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     seen: &mut Bundle<N, D>,
@@ -46,7 +45,7 @@ pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// The unit vector of the largest height over the bundle, and that height.
+/// Returns the unit vector of the largest height over the bundle, and that height.
 fn most_promising<N: Simplicial<D>, const D: usize>(
     bundle: &Bundle<N, D>,
     around: &Vector<N, D>,
@@ -74,7 +73,7 @@ fn most_promising<N: Simplicial<D>, const D: usize>(
     (best, promise)
 }
 
-/// Drops the points highest along the best normal until few enough are left.
+/// Drops the points highest along the best normal until [`KEPT`] are left.
 fn drop_idle<N: Simplicial<D>, const D: usize>(bundle: &mut Bundle<N, D>, normal: &Vector<N, D>) {
     while bundle.len() > KEPT {
         let (mut idle, mut height) = (0, -N::MAX);

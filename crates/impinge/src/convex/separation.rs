@@ -2,11 +2,11 @@
 
 use crate::math::{Point, Pose, Real, Vector};
 
-/// How far two solids are apart, or how deep they overlap, and where: in the frame of the first.
+/// Signed distance, normal and points of two solids, in the frame of the first.
 ///
-/// `distance` is signed: positive between disjoint solids; minus the length of the shortest
-/// translation that parts them where they overlap; zero where they only touch. It is minus infinity
-/// for half-spaces that overlap without bound, and only then.
+/// `distance` is positive for disjoint solids, minus the length of the shortest translation that
+/// separates them if they overlap, and zero if they only touch. It is minus infinity for
+/// half-spaces that overlap without bound, and only then.
 ///
 /// Invariant: `point2 = point1 + normal · distance` up to rounding, `point1` on the surface of the
 /// first solid and `point2` on that of the second, `normal` unit from the first to the second.
@@ -20,7 +20,8 @@ pub(crate) struct Separation<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Separation<N, D> {
-    /// The same fact with the solids swapped, in the frame of the second; `pose12` is its pose.
+    /// Returns the separation with the solids swapped, in the frame of the second; `pose12` is its
+    /// pose.
     pub(crate) fn flipped(&self, pose12: &Pose<N, D>) -> Self {
         Self {
             distance: self.distance,
@@ -30,7 +31,7 @@ impl<N: Real, const D: usize> Separation<N, D> {
         }
     }
 
-    /// The same fact in other units of length.
+    /// Returns the separation in other units of length: lengths are multiplied by `scale`.
     pub(crate) fn scaled(&self, scale: N) -> Self {
         Self {
             distance: self.distance * scale,
@@ -40,7 +41,7 @@ impl<N: Real, const D: usize> Separation<N, D> {
         }
     }
 
-    /// The cores inflated by their rounding radii.
+    /// Returns the separation of the cores inflated by these radii.
     pub(crate) fn rounded(&self, rounding1: N, rounding2: N) -> Self {
         Self {
             distance: self.distance - rounding1 - rounding2,

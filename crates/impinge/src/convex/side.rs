@@ -1,10 +1,11 @@
-//! The best of the normals of a round side.
+//! The best normal of a round side.
 //!
-//! Of solids about axes that all but coincide, and of a small solid about the axis of a large one, a whole
-//! ring of normals is about as good. A polytope that grows finds none of them better before it is at its cap,
-//! and a local search creeps along. But on solids about exactly the same axis the ring of the best normals is
-//! that of a side, as in the half-plane of the axis the best normal of two polygons is that of an edge. So
-//! the heights along the ring of each side are a function of one angle, which has few tops.
+//! If the axes of two solids almost coincide, or a small solid is near the axis of a large one, a
+//! whole ring of normals is about as good. A growing polytope does not find the best of them before
+//! its cap, and a local search makes tiny steps. But for solids with exactly the same axis the ring
+//! of the best normals is that of a side, as in the half-plane of the axis the best normal of two
+//! polygons is that of an edge. So the heights along the ring of each side are tried, a function of
+//! one angle with few maxima.
 
 use smallvec::SmallVec;
 
@@ -15,30 +16,31 @@ use super::polish::polish;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, cross, filled, unit};
 
-/// As many normals of a ring are looked at first.
+/// Normals of a ring that are tried first.
 const SAMPLES: usize = 16;
 /// The angle between them.
 const PITCH: f64 = core::f64::consts::TAU / 16.0;
-/// Cap on the tops that are searched for their best normal.
+/// Cap on the maxima that are searched.
 const TOPS: usize = 3;
-/// By so much the sine of a normal may differ from that of a side whose ring it stands for.
+/// Largest difference between the components along the axis of a normal and of the side's normals.
 const NEAR: f64 = 1.0 / 16.0;
-/// Heights of a ring, of solids of about size 1, that differ by more than this are not all about as good.
+/// Largest difference of heights in a ring of about equal ones, for solids of about size 1.
 const LEVEL: f64 = 1.0 / 8.0;
-/// The share of an interval that a step of the golden section leaves.
+/// Share of an interval that a step of the golden section leaves.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
-/// Cap on these steps, by which an interval shrinks to 1e-9 of itself.
+/// Cap on these steps, which shrink an interval to 1e-9 of its length.
 const STEPS: usize = 43;
 
-/// The normal of a ring that is better than the one of this height, brought to the last digits, with the
-/// points that lie lowest along it or nearly so.
+/// A normal of a ring that is better than a given height, polished, with the points that are lowest
+/// along it, or nearly.
 pub(super) struct Better<N: Real> {
     pub(super) best: SupportCandidate<N, 3>,
     pub(super) mix: Option<Mix<N, 3>>,
     pub(super) lowest: SmallVec<[Vertex<N, 3>; 8]>,
 }
 
-/// What the rings of the sides have that is better than a normal near them, by more than rounding.
+/// Returns a normal from the rings of the sides near `normal` that is better than `height`, by more
+/// than rounding.
 pub(super) fn better<N: Real>(
     difference: &dyn Difference<N, 3>,
     normal: &Vector<N, 3>,
@@ -55,18 +57,19 @@ pub(super) fn better<N: Real>(
     found
 }
 
-/// A circle of unit vectors, with a place to measure angles from.
+/// A circle of unit vectors, with an origin for angles.
 #[derive(Clone, Copy)]
 struct NormalRing<N: Real> {
     axis: Vector<N, 3>,
     rise: N,
-    /// Unit, across the axis and across each other.
+    /// Unit vectors perpendicular to the axis and to each other.
     from: Vector<N, 3>,
     aside: Vector<N, 3>,
 }
 
 impl<N: Real> NormalRing<N> {
-    /// The ring of a side, measured from a normal near it; `None` if that is not near.
+    /// Returns the ring of a side, with angles from a normal near it; `None` if the normal is not
+    /// near.
     fn near(axis: Vector<N, 3>, rise: N, normal: &Vector<N, 3>) -> Option<Self> {
         let lean = normal.dot(&axis);
         let is_near = (lean - rise).abs() <= N::lit(NEAR);
@@ -80,7 +83,7 @@ impl<N: Real> NormalRing<N> {
         self.axis * self.rise + (self.from * cosine + self.aside * sine) * away
     }
 
-    /// The same ring, measured from another of its normals.
+    /// Returns the ring with angles from another of its normals.
     fn turned(&self, angle: N) -> Option<Self> {
         Self::near(self.axis, self.rise, &self.at(angle))
     }
@@ -89,13 +92,13 @@ impl<N: Real> NormalRing<N> {
         SupportCandidate::along(difference, self.at(angle)).height
     }
 
-    /// The normal across is about as good as one of this height that the ring is measured from. Else heights vary
-    /// enough for the best of them to be found without the ring.
+    /// Returns whether the opposite normal is about as good as `height`, that of the normal at
+    /// angle zero. Otherwise heights vary enough to find the best normal without the ring.
     fn is_level(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
         height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(LEVEL)
     }
 
-    /// The best normal, if it is higher than `least`, and the ring measured from it.
+    /// Returns the best normal, if it is higher than `least`, and the ring with angles from it.
     fn best(
         &self,
         difference: &dyn Difference<N, 3>,
@@ -114,7 +117,7 @@ impl<N: Real> NormalRing<N> {
         best
     }
 
-    /// The angles of the highest samples that are no lower than those beside them.
+    /// Returns the angles of the highest samples that are no lower than both neighbours.
     fn tops(&self, difference: &dyn Difference<N, 3>) -> SmallVec<[N; TOPS]> {
         let mut next = N::ZERO;
         let samples: [(N, N); SAMPLES] = filled(|_| {
@@ -136,7 +139,8 @@ impl<N: Real> NormalRing<N> {
         highest
     }
 
-    /// Measured from its highest normal between the samples beside this one, by the golden section.
+    /// Returns the ring with angles from its highest normal between the neighbouring samples, by
+    /// golden section.
     fn risen(&self, difference: &dyn Difference<N, 3>) -> Option<Self> {
         let (mut low, mut high) = (-N::lit(PITCH), N::lit(PITCH));
         let inner = |low: N, high: N| {
@@ -159,8 +163,8 @@ impl<N: Real> NormalRing<N> {
         self.turned(if heights[0] >= heights[1] { left } else { right })
     }
 
-    /// The normal that the ring is measured from, brought to the last digits: by Newton's method over the points
-    /// that are lowest to all sides of it.
+    /// Polishes the normal at angle zero by Newton's method, over the points that are lowest to all
+    /// sides of it.
     fn polished(
         &self,
         difference: &dyn Difference<N, 3>,

@@ -1,27 +1,41 @@
-//! Up to four points, and their hull's point nearest to the origin.
+//! Up to four points, and the point of their hull nearest to the origin.
 //!
-//! The idea of deciding by the signs of signed volumes, and of falling back to the faces of a
-//! simplex rather than dividing by a small volume, follows M. Montanari, N. Petrinic and
-//! E. Barbieri, "Improving the GJK Algorithm for Faster and More Reliable Distance Queries Between
-//! Convex Objects" (2017). What is particular to a dimension stands in `simplex2` and `simplex3`.
+//! ```text
+//!    tetrahedron -----> faces that the origin -----> their sides -----> their ends
+//!         |             lies beyond                       |                  |
+//!         |                   |                           |                  |
+//!      enclosed         inside a face               inside a side        a corner
+//!      4 weights        3 weights                   2 weights            1 weight
+//!
+//!    Part `i` is the volume (area, length) with corner `i` replaced by the origin. The origin lies
+//!    beyond the facet opposite to corner `i` if part `i` and the whole differ in sign. A simplex
+//!    that is flat up to `noise` has no sign, so all its facets compete.
+//! ```
+//!
+//! Deciding by the signs of volumes, and falling back to the faces of a simplex instead of dividing
+//! by a small volume, follows M. Montanari, N. Petrinic and E. Barbieri, "Improving the GJK
+//! Algorithm for Faster and More Reliable Distance Queries Between Convex Objects" (2017). The
+//! parts that depend on the dimension are in `simplex2` and `simplex3`; the same fan in lanes,
+//! without branches, is `collide/separation/apart/simplex.rs`.
 
 use super::Separation;
 use super::difference::{Difference, Vertex, noise};
 use crate::math::{Real, Vector};
 
-/// The scalar `Self` with the part of the algorithms that is particular to `D` dimensions.
+/// The scalar `Self` with the parts of the algorithms that depend on `D`.
 pub(crate) trait Simplicial<const D: usize>: Real {
-    /// The point nearest to the origin of the hull of one to `D + 1` points.
+    /// Returns the point of the hull of one to `D + 1` points that is nearest to the origin.
     fn nearest(points: &[Vector<Self, D>]) -> NearestOfSimplex<Self, D>;
 
-    /// Whether the planes of all facets of `D + 1` points are farther from the origin than a radius: where
-    /// the points enclose the origin, they hold a ball around it. `false` for fewer points.
+    /// Returns whether all facets of `D + 1` points are farther from the origin than `radius`: if
+    /// the points enclose the origin, they contain a ball around it. `false` for fewer points.
     fn clears(points: &[Vector<Self, D>], radius: Self) -> bool;
 
     /// Visits a vector perpendicular to each choice of `D` of the points; not of unit length.
     fn visit_facets(points: &[Vector<Self, D>], visit: &mut dyn FnMut(&Vector<Self, D>));
 
-    /// The best normal of a difference that holds the origin, or misses it by rounding errors only.
+    /// Returns the best normal of a difference that contains the origin, or misses it by rounding
+    /// only.
     fn deepest(
         difference: &dyn Difference<Self, D>,
         simplex: &Simplex<Self, D>,
@@ -31,14 +45,15 @@ pub(crate) trait Simplicial<const D: usize>: Real {
 /// The point of a simplex nearest to the origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearestOfSimplex<N: Real, const D: usize> {
-    /// The point. Its direction comes from the feature it lies in, not from a weighted sum of the
-    /// corners, and is right however near the origin is.
+    /// The nearest point. It is computed from the feature that it lies on, not as a weighted sum of
+    /// corners, so its direction is accurate however near the origin is.
     pub(super) point: Vector<N, D>,
-    /// The square of its length.
+    /// Squared length of `point`.
     pub(super) squared: N,
-    /// What the corners contribute, none negative, of sum 1; zero for corners outside the feature.
+    /// Barycentric weights of the corners, not negative, with sum 1; zero for corners outside the
+    /// feature.
     pub(super) weights: [N; 4],
-    /// The origin lies in the interior; `point` is then zero.
+    /// The origin lies in the interior; `point` is zero then.
     pub(super) enclosed: bool,
 }
 
@@ -47,24 +62,24 @@ impl<N: Real, const D: usize> NearestOfSimplex<N, D> {
         Self { point, squared: point.norm_squared(), weights, enclosed: false }
     }
 
-    /// The origin is inside, at these weights.
+    /// The origin is inside, with these weights.
     pub(super) fn enclosed(weights: [N; 4]) -> Self {
         Self { enclosed: true, ..Self::new(Vector::<N, D>::zeros(), weights) }
     }
 
-    /// The corner number `index`, at `point`.
+    /// The corner `index`, at `point`.
     pub(super) fn corner(index: usize, point: &Vector<N, D>) -> Self {
         let mut weights = [N::ZERO; 4];
         weights[index] = N::ONE;
         Self::new(*point, weights)
     }
 
-    /// Whether all of these corners contribute.
+    /// Returns whether all of these corners have a weight.
     pub(super) fn weighs<const K: usize>(&self, corners: [usize; K]) -> bool {
         corners.iter().all(|&corner| self.weights[corner] > N::ZERO)
     }
 
-    /// The nearer of two.
+    /// Returns the nearer of two.
     pub(super) fn or_nearer(self, other: Option<Self>) -> Self {
         match other {
             Some(other) if other.squared < self.squared => other,
@@ -73,9 +88,9 @@ impl<N: Real, const D: usize> NearestOfSimplex<N, D> {
     }
 }
 
-/// The point nearest to the origin of the segment between the corners numbered `i` and `j`.
+/// Returns the point nearest to the origin of the segment between the corners `i` and `j`.
 ///
-/// Ends closer to each other than the noise count as one.
+/// Ends closer to each other than `noise` count as one.
 pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     points: &[Vector<N, D>],
     [i, j]: [usize; 2],
@@ -99,7 +114,7 @@ pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     let mut weights = [N::ZERO; 4];
     weights[j] = along / squared;
     weights[i] = N::ONE - weights[j];
-    // Taking out what is left along the edge once more makes the direction right to the last bits.
+    // Subtracting the rest along the edge once more makes the direction accurate to rounding.
     NearestOfSimplex::new(across - edge * (across.dot(&edge) / squared), weights)
 }
 
@@ -109,20 +124,20 @@ pub(crate) struct Simplex<N: Real, const D: usize> {
     vertices: [Vertex<N, D>; 4],
     /// The points of `vertices` again, in a row.
     points: [Vector<N, D>; 4],
-    /// What they contribute to the nearest point; as given to [`Self::keep`].
+    /// Weights of the points in the nearest point, as given to [`Self::keep`].
     weights: [N; 4],
     len: usize,
 }
 
 impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
-    /// One point.
+    /// Creates a simplex of one point.
     pub(super) fn new(vertex: Vertex<N, D>) -> Self {
         let zero = Vector::<N, D>::zeros();
         let weights = [N::ONE, N::ZERO, N::ZERO, N::ZERO];
         Self { vertices: [vertex; 4], points: [vertex.point, zero, zero, zero], weights, len: 1 }
     }
 
-    /// The points with what they came from.
+    /// The points, with the points of the cores that they come from.
     pub(super) fn vertices(&self) -> &[Vertex<N, D>] {
         &self.vertices[..self.len]
     }
@@ -137,7 +152,7 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         &self.weights[..self.len]
     }
 
-    /// Whether the simplex has this very point already.
+    /// Returns whether the simplex has exactly this point.
     pub(super) fn contains(&self, vertex: &Vertex<N, D>) -> bool {
         self.points().contains(&vertex.point)
     }
@@ -150,12 +165,12 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         self.len += 1;
     }
 
-    /// Takes back the last [`Self::push`].
+    /// Undoes the last [`Self::push`].
     pub(super) fn pop(&mut self) {
         self.len -= 1;
     }
 
-    /// Drops the points without weight, and remembers the weights of the others.
+    /// Drops the points without weight, and keeps the weights of the others.
     pub(super) fn keep(&mut self, weights: &[N; 4]) {
         let mut kept = 0;
         for (index, &weight) in weights.iter().enumerate().take(self.len) {
@@ -168,7 +183,7 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
                 kept += 1;
             }
         }
-        // Weights that are not numbers leave one point: a simplex is never empty.
+        // NaN weights leave one point: a simplex is never empty.
         self.len = kept.max(1);
     }
 }

@@ -1,4 +1,4 @@
-//! Simplices of space: points, segments, triangles, tetrahedra.
+//! Simplices in 3D: points, segments, triangles, tetrahedra.
 
 use super::difference::{Difference, noise};
 use super::simplex::{NearestOfSimplex, Simplex, Simplicial, nearest_on_segment};
@@ -39,7 +39,8 @@ impl<N: Real> Simplicial<3> for N {
     }
 }
 
-/// The point of a triangle nearest to the origin. Flatter than the noise, it is its three sides.
+/// Returns the point of a triangle nearest to the origin; one flatter than `noise` counts as its
+/// sides.
 fn nearest_on_triangle<N: Real>(
     points: &[Vector<N, 3>],
     [i, j, k]: [usize; 3],
@@ -50,14 +51,14 @@ fn nearest_on_triangle<N: Real>(
     let squared = normal.norm_squared();
     let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
     let flat = squared <= noise::<N>() * noise::<N>() * longest;
-    // The origin's coordinates in the frame of the sides from `a`: errors grow like 1/size only.
+    // Coordinates of the origin in the frame of the sides from `a`: errors grow like 1/size only.
     let (on_b, on_c) = (-normal.dot(&cross(a, &f)) / squared, -normal.dot(&cross(&e, a)) / squared);
     let on_a = N::ONE - on_b - on_c;
     let mut best: Option<NearestOfSimplex<N, 3>> = None;
     for (weight, side) in [(on_a, [j, k]), (on_b, [k, i]), (on_c, [i, j])] {
         if flat || weight <= N::ZERO {
             let found = nearest_on_segment(points, side);
-            // Beyond a side and beside no end of it: nothing of the triangle is nearer.
+            // Beyond a side and beside neither end: no other point of the triangle is nearer.
             if !flat && found.weighs(side) {
                 return found;
             }
@@ -71,11 +72,11 @@ fn nearest_on_triangle<N: Real>(
     })
 }
 
-/// The four faces; each is opposite to the corner of its number.
+/// The four faces; each is opposite to the corner of its index.
 const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> NearestOfSimplex<N, 3> {
-    // Six times the signed volumes of the tetrahedron and of the parts that the origin cuts it in.
+    // Six times the signed volumes of the tetrahedron and of the four parts at the origin.
     let (mut parts, mut largest) = ([N::ZERO; 4], N::ZERO);
     let mut volume = N::ZERO;
     for (corner, [i, j, k]) in FACES.into_iter().enumerate() {
@@ -84,13 +85,13 @@ fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> NearestOfSimplex<
         volume = normal.dot(&(points[i] - points[corner]));
         largest = max(largest, normal.norm_squared());
     }
-    // Lower than the noise over its largest face: signs mean nothing, all four faces compete.
+    // Lower than the noise over its largest face: signs are unknown, and all four faces compete.
     let flat = volume * volume <= noise::<N>() * noise::<N>() * largest;
     let mut best: Option<NearestOfSimplex<N, 3>> = None;
     for (part, face) in parts.into_iter().zip(FACES) {
         if flat || part * volume <= N::ZERO {
             let found = nearest_on_triangle(points, face);
-            // Beyond a face and above its inside: nothing of the tetrahedron is nearer.
+            // Beyond a face and above its inside: no other point of the tetrahedron is nearer.
             if !flat && found.weighs(face) {
                 return found;
             }

@@ -2,10 +2,10 @@
 
 use crate::math::{Real, Vector, unit};
 
-/// A unit of length in which a pair is about 1 large: a power of two, so that nothing is rounded.
+/// A unit of length in which a pair is about 1 large: a power of two, so that scaling is exact.
 ///
-/// It is at most the sum of the reaches of the two and of the distance of their origins, and more than half
-/// of it.
+/// It is at most the sum of both reaches and of the distance of the origins, and more than half of
+/// it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Units<N> {
     /// The length of one unit.
@@ -15,7 +15,7 @@ pub(crate) struct Units<N> {
 }
 
 impl<N: Real> Units<N> {
-    /// That of two solids with these reaches, the second at `translation`.
+    /// Returns the unit of two solids with these reaches, the second at `translation`.
     pub(crate) fn of<const D: usize>(reach1: N, reach2: N, translation: &Vector<N, D>) -> Self {
         // A quarter of everything: the sum of finite lengths must not overflow.
         let quarter = N::HALF * N::HALF;

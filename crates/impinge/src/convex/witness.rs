@@ -1,9 +1,9 @@
-//! Which points of the two cores a normal and its height belong to.
+//! The points of the two cores that a normal and its height belong to.
 //!
-//! A mix of points of the difference, in some proportions, is the difference of the mixes of the two
-//! points that each is made of; these lie in the cores, as cores are convex. If the mix is the point
-//! `height · normal`, both lie on the supporting planes of the normal: none of the points mixed lies
-//! lower than the height, so none lies higher. So all depends on how near a mix comes to that point.
+//! A mix of points of the difference is the difference of the mixes of the points of the cores that
+//! they come from. These lie in the cores, which are convex. If the mix is the point
+//! `height · normal`, both lie on the supporting planes of the normal: none of the mixed points is
+//! lower than the height, so none is higher. So the error is the distance of a mix from that point.
 
 use super::Separation;
 use super::candidate::SupportCandidate;
@@ -17,7 +17,7 @@ const ROUNDS: usize = 32;
 /// Cap on the number of searches for a pair of points.
 const SEARCHES: usize = 16;
 
-/// Points of the cores, mixed by weights.
+/// A point of each core: points mixed by weights.
 #[derive(Clone, Copy)]
 pub(super) struct Mix<N: Real, const D: usize> {
     on1: Vector<N, D>,
@@ -25,12 +25,12 @@ pub(super) struct Mix<N: Real, const D: usize> {
 }
 
 impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
-    /// Of these points.
+    /// Creates the mix with these points.
     pub(super) fn new(on1: Vector<N, D>, on2: Vector<N, D>) -> Self {
         Self { on1, on2 }
     }
 
-    /// By the weights that the simplex was left with.
+    /// Mixes by the weights that the simplex has.
     pub(super) fn of(simplex: &Simplex<N, D>) -> Self {
         Self::by(simplex, simplex.weights())
     }
@@ -45,7 +45,7 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         Self { on1, on2 }
     }
 
-    /// The point of the hull of up to `D + 1` points that is nearest to where `best` has it.
+    /// Returns the point of the hull of up to `D + 1` points nearest to `height · normal`.
     pub(super) fn nearest(best: &SupportCandidate<N, D>, vertices: &[Vertex<N, D>]) -> Self {
         let target = best.normal * best.height;
         let moved = |vertex: &Vertex<N, D>| moved(vertex, &target);
@@ -54,8 +54,8 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         Self::by(&simplex, &N::nearest(simplex.points()).weights)
     }
 
-    /// The best over the facets of a simplex that holds the target, or `best`: one so flat that its
-    /// volume is mostly rounding errors has poor weights, but its facets come as near.
+    /// Returns the best mix over the facets of a simplex that contains the target, or `best`. A
+    /// simplex whose volume is mostly rounding has poor weights, but its facets come as near.
     fn of_facets(simplex: &Simplex<N, D>, mut best: Self, target: &Vector<N, D>) -> Self {
         for dropped in 0..=D {
             let mut kept = [N::ONE; 4];
@@ -70,21 +70,22 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         best
     }
 
-    /// The square of the distance of the points' difference from the target.
+    /// Squared distance of the mix from the target.
     fn miss(&self, target: &Vector<N, D>) -> N {
         (self.on2 - self.on1 - target).norm_squared()
     }
 
-    /// Whether the points lie across from each other and on the supporting planes, but for rounding.
+    /// Returns whether the points lie across from each other and on the supporting planes, up to
+    /// rounding.
     pub(super) fn meets(&self, best: &SupportCandidate<N, D>) -> bool {
         let slack = N::TWO * noise();
         self.miss(&(best.normal * best.height)) <= slack * slack
     }
 }
 
-/// The answer in units of the pair, with the points of `mix`: moved onto the supporting planes of the
-/// normal, and sideways until they lie exactly across from each other, the first by `share` of the
-/// way.
+/// Returns the answer in units of the pair, with the points of `mix`. They are moved onto the
+/// supporting planes, and sideways until they lie exactly across from each other: the first by
+/// `share` of the distance, the second by the rest.
 pub(super) fn placed<N: Simplicial<D>, const D: usize>(
     best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,
@@ -101,11 +102,11 @@ pub(super) fn placed<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// The share of the first point where the points lie well aside of each other.
+/// Returns the share by which the first point moves if the points are well aside of each other.
 ///
-/// Along a surface that is curved a point may be moved: it leaves the surface by the square of the
-/// way only. At an edge it may not. A supporting plane halfway between the normal and the side that
-/// lies aside decides which is which.
+/// On a curved surface a point may be moved: it leaves the surface only by the square of the
+/// distance. At an edge it may not. A supporting plane halfway between the normal and the offset
+/// decides.
 fn share<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -116,7 +117,7 @@ fn share<N: Simplicial<D>, const D: usize>(
     let Some((aside, _)) = unit(&(away - normal * normal.dot(&away))) else { return N::HALF };
     let Some((slant, _)) = unit(&(normal + aside)) else { return N::HALF };
     let ends = difference.lowest(&slant);
-    // How far each leaves its core if it goes all the way.
+    // How far each leaves its core if it moves all the way.
     let beyond1 = slant.dot(&(mix.on2 - across - ends.on1));
     let beyond2 = slant.dot(&(ends.on2 - mix.on1 - across));
     if max(beyond1, beyond2) <= N::ZERO {
@@ -128,8 +129,8 @@ fn share<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// The answer with the points of `mix`, if they fit; else with a mix of `vertices` or, where these are
-/// not enough, of points that are searched for.
+/// Returns the answer with the points of `mix`, if they fit; else with a mix of `vertices` or, if
+/// that is not enough, of points that are searched for.
 pub(super) fn settle<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -142,7 +143,7 @@ pub(super) fn settle<N: Simplicial<D>, const D: usize>(
     locate(difference, best, vertices)
 }
 
-/// The answer with a mix of `vertices` or, where these are not enough, of points searched for.
+/// Returns the answer with a mix of `vertices` or, if that is not enough, of points searched for.
 pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -152,12 +153,12 @@ pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     if mix.meets(best) { placed(best, &mix, N::HALF) } else { search(difference, best, &mix) }
 }
 
-/// The answer with points that are searched for, or those of `mix` if they fit better.
+/// Returns the answer with points that are searched for, or those of `mix` if they fit better.
 ///
-/// The difference is moved along the normal until it lies well away from the origin; its nearest
-/// point then is a mix of points that lie lowest along the normal. If the normal is not quite that
-/// of the place, which takes a curved surface, the way to that point is a better one: a step of
-/// the proximal point method, as in `climb`.
+/// The difference is moved along the normal until it is well away from the origin. Its nearest
+/// point then is a mix of points that are lowest along the normal. If the normal is not quite
+/// right, which takes a curved surface, the direction to that point is a better one: a step of the
+/// proximal point method, as in `climb`.
 fn search<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -181,14 +182,14 @@ fn search<N: Simplicial<D>, const D: usize>(
             break;
         }
     }
-    // Points a little aside are the lesser evil where the height loses more than rounding; in `f32`
-    // that never is the case.
+    // Points a little aside are the smaller error if the height would lose more than rounding; in
+    // `f32` it never does.
     let found = if found.height < best.height - N::TWO * noise() { *best } else { found };
     let share = share(difference, &found, &mix);
     placed(&found, &mix, share)
 }
 
-/// The points on both cores, mixed so that their difference comes nearest to `target`.
+/// Mixes the points so that their difference comes nearest to `target`.
 fn mix<N: Simplicial<D>, const D: usize>(
     target: &Vector<N, D>,
     vertices: &[Vertex<N, D>],
@@ -209,7 +210,7 @@ fn mix<N: Simplicial<D>, const D: usize>(
         }
         simplex.push(next);
         nearest = N::nearest(simplex.points());
-        // Judged by what the weights make, not by what they should: slivers give poor weights.
+        // Judged by what the weights give, as slivers give poor weights.
         let mut found = Mix::by(&simplex, &nearest.weights);
         if nearest.enclosed && found.miss(target) > noise::<N>() * noise() {
             found = Mix::of_facets(&simplex, found, target);
@@ -222,7 +223,7 @@ fn mix<N: Simplicial<D>, const D: usize>(
     best
 }
 
-/// The vertex as seen from `target`.
+/// Returns the vertex relative to `target`.
 fn moved<N: Simplicial<D>, const D: usize>(
     vertex: &Vertex<N, D>,
     target: &Vector<N, D>,
@@ -230,7 +231,7 @@ fn moved<N: Simplicial<D>, const D: usize>(
     Vertex { point: vertex.point - target, ..*vertex }
 }
 
-/// The vertex closest to `target`.
+/// Returns the vertex nearest to `target`.
 fn nearest_to<'a, N: Simplicial<D>, const D: usize>(
     target: &Vector<N, D>,
     vertices: &'a [Vertex<N, D>],
@@ -245,7 +246,7 @@ fn nearest_to<'a, N: Simplicial<D>, const D: usize>(
     best
 }
 
-/// The vertex lowest along a direction.
+/// Returns the vertex lowest along a direction.
 fn lowest_along<'a, N: Simplicial<D>, const D: usize>(
     direction: &Vector<N, D>,
     vertices: &'a [Vertex<N, D>],

@@ -1,9 +1,9 @@
 //! Colours.
 
-/// A colour of the sRGB space and how opaque it is.
+/// A colour in sRGB with an opacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Color {
-    /// Red, green and blue, 255 for the most.
+    /// Red, green and blue, each from 0 to 255.
     pub rgb: [u8; 3],
     /// 255 is opaque, 0 invisible.
     pub alpha: u8,
@@ -16,7 +16,7 @@ impl Color {
         Self { rgb: [red, green, blue], alpha: u8::MAX }
     }
 
-    /// The same colour, more or less opaque.
+    /// Returns the colour with another opacity.
     #[must_use]
     pub const fn with_alpha(self, alpha: u8) -> Self {
         Self { alpha, ..self }

@@ -1,4 +1,4 @@
-//! The meshes of the shapes drawn so far, and the parts that pictures are made of.
+//! The cache of shape meshes, and common drawing helpers.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -9,16 +9,17 @@ use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::shape::ShapeHandle;
 
-/// The colour of an object; `None` for that of the style.
+/// The colour of an object; `None` selects that of the style.
 type ObjectColor = dyn Fn(CollisionObjectHandle) -> Option<Color> + Send + Sync;
 
-/// Draws worlds, shapes and queries by a back end, and keeps the meshes of the shapes meanwhile.
+/// Draws worlds, shapes and queries with a back end, and caches the meshes of the shapes.
 ///
-/// Each shape is made a mesh of when it is first drawn; that is kept, by the shape that a handle shares,
-/// until [`Self::world`] is called and nobody else has a handle of the shape. Positions are those of the
-/// world. The order of what is drawn follows from the order of the handles, and the same world gives
-/// the same picture. Nothing is drawn of what is not finite: the box of a half-space, say. The
-/// frames of a back end are not begun or ended here, since one may have several drawings.
+/// The mesh of each shape is made when it is first drawn. It is kept, by the shape that a handle
+/// shares, until [`Self::world`] is called and no other handle of the shape exists. Positions are
+/// world coordinates. The drawing order follows the order of the handles, and the same world gives
+/// the same picture. Objects that are not finite, such as the box of a half-space, are not drawn.
+/// This type does not begin or end the frames of a back end, since a frame may have several
+/// drawings.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugDrawing, DebugOptions, DebugRender, Drawn};
@@ -48,11 +49,11 @@ type ObjectColor = dyn Fn(CollisionObjectHandle) -> Option<Color> + Send + Sync;
 pub struct DebugDrawing<N: Space<D>, const D: usize> {
     pub(super) options: DebugOptions<N>,
     object_color: Option<Box<ObjectColor>>,
-    /// By address of the shape, which stands while the handle is kept.
+    /// By the address of the shape, which is stable while the handle is kept.
     meshes: BTreeMap<usize, KeptMesh<N, D>>,
 }
 
-/// The mesh of a shape, and the shape that it is of.
+/// The mesh of a shape, with its shape.
 struct KeptMesh<N: Real, const D: usize> {
     shape: ShapeHandle<N, D>,
     mesh: ShapeMesh<N, D>,
@@ -74,14 +75,14 @@ impl<N: Space<D>, const D: usize> Default for DebugDrawing<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
-    /// A drawing without meshes so far.
+    /// A drawing without cached meshes.
     #[must_use]
     pub fn new(options: DebugOptions<N>) -> Self {
         Self { options, object_color: None, meshes: BTreeMap::new() }
     }
 
-    /// The same with the colours of objects by a function of yours, of the handle; where that returns
-    /// `None`, it is the colour of the style.
+    /// Returns the drawing with object colours from a function of the handle; where that returns
+    /// `None`, the colour of the style is used.
     ///
     /// ```
     /// use impinge::debug_render::{Color, DebugDrawing, DebugOptions};
@@ -99,13 +100,13 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         Self { object_color: Some(Box::new(color)), ..self }
     }
 
-    /// What is drawn.
+    /// The options.
     #[must_use]
     pub const fn options(&self) -> &DebugOptions<N> {
         &self.options
     }
 
-    /// Changes what is drawn. The meshes are forgotten if they would be others.
+    /// Replaces the options. Clears the cached meshes if they would change.
     pub fn set_options(&mut self, options: DebugOptions<N>) {
         if self.options.mesh != options.mesh {
             self.meshes.clear();
@@ -113,7 +114,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         self.options = options;
     }
 
-    /// The mesh of a shape, which is made at the first call; see [`ShapeMesh::of`].
+    /// Returns the mesh of a shape, which is made on the first call; see [`ShapeMesh::of`].
     pub fn mesh(&mut self, shape: &ShapeHandle<N, D>) -> &ShapeMesh<N, D> {
         let options = self.options.mesh;
         let address = core::ptr::from_ref(&**shape).addr();
@@ -121,7 +122,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         &self.meshes.entry(address).or_insert_with(make).mesh
     }
 
-    /// Forgets the meshes of shapes that nobody else has a handle of.
+    /// Removes the meshes of shapes that have no other handle.
     pub(super) fn forget_dropped(&mut self) {
         self.meshes.retain(|_, kept| !kept.shape.is_sole());
     }
@@ -176,7 +177,7 @@ pub(super) fn draw_box<N: Space<D>, const D: usize>(
     if !are_finite([aabb.mins(), aabb.maxs()]) {
         return;
     }
-    // Bit `axis` of a corner's number says that it is at the greatest coordinate there.
+    // Bit `axis` of a corner's number selects the maximum on that axis.
     let corner = |number: usize| {
         let at = |axis, _| {
             let side = if number >> axis & 1 == 0 { aabb.mins() } else { aabb.maxs() };
@@ -191,7 +192,7 @@ pub(super) fn draw_box<N: Space<D>, const D: usize>(
     }
 }
 
-/// No coordinate of two points is infinite or NaN.
+/// Whether no coordinate of two points is infinite or NaN.
 pub(super) fn are_finite<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> bool {
     points.into_iter().flat_map(Point::iter).all(|x| x.is_finite_number())
 }

@@ -5,19 +5,20 @@ use crate::math::{Point, Real, Space};
 use crate::procedural::MIN_SUBDIVISIONS;
 use crate::shape::Shape;
 
-/// What is drawn of a shape: lines and, where it has a surface or an inside, triangles.
+/// The drawing of a shape: lines and, if it has a surface or an interior, triangles.
 ///
-/// The lines are what people draw of a shape: edges of a box, circles of a ball. In 2D the triangles
-/// fill the shape, in 3D they are its surface; shapes without either (segments, polylines) have none.
-/// Of a triangle in 3D, alone or in a mesh, there is one side: that of its order of corners.
+/// The lines are the usual ones of a drawing: edges of a box, circles of a ball. In 2D the
+/// triangles fill the shape, in 3D they are its surface; shapes without either (segments,
+/// polylines) have none. A triangle in 3D, alone or in a mesh, has one side: the one from which its
+/// corners run counter-clockwise.
 ///
-/// Lines and triangles whose corners coincide are left out, and each is there once. A shape without
-/// extent is one vertex.
+/// Lines and triangles whose corners coincide are left out, and each line occurs once. A shape
+/// without extent is one vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShapeMesh<N: Real, const D: usize> {
-    /// Computed from all that follows: equal for equal meshes, in every program and on every machine, and
-    /// different for others but for an accident of 64 bits. A back end that keeps meshes knows one again
-    /// by it.
+    /// A hash of all other fields: equal for equal meshes, in every program and on every machine,
+    /// and different for different ones except for collisions of 64 bits. A back end can use it as
+    /// a cache key.
     pub id: u64,
     /// The corners of all lines and triangles.
     pub vertices: Vec<Point<N, D>>,
@@ -27,7 +28,7 @@ pub struct ShapeMesh<N: Real, const D: usize> {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// How finely shapes are drawn, and how much of those without end.
+/// The resolution of curved shapes, and the extent of unbounded ones.
 ///
 /// ```
 /// use impinge::debug_render::MeshOptions;
@@ -37,19 +38,19 @@ pub struct ShapeMesh<N: Real, const D: usize> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshOptions<N: Real> {
-    /// The parts of a full turn of circles; 24 by default. It counts as 3 below that and as
-    /// [`Self::MAX_SUBDIVISIONS`] above that.
+    /// The parts of a full turn of circles; 24 by default. Clamped to the range from 3 to
+    /// [`Self::MAX_SUBDIVISIONS`].
     pub subdivisions: u32,
-    /// Of a half-space the square (in 2D the line) around its origin that reaches so far is drawn; 10 by
-    /// default. Nothing is drawn of it if this is not finite.
+    /// The extent, around its origin, of the square (in 2D the line) that represents a half-space;
+    /// 10 by default. A half-space is not drawn if this is not finite.
     pub half_space_extent: N,
 }
 
 impl<N: Real> MeshOptions<N> {
-    /// The greatest number of parts of a turn: finer circles cannot be told apart on a screen.
+    /// The maximum number of parts of a turn: finer circles look the same on a screen.
     pub const MAX_SUBDIVISIONS: u32 = 256;
 
-    /// The number of parts that stands for the number asked for.
+    /// The number of parts, clamped to the supported range.
     pub(super) fn parts_of_turn(&self) -> u32 {
         self.subdivisions.clamp(MIN_SUBDIVISIONS, Self::MAX_SUBDIVISIONS)
     }
@@ -62,12 +63,12 @@ impl<N: Real> Default for MeshOptions<N> {
 }
 
 impl<N: Space<D>, const D: usize> ShapeMesh<N, D> {
-    /// The lines and triangles of a shape, in its own frame.
+    /// Returns the lines and triangles of a shape, in its own frame.
     ///
-    /// Of round shapes the vertices lie on the surface, up to rounding. Composites give those of their
-    /// parts, each where it lies, and a seam once. A convex shape of your own is known by its support
-    /// points only: those along the directions of a ball's vertices are taken. A half-space is a square
-    /// (in 2D a line) of [`MeshOptions::half_space_extent`] with short marks on its solid side.
+    /// The vertices of round shapes lie on the surface, up to rounding. Composites give those of
+    /// their parts at their poses, and a seam once. A user's convex shape is sampled by its support
+    /// points in the directions of a ball's vertices. A half-space is a square (in 2D a line) of
+    /// [`MeshOptions::half_space_extent`] with short marks on its solid side.
     ///
     /// Costs O(n log n) for n vertices, so keep it: a [`DebugDrawing`](super::DebugDrawing) does.
     ///
@@ -98,7 +99,8 @@ impl<N: Real, const D: usize> ShapeMesh<N, D> {
         let counts = [self.vertices.len(), self.lines.len()].map(|count| count as u64);
         let numbers = counts.into_iter().chain(coordinates).chain(lines).chain(triangles);
         numbers.fold(0xcbf2_9ce4_8422_2325, |hash, number| {
-            // The upper bits of a product depend on all of its factors: they come down for the next step.
+            // The upper bits of a product depend on all of its factors: they are mixed down for the
+            // next step.
             let mixed = (hash ^ number).wrapping_mul(0x0100_0000_01b3);
             mixed ^ (mixed >> 32)
         })

@@ -1,10 +1,11 @@
-//! Drawing what the library sees: shapes, boxes, contacts, queries. Feature `debug_render`.
+//! Debug drawing of shapes, boxes, contacts and queries. Feature `debug_render`.
 //!
-//! A back end implements [`DebugRender`], of which one method is required: a line with a colour and
-//! [what](Drawn) it belongs to. Everything else is drawn with lines until the back end does it better.
+//! A back end implements [`DebugRender`], which has one required method: a line with a colour and
+//! the [kind](Drawn) of object that it belongs to. By default everything else is drawn with lines.
 //!
-//! A [`DebugDrawing`] calls the back end: [`DebugDrawing::world`] with all of a world, others with a shape,
-//! contacts, or a query and what it found. [`DebugOptions`] says what is drawn and in which colours.
+//! A [`DebugDrawing`] calls the back end: [`DebugDrawing::world`] with all of a world, other
+//! methods with a shape, contacts, or a query and its result. [`DebugOptions`] selects what is
+//! drawn and in which colours.
 //!
 //! ```
 //! use impinge::debug_render::{Color, DebugDrawing, DebugRender, Drawn};

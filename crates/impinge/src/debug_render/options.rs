@@ -1,9 +1,9 @@
-//! What is drawn, and how.
+//! Options of a drawing.
 
 use super::{Color, MeshOptions};
 use crate::math::Real;
 
-/// How one kind of thing is drawn.
+/// The style of one kind of object.
 ///
 /// ```
 /// use impinge::debug_render::{Color, Style};
@@ -15,22 +15,22 @@ use crate::math::Real;
 pub struct Style<N: Real> {
     /// The colour.
     pub color: Color,
-    /// The size of points, and of a normal: lengths of the world. Other things have a size of their own.
+    /// The size of points and normals, in world lengths. Other objects have a size of their own.
     pub size: N,
 }
 
 impl<N: Real> Style<N> {
-    /// The same with another size.
+    /// Returns the style with another size.
     #[must_use]
     pub const fn with_size(self, size: N) -> Self {
         Self { size, ..self }
     }
 }
 
-/// What is drawn: of each kind of thing its style, or `None` to leave it out, which costs nothing.
+/// The style of each kind of object, or `None` to leave it out, which costs nothing.
 ///
-/// Each field is named after the variant of [`Drawn`](super::Drawn) that the back end gets. By default
-/// shapes, contact points and normals are drawn, and queries. Sizes suit objects of size 1;
+/// Each field is named after the variant of [`Drawn`](super::Drawn) that the back end receives. By
+/// default shapes, contact points and normals, and queries are drawn. Sizes suit objects of size 1;
 /// [`Self::scaled`] adapts them.
 ///
 /// ```
@@ -48,29 +48,29 @@ pub struct DebugOptions<N: Real> {
     pub object: Option<Style<N>>,
     /// Their boxes.
     pub tight_box: Option<Style<N>>,
-    /// Their boxes in the broad phase, where that has any.
+    /// Their boxes in the broad phase, if that has any.
     pub loosened_box: Option<Style<N>>,
-    /// The boxes of the nodes of the broad phase's trees, where it has any.
+    /// The boxes of the nodes of the broad phase's trees, if it has any.
     pub tree_node: Option<Style<N>>,
     /// Contact points, on both shapes.
     pub contact_point: Option<Style<N>>,
-    /// A line from the point on the first shape to that on the second, as long as the contact is deep,
-    /// which is also given as a text, and the normal as an arrow of the size of the style.
+    /// A line from the point on the first shape to that on the second, whose length is the depth;
+    /// the depth as a text; and the normal as an arrow of the style's size.
     pub contact_normal: Option<Style<N>>,
     /// The area between the points of a manifold that has three or more.
     pub manifold: Option<Style<N>>,
     /// Lines between two objects that are near each other, and between closest points.
     pub proximity: Option<Style<N>>,
-    /// Rays, boxes and shapes of queries, and the way of the latter.
+    /// Rays, boxes and shapes of queries, and the path of a moving shape.
     pub query: Option<Style<N>>,
-    /// What they hit: points and normals.
+    /// The hits of queries: points and normals.
     pub query_hit: Option<Style<N>>,
-    /// How finely shapes are drawn.
+    /// The resolution of shapes.
     pub mesh: MeshOptions<N>,
 }
 
 impl<N: Real> DebugOptions<N> {
-    /// Nothing is drawn.
+    /// Options that draw nothing.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -88,7 +88,7 @@ impl<N: Real> DebugOptions<N> {
         }
     }
 
-    /// Everything is drawn.
+    /// Options that draw everything.
     #[must_use]
     pub fn all() -> Self {
         let style = |color, size| Some(Style { color, size: N::lit(size) });
@@ -107,7 +107,7 @@ impl<N: Real> DebugOptions<N> {
         }
     }
 
-    /// The same with all sizes, and the extent of half-spaces, times a factor.
+    /// Returns the options with all sizes, and the extent of half-spaces, multiplied by a factor.
     #[must_use]
     pub fn scaled(mut self, factor: N) -> Self {
         let styles = [

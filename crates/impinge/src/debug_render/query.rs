@@ -1,4 +1,4 @@
-//! Pictures of queries: contacts, closest points, rays, shapes on their way.
+//! Drawing of queries: contacts, closest points, rays, moving shapes.
 
 use super::drawing::{are_finite, draw_box};
 use super::{DebugDrawing, DebugRender, Drawn};
@@ -8,7 +8,7 @@ use crate::query::{ClosestPoints, Contact, Impact, RayIntersection};
 use crate::shape::ShapeHandle;
 use crate::tables::ByDimension;
 
-/// A shape that moves along a straight line and does not turn, as it was asked about.
+/// A shape that moves along a straight line without rotating, as given to a query.
 ///
 /// ```
 /// use impinge::debug_render::SweptShape;
@@ -25,18 +25,18 @@ use crate::tables::ByDimension;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct SweptShape<'a, N: Space<D>, const D: usize> {
-    /// What moves.
+    /// The shape.
     pub shape: &'a ShapeHandle<N, D>,
-    /// Where it is at time zero.
+    /// Its position at time zero.
     pub position: N::Isometry,
     /// Its velocity in the world, per unit of time.
     pub velocity: Vector<N, D>,
-    /// When its way ends; may be infinite.
+    /// The time at which its path ends; may be infinite.
     pub max_time: N,
 }
 
 impl<N: Space<D>, const D: usize> SweptShape<'_, N, D> {
-    /// Where the shape is at a time.
+    /// Returns the position of the shape at a time.
     #[must_use]
     pub fn position_at(&self, time: N) -> N::Isometry {
         let start = N::pose(&self.position);
@@ -45,7 +45,8 @@ impl<N: Space<D>, const D: usize> SweptShape<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
-    /// Draws the contacts of one manifold: points, normals, depths and, of three or more, the area.
+    /// Draws the contacts of one manifold: points, normals, depths and, if there are at least
+    /// three, the area.
     ///
     /// ```
     /// use impinge::debug_render::{Color, DebugDrawing, DebugRender, Drawn};
@@ -91,7 +92,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Triangles from the middle of a manifold to its points, in order around it.
+    /// Draws triangles from the centre of a manifold to its points, in order around it.
     fn area(&self, contacts: &[Contact<N, D>], renderer: &mut dyn DebugRender<N, D>) {
         let (Some(style), [first, _, _, ..]) = (self.options.manifold, contacts) else { return };
         let between =
@@ -109,7 +110,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws a line between closest points, and both; nothing for solids that touch or are too far apart.
+    /// Draws closest points and a line between them; nothing for solids that touch or are too far
+    /// apart.
     pub fn closest_points(
         &self,
         found: &ClosestPoints<N, D>,
@@ -133,8 +135,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
 
     /// Draws a ray up to `max_time`, and its hits with their normals.
     ///
-    /// A ray without end is drawn to its last hit, and one without hits for one unit of time. Nothing is
-    /// drawn of a ray that is not finite.
+    /// An unlimited ray is drawn to its last hit, and one without hits for one unit of time. A ray
+    /// that is not finite is not drawn.
     pub fn ray(
         &self,
         ray: &Ray<N, D>,
@@ -153,8 +155,8 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// Draws a shape on its way: where it starts, where it hits, where it would end, and the impact with
-    /// its normal. A way without end has none.
+    /// Draws a moving shape at its start, at the hit and at the end of its path, and the impact
+    /// with its normal. An infinite path has no end.
     pub fn cast(
         &mut self,
         sweep: &SweptShape<'_, N, D>,
@@ -181,7 +183,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// A point that was hit, and the normal there: none where that is zero.
+    /// Draws a point that was hit, and the normal there unless it is zero.
     fn hit(&self, at: &Point<N, D>, normal: &Vector<N, D>, renderer: &mut dyn DebugRender<N, D>) {
         let Some(style) = self.options.query_hit else { return };
         if !are_finite([at, &(at + normal)]) {
@@ -197,14 +199,14 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
 /// A length with four significant digits.
 fn shortened<N: Real>(length: N) -> String {
     let length = length.as_f64();
-    // Parsed again, so that zeros at the end are gone. A sum with zero has no negative zero.
+    // Parsed again to remove trailing zeros. Adding zero makes a zero positive.
     let rounded = format!("{length:.3e}").parse().unwrap_or(length) + 0.0;
     let is_tiny = rounded != 0.0 && rounded.abs() < 1e-4;
     if is_tiny { format!("{rounded:e}") } else { rounded.to_string() }
 }
 
-/// A number from 0 to 4 that grows with the angle of a vector from x: along the square of the points
-/// whose coordinates sum to 1. Zero for the zero vector.
+/// A number from 0 to 4 that grows with the angle of a vector from x, along the square `|x| + |y| =
+/// 1`. Zero for the zero vector.
 fn diamond_angle<N: Real>(x: N, y: N) -> N {
     let sum = x.abs() + y.abs();
     let part = if sum > N::ZERO { y / sum } else { N::ZERO };

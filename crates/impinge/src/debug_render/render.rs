@@ -1,16 +1,16 @@
-//! What a back end can do.
+//! The interface of back ends.
 
 use super::{Color, ShapeMesh};
 use crate::math::{Point, Space, Vector, unit};
 use crate::tables::ByDimension;
 
-/// What a line, point or text belongs to, so that a back end can have layers.
+/// The kind of object that a line, point or text belongs to, so that a back end can have layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Drawn {
     /// The shape of an object.
     Object,
-    /// The box of an object, as small as it can be.
+    /// The smallest box of an object.
     TightBox,
     /// The box of an object in the broad phase.
     LoosenedBox,
@@ -20,21 +20,21 @@ pub enum Drawn {
     ContactPoint,
     /// The normal of a contact and its depth.
     ContactNormal,
-    /// The area that the points of a manifold span.
+    /// The area spanned by the points of a manifold.
     Manifold,
     /// Two objects that are near each other.
     Proximity,
-    /// What a query asks: a ray, a box, a shape on its way.
+    /// The input of a query: a ray, a box, a moving shape.
     Query,
-    /// What a query found.
+    /// The result of a query.
     QueryHit,
 }
 
 /// A back end of debug drawing: a picture, a window, a file, a network.
 ///
-/// Lengths and positions are those of the world. Only [`line`](Self::line) has to be written; the other
-/// methods draw with it, and text is left out. The scalar and the dimension are those of what is drawn,
-/// so a back end for both dimensions implements the trait twice, or for all `D`.
+/// Lengths and positions are world coordinates. Only [`line`](Self::line) is required; the other
+/// methods use it by default, except that text is left out. The scalar and the dimension are those
+/// of the drawing, so a back end for both dimensions implements the trait twice, or for all `D`.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -55,10 +55,10 @@ pub enum Drawn {
 /// assert_eq!(count.0[&Drawn::ContactPoint], 2, "a cross");
 /// ```
 pub trait DebugRender<N: Space<D>, const D: usize> {
-    /// A straight line.
+    /// Draws a straight line.
     fn line(&mut self, ends: [Point<N, D>; 2], color: Color, what: Drawn);
 
-    /// A point; `size` is the length of the lines of the cross that it is unless overridden.
+    /// Draws a point; by default as a cross with lines of length `size`.
     fn point(&mut self, at: &Point<N, D>, size: N, color: Color, what: Drawn) {
         for axis in 0..D {
             let mut half = Vector::<N, D>::zeros();
@@ -67,7 +67,8 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
         }
     }
 
-    /// An arrow; its head is a fifth of its length. One without length is a point of no size.
+    /// Draws an arrow; by default its head is a fifth of its length, and without length it is a
+    /// line between equal points.
     fn arrow(&mut self, from: &Point<N, D>, to: &Point<N, D>, color: Color, what: Drawn) {
         self.line([*from, *to], color, what);
         let along = to - from;
@@ -82,12 +83,12 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
         }
     }
 
-    /// A text beside a point; nothing unless overridden.
+    /// Draws a text beside a point; by default nothing.
     fn text(&mut self, at: &Point<N, D>, text: &str, color: Color, what: Drawn) {
         let _ = (at, text, color, what);
     }
 
-    /// A filled triangle; its three sides unless overridden.
+    /// Draws a filled triangle; by default its three sides.
     fn triangle(&mut self, corners: [Point<N, D>; 3], color: Color, what: Drawn) {
         let [a, b, c] = corners;
         for ends in [[a, b], [b, c], [c, a]] {
@@ -95,10 +96,10 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
         }
     }
 
-    /// A shape; its lines unless overridden.
+    /// Draws a shape; by default its lines.
     ///
-    /// The mesh of a shape is the same each time, and has the same [`id`](ShapeMesh::id): a back end with
-    /// memory of its own keeps it at the first call, and needs only the id and the pose afterwards.
+    /// The mesh of a shape does not change, and keeps its [`id`](ShapeMesh::id): a back end with a
+    /// mesh cache stores it on the first call, and then needs only the id and the pose.
     fn mesh(&mut self, mesh: &ShapeMesh<N, D>, pose: &N::Isometry, color: Color, what: Drawn) {
         let pose = N::pose(pose);
         for ends in &mesh.lines {
@@ -107,11 +108,11 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
         }
     }
 
-    /// What is drawn from now on is how things are at a time; nothing unless overridden.
+    /// Begins a frame that shows the state at a time; by default does nothing.
     fn begin_frame(&mut self, time: f64) {
         let _ = time;
     }
 
-    /// A frame is complete; nothing unless overridden.
+    /// Ends a frame; by default does nothing.
     fn end_frame(&mut self) {}
 }

@@ -1,8 +1,10 @@
-//! Polyhedra inflated by a radius: moved faces, parts of cylinders around edges, parts of balls around corners.
+//! Polyhedra inflated by a radius: offset faces, cylinder parts around edges, ball parts around
+//! corners.
 //!
-//! Every vertex is a corner plus the radius times a unit vector between the normals of the faces at that
-//! corner (the Gauss map of the polyhedron), so it lies on the surface up to rounding. Neighbouring parts
-//! compute a common vertex from the same numbers, so it has the same bits in both.
+//! Every vertex is a corner plus the radius times a unit vector between the normals of the faces at
+//! that corner (the Gauss map of the polyhedron), so it lies on the surface up to rounding.
+//! Neighbouring parts compute a common vertex from the same numbers, so it has the same bits in
+//! both.
 
 use std::collections::BTreeMap;
 
@@ -10,19 +12,19 @@ use super::sketch::Sketch;
 use crate::math::{Point, Real, Vector, cross, unit, unit_or};
 use crate::shape::Feature;
 
-/// The flat faces of a solid and which of them meet at each side.
+/// The flat faces of a solid and their adjacency across sides.
 struct Inflation<'a, N: Real> {
     faces: &'a [Feature<N, 3>],
-    /// The face that has a side from the first to the second of two points, known by their bits.
+    /// The face with a side from the first to the second of two points, identified by their bits.
     face_of_side: BTreeMap<[[u64; 3]; 2], usize>,
     radius: N,
     /// The cosine of the largest angle between neighbouring directions of an arc.
     cosine: N,
 }
 
-/// Adds the surface of a polyhedron inflated by a radius, with the outlines of its faces and the arcs at the
-/// ends of its edges. False, and nothing is added, unless each side of a face is one of exactly two
-/// and no corner is as sharp as a needle.
+/// Adds the surface of a polyhedron inflated by a radius, with the outlines of its faces and the
+/// arcs at the ends of its edges. Returns false, and adds nothing, unless each side of a face
+/// belongs to exactly two faces and no corner is as sharp as a needle.
 pub(super) fn inflated<N: Real>(
     sketch: &mut Sketch<N, 3>,
     faces: &[Feature<N, 3>],
@@ -62,8 +64,8 @@ struct RoundedCorner<N: Real> {
     middle: Vector<N, 3>,
 }
 
-/// The direction in the middle of those around a corner; `None` if they are about a whole circle, as at the end
-/// of a needle, where their sum is mostly rounding.
+/// The central direction of those around a corner; `None` if they form nearly a whole circle, as at
+/// the end of a needle, where their sum is mostly rounding error.
 fn middle_of<N: Real>(around: &[Vector<N, 3>]) -> Option<Vector<N, 3>> {
     let sum = around.iter().fold(Vector::<N, 3>::zeros(), |sum, direction| sum + direction);
     let (direction, length) = unit(&sum)?;
@@ -76,9 +78,9 @@ fn sides<N: Real>(face: &Feature<N, 3>) -> impl Iterator<Item = [Point<N, 3>; 2]
     face.vertices.iter().zip(next).map(|(a, b)| [*a, *b])
 }
 
-/// The key of a corner: the faces of a solid repeat theirs to the bit.
+/// The key of a corner: the faces of a solid repeat its coordinates to the bit.
 fn bits<N: Real>(point: Point<N, 3>) -> [u64; 3] {
-    // Zeros lose their sign.
+    // Adding zero makes zeros positive.
     [0, 1, 2].map(|axis| (point[axis] + N::ZERO).bits())
 }
 
@@ -93,7 +95,7 @@ impl<N: Real> Inflation<'_, N> {
         self.face_of_side.keys().all(|[a, b]| a != b && self.face_of_side.contains_key(&[*b, *a]))
     }
 
-    /// The point of the surface above a corner in a direction.
+    /// The point of the surface over a corner in a direction.
     fn moved(&self, corner: &Point<N, 3>, direction: &Vector<N, 3>) -> Point<N, 3> {
         corner + direction * self.radius
     }
@@ -103,12 +105,13 @@ impl<N: Real> Inflation<'_, N> {
         self.face_of_side.get(&[bits(b), bits(a)]).copied()
     }
 
-    /// The directions from the normal of a face to that of the face beyond a side: the same to the bit from
-    /// either face.
+    /// The directions from the normal of a face to that of the face beyond a side. The order of the
+    /// two faces may change their bits; see [`Self::ordered_arc`].
     fn arc(&self, face: usize, side: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         let Some(other) = self.beyond(side) else { return Vec::new() };
         let [first, last] = [face, other].map(|index| normal(&self.faces[index]));
-        // Two sides of one flat solid have opposite normals: half-way is away from the solid.
+        // Two sides of a flat solid have opposite normals: the direction midway is away from the
+        // solid.
         let along = side[1] - side[0];
         let outward = unit_or(&cross(&along, &first), first);
         let middle =
@@ -119,11 +122,11 @@ impl<N: Real> Inflation<'_, N> {
         arc
     }
 
-    /// Adds the directions between two, without the first, each half-way between its neighbours.
+    /// Appends the directions between two, without the first, each midway between its neighbours.
     fn bisect(&self, first: Vector<N, 3>, last: Vector<N, 3>, arc: &mut Vec<Vector<N, 3>>) {
         let middle = unit_or(&(first + last), last);
-        // A right angle has at most six halvings at the finest option. Directions that are equal, or opposite
-        // so that there is none half-way, have none.
+        // A right angle takes at most six halvings at the finest option. Equal directions, and
+        // opposite ones, which have no middle, are not halved.
         let apart = first.dot(&last);
         let is_between = middle.dot(&first) > apart && middle.dot(&last) > apart;
         if apart < self.cosine && is_between {
@@ -134,7 +137,7 @@ impl<N: Real> Inflation<'_, N> {
         }
     }
 
-    /// The part of a cylinder around a side, once for both faces.
+    /// Adds the cylinder part around a side, once for both faces.
     fn around_edge(&self, sketch: &mut Sketch<N, 3>, face: usize, [a, b]: [Point<N, 3>; 2]) {
         if self.beyond([a, b]).is_none_or(|other| other <= face) {
             return;
@@ -165,8 +168,8 @@ impl<N: Real> Inflation<'_, N> {
         begun.into_values().map(corner).collect()
     }
 
-    /// The directions around the start of a side of a face, clockwise seen from outside: from face to face,
-    /// each beyond the side that leaves the corner.
+    /// The directions around the start of a side of a face, clockwise seen from outside: from face
+    /// to face, each beyond the side that leaves the corner.
     fn directions_around(&self, start: usize, side: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         let (mut face, mut side, mut around) = (start, side, Vec::new());
         for _ in 0..self.face_of_side.len() {
@@ -185,7 +188,7 @@ impl<N: Real> Inflation<'_, N> {
         around
     }
 
-    /// An arc computed from the face with the lower number, as the part of the cylinder is.
+    /// An arc computed from the face with the lower index, as for the cylinder part.
     fn ordered_arc(&self, face: usize, [a, b]: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         match self.beyond([a, b]) {
             Some(other) if other < face => self.arc(other, [b, a]).into_iter().rev().collect(),
@@ -193,7 +196,7 @@ impl<N: Real> Inflation<'_, N> {
         }
     }
 
-    /// The part of a ball around a corner inside a loop of directions: rings from their middle.
+    /// Adds the ball part around a corner inside a loop of directions: rings from their centre.
     fn patch(&self, sketch: &mut Sketch<N, 3>, corner: &RoundedCorner<N>) {
         let RoundedCorner { point, around, middle } = corner;
         let steps = |direction: &Vector<N, 3>| {
@@ -213,7 +216,8 @@ impl<N: Real> Inflation<'_, N> {
             for ring in 0..rings {
                 let [p1, p2] = [ring, ring + 1].map(|ring| on_ring(p, ring));
                 let [q1, q2] = [ring, ring + 1].map(|ring| on_ring(q, ring));
-                // The loop is clockwise. Next to the middle the second triangle has no area and is left out.
+                // The loop is clockwise. Next to the centre the second triangle has no area and is
+                // left out.
                 sketch.triangle([&p1, &q2, &p2]);
                 sketch.triangle([&p1, &q1, &q2]);
             }

@@ -1,4 +1,4 @@
-//! A mesh as it grows, and what the shapes of both dimensions have in common.
+//! A mesh under construction, and the shapes that 2D and 3D share.
 
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -9,18 +9,19 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Space, filled};
 use crate::shape::{CompositeShape, Geometry, Kind, Plane};
 
-/// How many marks there are from the middle of a half-space's square to its side.
+/// The number of marks from the centre of a half-space's square to its side.
 const MARKS: i32 = 2;
 
-/// A mesh as it grows. Points at one position are one vertex; points that are not finite are left out.
+/// A mesh under construction. Equal points share one vertex; points that are not finite are left
+/// out.
 pub(crate) struct Sketch<N: Real, const D: usize> {
     options: MeshOptions<N>,
-    /// Where what is added lies in the frame of the whole shape.
+    /// The pose of the next additions in the frame of the whole shape.
     pose: Pose<N, D>,
     mesh: ShapeMesh<N, D>,
-    /// The number of the vertex whose coordinates have these bits.
+    /// The index of the vertex whose coordinates have these bits.
     numbers: BTreeMap<[u64; D], u32>,
-    /// The lines so far, the smaller number first.
+    /// The lines so far, the smaller index first.
     lines: BTreeSet<[u32; 2]>,
 }
 
@@ -46,9 +47,9 @@ impl<N: Real, const D: usize> Sketch<N, D> {
         self.options.parts_of_turn()
     }
 
-    /// The number of the vertex at a local point; `None` if that is not finite.
+    /// The index of the vertex at a local point; `None` if the point is not finite.
     fn vertex(&mut self, local: &Point<N, D>) -> Option<u32> {
-        // Zeros lose their sign, so that equal points have equal bits.
+        // Adding zero makes zeros positive, so that equal points have equal bits.
         let point = self.pose.point(local).map(|x| x + N::ZERO);
         let is_finite = point.iter().all(|x| x.is_finite_number());
         let next = u32::try_from(self.mesh.vertices.len()).ok().filter(|_| is_finite)?;
@@ -60,7 +61,7 @@ impl<N: Real, const D: usize> Sketch<N, D> {
         Some(number)
     }
 
-    /// Adds a line, unless it has no length or is there already.
+    /// Adds a line, unless it has no length or exists already.
     pub(super) fn line(&mut self, ends: [&Point<N, D>; 2]) {
         let [Some(a), Some(b)] = ends.map(|end| self.vertex(end)) else { return };
         if a != b && self.lines.insert([a.min(b), a.max(b)]) {
@@ -104,11 +105,12 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
         }
     }
 
-    /// A square around the origin, in 2D the line that it is there, with marks into the solid.
+    /// Adds a square around the origin, in 2D a line, with marks into the solid.
     fn half_space(&mut self, plane: &Plane<N, D>) {
         let extent = self.options.half_space_extent;
         let [u, v] = <N::Algorithms>::tangents(plane.normal()).map(|tangent| tangent * extent);
-        // Counter-clockwise seen from outside; in 2D the second tangent is zero, and so are two sides.
+        // Counter-clockwise seen from outside; in 2D the second tangent is zero, and so are two
+        // sides.
         let corners = [u + v, v - u, -u - v, u - v].map(Point::from);
         self.ring(&corners);
         self.fan(&corners);
@@ -122,7 +124,7 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
         }
     }
 
-    /// The parts that searches find: holes of height fields are none.
+    /// Adds the parts that searches find, which excludes the holes of height fields.
     fn composite(&mut self, composite: &dyn CompositeShape<N, D>) {
         let (outer, mut parts) = (self.pose, Vec::new());
         composite.search().overlapping(&Aabb::unbounded(), &mut |part| parts.push(part));
@@ -131,7 +133,8 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
             let part = composite.part(index);
             self.pose = outer.compose(&part.pose);
             let geometry = part.solid.geometry();
-            // Parts are no composites themselves; a user's own that breaks this rule has no end.
+            // Parts must not be composites; a user's composite that violates this could recurse
+            // without end.
             if geometry.as_composite().is_none() {
                 self.add(geometry);
             }

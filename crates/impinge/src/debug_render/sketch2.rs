@@ -12,7 +12,8 @@ pub(crate) fn sketch2<N: Real>(solid: Kind<'_, N, 2>, sketch: &mut Sketch<N, 2>)
     sketch.fan(&outline);
 }
 
-/// The corners around a convex solid, counter-clockwise. A segment has two, what is not convex none.
+/// The corners around a convex solid, counter-clockwise: two for a segment, none if it is not
+/// convex.
 fn outline<N: Real>(solid: Kind<'_, N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     match solid {
         Kind::Ball(ball) => plane::ball(ball, parts).points,
@@ -40,7 +41,7 @@ fn sampled<N: Real>(map: &dyn SupportMap<N, 2>, parts: u32) -> Vec<Point<N, 2>> 
     directions(parts).iter().map(|direction| map.support_point(direction)).collect()
 }
 
-/// The outline of a rounded solid: of a polygon with its sides in full, of others by support points.
+/// The outline of a rounded solid: exact sides for a polygon, support points for other solids.
 fn rounded<N: Real>(solid: &Rounded<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     let inner = solid.inner().0;
     match inner {
@@ -56,8 +57,8 @@ fn rounded<N: Real>(solid: &Rounded<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     }
 }
 
-/// The outline at a distance from a convex polygon, given counter-clockwise and without sides of no
-/// length: the sides, moved outwards, and an arc around each corner.
+/// The outline at a distance from a convex polygon, given counter-clockwise and without sides of
+/// length zero: the sides, moved outwards, and an arc around each corner.
 fn inflated<N: Real>(corners: &[Point<N, 2>], radius: N, parts: u32) -> Vec<Point<N, 2>> {
     let around = directions::<N>(parts);
     if let [corner] = corners {
@@ -66,7 +67,7 @@ fn inflated<N: Real>(corners: &[Point<N, 2>], radius: N, parts: u32) -> Vec<Poin
     let normal = |(a, b): (&Point<N, 2>, &Point<N, 2>)| {
         unit(&(b - a)).map_or_else(Vector::<N, 2>::zeros, |(along, _)| -perp(&along))
     };
-    // Of each side the unit normal to its right, which is outwards.
+    // The unit normal of each side to its right, which is outwards.
     let next = corners.iter().cycle().skip(1);
     let normals: Vec<_> = corners.iter().zip(next).map(normal).collect();
     let before = normals.iter().cycle().skip(normals.len().saturating_sub(1));
@@ -78,11 +79,11 @@ fn inflated<N: Real>(corners: &[Point<N, 2>], radius: N, parts: u32) -> Vec<Poin
     corners.iter().zip(arcs).flat_map(of_corner).collect()
 }
 
-/// Two unit vectors and the directions between them, counter-clockwise over half a turn at most.
+/// Two unit vectors and the directions between them, counter-clockwise over at most 180°.
 fn arc<N: Real>(around: &[Vector<N, 2>], [first, last]: [&Vector<N, 2>; 2]) -> Vec<Vector<N, 2>> {
     let is_between = |v: &Vector<N, 2>| cross2(first, v) > N::ZERO && cross2(v, last) > N::ZERO;
     let before = around.iter().cycle().skip(around.len().saturating_sub(1));
-    // Those between are in a row, which may run over the end of the list.
+    // The directions between are consecutive, but may wrap around the end of the list.
     let start = before.zip(around).position(|(before, v)| is_between(v) && !is_between(before));
     let row = around.iter().cycle().skip(start.unwrap_or(0)).take(around.len());
     let mut arc = vec![*first];

@@ -39,7 +39,7 @@ pub(crate) fn sketch3<N: Real>(solid: Kind<'_, N, 3>, sketch: &mut Sketch<N, 3>)
         }
         Kind::Cuboid(solid) => cuboid(sketch, solid),
         Kind::Polytope(hull) => {
-            // Edges as the hull has them: a face with many corners has no diagonals.
+            // The hull's own edges: a face with many corners has no diagonals.
             let ends = hull.edges().iter().map(|edge| edge.vertices);
             for [a, b] in ends.map(|ends| ends.map(|end| &hull.vertices()[end as usize])) {
                 sketch.line([a, b]);
@@ -70,7 +70,7 @@ fn circle<N: Real>(center: &Point<N, 3>, axes: [Vector<N, 3>; 2], parts: u32) ->
     around.iter().map(|toward| center + axes[0] * toward.x + axes[1] * toward.y).collect()
 }
 
-/// What a function makes of the three circles of unit vectors in the planes of two axes.
+/// Adds the images, under `at`, of the three unit circles in the planes of two axes.
 fn great_circles<N: Real>(sketch: &mut Sketch<N, 3>, at: impl Fn(&Vector<N, 3>) -> Point<N, 3>) {
     let axes = [Vector::<N, 3>::x(), Vector::<N, 3>::y(), Vector::<N, 3>::z()];
     for axis in 0..3 {
@@ -81,14 +81,15 @@ fn great_circles<N: Real>(sketch: &mut Sketch<N, 3>, at: impl Fn(&Vector<N, 3>) 
     }
 }
 
-/// The outlines of a tapered capsule in two planes through its axis, and the circles where its balls
-/// begin.
+/// Adds the outlines of a tapered capsule in two planes through its axis, and the circles where its
+/// balls begin.
 fn round_ends<N: Real>(sketch: &mut Sketch<N, 3>, capsule: &TaperedCapsule<N, 3>) {
     let (parts, center) = (sketch.parts_of_turn(), capsule.segment().center());
     let axis = unit_or(&(capsule.segment().b() - capsule.segment().a()), Vector::<N, 3>::y());
     let (u, v) = orthonormal_basis(&axis);
     let [radius1, radius2] = capsule.radii();
-    // The capsule in 2D whose revolution it is: sizes beyond the range of the scalar give no outline.
+    // The 2D capsule that generates it by revolution: sizes beyond the range of the scalar give no
+    // outline.
     let flat = TaperedCapsule::<N, 2>::try_new(capsule.half_height(), radius1, radius2);
     for (flat, across) in flat.iter().flat_map(|flat| [(flat, u), (flat, v)]) {
         let outline = plane::tapered_capsule(flat, parts).points;
@@ -106,7 +107,7 @@ fn round_ends<N: Real>(sketch: &mut Sketch<N, 3>, capsule: &TaperedCapsule<N, 3>
     }
 }
 
-/// Corner `i` has the positive half extent on the axes of its bits.
+/// Adds a box. Corner `i` has the positive half extent on the axes of its bits.
 fn cuboid<N: Real>(sketch: &mut Sketch<N, 3>, cuboid: &Cuboid<N, 3>) {
     let corner = |index| cuboid.vertex(FeatureId::Vertex(index));
     for axis in [1, 2, 4] {
@@ -117,7 +118,7 @@ fn cuboid<N: Real>(sketch: &mut Sketch<N, 3>, cuboid: &Cuboid<N, 3>) {
     surface(sketch, &space::cuboid(cuboid));
 }
 
-/// The rims and four lines between them.
+/// Adds the rims and four lines between them.
 fn cylinder<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Cylinder<N>) {
     let parts = sketch.parts_of_turn();
     let (radius, up) = (solid.radius(), Vector::<N, 3>::y() * solid.half_height());
@@ -133,7 +134,7 @@ fn cylinder<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Cylinder<N>) {
     }
 }
 
-/// The rim and four lines to the apex.
+/// Adds the rim and four lines to the apex.
 fn cone<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Cone<N>) {
     let parts = sketch.parts_of_turn();
     let apex = Point::from(Vector::<N, 3>::y() * solid.half_height());
@@ -146,7 +147,7 @@ fn cone<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Cone<N>) {
     }
 }
 
-/// The faces of a solid that has so many.
+/// The first `count` faces of a solid.
 fn faces<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, count: usize) -> Vec<Feature<N, 3>> {
     let face = |index| {
         let mut face = Feature::default();
@@ -157,7 +158,8 @@ fn faces<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, count: usize) -> Vec<Featu
     (0..).map(face).take(count).collect()
 }
 
-/// What is rounded and has flat faces, exactly; of other solids, and flat boxes, circles of support points.
+/// Adds a rounded solid: exactly if the inner shape has flat faces, else, and for flat boxes, by
+/// support points.
 fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Rounded<N, 3>) {
     let faces = match solid.inner().0 {
         Kind::Cuboid(cuboid) => faces(cuboid, 6),
@@ -171,7 +173,7 @@ fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Rounded<N, 3>) {
     }
 }
 
-/// The surface of a ball with the support point of each direction in its place.
+/// Adds the surface of a ball with each direction replaced by its support point.
 fn sampled<N: Real>(sketch: &mut Sketch<N, 3>, map: &dyn SupportMap<N, 3>) {
     let mut directions = space::ball(&Ball::new(N::ONE), sketch.parts_of_turn());
     for vertex in &mut directions.vertices {

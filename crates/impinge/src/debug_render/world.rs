@@ -1,4 +1,4 @@
-//! The picture of a world.
+//! Drawing of a world.
 
 use super::drawing::draw_box;
 use super::{DebugDrawing, DebugOptions, DebugRender, Drawn};
@@ -10,14 +10,14 @@ use crate::tables::entries;
 use crate::world::{CollisionObject, CollisionWorld};
 
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
-    /// Draws a world: of all that [`options`](Self::options) has a style for.
+    /// Draws a world: everything for which [`options`](Self::options) has a style.
     ///
-    /// Shapes and boxes are where the objects are now, all else as of the last update. Two objects of a
-    /// pair with proximity are joined by a line between their nearest points, or between their
-    /// origins if they intersect; those that are apart are not.
+    /// Shapes and boxes are at the objects' present positions, all else is as of the last update.
+    /// Two objects of a pair with proximity are joined by a line between their nearest points, or
+    /// between their origins if they intersect; disjoint objects are not joined.
     ///
-    /// Costs O(n) for what is drawn, and the sorting of contacts by handles; a mesh for each shape that
-    /// was not drawn before.
+    /// Costs O(n) for n drawn objects, and the sorting of contacts by handles; a mesh for each
+    /// shape that was not drawn before.
     pub fn world<T>(
         &mut self,
         world: &CollisionWorld<N, D, T>,
@@ -36,7 +36,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         self.proximities(world, renderer);
     }
 
-    /// The boxes of the broad phase's nodes, which are in the way of nothing that is drawn after them.
+    /// Draws the boxes of the broad phase's nodes; first, so that they cover nothing.
     fn tree_nodes<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
         if let Some(style) = &self.options.tree_node {
             let mut draw = |aabb: &Aabb<N, D>| draw_box(aabb, style, Drawn::TreeNode, renderer);
@@ -44,7 +44,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// The boxes of each object, the tight one first.
+    /// Draws the boxes of each object, the tight one first.
     fn boxes<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
         let (tight, loosened) = (&self.options.tight_box, &self.options.loosened_box);
         for object in world.collision_objects() {
@@ -61,13 +61,13 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// The contacts of all pairs, by handles: views come in the order of the memory.
+    /// Draws the contacts of all pairs, sorted by handles: views come in memory order.
     fn manifolds<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
         let DebugOptions { contact_point, contact_normal, manifold, .. } = self.options;
         if contact_point.or(contact_normal).or(manifold).is_none() {
             return;
         }
-        // Those of one pair keep their order.
+        // A stable sort keeps the order within a pair.
         let mut views: Vec<_> = world.contact_views().collect();
         views.sort_by_key(|(object1, object2, _)| (object1.handle(), object2.handle()));
         for (_, _, view) in views {
@@ -75,7 +75,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         }
     }
 
-    /// A line for each pair that is near or intersects, by handles.
+    /// Draws a line for each pair that is near or intersects, sorted by handles.
     fn proximities<T>(
         &self,
         world: &CollisionWorld<N, D, T>,

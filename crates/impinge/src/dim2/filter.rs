@@ -3,7 +3,7 @@
 use super::world::CollisionObject;
 use crate::math::Real;
 
-/// Says which pairs shall exist at all; see [`crate::world::BroadPhasePairFilter`].
+/// Decides which pairs may exist at all; see [`crate::world::BroadPhasePairFilter`].
 ///
 /// Closures of two references to objects are filters too.
 ///
@@ -22,7 +22,8 @@ use crate::math::Real;
 /// world.register_broad_phase_pair_filter("parity", SameParity);
 /// ```
 pub trait BroadPhasePairFilter<N: Real, T>: Send + Sync {
-    /// The two objects may interact. `co1` is the one whose handle comes first.
+    /// Returns `true` if the two objects may interact. The handle of `co1` is smaller than that of
+    /// `co2`.
     fn is_pair_valid(&self, co1: &CollisionObject<N, T>, co2: &CollisionObject<N, T>) -> bool;
 }
 

@@ -1,8 +1,8 @@
-//! Space: every name of the library with its dimension filled in.
+//! 3D: every name of the library with the dimension filled in.
 //!
-//! A type here is the generic one of the same name at the crate's top with `D` = 3:
-//! `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The module tree is the
-//! one of the user guide; [`prelude`] has at once what the usual program needs.
+//! A type here is the generic one of the same name at the crate's root with `D` = 3:
+//! `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The modules follow the
+//! user guide; [`prelude`] re-exports the names that common programs need.
 //!
 //! ```
 //! use impinge::dim3::math::{Isometry, Vector};
@@ -43,20 +43,20 @@ pub mod bounding_volume {
     pub type BoundingSphere<N> = crate::bounding_volume::BoundingSphere<N, 3>;
 }
 
-/// Drawing worlds, shapes and queries with a back end of one's own, which implements `DebugRender<N, 3>`.
+/// Drawing worlds, shapes and queries with a custom back end, which implements `DebugRender<N, 3>`.
 #[cfg(feature = "debug_render")]
 pub mod debug_render {
     pub use crate::debug_render::{Color, DebugOptions, DebugRender, Drawn, MeshOptions, Style};
 
-    /// What draws worlds, shapes and queries in 3D.
+    /// Draws worlds, shapes and queries in 3D.
     pub type DebugDrawing<N> = crate::debug_render::DebugDrawing<N, 3>;
     /// The lines and triangles of a shape.
     pub type ShapeMesh<N> = crate::debug_render::ShapeMesh<N, 3>;
-    /// A shape on its way.
+    /// A shape along its path.
     pub type SweptShape<'a, N> = crate::debug_render::SweptShape<'a, N, 3>;
 }
 
-/// One question about many placed shapes, with the answers in columns.
+/// One query for many placed shapes, with the results in columns.
 pub mod batch {
     pub use crate::batch::{
         AsPose, BatchError, Control, MatrixError, NO_FEATURE, OnePose, PoseSource, TileCut,
@@ -65,27 +65,27 @@ pub mod batch {
 
     /// The shapes of one side of a batch.
     pub type Shapes<'a, N> = crate::batch::Shapes<'a, N, 3>;
-    /// Shapes and where they are.
+    /// Shapes and their poses.
     pub type Side<'a, N> = crate::batch::Side<'a, N, 3>;
     /// Poses as homogeneous matrices in a flat array.
     pub type Matrices<'a, N> = crate::batch::Matrices<'a, N, 3>;
-    /// Pairs of placed shapes, element by element.
+    /// A batch of pairs of placed shapes, element by element.
     pub type PairBatch<'a, N> = crate::batch::PairBatch<'a, N, 3>;
-    /// Points against placed shapes.
+    /// A batch of points and placed shapes.
     pub type PointBatch<'a, N> = crate::batch::PointBatch<'a, N, 3>;
-    /// Rays against placed shapes.
+    /// A batch of rays and placed shapes.
     pub type RayColumns<'a, N> = crate::batch::RayColumns<'a, N, 3>;
-    /// Slots for nearest points.
+    /// Output columns of nearest points.
     pub type ClosestColumns<'a, N> = crate::batch::ClosestColumns<'a, N, 3>;
-    /// Slots for witnesses.
+    /// Output columns of witnesses.
     pub type WitnessColumns<'a, N> = crate::batch::WitnessColumns<'a, N, 3>;
-    /// Slots for contacts.
+    /// Output columns of contacts.
     pub type ContactColumns<'a, N> = crate::batch::ContactColumns<'a, N, 3>;
-    /// Slots for impacts.
+    /// Output columns of impacts.
     pub type ImpactColumns<'a, N> = crate::batch::ImpactColumns<'a, N, 3>;
-    /// Slots for projections of points.
+    /// Output columns of projections of points.
     pub type ProjectionColumns<'a, N> = crate::batch::ProjectionColumns<'a, N, 3>;
-    /// Slots for hits of rays.
+    /// Output columns of ray hits.
     pub type HitColumns<'a, N> = crate::batch::HitColumns<'a, N, 3>;
     /// A division of space into tiles.
     pub type Tiles<N> = crate::batch::Tiles<N, 3>;
@@ -93,7 +93,7 @@ pub mod batch {
     pub type ManifoldRows<N> = crate::batch::ManifoldRows<N, 3>;
 }
 
-/// Which of many configurations of a robot are free.
+/// Tests which of many configurations of a robot are free of collisions.
 pub mod checker {
     pub use crate::checker::{CheckerError, NO_PAIR, NearestColumns};
 
@@ -103,15 +103,15 @@ pub mod checker {
     pub type FrameTree<N> = crate::checker::FrameTree<N, 3>;
     /// A frame on its parent.
     pub type Frame<N> = crate::checker::Frame<N, 3>;
-    /// How a frame moves.
+    /// The motion of a frame relative to its parent.
     pub type Joint<N> = crate::checker::Joint<N, 3>;
     /// A shape fixed to a frame.
     pub type Body<N> = crate::checker::Body<N, 3>;
-    /// A shape that stands in the world.
+    /// A shape fixed in the world.
     pub type Obstacle<N> = crate::checker::Obstacle<N, 3>;
 }
 
-/// Which objects may touch: pairs whose bounding volumes overlap.
+/// The broad phase: pairs of objects whose bounding volumes overlap.
 pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;
     pub use crate::broad_phase::{
@@ -120,7 +120,7 @@ pub mod broad_phase {
     };
 }
 
-/// Exact answers for the pairs that the broad phase proposes.
+/// The narrow phase: contacts and proximities of the pairs that the broad phase proposes.
 ///
 /// Traits to implement name the dimension: `ContactDispatcher<N, 3>`, `Shape<N, 3>`,
 /// `NarrowPhase<N, 3, T>`.
@@ -132,7 +132,7 @@ pub mod narrow_phase {
     };
     pub use crate::world::{NarrowPhase, ProximityPairs};
 
-    /// Pairs with their contacts, as a narrow phase gives them.
+    /// Pairs with their contacts, as a narrow phase returns them.
     pub type ContactPairs<'a, N> = crate::world::ContactPairs<'a, N, 3>;
     /// The narrow phase of a new world: contacts and proximities.
     pub type DefaultNarrowPhase<N> = crate::narrow_phase::DefaultNarrowPhase<N, 3>;
@@ -140,11 +140,11 @@ pub mod narrow_phase {
     pub type DefaultContactDispatcher = crate::narrow_phase::DefaultContactDispatcher<3>;
     /// Chooses the library's own proximity algorithm for every two solids.
     pub type DefaultProximityDispatcher = crate::narrow_phase::DefaultProximityDispatcher<3>;
-    /// The contacts of any two built-in solids.
+    /// Computes the contacts of any two built-in solids.
     pub type PairManifoldGenerator<N> = crate::narrow_phase::PairManifoldGenerator<N, 3>;
-    /// A contact algorithm in a box.
+    /// A boxed contact algorithm.
     pub type ContactAlgorithm<N> = crate::narrow_phase::ContactAlgorithm<N, 3>;
-    /// A proximity algorithm in a box.
+    /// A boxed proximity algorithm.
     pub type ProximityAlgorithm<N> = crate::narrow_phase::ProximityAlgorithm<N, 3>;
     /// The contacts of a pair of objects.
     pub type ContactPair<'a, N> = crate::narrow_phase::ContactPair<'a, N, 3>;
@@ -152,7 +152,7 @@ pub mod narrow_phase {
     pub type ObjectTable<N> = crate::narrow_phase::ObjectTable<N, 3>;
 }
 
-/// What changed between two updates.
+/// Events: changes between two updates.
 pub mod events {
     pub use crate::narrow_phase::{ContactEvent, Events, ProximityEvent};
     pub use crate::query::Proximity;
@@ -172,13 +172,13 @@ pub mod world {
     pub type CollisionObject<N, T> = crate::world::CollisionObject<N, 3, T>;
     /// The objects of a world.
     pub type CollisionObjects<N, T> = crate::world::CollisionObjects<N, 3, T>;
-    /// Which objects a query is about.
+    /// Selects the objects that a query considers.
     pub type QueryFilter<'a, N, T> = crate::world::QueryFilter<'a, N, 3, T>;
-    /// An object near what was asked about.
+    /// An object near the point or solid of a query.
     pub type NearObject<'a, N, T> = crate::world::NearObject<'a, N, 3, T>;
 }
 
-/// Questions about one solid or two.
+/// Queries about one solid or two.
 pub mod query {
     pub use crate::narrow_phase::{ContactPrediction, contact_manifolds};
     pub use crate::query::{
@@ -190,7 +190,7 @@ pub mod query {
 
     /// A half-line.
     pub type Ray<N> = crate::query::Ray<N, 3>;
-    /// Where and when a ray meets a solid.
+    /// The time and place at which a ray meets a solid.
     pub type RayIntersection<N> = crate::query::RayIntersection<N, 3>;
     /// See [`crate::query::RayBatch`].
     pub type RayBatch<'a, N> = crate::query::RayBatch<'a, N, 3>;
@@ -200,29 +200,29 @@ pub mod query {
     pub type ClosestPoints<N> = crate::query::ClosestPoints<N, 3>;
     /// The nearest points of two shapes with their parts and features.
     pub type Witness<N> = crate::query::Witness<N, 3>;
-    /// Where two solids touch.
+    /// A point where two solids touch.
     pub type Contact<N> = crate::query::Contact<N, 3>;
     /// A solid that moves along a straight line.
     pub type Moving<'a, N> = crate::query::Moving<'a, N, 3>;
-    /// A body that moves and turns with constant velocities.
+    /// A body that translates and rotates with constant velocities.
     pub type ConstantVelocities<N> = crate::query::ConstantVelocities<N, 3>;
-    /// When two moving solids first touch, and where.
+    /// The time and place at which two moving solids first touch.
     pub type Impact<N> = crate::query::Impact<N, 3>;
     /// The mass, centre of mass and inertia of a body.
     pub type MassProperties<N> = crate::query::MassProperties<N, 3>;
-    /// How a contact moves with its solids.
+    /// The motion of a contact relative to its solids.
     pub type ContactKinematic<N> = crate::query::ContactKinematic<N, 3>;
-    /// One solid's share of a contact, for algorithms of one's own.
+    /// One solid's share of a contact, for custom algorithms.
     pub type ContactSide<N> = crate::query::ContactSide<N, 3>;
-    /// What a solid looks like near a contact.
+    /// The shape of a solid near a contact.
     pub type NeighborhoodGeometry<N> = crate::query::NeighborhoodGeometry<N, 3>;
-    /// A contact, how it moves, and its name.
+    /// A contact with its kinematic and its id.
     pub type TrackedContact<N> = crate::query::TrackedContact<N, 3>;
     /// A contact without its kinematic.
     pub type ContactPoint<N> = crate::query::ContactPoint<N, 3>;
-    /// The manifold to read: contacts, ids, features, parts and kinematics.
+    /// A manifold read in place: contacts, ids, features, parts and kinematics.
     pub type ManifoldView<'a, N> = crate::query::ManifoldView<'a, N, 3>;
-    /// A manifold that is kept by itself.
+    /// A manifold with its own storage.
     pub type ContactManifold<N> = crate::query::ContactManifold<N, 3>;
 }
 
@@ -234,7 +234,7 @@ pub mod shape {
         ShapeError, ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
-    /// Where a curved support point lies, and how it moves.
+    /// A curved support point, and its rate of change with the direction.
     pub type CurvedSupport<N> = crate::shape::CurvedSupport<N, 3>;
     /// A box.
     pub type Cuboid<N> = crate::shape::Cuboid<N, 3>;
@@ -242,7 +242,7 @@ pub mod shape {
     pub type Capsule<N> = crate::shape::Capsule<N, 3>;
     /// A half-space: all that is behind a plane.
     pub type HalfSpace<N> = crate::shape::Plane<N, 3>;
-    /// The same as [`HalfSpace`], which is the name to use.
+    /// Another name of [`HalfSpace`], which is preferred.
     pub type Plane<N> = crate::shape::Plane<N, 3>;
     /// A straight line between two points.
     pub type Segment<N> = crate::shape::Segment<N, 3>;
@@ -260,13 +260,13 @@ pub mod shape {
     pub type Polyline<N> = crate::shape::Polyline<N, 3>;
     /// A vertex, an edge or a face, as points.
     pub type Feature<N> = crate::shape::Feature<N, 3>;
-    /// How queries see a shape.
+    /// The form in which queries read a shape.
     pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 3>;
     /// One of the solids that a composite is made of.
     pub type Part<'a, N> = crate::shape::Part<'a, N, 3>;
-    /// What a part is.
+    /// The solid of a part.
     pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 3>;
-    /// Shapes side by side, as one.
+    /// Several shapes as one.
     pub type Compound<N> = crate::shape::Compound<N, 3>;
     /// A surface given by heights over a grid.
     pub type HeightField<N> = crate::shape::HeightField<N, 3>;
@@ -274,7 +274,7 @@ pub mod shape {
     pub type ShapeHandle<N> = crate::shape::ShapeHandle<N, 3>;
 }
 
-/// Shapes from points.
+/// Shapes computed from points.
 pub mod transformation {
     pub use crate::transformation::{
         IndexedHull, convex_hull3 as convex_hull, convex_shape3 as convex_shape,
@@ -298,7 +298,7 @@ pub mod procedural {
     pub use crate::procedural::{MAX_SUBDIVISIONS, MIN_SUBDIVISIONS, TriangleSurface};
 }
 
-/// Searches among boxes of the user's own.
+/// Searches among a user's boxes.
 ///
 /// ```
 /// use impinge::dim3::bounding_volume::Aabb;
@@ -316,9 +316,9 @@ pub mod partitioning {
     pub type BoxTree<N> = crate::partitioning::BoxTree<N, 3>;
 }
 
-/// Numbers, vectors and poses: the names that examples use, under which both dimensions read alike.
+/// Numbers, vectors and poses under names that are equal in both dimensions, as examples use them.
 ///
-/// They are nalgebra's types, and [`na`] is the way to all else that it has.
+/// They are nalgebra's types; [`na`] re-exports the rest of that library.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Rotation, Vector};
@@ -338,7 +338,7 @@ pub mod math {
     pub type Point<N> = na::Point3<N>;
     /// A vector.
     pub type Vector<N> = na::Vector3<N>;
-    /// Where a solid is: a rotation, then a translation.
+    /// The position of a solid: a rotation, then a translation.
     pub type Isometry<N> = na::Isometry3<N>;
     /// A translation.
     pub type Translation<N> = na::Translation3<N>;
@@ -350,6 +350,6 @@ pub mod math {
     pub type Matrix<N> = na::Matrix3<N>;
 }
 
-/// All of nalgebra, in the version that the library uses; its vectors and poses for this dimension have
+/// Nalgebra, in the version that the library uses; its vectors and poses for this dimension have
 /// short names in [`math`].
 pub use crate::math::na;

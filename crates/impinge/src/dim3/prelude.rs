@@ -1,8 +1,9 @@
-//! What the usual program needs, to be imported as a whole: the world and its events, the shapes, vectors
-//! and poses, and the questions about two shapes, in 3D.
+//! The names that common programs need, for a glob import: the world and its events, the shapes,
+//! vectors and poses, and the queries about two shapes, in 3D.
 //!
-//! A name of one's own comes before one of a glob import. All else has its place in the modules beside
-//! this one; of `dim2` and `dim3` a file imports one prelude, since the names are the same.
+//! A name that you define or import takes precedence over one of a glob import. All other names are
+//! in the modules beside this one. A file imports one prelude, of `dim2` or of `dim3`, since the
+//! names are equal.
 //!
 //! ```
 //! use impinge::dim3::prelude::*;

@@ -1,7 +1,7 @@
-//! Vectors for targets that have none: eight numbers in an array.
+//! SIMD vectors emulated by arrays of eight numbers, for targets without SIMD.
 //!
-//! Each operation is a function that is called. Were it inlined, a kernel of a thousand operations would become
-//! functions of thousands of loops, which compilers do not get through.
+//! Each operation is a function that is not inlined. If it were, a kernel of a thousand operations
+//! would become functions with thousands of loops, which takes compilers too long.
 
 use crate::math::filled;
 use core::ops::{
@@ -12,10 +12,10 @@ use super::na::ComplexField;
 use super::na::RealField;
 use super::simd::{Simd, SimdMask, Wide};
 
-/// How many numbers a vector has.
+/// Numbers in a vector.
 const LANES: usize = 8;
 
-/// The set of vectors of every machine.
+/// The vectors of every machine, as a [`Simd`] set.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrays;
 

@@ -1,24 +1,25 @@
 //! Eigenvalues and eigenvectors of small symmetric matrices, with the same bits on every platform.
 //!
-//! Jacobi's rotations: each makes one element beside the diagonal zero. They take square roots and divisions
-//! alone, and find small eigenvalues of positive matrices beside large ones (Demmel and Veselić, "Jacobi's method
-//! is more accurate than QR", 1992).
+//! Jacobi's rotations: each makes one off-diagonal element zero. They need only square roots and
+//! divisions, and are accurate for small eigenvalues of positive matrices beside large ones (Demmel
+//! and Veselić, "Jacobi's method is more accurate than QR", 1992).
 
 use super::real::f64_power_of_two_below;
 use super::{Matrix, Vector};
 
-/// At most so many sweeps over all elements are made. The error is squared in each: five are usual.
+/// The maximum number of sweeps over all elements. Each squares the error: five are usual.
 const MAX_SWEEPS: usize = 32;
 
-/// An element is negligible if it is below so much of the geometric mean of the two diagonal elements: rounding
-/// of the matrix, not a reason to turn.
+/// An element is negligible up to this fraction of the geometric mean of its two diagonal elements:
+/// it is rounding error of the matrix.
 const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 
-/// The eigenvalues of a finite symmetric matrix, and a rotation whose columns are the eigenvectors:
-/// `matrix = rotation · diagonal · rotationᵀ`.
+/// Returns the eigenvalues of a finite symmetric matrix, and a rotation whose columns are the
+/// eigenvectors: `matrix = rotation · diagonal · rotationᵀ`.
 ///
-/// Each rotation turns by at most an eighth, so that the eigenvectors of a nearly diagonal matrix are near the
-/// axes, in their order; those of a diagonal one are the axes. Scaling by powers of two is exact.
+/// Each rotation is by at most 45°, so that the eigenvectors of a nearly diagonal matrix are near
+/// the axes, in their order; those of a diagonal one are the axes. Scaling by powers of two is
+/// exact.
 pub(crate) fn symmetric_eigen<const D: usize>(
     matrix: &Matrix<f64, D>,
 ) -> (Vector<f64, D>, Matrix<f64, D>) {
@@ -43,7 +44,7 @@ pub(crate) fn symmetric_eigen<const D: usize>(
     (diagonal.diagonal() * scale, rotation)
 }
 
-/// Turns by the angle that makes the element at `(p, q)` zero.
+/// Rotates by the angle that makes the element at `(p, q)` zero.
 fn rotate<const D: usize>(
     matrix: &mut Matrix<f64, D>,
     rotation: &mut Matrix<f64, D>,
@@ -101,7 +102,7 @@ mod tests {
         let plane = Matrix::<f64, 2>::new(2.0, 1.0, 1.0, 2.0);
         let values = check(&plane);
         assert!((values - Vector::<f64, 2>::new(1.0, 3.0)).norm() < 1e-15, "{values}");
-        // A line: of the three values two are zero.
+        // A line: two of the three values are zero.
         let line = V3::new(1.0, 2.0, -2.0);
         let values = check(&(line * line.transpose()));
         assert!((values.sum() - 9.0).abs() < 1e-14 && values.amin() < 1e-15, "{values}");
@@ -125,12 +126,12 @@ mod tests {
         }
     }
 
-    /// The small value of a needle keeps its digits where the matrix has them.
+    /// The small eigenvalue of a needle keeps its digits where the matrix has them.
     #[test]
     fn small_values_beside_large_ones() {
         let graded = M3::new(1.0, 1e-6, 0.0, 1e-6, 1e-9, 1e-13, 0.0, 1e-13, 1e-18);
         let (values, _) = symmetric_eigen(&graded);
-        // The least is 1e-18 less (1e-13)² over 1e-9 - 1e-12.
+        // The smallest is 1e-18 minus (1e-13)² over 1e-9 - 1e-12.
         let expected = 1e-18 - 1e-26 / (1e-9 - 1e-12);
         assert!((values[2] / expected - 1.0).abs() < 1e-6, "{values}, not {expected}");
     }

@@ -1,10 +1,10 @@
-//! On which side: orientation of points in 2D and 3D, with the exact sign.
+//! Orientation predicates in 2D and 3D with the exact sign.
 //!
 //! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates"
-//! (1997): a rounded determinant with a bound on its error and, where the bound does not decide, the
+//! (1997): a rounded determinant with a bound on its error and, if the bound does not decide, the
 //! determinant as an unevaluated sum of doubles. Two stages are enough here: the second is rare.
-//! Exact while no product underflows, which for coordinates scaled to 1 takes differences below
-//! 1e-90; then the sign may be lost, never the program.
+//! Exact unless a product underflows, which for coordinates scaled to 1 takes differences below
+//! 1e-90; then the sign may be wrong, but the callers still end.
 
 use crate::math::Mapped;
 use smallvec::SmallVec;
@@ -15,7 +15,7 @@ use super::{Point, Vector};
 type P2 = Point<f64, 2>;
 type P3 = Point<f64, 3>;
 
-/// A sum of doubles of which none overlaps another, least first; empty for zero.
+/// A sum of nonoverlapping doubles, smallest first; empty for zero.
 type Expansion = SmallVec<[f64; 32]>;
 
 /// A double as two halves of 26 bits (Dekker, Veltkamp).
@@ -52,6 +52,7 @@ fn grow(expansion: &mut Expansion, addend: f64) {
     }
 }
 
+/// `a − b`, exactly.
 fn difference(a: f64, b: f64) -> Expansion {
     let (high, low) = sum_and_error(a, -b);
     let mut expansion = Expansion::new();
@@ -60,6 +61,7 @@ fn difference(a: f64, b: f64) -> Expansion {
     expansion
 }
 
+/// Adds `sign · a · b` to an expansion, exactly.
 fn add_product(sum: &mut Expansion, a: &[f64], b: &[f64], sign: f64) {
     for &x in a {
         for &y in b {
@@ -78,7 +80,7 @@ fn minor(a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> Expansion {
     sum
 }
 
-/// The value, rounded, with the exact sign: the largest term outweighs all others.
+/// The value, rounded, with the exact sign: the largest term exceeds the sum of all others.
 fn value(expansion: &[f64]) -> f64 {
     expansion.iter().sum::<f64>()
 }
@@ -97,17 +99,17 @@ fn area_exact(a: &P2, b: &P2, c: &P2) -> f64 {
     value(&minor(&ux, &uy, &vx, &vy))
 }
 
-/// The part of the sum of magnitudes below which a rounded volume is not used.
+/// A rounded volume is used above this fraction of the sum of magnitudes.
 const MARGIN: f64 = 4.0 * 1_048_576.0 * f64::EPSILON;
 
-/// `a · b − c · d`, right to the last digits whatever cancels.
+/// `a · b − c · d`, accurate to the last digits despite cancellation.
 fn product_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
     let ((left, left_error), (right, right_error)) = (two_product(a, b), two_product(c, d));
     (left - right) + (left_error - right_error)
 }
 
-/// The vector out of the side from which the triangle is seen counter-clockwise, as long as twice
-/// the area: right to the last digits for slivers too.
+/// The normal of the triangle on the side from which it appears counter-clockwise, with the length
+/// of twice its area: accurate to the last digits also for slivers.
 pub(crate) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
     let two_sums = |p: &P3| [0, 1, 2].mapped(|axis| sum_and_error(p[axis], -a[axis]));
     let (u, v) = (two_sums(b), two_sums(c));
@@ -120,7 +122,7 @@ pub(crate) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
 }
 
 /// Six times the volume of the tetrahedron: positive if `q` lies on the side of the triangle `abc`
-/// from which it is seen counter-clockwise. The sign is exact.
+/// from which it appears counter-clockwise. The sign is exact.
 #[inline]
 pub(crate) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
     let (u, v, w): (Vector<f64, 3>, Vector<f64, 3>, Vector<f64, 3>) = (a - q, b - q, c - q);
@@ -131,11 +133,12 @@ pub(crate) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
     let permanent = u.z.abs() * (vw.abs() + wv.abs())
         + v.z.abs() * (wu.abs() + uw.abs())
         + w.z.abs() * (uv.abs() + vu.abs());
-    // Shewchuk's bound is 7 half-units. A million times that makes the magnitude right to six digits
-    // too, which heights over slivers need, and is still rare.
+    // Shewchuk's bound is 7 half-units. A million times that also makes the magnitude accurate to
+    // six digits, which heights over slivers need, and is still rare.
     if det.abs() > MARGIN * permanent { -det } else { volume_exact([a, b, c], q) }
 }
 
+/// [`volume`] from the exact determinant.
 #[cold]
 fn volume_exact(corners: [&P3; 3], q: &P3) -> f64 {
     let [u, v, w] = corners.map(|p| [0, 1, 2].map(|axis| difference(p[axis], q[axis])));

@@ -1,7 +1,8 @@
 //! Arrays made by a function of the index, or of the elements of another one.
 //!
-//! [`core::array::from_fn`] and `map` drop what they have made if the function panics, at any type. For numbers that is
-//! of no use, and costs five nested functions for each closure: a tenth of the code that the compiler was given.
+//! [`core::array::from_fn`] and `map` drop the elements made so far if the function panics, for
+//! every type. For numbers this has no use, and costs five nested functions for each closure: a
+//! tenth of all code given to the compiler.
 
 /// The array of the values of a function at each index.
 #[inline(always)]
@@ -15,7 +16,7 @@ pub(crate) fn filled<T: Copy, const L: usize>(mut value: impl FnMut(usize) -> T)
     all
 }
 
-/// `map` for arrays of what can be copied.
+/// `map` for arrays of `Copy` types.
 pub(crate) trait Mapped<T, const L: usize> {
     /// The array of the values of a function at each element.
     fn mapped<U: Copy>(self, value: impl FnMut(T) -> U) -> [U; L];

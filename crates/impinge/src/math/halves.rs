@@ -1,7 +1,8 @@
-//! Eight numbers in registers that are narrower: two vectors side by side, each of which may be two again.
+//! Vectors of eight numbers on narrower registers: two vectors side by side, each of which may be
+//! two again.
 //!
-//! `fearless_simd` has such vectors too, as arrays of registers that each operation takes apart and puts
-//! together. The code is the same in the end, but the compiler takes twice as long over it.
+//! `fearless_simd` has such vectors too, as arrays of registers that each operation takes apart and
+//! puts together. The generated code is the same, but the compiler takes twice as long.
 
 use core::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,
@@ -9,7 +10,7 @@ use core::ops::{
 
 use super::simd::{Simd, SimdMask, Wide};
 
-/// The lanes of `low`, then those of `high`: numbers, or what comparisons of them say.
+/// The lanes of `low`, then those of `high`: numbers, or the results of comparisons.
 #[derive(Clone, Copy, Debug)]
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub struct Halves<V> {
@@ -17,7 +18,7 @@ pub struct Halves<V> {
     high: V,
 }
 
-/// Operators of two vectors, half by half. No closures: those are not inlined into vector code.
+/// Binary operators, half by half. No closures: those are not inlined into SIMD code.
 macro_rules! by_halves {
     ($($operator:ident $method:ident),*) => {$(
         impl<V: $operator<Output = V>> $operator for Halves<V> {
@@ -36,7 +37,7 @@ macro_rules! by_halves {
 
 by_halves!(Add add, Sub sub, Mul mul, Div div, BitAnd bitand, BitOr bitor, BitXor bitxor);
 
-/// Operators that change their first vector, half by half.
+/// Assigning operators, half by half.
 macro_rules! in_place_by_halves {
     ($($operator:ident $method:ident),*) => {$(
         impl<V: $operator> $operator for Halves<V> {

@@ -1,7 +1,7 @@
-//! Vectors of which each coordinate is a number in every lane.
+//! Vectors and poses in SIMD lanes: each coordinate is a SIMD vector.
 //!
-//! Each operation is in the order of its scalar twin, so that a lane has the bits that a vector has. Nothing
-//! here is a `map`: closures that are handed to it are not inlined into vector code.
+//! Each operation has the order of its scalar counterpart, so that a lane has the same bits as the
+//! scalar. Nothing here uses `map`: closures passed to it are not inlined into SIMD code.
 
 use super::simd::{Simd, SimdMask};
 use super::{Matrix, Pose, Real, Vector, Wide, max};
@@ -9,7 +9,7 @@ use crate::math::filled;
 
 /// Runs `$body` with `$simd` bound to the vectors of a [`Level`](super::simd::Level), or to arrays.
 ///
-/// `$body` is compiled for each instruction set, so it is a call of a kernel.
+/// `$body` is compiled for each instruction set, so it should be a call of a kernel.
 macro_rules! with_lanes {
     ($level:expr, $simd:ident => $body:expr) => {
         match $level {
@@ -27,7 +27,8 @@ macro_rules! with_lanes {
     };
 }
 
-/// Runs `$body` with `$simd` bound to what treats the lanes of a [`Run`](super::simd::Run).
+/// Runs `$body` with `$simd` bound to the vectors, or the single lane, of a
+/// [`Run`](super::simd::Run).
 macro_rules! in_lanes {
     ($run:expr, $simd:ident => $body:expr) => {
         match $run.vectors {
@@ -73,13 +74,13 @@ macro_rules! vectorized {
 
 pub(crate) use {in_lanes, vectorized, with_lanes, with_vectors};
 
-/// The same number in all lanes.
+/// Broadcasts a number to all lanes.
 #[inline(always)]
 pub(crate) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
     V::all(simd, N::lit(value))
 }
 
-/// The greatest of eight numbers.
+/// The greatest of eight lanes.
 #[inline(always)]
 pub(crate) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V) -> N {
     let mut lanes = [N::ZERO; 8];
@@ -88,7 +89,7 @@ pub(crate) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V)
     max(max(max(a, e), max(c, g)), max(max(b, f), max(d, h)))
 }
 
-/// The same vector in all lanes.
+/// Broadcasts a vector to all lanes.
 #[inline(always)]
 pub(crate) fn spread<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -100,7 +101,7 @@ pub(crate) fn spread<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     )
 }
 
-/// As many vectors as there are lanes, by their coordinates.
+/// Loads one vector for each lane, by coordinates.
 #[inline(always)]
 pub(crate) fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, const L: usize>(
     simd: S,
@@ -130,7 +131,7 @@ pub(crate) fn plus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) 
     )
 }
 
-/// A multiple in each lane.
+/// Each vector times the factor of its lane.
 #[inline(always)]
 pub(crate) fn times<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], factor: V) -> [V; D] {
     filled(
@@ -148,7 +149,7 @@ pub(crate) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D]
     )
 }
 
-/// A fraction in each lane.
+/// Each vector divided by the divisor of its lane.
 #[inline(always)]
 pub(crate) fn over<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], divisor: V) -> [V; D] {
     filled(
@@ -157,7 +158,7 @@ pub(crate) fn over<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], divisor: V) 
     )
 }
 
-/// The sum of the products, in the order of the axes.
+/// The dot product, summed in the order of the axes.
 #[inline(always)]
 pub(crate) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
     let mut sum = a[0] * b[0];
@@ -179,7 +180,7 @@ pub(crate) fn cross<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// A vector in the frame with these axes.
+/// Rotates a vector to the frame with these axes.
 #[inline(always)]
 pub(crate) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
     axes: &[[V; D]; D],
@@ -191,7 +192,7 @@ pub(crate) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
     )
 }
 
-/// Vectors in the frame that a rotation leads from, the same in all lanes.
+/// Rotates vectors by the inverse of a rotation, which is the same in all lanes.
 #[inline(always)]
 pub(crate) fn turned_back<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -210,7 +211,7 @@ pub(crate) fn turned_back<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     )
 }
 
-/// Of two vectors the one that each lane wants.
+/// Selects one of two vectors in each lane.
 #[inline(always)]
 pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
     is: V::Mask,
@@ -223,7 +224,7 @@ pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
     )
 }
 
-/// Of two masks the one that each lane wants.
+/// Selects one of two masks in each lane.
 #[inline(always)]
 pub(crate) fn either_mask<S: Simd, M: SimdMask<S>>(is: M, one: M, other: M) -> M {
     (is & one) | (!is & other)
@@ -243,7 +244,7 @@ pub(crate) struct LanePose<V, const D: usize> {
 }
 
 impl<V, const D: usize> LanePose<V, D> {
-    /// The same pose in all lanes.
+    /// Broadcasts a pose to all lanes.
     #[inline(always)]
     pub(crate) fn of<S: Simd, N: Real>(simd: S, pose: &Pose<N, D>) -> Self
     where
@@ -310,7 +311,7 @@ impl<V, const D: usize> LanePose<V, D> {
         self.inverse_point(&[V::all(simd, N::ZERO); D])
     }
 
-    /// How far the second solid's origin is from the first's.
+    /// The distance of the second solid's origin from the first's.
     #[inline(always)]
     pub(crate) fn apart<S: Simd>(&self) -> V
     where

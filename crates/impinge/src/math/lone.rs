@@ -1,4 +1,5 @@
-//! A vector of one number: a kernel compiled for it computes one lane, with the bits of that lane among eight.
+//! A vector of one number: a kernel compiled for it computes one of eight lanes, with the bits of
+//! that lane.
 
 use core::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,
@@ -8,7 +9,7 @@ use super::na::{ComplexField, RealField};
 use super::simd::{Simd, SimdMask, Wide};
 use super::{Vector, filled};
 
-/// The lane that is computed: of eight numbers it reads the one in the lane, and it writes its own to all eight.
+/// The lane to compute: loads read this one of eight numbers, stores write it to all eight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OneLane(pub(crate) usize);
 
@@ -23,7 +24,7 @@ impl Simd for OneLane {
 pub struct Lone<N>(pub(crate) N);
 
 impl<N: RealField + Copy> Lone<N> {
-    /// A vector of which each coordinate is one.
+    /// A vector with one number for each coordinate.
     #[inline(always)]
     pub(crate) fn each<const D: usize>(vector: &Vector<N, D>) -> [Self; D] {
         filled(
@@ -32,7 +33,7 @@ impl<N: RealField + Copy> Lone<N> {
         )
     }
 
-    /// The vector of some coordinates.
+    /// Converts coordinates back to a vector.
     #[inline(always)]
     pub(crate) fn vector<const D: usize>(coordinates: &[Self; D]) -> Vector<N, D> {
         Vector::<N, D>::from_fn(
@@ -42,12 +43,12 @@ impl<N: RealField + Copy> Lone<N> {
     }
 }
 
-/// One truth value as a mask, the same in all eight lanes.
+/// One truth value as a mask; its bitmask repeats it for all eight lanes.
 #[derive(Clone, Copy, Debug)]
 #[allow(unnameable_types, unreachable_pub, reason = "in the interface of `Eight`")]
 pub struct LoneMask(pub(crate) bool);
 
-/// Operators of the number inside.
+/// Operators on the number inside.
 macro_rules! by_number {
     ($($operator:ident $method:ident),*) => {$(
         impl<N: RealField + Copy> $operator for Lone<N> {
@@ -158,7 +159,7 @@ impl SimdMask<OneLane> for LoneMask {
     }
 }
 
-/// Operators of the truth value inside.
+/// Operators on the truth value inside.
 macro_rules! by_truth {
     ($($operator:ident $method:ident),*) => {$(
         impl $operator for LoneMask {

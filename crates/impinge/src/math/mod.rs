@@ -1,8 +1,8 @@
-//! Numbers, vectors and poses: the only door to nalgebra.
+//! Numbers, vectors and poses: the only module that uses nalgebra.
 //!
-//! Everything above this floor names vectors through these aliases. The library is generic over the
-//! scalar `N` (`f32` or `f64`) and the dimension `D` (2 or 3); [`Space`] is the bound that code
-//! which needs something particular to a dimension asks for.
+//! Everything above this floor names vectors by these aliases. The library is generic over the
+//! scalar `N` (`f32` or `f64`) and the dimension `D` (2 or 3); [`Space`] is the bound for code that
+//! depends on the dimension.
 //!
 //! Arithmetic here keeps the rule "the same bits everywhere": no fused multiply-add, no library
 //! trigonometry, and [`min`]/[`max`] are compare-and-select.

@@ -1,6 +1,7 @@
-//! Sets of small numbers as the bits of a word.
+//! Iteration over the set bits of a word.
 
-/// The numbers of the bits that are set, upwards, all below `BELOW`: the first that is not ends them.
+/// Yields the positions of the set bits in ascending order; ends at the first that is not below
+/// `BELOW`.
 #[derive(Clone)]
 pub(crate) struct Ones<const BELOW: usize>(pub(crate) u32);
 

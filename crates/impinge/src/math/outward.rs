@@ -1,13 +1,14 @@
-//! Sums and products that err to a known side: what bounding volumes are made of.
+//! Sums and products rounded to a known side, for bounding volumes.
 //!
-//! The error of a sum is itself a number of the type (Knuth, "The Art of Computer Programming", volume 2, theorem
-//! 4.2.2 B), so that a sum without an error stays as it is: boxes whose corners are numbers of the type are exact.
+//! The rounding error of a sum is a number of the scalar (Knuth, "The Art of Computer Programming",
+//! volume 2, theorem 4.2.2 B), so that a sum without an error stays as it is: boxes whose corners
+//! are representable are exact.
 
 use core::ops::{Add, Sub};
 
 use super::Real;
 
-/// `a + b`, and by how much the exact sum is more; NaN beyond the range of the scalar.
+/// `a + b`, and the exact sum minus the rounded one; NaN beyond the range of the scalar.
 #[inline(always)]
 pub(super) fn sum_and_error<N: Copy + Add<Output = N> + Sub<Output = N>>(a: N, b: N) -> (N, N) {
     let sum = a + b;
@@ -15,24 +16,24 @@ pub(super) fn sum_and_error<N: Copy + Add<Output = N> + Sub<Output = N>>(a: N, b
     (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
-/// `a + b` or the next smaller number or two: never above the exact sum, and equal to it if that is a number of the
-/// scalar.
+/// `a + b`, or one or two numbers below it: never above the exact sum, and equal to it if that is
+/// representable.
 #[inline(always)]
 pub(crate) fn sum_below<N: Real>(a: N, b: N) -> N {
     let (sum, error) = sum_and_error(a, b);
     if error < N::ZERO { sum - sum.abs() * N::EPSILON } else { sum }
 }
 
-/// `a + b` or the next larger number or two: never below the exact sum, and equal to it if that is a number of the
-/// scalar.
+/// `a + b`, or one or two numbers above it: never below the exact sum, and equal to it if that is
+/// representable.
 #[inline(always)]
 pub(crate) fn sum_above<N: Real>(a: N, b: N) -> N {
     let (sum, error) = sum_and_error(a, b);
     if error > N::ZERO { sum + sum.abs() * N::EPSILON } else { sum }
 }
 
-/// Two numbers between which the exact product lies: the product itself where a factor is zero or a power of two;
-/// infinities or NaN beyond the range of the scalar.
+/// Two numbers that enclose the exact product: twice the product itself if a factor is zero or a
+/// power of two; infinities or NaN beyond the range of the scalar.
 pub(crate) fn product_within<N: Real>(a: N, b: N) -> [N; 2] {
     let product = a * b;
     let is_plain = |x: N| x == N::ZERO || x.abs() == x.power_of_two_below();
@@ -44,8 +45,8 @@ pub(crate) fn product_within<N: Real>(a: N, b: N) -> [N; 2] {
     [product - slack, product + slack]
 }
 
-/// What a few sums and products of lengths up to `size` are off by at most, as the coordinates of a turned point
-/// are: eight units of rounding and of the smallest number.
+/// A bound of the error of a few sums and products of lengths up to `size`, as for the coordinates
+/// of a rotated point: eight units of rounding plus eight times the smallest number.
 #[inline(always)]
 pub(crate) fn slack_of<N: Real>(size: N) -> N {
     N::lit(8.0) * (N::EPSILON * size + smallest::<N>())

@@ -1,11 +1,12 @@
-//! A rigid placement with its rotation as a matrix: generic over the dimension, and about twice as
-//! fast to apply as nalgebra's quaternion isometry.
+//! Rigid transformations with the rotation as a matrix: generic over the dimension, and about twice
+//! as fast to apply as nalgebra's quaternion isometry.
 
 use super::na::ArrayStorage;
 use super::{AbstractRotation, Isometry, Mapped, Matrix, Point, Real, Vector, filled};
 
-// nalgebra's products pass through some thirty functions for each number, which a build without optimisation
-// calls one by one. These have the same bits: each sum runs over the columns, from the first.
+// nalgebra's products pass through some thirty functions for each number, which are real calls in a
+// build without optimisation. These have the same bits: each sum runs over the columns, from the
+// first.
 
 /// `matrix · v`.
 #[inline]
@@ -38,7 +39,7 @@ fn minus<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N, D>) -> Vector<
     vector(filled(|axis| a[axis] - b[axis]))
 }
 
-/// The matrix that `times` makes of each column.
+/// Applies `times` to each column of a matrix.
 #[inline]
 fn of_columns<N: Real, const D: usize>(
     matrix: &Matrix<N, D>,
@@ -65,9 +66,10 @@ fn sum_of<N: Real, const D: usize>(terms: impl Fn(usize) -> N) -> N {
     sum
 }
 
-/// Where a solid is: `x ↦ rotation · x + translation` takes its local frame to the world.
+/// The position and orientation of a solid: `x ↦ rotation · x + translation` maps its local frame
+/// to the world.
 ///
-/// `pose12` is, everywhere in the library, the pose of the second solid in the frame of the first.
+/// Everywhere in the library, `pose12` is the pose of the second solid in the frame of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<N: Real, const D: usize> {
     /// The rotation, an orthogonal matrix of determinant 1.
@@ -102,28 +104,29 @@ impl<N: Real, const D: usize> Pose<N, D> {
         Self { rotation, translation: isometry.translation.vector }
     }
 
-    /// The pose of what looks the same however it is turned: it counts as not turned at all. The
-    /// translation is infinite if the rotation is not finite.
+    /// The pose of a solid that no rotation changes: the rotation is dropped. The translation is
+    /// infinite if the rotation is not finite.
     #[must_use]
     #[inline]
     pub fn unturned<R: AbstractRotation<N, D>>(isometry: &Isometry<N, R, D>) -> Self {
         let mut e = Vector::<N, D>::zeros();
         e[0] = N::ONE;
-        // Every number of a rotation is a factor of something in every turned axis.
+        // Every number of a rotation is a factor of some term in each rotated axis.
         let turned = isometry.rotation.transform_vector(&e);
         Self::from_translation(isometry.translation.vector).unless_broken(turned.as_slice())
     }
 
-    /// This pose of what looks the same however it is turned, as [`Self::unturned`].
+    /// This pose without its rotation, for a solid that no rotation changes; see
+    /// [`Self::unturned`].
     #[must_use]
     pub(crate) fn without_rotation(&self) -> Self {
         Self::from_translation(self.translation).unless_broken(self.rotation.as_slice())
     }
 
-    /// With a translation that is not finite, if some of the numbers of the rotation are not.
+    /// Makes the translation infinite if one of `numbers`, those of the rotation, is not finite.
     #[inline]
     pub(super) fn unless_broken(self, numbers: &[N]) -> Self {
-        // An infinity or NaN times zero is NaN, which no sum loses.
+        // An infinity or NaN times zero is NaN, which every sum keeps.
         let is_finite = numbers.iter().fold(N::ZERO, |sum, &x| sum + x * N::ZERO) == N::ZERO;
         let nowhere = Vector::<N, D>::repeat(N::INFINITY);
         Self { translation: if is_finite { self.translation } else { nowhere }, ..self }
@@ -131,8 +134,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
 
     /// The pose of `second` in the frame of `first`.
     ///
-    /// The translations are subtracted first, so that two solids close to each other lose nothing
-    /// by being far from the origin.
+    /// The translations are subtracted first, so that solids close to each other lose no digits far
+    /// from the origin.
     #[must_use]
     #[inline]
     pub fn relative(first: &Self, second: &Self) -> Self {
@@ -150,7 +153,7 @@ impl<N: Real, const D: usize> Pose<N, D> {
         Self { rotation, translation: -times(&rotation, &self.translation) }
     }
 
-    /// This pose after `inner`: takes the frame of `inner`'s solid to the outer frame.
+    /// This pose after `inner`: maps the frame of `inner`'s solid to the outer frame.
     #[must_use]
     #[inline]
     pub fn compose(&self, inner: &Self) -> Self {
@@ -160,35 +163,35 @@ impl<N: Real, const D: usize> Pose<N, D> {
         }
     }
 
-    /// A local point, in the outer frame.
+    /// Transforms a local point to the outer frame.
     #[inline]
     #[must_use]
     pub fn point(&self, local: &Point<N, D>) -> Point<N, D> {
         Point::from(plus(&self.vector(&local.coords), &self.translation))
     }
 
-    /// A local direction, in the outer frame.
+    /// Rotates a local direction to the outer frame.
     #[inline]
     #[must_use]
     pub fn vector(&self, local: &Vector<N, D>) -> Vector<N, D> {
         times(&self.rotation, local)
     }
 
-    /// A point of the outer frame, in the local one.
+    /// Transforms a point of the outer frame to the local one.
     #[inline]
     #[must_use]
     pub fn inverse_point(&self, outer: &Point<N, D>) -> Point<N, D> {
         Point::from(self.inverse_vector(&minus(&outer.coords, &self.translation)))
     }
 
-    /// A direction of the outer frame, in the local one.
+    /// Rotates a direction of the outer frame to the local one.
     #[inline]
     #[must_use]
     pub fn inverse_vector(&self, outer: &Vector<N, D>) -> Vector<N, D> {
         transposed_times(&self.rotation, outer)
     }
 
-    /// How far along each outer axis a box about the origin reaches that is turned.
+    /// The extents, along each outer axis, of a rotated box about the origin.
     #[inline]
     pub(crate) fn turned_reach(&self, half_extents: &Vector<N, D>) -> Vector<N, D> {
         let mut reach = Vector::<N, D>::zeros();
@@ -200,14 +203,15 @@ impl<N: Real, const D: usize> Pose<N, D> {
         reach
     }
 
-    /// It takes axes to axes: every coordinate of a turned point is one of the point's, or its negative, exactly.
+    /// Whether it maps axes to axes: every coordinate of a rotated point is plus or minus one of
+    /// the point's, exactly.
     #[inline]
     #[must_use]
     pub(crate) fn is_aligned(&self) -> bool {
         self.rotation.as_slice().iter().all(|&x| x == N::ZERO || x.abs() == N::ONE)
     }
 
-    /// All components are equal, as `==` says: faster, since the optimiser sees plain arrays.
+    /// Whether all components are equal, as by `==`: faster, since the optimiser sees plain arrays.
     #[inline]
     #[must_use]
     pub(crate) fn is_same(&self, other: &Self) -> bool {
@@ -215,12 +219,12 @@ impl<N: Real, const D: usize> Pose<N, D> {
             && self.translation.as_slice() == other.translation.as_slice()
     }
 
-    /// No component is NaN or infinite.
+    /// Whether no component is NaN or infinite.
     #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        // Nearly always all are, so no early end. A number times zero is zero, but for infinities and NaN,
-        // of which it makes NaN: that no sum loses.
+        // Nearly always all are finite, so without early exit. A finite number times zero is zero;
+        // an infinity or NaN times zero is NaN, which every sum keeps.
         let mut sum = N::ZERO;
         for row in 0..D {
             let mut in_row = self.translation[row] * N::ZERO;

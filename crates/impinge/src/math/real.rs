@@ -1,4 +1,4 @@
-//! The scalar: `f32` and, with the feature `f64`, `f64`. Nobody else.
+//! The scalar: `f32` and, with the feature `f64`, `f64`; no other types.
 
 use super::max;
 use super::na::{RealField, Scalar};
@@ -123,8 +123,8 @@ pub(crate) fn f64_power_of_two_below(value: f64) -> f64 {
     }
 }
 
-/// The largest `f32` that is not above a number, with selections in place of branches: whether a number is rounded up or
-/// down is a coin toss that no processor foresees. A zero is positive.
+/// The largest `f32` not above a number. It selects instead of branching, since the direction of
+/// rounding is unpredictable. A zero is positive.
 #[expect(clippy::cast_possible_truncation, reason = "one step down where it went up")]
 #[inline]
 pub(crate) fn f32_below(x: f64) -> f32 {

@@ -1,4 +1,4 @@
-//! The rotations that an isometry of the user's may have.
+//! The rotation types that a user's isometry may have.
 
 use super::na::{self, Rotation, UnitComplex, UnitQuaternion};
 use super::{Isometry, Pose, Real, Space, Vector};
@@ -6,10 +6,11 @@ use crate::tables::entries;
 
 /// A rotation of nalgebra: a unit complex number, a unit quaternion or a rotation matrix. Sealed.
 ///
-/// Functions that take an isometry take it with any of them. What a rotation can do is in the trait of nalgebra that has
-/// this name, too.
+/// Functions that take an isometry take it with any of them. The operations of a rotation are in
+/// nalgebra's trait of the same name.
 pub trait AbstractRotation<N: Real, const D: usize>: na::AbstractRotation<N, D> {
-    /// An isometry with its kind of rotation as a value, so that functions for all kinds can be compiled once.
+    /// The isometry with the kind of its rotation as a value, so that functions for all kinds are
+    /// compiled once.
     #[doc(hidden)]
     fn view(isometry: &Isometry<N, Self, D>) -> IsometryRef<'_, N, D>
     where
@@ -20,9 +21,9 @@ pub trait AbstractRotation<N: Real, const D: usize>: na::AbstractRotation<N, D> 
 #[expect(unnameable_types, reason = "for this crate alone")]
 #[derive(Clone, Copy, Debug)]
 pub enum IsometryRef<'i, N: Space<D>, const D: usize> {
-    /// The user's usual type of a pose.
+    /// The user's usual pose type.
     Own(&'i N::Isometry),
-    /// One with a rotation matrix.
+    /// An isometry with a rotation matrix.
     ByMatrix(&'i Isometry<N, Rotation<N, D>, D>),
 }
 
@@ -51,7 +52,7 @@ impl<N: Real, const D: usize> AbstractRotation<N, D> for Rotation<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> IsometryRef<'_, N, D> {
-    /// The pose that the isometry describes.
+    /// Converts the isometry to a pose.
     #[inline]
     pub(crate) fn pose(self) -> Pose<N, D> {
         entries::pose_of(self)
@@ -66,7 +67,7 @@ impl<N: Space<D>, const D: usize> IsometryRef<'_, N, D> {
         }
     }
 
-    /// Where it takes the origin.
+    /// The image of the origin.
     #[inline]
     pub(crate) fn translation(self) -> Vector<N, D> {
         match self {

@@ -1,13 +1,14 @@
-//! Eight numbers side by side: the vectors that kernels compute in, and which of them a target has.
+//! SIMD vectors of eight numbers, and the instruction sets of each target.
 //!
-//! A kernel is one source over [`Simd`] and [`Wide`]. All operations are those of IEEE 754, so that each lane has the
-//! bits that a scalar would have. There are two sorts:
+//! A kernel is one source over [`Simd`] and [`Wide`]. All operations are those of IEEE 754, so that
+//! each lane has the same bits as a scalar. There are two kinds of kernels:
 //!
-//! * in some a lane is a pair or a part, which never looks at its neighbours. [`in_lanes!`] runs them with the vectors
-//!   of the target, or one lane after the other where there are none: [`Level::runs`];
-//! * in the others lanes meet: they are features of one solid, of which the best is chosen, or a step reads the rows
-//!   that the one before wrote for all (chains, balls among triangles, checkers). [`with_lanes!`] runs them with all
-//!   lanes on every target, on [`Arrays`](super::arrays::Arrays) where there are no vectors.
+//! * in some, each lane is a pair or a part and independent of the others. [`in_lanes!`] runs them
+//!   with the vectors of the target, or lane by lane if there are none: [`Level::runs`];
+//! * in the others, lanes interact: they are features of one solid, of which the best is chosen, or
+//!   a step reads rows that the previous one wrote for all lanes (chains, balls among triangles,
+//!   checkers). [`with_lanes!`] runs them with all lanes on every target, on
+//!   [`Arrays`](super::arrays::Arrays) if there are no vectors.
 //!
 //! [`in_lanes!`]: super::lanes::in_lanes
 //! [`with_lanes!`]: super::lanes::with_lanes
@@ -25,21 +26,23 @@ use fearless_simd::{Select, SimdBase, SimdFloat};
 ))]
 use super::halves::Halves;
 
-/// The vectors of this machine. No result depends on it.
+/// The instruction set to use. No result depends on it.
 ///
-/// Of x86 AVX2, and SSE2 of the baseline for some kernels: what lies between brings little, and eight lanes gain
-/// nothing from wider registers, whereas each set is one more copy of all kernels.
+/// On x86 it is AVX2, and the baseline SSE2 for some kernels: sets between them bring little, and
+/// eight lanes gain nothing from wider registers, whereas each set adds one more copy of all
+/// kernels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Level {
     Wide(Vectors),
-    /// Vectors of four `f32`. Kernels whose lanes are pairs run one lane at a time instead: half the code.
+    /// Vectors of four `f32`. Kernels with independent lanes run lane by lane instead: half the
+    /// code.
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
     Sse2(fearless_simd::Sse2),
-    /// No vectors, and tests.
+    /// No vectors; also for tests.
     Arrays,
 }
 
-/// An instruction set in which kernels gain from lanes whatever these are.
+/// An instruction set in which all kernels gain from lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Vectors {
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
@@ -50,7 +53,7 @@ pub(crate) enum Vectors {
     Simd128(fearless_simd::WasmSimd128),
 }
 
-/// Kernels are compiled for arrays too: for targets without vectors, and for tests.
+/// Whether kernels are compiled for arrays too: on targets without vectors, and for tests.
 pub(crate) const ON_ARRAYS: bool = cfg!(any(
     test,
     not(any(
@@ -61,7 +64,7 @@ pub(crate) const ON_ARRAYS: bool = cfg!(any(
 ));
 
 impl Level {
-    /// The best of this machine.
+    /// The best level of this machine.
     #[inline]
     pub(crate) fn new() -> Self {
         let level = fearless_simd::Level::new();
@@ -88,17 +91,29 @@ impl Level {
         best
     }
 
-    /// In which runs a kernel treats the first lanes of a packet: all at once, or one after the other.
+    /// The vectors for kernels with independent lanes; `None` where they compute one lane instead.
+    ///
+    /// Without optimization every operation on a vector is a chain of calls, dearer than the same
+    /// operation on each of its numbers: a debug build computes a pile of boxes 2.5 times as fast in
+    /// single lanes. The bits are the same.
+    #[inline]
+    pub(crate) fn vectors(self) -> Option<Vectors> {
+        match self {
+            Self::Wide(vectors) if !cfg!(unoptimized) => Some(vectors),
+            _ => None,
+        }
+    }
+
+    /// The runs in which a kernel processes the first `lanes` lanes of a packet: all at once, or
+    /// one after the other.
     #[inline]
     pub(crate) fn runs(self, lanes: usize) -> impl Iterator<Item = Run> {
-        let (step, vectors) = match self {
-            Self::Wide(vectors) => (lanes.max(1), Some(vectors)),
-            _ => (1, None),
-        };
+        let vectors = self.vectors();
+        let step = if vectors.is_some() { lanes.max(1) } else { 1 };
         (0..lanes).step_by(step).map(move |first| Run { vectors, first, end: first + step })
     }
 
-    /// Everything that runs on this machine, the best first and last without vectors, for tests.
+    /// All levels of this machine, the best first and arrays last, for tests.
     pub(crate) fn available() -> Vec<Self> {
         let mut all = vec![Self::new()];
         #[cfg(target_arch = "x86_64")]
@@ -108,10 +123,11 @@ impl Level {
     }
 }
 
-/// Lanes that a kernel treats at once: all that count, with vectors, or one of them ([`OneLane`](super::lone::OneLane)).
+/// Lanes that a kernel processes at once: all used lanes, with vectors, or one of them
+/// ([`OneLane`](super::lone::OneLane)).
 ///
-/// A kernel that is run so stores for its lanes what it found; what it stores for the others means nothing. Each lane
-/// has the same bits in either way, since none looks at its neighbours.
+/// A kernel stores valid results for its lanes only; other lanes are undefined. Each lane has the
+/// same bits in both cases, since lanes are independent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
     pub(crate) vectors: Option<Vectors>,
@@ -126,17 +142,17 @@ impl Run {
         self.first..self.end
     }
 
-    /// Those of some bits, one for each lane, that are of its lanes.
+    /// Keeps those of some bits, one for each lane, that belong to its lanes.
     #[inline]
     pub(crate) fn of_bits(&self, bits: u8) -> u8 {
         self.lanes().fold(0, |own, lane| own | bits & 1 << lane)
     }
 }
 
-/// A scalar of which eight make a vector.
+/// A scalar with vectors of eight.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Eight: Sized {
-    /// Eight of them.
+    /// A vector of eight.
     type Lanes<S: Simd>: Wide<S, Scalar = Self>;
 }
 
@@ -148,7 +164,7 @@ impl Eight for f64 {
     type Lanes<S: Simd> = S::F64x8;
 }
 
-/// A set of vectors. A value of it proves that the machine has them.
+/// A set of vector types. A value of it proves that the machine supports them.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Simd: Copy {
     /// Eight `f32`.
@@ -168,17 +184,17 @@ pub trait SimdMask<S: Simd>:
     + BitXor<Output = Self>
     + Not<Output = Self>
 {
-    /// How many lanes there are.
+    /// The number of lanes.
     const LEN: usize;
 
     /// A bit for each lane, the first lowest.
     fn to_bitmask(self) -> u64;
-    /// It is true in some lane.
+    /// Whether it is true in any lane.
     fn any_true(self) -> bool;
-    /// It is true in all lanes.
+    /// Whether it is true in all lanes.
     fn all_true(self) -> bool;
 
-    /// The first vector where it is true, else the second.
+    /// Selects the first vector where the mask is true, else the second.
     #[inline(always)]
     fn select<V: Wide<S, Mask = Self>>(self, one: V, other: V) -> V {
         V::selected(self, one, other)
@@ -196,16 +212,16 @@ pub trait Wide<S: Simd>:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// What one lane holds.
+    /// The type of a lane.
     type Scalar;
-    /// What comparisons say.
+    /// The type of a comparison's result.
     type Mask: SimdMask<S>;
 
-    /// The same number in all lanes.
+    /// Broadcasts a number to all lanes.
     fn all(simd: S, value: Self::Scalar) -> Self;
-    /// As many numbers as there are lanes.
+    /// Loads as many numbers as there are lanes.
     fn load(simd: S, numbers: &[Self::Scalar]) -> Self;
-    /// Writes as many numbers as there are lanes.
+    /// Stores as many numbers as there are lanes.
     fn store(self, numbers: &mut [Self::Scalar]);
 
     /// The square root.
@@ -246,8 +262,8 @@ impl Simd for fearless_simd::Avx2 {
     type F64x8 = Halves<fearless_simd::f64x4<Self>>;
 }
 
-/// Eight `f64` are arrays: four registers of the sixteen for one vector gain little, and these kernels were a
-/// tenth of the time that the library takes to compile.
+/// Eight `f64` are arrays: a vector would take four of the sixteen registers and gain little, and
+/// these kernels were a tenth of the library's compile time.
 #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
 impl Simd for fearless_simd::Sse2 {
     type F32x8 = Halves<fearless_simd::f32x4<Self>>;

@@ -1,4 +1,4 @@
-//! What is particular to the plane and to space, behind one bound.
+//! The operations that differ between 2D and 3D, behind one bound.
 
 use super::na::{Rotation2, Rotation3, UnitComplex, UnitQuaternion};
 use super::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
@@ -7,8 +7,8 @@ use core::fmt::Debug;
 
 /// The scalar `Self` in `D` dimensions: implemented for every [`Real`] with `D` = 2 and `D` = 3.
 ///
-/// Generic code that needs an algorithm of one dimension asks for `N: Space<D>`; a function for one
-/// dimension only needs `N: Real`, which implies it.
+/// Generic code that needs an operation of one dimension has the bound `N: Space<D>`; a function
+/// for one dimension needs only `N: Real`, which implies it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not known to be a scalar of impinge in {D} dimensions",
     label = "`Space<{D}>` is not implemented for `{Self}`",
@@ -24,21 +24,21 @@ pub trait Space<const D: usize>: Real + Compiled<D> {
     #[doc(hidden)]
     type Algorithms: ByDimension<Self, D>;
 
-    /// The pose that an isometry describes.
+    /// Converts an isometry to a pose.
     fn pose(isometry: &Self::Isometry) -> Pose<Self, D>;
 
-    /// The pose of what looks the same however it is turned: see [`Pose::unturned`].
+    /// The pose of a solid that no rotation changes; see [`Pose::unturned`].
     #[doc(hidden)]
     fn unturned(isometry: &Self::Isometry) -> Pose<Self, D>;
 
-    /// Where an isometry takes the origin.
+    /// The image of the origin under an isometry.
     fn translation(isometry: &Self::Isometry) -> Vector<Self, D>;
 
-    /// The numbers of an isometry in a row, filled up with zeros.
+    /// The numbers of an isometry in a row, padded with zeros.
     #[doc(hidden)]
     fn numbers(isometry: &Self::Isometry) -> [Self; 7];
 
-    /// The isometry that a pose describes, up to rounding.
+    /// Converts a pose to an isometry, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
 
     /// The squared length of the complex number or quaternion of an isometry: 1 up to rounding, if that is a
@@ -151,8 +151,8 @@ impl<N: Real> Space<3> for N {
     }
 }
 
-/// The matrix of a rotation of space: its columns are the turned axes, bit for bit, without the products
-/// with zero in these.
+/// The matrix of a 3D rotation: its columns are the rotated axes, bit for bit, but computed without
+/// their products with zero.
 #[inline]
 fn matrix_of<N: Real>(rotation: &UnitQuaternion<N>) -> Matrix<N, 3> {
     let q = rotation.coords;
@@ -161,7 +161,7 @@ fn matrix_of<N: Real>(rotation: &UnitQuaternion<N>) -> Matrix<N, 3> {
     let (xx, yy, zz) = (x * x2, y * y2, z * z2);
     let (xy, xz, yz) = (x * y2, x * z2, y * z2);
     let (wx, wy, wz) = (x2 * w, y2 * w, z2 * w);
-    // Zeros are positive, as they are after the addition of a component of the axis.
+    // Zeros are positive, as after the addition of a component of the axis.
     let zero = N::ZERO;
     Matrix::<N, 3>::new(
         (-yy - zz) + N::ONE,

@@ -1,14 +1,14 @@
-//! Sine and cosine of eight angles at a time: the same bits on every platform.
+//! Sine and cosine in eight lanes: the same bits on every platform.
 //!
-//! An angle is reduced to at most an eighth of a turn by the three parts of π/2 (Cody and Waite), the rest is two
-//! polynomials that interpolate at Chebyshev's points. The error is at most 2 ε for angles up to [`MAX_ANGLE`]; beyond,
-//! and for what is not finite, each lane is that of [`Real::sine_cosine`].
+//! An angle is reduced to at most 45° by the three parts of π/2 (Cody and Waite); the rest is two
+//! polynomials that interpolate at Chebyshev points. The error is at most 2 ε for angles up to
+//! [`MAX_ANGLE`]; for larger and non-finite angles each lane is that of [`Real::sine_cosine`].
 
 use super::lanes::lit;
 use super::simd::{Simd, SimdMask};
 use super::{Real, Wide};
 
-/// Angles up to this many radians are reduced in lanes: 2¹⁶ quarters of a turn.
+/// Angles up to this many radians are reduced in lanes: 2¹⁶ quarter turns.
 pub(crate) const MAX_ANGLE: f64 = 1e5;
 
 /// (sin r - r) / r³ by powers of r², for r up to π/4.
@@ -39,7 +39,7 @@ pub(crate) fn sine_cosine<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, ang
     if is_near.all_true() { found } else { mended(simd, angle, found) }
 }
 
-/// [`sine_cosine`] of angles that are not too large.
+/// [`sine_cosine`] for angles up to [`MAX_ANGLE`].
 #[inline(always)]
 fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2] {
     let quarters = rounded(simd, angle * lit(simd, core::f64::consts::FRAC_2_PI));
@@ -51,7 +51,7 @@ fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2
     let sine = rest + rest * squared * polynomial(simd, &SINE, squared);
     let fourth = squared * squared * polynomial(simd, &COSINE, squared);
     let cosine = (lit::<S, N, V>(simd, 1.0) - squared * lit(simd, 0.5)) + fourth;
-    // Which quarter of the turn it is: -2 and 2 are the same.
+    // The quarter of the turn, from -2 to 2; -2 and 2 are equal.
     let quarter = quarters - rounded(simd, quarters * lit(simd, 0.25)) * lit(simd, 4.0);
     let (half, low): (V, V) = (lit(simd, 0.5), lit(simd, -1.5));
     let is_odd = quarter.abs().simd_eq(lit(simd, 1.0));
@@ -61,14 +61,14 @@ fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2
     [is_below.select(-sine, sine), is_left.select(-cosine, cosine)]
 }
 
-/// The nearest integer of what is far smaller than the numbers of which all are integers.
+/// The nearest integer of a number far below 1 / epsilon.
 #[inline(always)]
 fn rounded<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: V) -> V {
     let large = V::all(simd, N::lit(1.5) / N::EPSILON);
     (value + large) - large
 }
 
-/// By Horner's rule.
+/// Evaluates a polynomial by Horner's rule.
 #[inline(always)]
 fn polynomial<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -82,7 +82,7 @@ fn polynomial<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     sum
 }
 
-/// With the lanes replaced whose angle is too large.
+/// Replaces the lanes whose angle is too large.
 #[inline(always)]
 fn mended<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V, found: [V; 2]) -> [V; 2] {
     let (mut angles, mut pairs) = ([N::ZERO; 8], [[N::ZERO; 8]; 2]);
@@ -110,7 +110,7 @@ mod tests {
     use crate::math::lanes::with_lanes;
     use crate::math::simd::Level;
 
-    /// Sines and cosines at each level, which must have the same bits.
+    /// Sines and cosines, computed at each level, which must have the same bits.
     fn of<N: Real>(angles: [N; 8]) -> [[N; 8]; 2] {
         let mut all = Level::available().into_iter().map(|level| {
             let mut found = [[N::ZERO; 8]; 2];

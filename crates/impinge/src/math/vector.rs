@@ -1,4 +1,4 @@
-//! The few vector operations that nalgebra does not offer safely in every dimension.
+//! Vector operations that nalgebra does not offer safely in every dimension.
 
 use super::{Point, Real, Vector};
 
@@ -14,7 +14,7 @@ pub fn max<N: Real>(a: N, b: N) -> N {
     if a > b { a } else { b }
 }
 
-/// The largest magnitude among the components; 0 where all are zero or NaN.
+/// The largest magnitude among the components; 0 if all are zero or NaN.
 #[inline]
 pub fn max_component<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     let mut largest = N::ZERO;
@@ -26,8 +26,8 @@ pub fn max_component<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
 
 /// The unit vector along `v` and the length of `v`; `None` for a zero or non-finite vector.
 ///
-/// Rescales by a power of two first, so that it is right for lengths whose square is not a number
-/// of the type, and commutes exactly with scaling by powers of two.
+/// Rescales by a power of two if needed, so that it is right for lengths whose square overflows or
+/// underflows, and commutes exactly with scaling by powers of two.
 #[inline]
 pub fn unit<N: Real, const D: usize>(v: &Vector<N, D>) -> Option<(Vector<N, D>, N)> {
     let squared = v.norm_squared();
@@ -44,13 +44,13 @@ pub fn unit<N: Real, const D: usize>(v: &Vector<N, D>) -> Option<(Vector<N, D>, 
     usable.then(|| (scaled / length, length * scale))
 }
 
-/// The unit vector along `v`, or `fallback` where `v` has no direction.
+/// The unit vector along `v`, or `fallback` if `v` has no direction.
 #[inline]
 pub fn unit_or<N: Real, const D: usize>(v: &Vector<N, D>, fallback: Vector<N, D>) -> Vector<N, D> {
     unit(v).map_or(fallback, |(direction, _)| direction)
 }
 
-/// `v` turned by a quarter counter-clockwise.
+/// `v` rotated by 90° counter-clockwise.
 #[inline]
 pub fn perp<N: Real>(v: &Vector<N, 2>) -> Vector<N, 2> {
     Vector::<N, 2>::new(-v.y, v.x)
@@ -68,8 +68,8 @@ pub fn cross<N: Real>(a: &Vector<N, 3>, b: &Vector<N, 3>) -> Vector<N, 3> {
     Vector::<N, 3>::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }
 
-/// A unit vector perpendicular to the unit vector `d`, as close as possible to the axis that `d`
-/// runs along least (the first of equals).
+/// A unit vector perpendicular to the unit vector `d`, as close as possible to the axis of the
+/// smallest component of `d` (the first of equals).
 pub fn perpendicular_to<N: Real, const D: usize>(d: &Vector<N, D>) -> Vector<N, D> {
     let mut least = 0;
     for axis in 1..D {
@@ -84,7 +84,7 @@ pub fn perpendicular_to<N: Real, const D: usize>(d: &Vector<N, D>) -> Vector<N, 
 
 /// Two unit vectors that complete the unit vector `n` to a right-handed basis `(u, v, n)`.
 ///
-/// Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 2017): no branch but the sign.
+/// Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 2017): no branch except the sign.
 #[inline]
 pub fn orthonormal_basis<N: Real>(n: &Vector<N, 3>) -> (Vector<N, 3>, Vector<N, 3>) {
     let sign = if n.z < N::ZERO { -N::ONE } else { N::ONE };
@@ -95,15 +95,15 @@ pub fn orthonormal_basis<N: Real>(n: &Vector<N, 3>) -> (Vector<N, 3>, Vector<N, 
     (u, v)
 }
 
-/// The mean of some points; the origin for none.
+/// The mean of some points; the origin if there are none.
 pub fn centroid<N: Real, const D: usize>(points: &[Point<N, D>]) -> Point<N, D> {
     let sum = points.iter().fold(Vector::<N, D>::zeros(), |sum, p| sum + p.coords);
     let count = points.iter().fold(N::ZERO, |count, _| count + N::ONE);
     Point::from(if points.is_empty() { sum } else { sum / count })
 }
 
-/// A squared length may differ from 1 by this much for a unit vector or the quaternion of a rotation: what
-/// rounding adds up to over hours is no error.
+/// The largest difference from 1 of the squared length of a unit vector or of the quaternion of a
+/// rotation: rounding error may accumulate for hours.
 const UNIT_SLACK: f64 = 1.0 / 64.0;
 
 /// Whether a squared length is that of a unit vector or of the quaternion of a rotation: the length is within 0.8 %

@@ -1,9 +1,8 @@
-//! Prefetching the memory of pairs with composites.
+//! Prefetching for pairs with composites.
 //!
-//! The states of pairs lie in a row, but what they are about does not: poses, shapes, what shapes are made of,
-//! the parts that are kept and the points of contact lie wherever they were put. Who goes from pair to pair
-//! waits for one of these after the other; a processor that meets the reads of several pairs close to each
-//! other waits for all at once.
+//! The states of pairs are contiguous, but the data that they refer to is not: poses, shapes, arrays of shapes, cached
+//! parts and contact points are scattered in memory. Updating pair after pair waits for one load at a time; loads of
+//! several pairs that are issued close together overlap.
 
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
@@ -14,10 +13,10 @@ use crate::math::{Mapped, Real, Space, max};
 use crate::query::ContactManifold;
 use crate::shape::{Geometry, Kind};
 
-/// For so many pairs reads are made before the first of them is updated: about what a core has in flight.
+/// Number of pairs whose loads are issued before the first of them is updated: about as many as a core keeps in flight.
 const PAIRS: usize = 8;
 
-/// The contacts of some pairs with composites.
+/// Contacts of some pairs with composites.
 pub(super) type CompositeRows<'a, N, const D: usize> = Rows<
     'a,
     ContactEntry<N, CompositeState<N, D>>,
@@ -25,7 +24,7 @@ pub(super) type CompositeRows<'a, N, const D: usize> = Rows<
     Reference<N, D>,
 >;
 
-/// Updates the pairs of a chunk that are due, one by one, a few of which are always known to be next.
+/// Updates the due pairs of a chunk one by one, in blocks of [`PAIRS`] that are prefetched.
 pub(super) fn update_due<N: Space<D>, const D: usize>(
     rows: &mut CompositeRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -48,7 +47,7 @@ pub(super) fn update_due<N: Space<D>, const D: usize>(
     }
 }
 
-/// Reads a number of each place that the updates of some pairs will read. Changes nothing.
+/// Touches the cache lines that the updates of some pairs will read. Changes nothing.
 fn prefetch<N: Space<D>, const D: usize>(
     rows: &CompositeRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -62,7 +61,7 @@ fn prefetch<N: Space<D>, const D: usize>(
     core::hint::black_box(seen);
 }
 
-/// A number of each place in memory that a small solid takes up.
+/// Touches the cache lines of a small solid; the returned value is meaningless.
 #[inline]
 fn solid<N: Real, const D: usize>(shape: Geometry<'_, N, D>) -> N {
     match shape.0 {

@@ -1,4 +1,4 @@
-//! All contacts of pairs with composites, read where they lie.
+//! Iterator over all contacts of pairs with composites, read in place.
 
 use core::iter;
 use core::ops::Range;
@@ -8,16 +8,16 @@ use super::lanes::CompositeGroup;
 use super::view::{Composite, View};
 use crate::math::{Space, max};
 
-/// The manifolds that hold a contact, in the order in which they lie.
+/// Iterator over the manifolds that hold a contact, in memory order.
 pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
     group: &'a CompositeGroup<N, D>,
-    /// Which of the pairs touch, sixty-four in a word.
+    /// Touching flags, 64 in a word.
     touching: &'a [u64],
-    /// The next word of flags, and what is left of the one before.
+    /// The next word of flags, and the flags that are left of the word before.
     word: usize,
     flags: u64,
-    /// The pair under way and the next of its patches.
+    /// Index of the current pair, and its next patch; `usize::MAX` if there is none.
     place: usize,
     patch: usize,
 }
@@ -28,12 +28,12 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         Self { table, group, touching, word: 0, flags: 0, place: 0, patch: usize::MAX }
     }
 
-    /// The manifolds of some words of flags alone.
+    /// Restricts the iterator to a range of words of flags.
     pub(super) fn of_words(self, words: Range<usize>) -> Self {
         Self { touching: &self.touching[..words.end], word: words.start, ..self }
     }
 
-    /// Goes to the next pair that touches; `None` after the last.
+    /// Advances to the next touching pair; `None` after the last.
     #[inline(never)]
     fn next_pair(&mut self) -> Option<()> {
         while self.flags == 0 {
@@ -46,13 +46,13 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         Some(())
     }
 
-    /// The place of the lowest flag of the word before.
+    /// Returns the index of the pair with the lowest of `flags`, in the word before `word`.
     const fn lowest(&self, flags: u64) -> usize {
         (self.word - 1) * 64 + flags.trailing_zeros() as usize
     }
 
-    /// Brings what is to be read for a word of flags into the cache: its pairs wait for memory at once,
-    /// where whoever reads would wait for one after the other. Changes nothing.
+    /// Prefetches the data of the pairs of a word of flags, so that their loads overlap. Changes
+    /// nothing.
     fn fetch(&self) {
         let (mut flags, mut seen) = (self.flags, N::ZERO);
         while flags != 0 {
@@ -65,7 +65,8 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         core::hint::black_box(seen);
     }
 
-    /// The same manifolds where some pairs may not be read where they lie.
+    /// Iterates over the same contacts if some pairs are particular: these get manifolds built for
+    /// the reader.
     pub(super) fn particular(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
             self.next_pair()?;

@@ -1,4 +1,4 @@
-//! All contacts of pairs of convex solids, read where they lie.
+//! Iterator over all contacts of pairs of convex solids, read in place.
 
 use core::ops::Range;
 use core::{iter, slice};
@@ -9,15 +9,15 @@ use super::state::KeptPoints;
 use super::view::{BuiltIn, View};
 use crate::math::Space;
 
-/// The manifolds that hold a contact, group by group in the order in which they lie.
+/// Iterator over the manifolds that hold a contact, group by group in memory order.
 pub(super) struct ConvexViews<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
     groups: slice::Iter<'a, ContactGroup<N, D>>,
     group: Option<&'a ContactGroup<N, D>>,
-    /// The word of flags under way, and what is left of it.
+    /// One past the current word of flags, and its flags that are left.
     word: usize,
     flags: u64,
-    /// How many words come after it.
+    /// Number of words that follow.
     left: usize,
 }
 
@@ -27,12 +27,12 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         Self { table, groups, group: None, word: 0, flags: 0, left: usize::MAX }
     }
 
-    /// How many words of flags there are.
+    /// Returns the number of words of flags.
     pub(super) fn num_words(groups: &[ContactGroup<N, D>]) -> usize {
         groups.iter().map(|group| group.touching().len()).sum()
     }
 
-    /// The manifolds of some words of flags alone.
+    /// Restricts the iterator to a range of words of flags, counted over all groups.
     pub(super) fn of_words(mut self, words: Range<usize>) -> Self {
         (self.left, self.word) = (words.len(), words.start);
         self.group = self.groups.next();
@@ -43,7 +43,7 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         self
     }
 
-    /// Goes to the next word of flags that is not zero; `None` after the last.
+    /// Advances to the next word of flags that is not zero; `None` after the last.
     #[inline(never)]
     fn next_word(&mut self) -> Option<&'a ContactGroup<N, D>> {
         loop {
@@ -62,8 +62,8 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         }
     }
 
-    /// Brings what is to be read for a word of flags into the cache: its pairs wait for memory at once,
-    /// where whoever reads would wait for one after the other. Changes nothing.
+    /// Prefetches the data of the pairs of a word of flags, so that their loads overlap. Changes
+    /// nothing.
     fn fetch(&self, group: &ContactGroup<N, D>) {
         let (mut flags, mut sum) = (self.flags, 0_u32);
         while flags != 0 {
@@ -76,14 +76,15 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         core::hint::black_box(sum);
     }
 
-    /// Goes to the next pair that touches.
+    /// Advances to the next touching pair.
     #[inline]
     fn next_pair(&mut self) -> Option<(&'a ContactGroup<N, D>, usize)> {
         let group = if self.flags == 0 { self.next_word()? } else { self.group? };
         Some((group, place(self.word, &mut self.flags)))
     }
 
-    /// The same manifolds where some pairs may not be read where they lie.
+    /// Iterates over the same contacts if some pairs are particular: these get manifolds built for
+    /// the reader.
     pub(super) fn particular(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
             let (group, place) = self.next_pair()?;
@@ -94,7 +95,7 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
     }
 }
 
-/// Takes the lowest flag out of the word before `word`; the place of its pair.
+/// Clears the lowest flag of the word before `word` and returns the index of its pair.
 #[inline]
 const fn place(word: usize, flags: &mut u64) -> usize {
     let place = (word - 1) * 64 + flags.trailing_zeros() as usize;

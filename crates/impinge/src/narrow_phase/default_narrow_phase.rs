@@ -1,4 +1,4 @@
-//! The narrow phase of a world: which pairs there are and which algorithm serves each.
+//! The narrow phase of a world: its pairs, and the algorithm and state of each.
 
 use core::fmt;
 use std::sync::{Arc, OnceLock};
@@ -25,41 +25,42 @@ use crate::shape::Shape;
 
 /// Contacts and proximities of the pairs of a world, kept from update to update.
 ///
-/// Pairs of the library's own algorithms lie in dense arrays, one per pair of shape kinds, and are
-/// updated as a batch, without a virtual call or an allocation per pair; pairs that a custom
-/// dispatcher serves are updated one by one. Pairs of which neither object changed are skipped.
+/// Pairs of the library's own algorithms are stored in dense arrays, one for each pair of shape
+/// kinds, and updated as a batch, without a virtual call or an allocation for each pair. Pairs of a
+/// custom dispatcher are updated one by one. Pairs without a changed object are skipped.
 ///
 /// ```
 /// use impinge::dim3::narrow_phase::DefaultNarrowPhase;
 /// use impinge::dim3::world::CollisionWorld;
 ///
 /// let mut world = CollisionWorld::<f32, ()>::new(0.02);
-/// // What a new world has anyway.
+/// // This is what a new world uses.
 /// world.set_narrow_phase(Box::new(DefaultNarrowPhase::new()));
 /// world.update();
 /// ```
 pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
-    /// The dispatchers are shared with clones.
+    /// Dispatchers, shared with clones.
     pub(super) contact_dispatcher: Arc<dyn ContactDispatcher<N, D>>,
     pub(super) proximity_dispatcher: Arc<dyn ProximityDispatcher<N, D>>,
     /// All pairs, by handle index.
     pub(super) pairs: PairTable,
-    /// Where the state of each pair lies; in step with `pairs`.
+    /// Location of the state of each pair; parallel to `pairs`.
     pub(super) locations: Vec<Location>,
     pub(super) lanes: PairLanes<N, D>,
-    /// How far pairs may move and keep their contacts; of no meaning where lanes have no references.
+    /// Greatest motion at which pairs keep their contacts; unused if groups have no references.
     pub(super) tolerance: N,
     pub(crate) ids: IdAllocator,
-    /// The pairs made due since the last update; some may be gone again.
+    /// Keys of pairs marked due since the last update; some may be gone again.
     pub(super) due: Vec<PairKey>,
-    /// Empty but for their memory, from update to update.
+    /// Scratch: changes of one update.
     pub(super) changes: PairChanges,
     pub(super) picked: Vec<Location>,
-    /// The places in `pairs`, sorted by pair; made when first needed after a change of the pairs.
+    /// Indices in `pairs`, sorted by pair; built on first use after a change of the pairs.
     pub(super) order: OnceLock<Vec<u32>>,
-    /// How long the lists of an update have been lately.
+    /// Recent lengths of the lists of an update, by which memory is released.
     recent: Recent,
-    /// Those of the pairs that touch; made when first needed after a change of either.
+    /// Indices in `pairs` of the touching ones, sorted by pair; built on first use after a change
+    /// of either.
     pub(super) touching: OnceLock<Vec<u32>>,
     pub(super) journal: Journal<(), NarrowHead>,
 }
@@ -84,7 +85,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for DefaultNarrowPhase<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// A narrow phase without pairs that uses the library's own algorithms.
+    /// Creates a narrow phase without pairs that uses the library's own algorithms.
     #[must_use]
     pub fn new() -> Self {
         Self::with_dispatchers(
@@ -93,7 +94,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         )
     }
 
-    /// A narrow phase without pairs that takes its algorithms from the given dispatchers.
+    /// Creates a narrow phase without pairs that takes its algorithms from the given dispatchers.
     #[must_use]
     pub fn with_dispatchers(
         contacts: Box<dyn ContactDispatcher<N, D>>,
@@ -117,8 +118,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// The same, but pairs of the library's own algorithms that have hardly moved keep their contacts; see
-    /// [`Self::try_reusing`].
+    /// Enables contact reuse with this tolerance; see [`Self::try_reusing`].
     ///
     /// # Panics
     /// If the tolerance is negative or not finite; [`Self::try_reusing`] returns that.
@@ -131,22 +131,25 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// The same without its pairs, but pairs of the library's own algorithms that have hardly moved keep
-    /// their contacts.
+    /// Returns a narrow phase without pairs and with contact reuse: pairs of the library's own
+    /// algorithms keep their contacts while they hardly move.
     ///
-    /// While no point of the solid has moved farther than `tolerance` beside the other since the contacts of a
-    /// pair were last computed, these stay fixed to the solids, and only their depths are measured anew, along
-    /// the normal that was; a pair without contacts has none. A depth is then at most twice the tolerance off
-    /// that of a query, and contacts may begin and end late by as much: beside one within the prediction others
-    /// may be that far beyond it. Solids that overlap are never missed, as no more than the prediction of the
-    /// pair counts as little. Numbers, features and the order of contacts stay. Balls beside balls, boxes,
-    /// segments and capsules, whose closed forms are as quick, are computed anew. The answers are the same on
-    /// every machine and any number of threads, but depend on where objects were before.
+    /// As long as no point of one solid has moved farther than `tolerance` relative to the other
+    /// since the contacts of a pair were last computed, the contact points stay fixed to the
+    /// solids. Only their depths are measured again, along the old normal; a pair without contacts
+    /// stays without. A depth then differs by at most twice the tolerance from that of a query, and
+    /// contacts may begin and end late by as much. Next to a contact within the prediction, others
+    /// may be that far beyond it. Overlapping solids are never missed, since the motion is also
+    /// limited by the prediction of the pair. Ids, features and the order of contacts stay. A ball
+    /// against a ball, box, segment or capsule is always computed, since its closed form is as
+    /// fast. The results are equal on every machine and for any number of threads, but depend on
+    /// earlier positions of the objects.
     ///
-    /// Worth it where most pairs move by less than a tenth of the tolerance in a step: a pair of hulls or
-    /// cylinders costs as little as one of boxes then, and an object on a mesh as little as one
-    /// on a box. It costs 80 bytes per pair (`f32`, space). A good tolerance is a tenth of the prediction,
-    /// and a thousandth of the size of an object. This is the contact recycling of Box2D and Box3D.
+    /// Reuse pays off where most pairs move by less than a tenth of the tolerance in a step: a pair
+    /// of hulls or cylinders then costs as little as one of boxes, and an object on a mesh as
+    /// little as one on a box. It costs 80 bytes for each pair (`f32`, 3D). A good tolerance is a
+    /// tenth of the prediction, and a thousandth of the size of an object. This is the contact
+    /// recycling of Box2D and Box3D.
     ///
     /// ```
     /// use impinge::dim3::narrow_phase::DefaultNarrowPhase;
@@ -166,7 +169,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         Ok(Self { contact_dispatcher, proximity_dispatcher, lanes, tolerance, ..Self::new() })
     }
 
-    /// Brings all pairs up to date, and now and then gives memory back.
+    /// Updates all pairs, and releases memory now and then.
     pub(crate) fn step(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
         self.recent.note(self.due.len());
         self.update_pairs(table, events);
@@ -180,8 +183,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Takes a pair in and chooses its algorithm; no geometric query yet. Nothing happens if the
-    /// pair is there already.
+    /// Adds a pair and chooses its algorithm, without a geometric query. Does nothing if the pair
+    /// is known.
     pub(crate) fn pair_started(&mut self, table: &ObjectTable<N, D>, first: u32, second: u32) {
         if !self.pairs.insert(first, second).is_new {
             return;
@@ -191,7 +194,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.locations.push(location);
     }
 
-    /// Lets a pair go, with the event that it is over if it had begun.
+    /// Removes a pair, with a final event if it was touching or near.
     pub(crate) fn pair_stopped(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -207,19 +210,19 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.forget_order();
     }
 
-    /// There is a pair of the object.
+    /// Returns `true` if there is a pair of the object.
     pub(crate) fn has_pairs(&self, object: u32) -> bool {
         self.pairs.count(object) > 0
     }
 
-    /// The pairs are others, or lie elsewhere, than when they were sorted.
+    /// Drops the sorted lists, because pairs or their indices have changed.
     pub(super) fn forget_order(&mut self) {
         self.order.take();
         self.touching.take();
     }
 
-    /// Chooses the algorithms of an object's pairs anew, after its shape or query type changed. The
-    /// names of contacts survive where the kind of query and the features do.
+    /// Chooses the algorithms of an object's pairs again, after its shape or query type changed.
+    /// Contacts keep their ids if the kind of query and the features stay.
     pub(crate) fn object_changed(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -227,7 +230,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         events: &mut Events,
     ) {
         let mut partners: Vec<(u32, usize)> = self.pairs.partners(object).collect();
-        // A rewind brings pairs back, but not the order in which the table has them.
+        // Sorted, since a rewind restores the pairs but not the table's order of partners.
         partners.sort_unstable();
         for (_, index) in partners {
             let key = PairKey::from(self.pairs.pairs()[index]);
@@ -240,7 +243,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// The library's lane for a pair, if it serves it.
+    /// Returns the group of the library's own algorithm for a pair, and the maximum number of
+    /// points of a manifold; `None` if a custom algorithm serves the pair.
     pub(super) fn built_in_lane(
         &self,
         table: &ObjectTable<N, D>,
@@ -259,8 +263,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Keeps a pair's state if the same built-in query still serves it, asking for what is asked
-    /// now; moves it to the lane of its new kinds. Answers whether it could.
+    /// Keeps the state of a pair if a built-in algorithm for the same query still serves it: sets
+    /// the new request and moves the state to the group of the new kinds. Returns `false` if that
+    /// is not so.
     fn adjust(&mut self, table: &ObjectTable<N, D>, key: PairKey, index: usize) -> bool {
         let Some((new_lane, max_points)) = self.built_in_lane(table, key) else { return false };
         let Location { lane, place } = self.locations[index];
@@ -297,7 +302,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         true
     }
 
-    /// Finds an algorithm for a pair and enters its state, going on from `carried`.
+    /// Finds an algorithm for a pair and adds its state to a group, continuing from `carried`.
     fn enter(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -375,7 +380,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         (Location { lane: Lane::CustomProximity, place }, change)
     }
 
-    /// Takes the state of a pair out of its lane and keeps the location of whoever moved true.
+    /// Removes the state of a pair from its group.
     fn leave(&mut self, index: usize) -> Carried {
         let location = self.locations[index];
         let (carried, moved) = self.lanes.take(location);
@@ -383,7 +388,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         carried
     }
 
-    /// A removal from a lane gave the place of the removed pair to another.
+    /// Updates the location of the pair that filled the gap after a removal from a group.
     fn note_move(&mut self, moved: Option<PairKey>, place: u32) {
         let Some([first, second]) = moved else { return };
         let index = self.pairs.index_of(first, second).expect("every state belongs to a pair");
@@ -391,7 +396,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 }
 
-/// The state of a pair of convex solids that begins.
+/// Creates the state of a new pair of convex solids.
 pub(super) fn new_entry<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     key: PairKey,
@@ -403,7 +408,7 @@ pub(super) fn new_entry<N: Space<D>, const D: usize>(
     entry
 }
 
-/// The shapes of a pair.
+/// Returns the shapes of a pair.
 fn shapes<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     key: PairKey,
@@ -411,10 +416,10 @@ fn shapes<N: Space<D>, const D: usize>(
     key.mapped(|object| table.shape(object).as_ref())
 }
 
-/// Where pairs without an algorithm are.
+/// The location of pairs without an algorithm.
 pub(super) const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0 };
 
-/// Puts what happened to a pair into events.
+/// Pushes the event of a pair's change, if there is one.
 pub(super) fn push_change<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     [first, second]: PairKey,

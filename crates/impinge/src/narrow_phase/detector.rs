@@ -1,4 +1,4 @@
-//! The library's own proximity algorithm as an object, for use alone.
+//! The library's own proximity algorithm as an object, for use without a world.
 
 use super::traits::{ProximityAlgorithm, ProximityDetector, ProximityDispatcher};
 use crate::math::{IsometryRef, Space};
@@ -6,7 +6,7 @@ use crate::query::Proximity;
 use crate::shape::Shape;
 use crate::tables::entries;
 
-/// The nearness of any two built-in solids.
+/// Computes the proximity of any two built-in solids.
 ///
 /// ```
 /// use impinge::dim2::events::Proximity;
@@ -28,7 +28,7 @@ pub struct PairProximityDetector {
 }
 
 impl PairProximityDetector {
-    /// A detector that holds `Disjoint`.
+    /// Creates a detector whose proximity is `Disjoint`.
     #[must_use]
     pub const fn new() -> Self {
         Self { proximity: Proximity::Disjoint }
@@ -85,7 +85,7 @@ impl<N: Space<D>, const D: usize> ProximityDetector<N, D> for PairProximityDetec
 pub struct DefaultProximityDispatcher<const D: usize>;
 
 impl<const D: usize> DefaultProximityDispatcher<D> {
-    /// The dispatcher; it has no settings.
+    /// Creates the dispatcher, which has no settings.
     #[must_use]
     pub const fn new() -> Self {
         Self

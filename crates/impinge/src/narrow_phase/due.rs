@@ -1,4 +1,4 @@
-//! The pairs of a group that are due, for algorithms that treat several at a time.
+//! The due pairs of a group, as input of the kernels that compute several pairs in SIMD lanes.
 
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
@@ -10,7 +10,7 @@ use crate::collide::{KeptPairs, PairQuestion, RawManifold, Solid, update_pairs2,
 use crate::math::Space;
 use crate::query::ContactManifold;
 
-/// The contacts of some pairs of convex solids.
+/// Contacts of some pairs of convex solids.
 pub(super) type ContactRows<'a, N, const D: usize> = Rows<
     'a,
     ContactEntry<N, ContactState<N, D>>,
@@ -18,10 +18,10 @@ pub(super) type ContactRows<'a, N, const D: usize> = Rows<
     Reference<N, D>,
 >;
 
-/// Pairs with copies of their solids that are due; what changes is noted.
+/// Due pairs that have copies of their solids.
 pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
     pub(super) rows: ContactRows<'r, N, D>,
-    /// Where in the rows they are.
+    /// Indices of the due pairs in `rows`.
     pub(super) places: &'t [usize],
     pub(super) table: &'t ObjectTable<N, D>,
     pub(super) changes: &'t mut PairChanges,

@@ -1,6 +1,7 @@
-//! What the narrow phase keeps of a pair, by who computes it and what is asked.
+//! Entries: the state of a pair for each combination of algorithm (built-in or custom) and query.
 //!
-//! A public manifold is made when first read, in the memory of the one before, and forgotten by the next update.
+//! A public manifold is built on first access, in the memory of its predecessor, and expires at the
+//! next update.
 
 use core::fmt;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -16,16 +17,16 @@ use crate::math::{Real, Space};
 use crate::memory::clone_fields;
 use crate::query::Proximity;
 
-/// What an update, or the end, of a pair means to the outside.
+/// The event that follows from an update or the end of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
-    /// The pair came to have contact points, or lost its last.
+    /// The pair got its first contact point or lost its last.
     Contact { touching: bool },
     /// The proximity changed from the first to the second.
     Proximity(Proximity, Proximity),
 }
 
-/// The two solids of a pair, as of the last update.
+/// Returns the two solids of a pair as of the last update.
 pub(crate) fn posed<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     [first, second]: PairKey,
@@ -40,7 +41,7 @@ pub(crate) fn posed<N: Space<D>, const D: usize>(
     }
 }
 
-/// The last status of a pair, and the event that a change of it is.
+/// The last proximity of a pair; a change of it is an event.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Status(pub(crate) Proximity);
 
@@ -50,18 +51,18 @@ impl Status {
         (old != new).then_some(Change::Proximity(old, new))
     }
 
-    /// What the end of the pair means.
+    /// Returns the change at the end of the pair.
     pub(crate) fn end(mut self) -> Option<Change> {
         self.set(Proximity::Disjoint)
     }
 }
 
-/// Contacts by the library's own algorithm. What readers look at stands in front: of a pair with few
-/// contacts they need no more than the first lines of its memory.
+/// Contacts by the library's own algorithm. The fields that readers need come first: for a pair
+/// with few contacts they load only the first cache lines.
 #[derive(Debug)]
 #[repr(C)]
 pub(crate) struct ContactEntry<N: Real, S> {
-    /// Names the pair's contacts.
+    /// Number of the pair, the first half of its contact ids.
     pub(crate) number: u64,
     pub(crate) state: S,
     pub(crate) request: ManifoldRequest<N>,
@@ -69,11 +70,12 @@ pub(crate) struct ContactEntry<N: Real, S> {
 
 clone_fields!([N: Real, S: Clone] ContactEntry<N, S> { number, state, request });
 
-/// The manifolds of a pair as users see them: made when first read after an update.
+/// Public manifolds of a pair, built on first access after an update.
 #[derive(Debug)]
 pub(crate) struct ContactView<M> {
     manifolds: OnceLock<M>,
-    /// Those of an update before, for their memory. Locked by whoever makes the manifolds, once.
+    /// The manifolds of an earlier update, kept for their memory. Locked once, while new ones are
+    /// built.
     old: Mutex<M>,
 }
 
@@ -90,14 +92,14 @@ impl<M: Clone + Default> Clone for ContactView<M> {
 }
 
 impl<M: Default> ContactView<M> {
-    /// Forgets the manifolds, but keeps their memory.
+    /// Marks the manifolds as out of date, but keeps their memory.
     pub(super) fn expire(&mut self) {
         if let Some(manifolds) = self.manifolds.take() {
             *self.old.get_mut().unwrap_or_else(PoisonError::into_inner) = manifolds;
         }
     }
 
-    /// The manifolds; `make` writes them over old ones if this is the first time they are asked for.
+    /// Returns the manifolds; on first access `make` builds them in the memory of the old ones.
     pub(crate) fn manifolds(&self, make: impl FnOnce(M) -> M) -> &M {
         self.manifolds.get_or_init(|| {
             let mut old = self.old.lock().unwrap_or_else(PoisonError::into_inner);
@@ -107,7 +109,7 @@ impl<M: Default> ContactView<M> {
 }
 
 impl<M: Default> ContactView<M> {
-    /// Forgets the manifolds of a pair of which somebody may have asked for them.
+    /// As [`Self::expire`], if the group has views at all.
     #[inline]
     pub(crate) fn expire_any(view: Option<&mut Self>) {
         if let Some(view) = view {
@@ -124,7 +126,7 @@ impl<N: Real, S> ContactEntry<N, S> {
         Self { request, number, state: S::default() }
     }
 
-    /// Brings the contacts up to date and says whether there are any.
+    /// Updates the contacts; returns `true` if there are any.
     pub(crate) fn update<const D: usize>(
         &mut self,
         view: Option<&mut ContactView<S::Manifolds>>,
@@ -138,7 +140,7 @@ impl<N: Real, S> ContactEntry<N, S> {
         self.is_touching()
     }
 
-    /// There are contacts.
+    /// Returns `true` if there are contacts.
     #[inline]
     pub(crate) fn is_touching<const D: usize>(&self) -> bool
     where
@@ -156,7 +158,7 @@ pub(crate) struct ProximityEntry<N: Real> {
 }
 
 impl<N: Real> ProximityEntry<N> {
-    /// Brings the status up to date.
+    /// Updates the status; returns the change, if any.
     pub(crate) fn update<const D: usize>(&mut self, posed: &Posed<'_, N, D>) -> Option<Change>
     where
         N: Space<D>,
@@ -165,7 +167,7 @@ impl<N: Real> ProximityEntry<N> {
     }
 }
 
-/// Contacts by an algorithm of the user's.
+/// Contacts by a custom algorithm.
 #[derive(Clone)]
 pub(crate) struct CustomContactEntry<N: Space<D>, const D: usize> {
     pub(crate) algorithm: ContactAlgorithm<N, D>,
@@ -173,7 +175,7 @@ pub(crate) struct CustomContactEntry<N: Space<D>, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> CustomContactEntry<N, D> {
-    /// Brings the contacts up to date and says whether there are any.
+    /// Updates the contacts; returns `true` if there are any.
     pub(crate) fn update(
         &mut self,
         dispatcher: &dyn ContactDispatcher<N, D>,
@@ -200,7 +202,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for CustomContactEntry<N, D> {
     }
 }
 
-/// Proximity by an algorithm of the user's.
+/// Proximity by a custom algorithm.
 #[derive(Clone)]
 pub(crate) struct CustomProximityEntry<N: Space<D>, const D: usize> {
     pub(crate) algorithm: ProximityAlgorithm<N, D>,
@@ -209,7 +211,7 @@ pub(crate) struct CustomProximityEntry<N: Space<D>, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> CustomProximityEntry<N, D> {
-    /// Brings the status up to date.
+    /// Updates the status; returns the change, if any.
     pub(crate) fn update(
         &mut self,
         dispatcher: &dyn ProximityDispatcher<N, D>,

@@ -1,4 +1,4 @@
-//! What changed between two updates.
+//! Events: changes between two updates.
 //!
 //! Each `Started` has exactly one `Stopped`, whatever ends the contact.
 
@@ -8,7 +8,7 @@ use super::CollisionObjectHandle;
 use crate::memory::{Look, clone_fields};
 use crate::query::Proximity;
 
-/// A pair came to have contact points, or lost its last.
+/// A pair got its first contact point or lost its last.
 ///
 /// ```
 /// use impinge::dim2::events::ContactEvent;
@@ -33,12 +33,12 @@ use crate::query::Proximity;
 pub enum ContactEvent {
     /// From none to at least one contact point.
     Started(CollisionObjectHandle, CollisionObjectHandle),
-    /// From at least one contact point to none, or the pair is no more.
+    /// From at least one contact point to none, or to the end of the pair.
     Stopped(CollisionObjectHandle, CollisionObjectHandle),
 }
 
 impl ContactEvent {
-    /// The two objects, in order.
+    /// Returns the two objects in order.
     #[must_use]
     pub const fn handles(&self) -> (CollisionObjectHandle, CollisionObjectHandle) {
         match *self {
@@ -47,7 +47,7 @@ impl ContactEvent {
     }
 }
 
-/// The proximity of a pair changed.
+/// A pair changed its proximity.
 ///
 /// ```
 /// use impinge::dim2::events::{Proximity, ProximityEvent};
@@ -69,26 +69,26 @@ impl ContactEvent {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProximityEvent {
-    /// The object whose handle comes first.
+    /// The object with the smaller handle.
     pub collider1: CollisionObjectHandle,
     /// The other object.
     pub collider2: CollisionObjectHandle,
-    /// How near they were at the update before.
+    /// Proximity at the update before.
     pub prev_status: Proximity,
-    /// How near they are now; never equal to `prev_status`.
+    /// Proximity now; never equal to `prev_status`.
     pub new_status: Proximity,
 }
 
-/// The events of one update, or of several that a world was told to keep, and those that removals and
-/// updates of single pairs queue for the next.
+/// Events of one update, or of several if the world keeps events, and events that removals and
+/// updates of single pairs queue for the next update.
 ///
-/// Order within the batch of an update: first the queued events, then all else; each part sorted by
-/// handles, events of the same pair in the order in which they happened.
+/// Order within the batch of an update: queued events first, then all others. Each part is sorted
+/// by handles; events of one pair are in the order in which they happened.
 ///
 /// ```
 /// use impinge::dim2::events::Events;
 ///
-/// // What a narrow phase of one's own is given to report in.
+/// // A custom narrow phase receives such a list to report in.
 /// let events = Events::default();
 /// assert!(events.contacts().is_empty() && events.proximities().is_empty());
 /// ```
@@ -96,7 +96,8 @@ pub struct ProximityEvent {
 pub struct Events {
     contacts: Vec<ContactEvent>,
     proximities: Vec<ProximityEvent>,
-    /// How many events at the front of each list are in order: kept ones, and those that were queued.
+    /// Numbers of contact and proximity events at the front that are in order already: kept and
+    /// queued ones.
     sorted: (usize, usize),
 }
 
@@ -112,14 +113,14 @@ impl fmt::Debug for Events {
 }
 
 impl Events {
-    /// Forgets all events.
+    /// Removes all events.
     pub(crate) fn clear(&mut self) {
         self.contacts.clear();
         self.proximities.clear();
     }
 
-    /// Starts the next batch, behind the events that are there, with those that wait in `queued`: sorted by
-    /// handles, and of one pair as they happened.
+    /// Begins the next batch, behind the present events, with those of `queued`, sorted by handles;
+    /// events of one pair keep their order.
     pub(crate) fn begin_batch(&mut self, queued: &mut Self) {
         queued.contacts.sort_by_key(ContactEvent::handles);
         queued.proximities.sort_by_key(|event| (event.collider1, event.collider2));
@@ -128,8 +129,8 @@ impl Events {
         self.sorted = (self.contacts.len(), self.proximities.len());
     }
 
-    /// Brings the events of the update into canonical order. What a pair was ends before what it is now
-    /// begins, so of the two events that a pair may have the one that begins is the later.
+    /// Sorts the events of the update into canonical order. Of two events of a pair in
+    /// one list, the one that ends the old status comes first.
     pub(crate) fn sort(&mut self) {
         let begins = |event: &ContactEvent| matches!(event, ContactEvent::Started(..));
         self.contacts[self.sorted.0..].sort_unstable_by_key(|e| (e.handles(), begins(e)));
@@ -138,7 +139,8 @@ impl Events {
             .sort_unstable_by_key(|e| (e.collider1, e.collider2, begins(e)));
     }
 
-    /// The objects that events name from some place in each list on; an object as often as it is named.
+    /// Iterates over the handles that events name, from the given index of each list on; handles
+    /// may repeat.
     pub(crate) fn named_from(
         &self,
         (contacts, proximities): (usize, usize),
@@ -149,17 +151,17 @@ impl Events {
         contacts.chain(proximities).flat_map(|(first, second)| [first, second])
     }
 
-    /// How many events of each kind there are.
+    /// Returns the numbers of contact and proximity events.
     pub(crate) const fn counts(&self) -> (usize, usize) {
         (self.contacts.len(), self.proximities.len())
     }
 
-    /// How many events there are.
+    /// Returns the number of events.
     pub(crate) fn len(&self) -> usize {
         self.contacts.len() + self.proximities.len()
     }
 
-    /// Gives back the memory of lists that have been short for some time.
+    /// Releases the memory of lists that have been short for some time.
     pub(crate) fn give_back(&mut self, look: Look) {
         look.trim(&mut self.contacts);
         look.trim(&mut self.proximities);
@@ -170,20 +172,20 @@ impl Events {
         self.contacts.push(event);
     }
 
-    /// Adds a proximity event, unless nothing changed.
+    /// Adds a proximity event, unless both statuses are equal.
     pub fn push_proximity(&mut self, event: ProximityEvent) {
         if event.prev_status != event.new_status {
             self.proximities.push(event);
         }
     }
 
-    /// The contact events of the batch.
+    /// Returns the contact events of the batch.
     #[must_use]
     pub fn contacts(&self) -> &[ContactEvent] {
         &self.contacts
     }
 
-    /// The proximity events of the batch.
+    /// Returns the proximity events of the batch.
     #[must_use]
     pub fn proximities(&self) -> &[ProximityEvent] {
         &self.proximities

@@ -1,7 +1,17 @@
-//! Pairs that share one algorithm, side by side.
+//! A group: pairs that share one algorithm, in parallel dense arrays.
 //!
-//! Chunks have a constant size, never one that depends on the number of threads. Reading memory ahead of time
-//! changes no answer.
+//! Chunks have a constant size that does not depend on the number of threads. Prefetching changes
+//! no result.
+//!
+//! ```text
+//! place        0      1      2     ...            swap_remove(1): the last pair moves to place 1
+//! keys        [a,b]  [a,c]  [d,e]                 and `Taken::moved` names it
+//! due          0      1      0
+//! touching    bit 0  bit 1  bit 2  (64 per word)
+//! states       S      S      S
+//! views        V      V      V     (none until a reader asks)
+//! references   R      R      R     (only with contact reuse)
+//! ```
 
 use std::sync::OnceLock;
 
@@ -11,50 +21,51 @@ use crate::journal::Journal;
 use crate::math::Space;
 use crate::memory::Look;
 
-/// Pairs per task: large enough to hide the cost of a task, small enough to spread the load. A
+/// Pairs in a task: many enough to outweigh the cost of a task, few enough to balance the load. A
 /// constant, so that the order of results never depends on the number of threads.
 pub(super) const CHUNK: usize = 128;
 
-/// Pairs in a word of flags.
+/// Number of flags in a word.
 const WORD: usize = 64;
 
 /// The two objects of a pair, by handle index.
 pub(crate) type PairKey = [u32; 2];
 
-/// Some of at most [`CHUNK`] pairs, a bit each.
+/// A subset of at most [`CHUNK`] pairs, as a bit set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Chosen([u64; CHUNK / WORD]);
 
 /// The states of some pairs in no particular order, without gaps.
 ///
-/// A pair's place changes when another pair of the group is removed; whoever keeps places is notified.
-/// What is asked of all pairs again and again, whether they are due and whether they touch, stands apart
-/// from the states, so that who passes over a pair does not wait for its memory.
-/// To each state belongs a view: what readers make of it. The views come into being, all together,
-/// when the first is asked for: who never asks pays nothing for them.
-/// Where pairs may keep contacts while they hardly move ([`Reuse`](super::reuse::Reuse)), a reference
-/// belongs to each state too.
+/// A pair's index (`place`) changes when another pair of the group is removed; [`Taken::moved`]
+/// reports it. The flags that are read for every pair, due and touching, are stored apart from the
+/// states, so that skipping a pair does not load its state.
+///
+/// Each state has a view, the form in which users read it. The views are created all together on
+/// first access, so they cost nothing without readers. With contact reuse
+/// ([`Reuse`](super::reuse::Reuse)) each state also has a reference.
 #[derive(Debug)]
 pub(crate) struct Group<S: Parts, V = (), R = ()> {
     pub(super) keys: Vec<PairKey>,
-    /// By pair: to be updated even if both objects stand still.
+    /// By index: must be updated even if both objects stand still.
     pub(super) due: Vec<bool>,
-    /// By pair, a bit each, the others zero: it has contact points.
+    /// By index, as bits, surplus bits zero: the pair has contact points.
     pub(super) touching: Vec<u64>,
     pub(super) states: Vec<S>,
-    /// One for each state, or none at all.
+    /// One for each state, or none.
     pub(super) views: OnceLock<Vec<V>>,
-    /// One for each state, if there are any.
+    /// One for each state; `None` without contact reuse.
     pub(super) references: Option<Vec<R>>,
     pub(super) journal: Journal<GroupNote<S, R>>,
-    /// The references of the pairs that [`GroupNote::Written`] notes.
+    /// References of the pairs that [`GroupNote::Written`] notes.
     pub(super) reference_journal: Journal<R>,
-    /// By pair, if there are marks: the period in which it was noted or came. One begins with each mark.
+    /// By index, if there are marks: the period in which the pair was noted or added.
     pub(super) noted: Vec<u8>,
+    /// The present period; each mark begins a new one.
     pub(super) period: u8,
 }
 
-/// Without the views, which whoever reads them first has made anew, and without marks.
+/// Clones neither the views, which are created again on first access, nor the marks.
 impl<S: Parts, V, R: Clone> Clone for Group<S, V, R> {
     fn clone(&self) -> Self {
         let mut copy = Self::default();
@@ -76,24 +87,24 @@ impl<S: Parts, V, R: Clone> Clone for Group<S, V, R> {
     }
 }
 
-/// The pairs of a group to work on, side by side.
+/// Parallel slices over the pairs of a group or chunk.
 pub(crate) struct Rows<'a, S, V, R = ()> {
     pub(crate) keys: &'a [PairKey],
     due: &'a mut [bool],
     touching: &'a mut [u64],
     pub(crate) states: &'a mut [S],
-    /// As many as states, or none.
+    /// As many as states, or empty.
     pub(crate) views: &'a mut [V],
-    /// As many as states, or none.
+    /// As many as states, or empty.
     pub(crate) references: &'a mut [R],
 }
 
-/// A pair that was taken out of a group.
+/// A pair that was removed from a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Taken<S> {
     pub(crate) state: S,
     pub(crate) is_touching: bool,
-    /// The pair that now has its place, if any.
+    /// The pair that moved to its index, if any.
     pub(crate) moved: Option<PairKey>,
 }
 
@@ -116,12 +127,12 @@ impl<S: Parts, V, R> Default for Group<S, V, R> {
     }
 }
 
-/// The word of a pair's flag, and its bit.
+/// Returns the word index of a pair's flag, and its bit.
 const fn flag(place: usize) -> (usize, u64) {
     (place / WORD, 1 << (place % WORD))
 }
 
-/// Says whether a pair touches, and answers whether that is new.
+/// Sets whether a pair touches; returns `true` if that is a change.
 #[inline]
 pub(super) fn set_touching(words: &mut [u64], place: usize, is_touching: bool) -> bool {
     let (word, bit) = flag(place);
@@ -131,12 +142,12 @@ pub(super) fn set_touching(words: &mut [u64], place: usize, is_touching: bool) -
 }
 
 impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
-    /// A group without pairs that has references.
+    /// Creates a group without pairs that stores references.
     pub(crate) fn with_references() -> Self {
         Self { references: Some(Vec::new()), ..Self::default() }
     }
 
-    /// Adds a pair, which is due, and answers its place.
+    /// Adds a pair, marks it due and returns its index.
     pub(crate) fn push(&mut self, key: PairKey, state: S, is_touching: bool) -> u32 {
         let place = self.keys.len();
         if self.journal.is_on() {
@@ -157,7 +168,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         u32::try_from(place).expect("fewer than 2^32 pairs fit in memory")
     }
 
-    /// Takes a pair out; the last one gets its place.
+    /// Removes a pair; the last one moves to its index.
     pub(crate) fn swap_remove(&mut self, place: u32) -> Taken<S> {
         self.note_removed(place);
         let (is_touching, place) = (self.is_touching(place), place as usize);
@@ -179,8 +190,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         Taken { state, is_touching, moved }
     }
 
-    /// Gives the place of a pair to another, which is due and does not touch, and answers whether the first
-    /// one did.
+    /// Replaces the pair at an index by another, which is due and does not touch. Returns `true` if
+    /// the old pair was touching.
     pub(crate) fn replace(&mut self, place: u32, key: PairKey, state: S) -> bool {
         self.note_whole(place);
         let at = place as usize;
@@ -195,7 +206,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         was_touching
     }
 
-    /// Gives back memory that a group which has stopped to grow does not need.
+    /// Releases surplus memory of a group that has stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
         look.fit(&mut self.keys);
         look.fit(&mut self.due);
@@ -205,14 +216,13 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// The pair at a place has contact points.
+    /// Returns `true` if the pair at an index has contact points.
     pub(crate) fn is_touching(&self, place: u32) -> bool {
         let (word, bit) = flag(place as usize);
         self.touching[word] & bit != 0
     }
 
-    /// Asks for a pair to be updated even if both objects stand still; what it could be held against is
-    /// forgotten.
+    /// Marks a pair as due even if both objects stand still, and drops its reference.
     pub(crate) fn make_due(&mut self, place: u32) {
         self.note_whole(place);
         self.due[place as usize] = true;
@@ -221,56 +231,56 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// The state of the pair at a place.
+    /// Returns the state of the pair at an index.
     pub(crate) fn state(&self, place: u32) -> &S {
         &self.states[place as usize]
     }
 
-    /// The state of the pair at a place, to change.
+    /// Returns the state of the pair at an index, to change it.
     pub(crate) fn state_mut(&mut self, place: u32) -> &mut S {
         self.note_whole(place);
         &mut self.states[place as usize]
     }
 
-    /// The view of the pair at a place.
+    /// Returns the view of the pair at an index; creates all views on first access.
     pub(crate) fn view(&self, place: u32) -> &V {
         let make = || self.keys.iter().map(|_| V::default()).collect();
         &self.views.get_or_init(make)[place as usize]
     }
 
-    /// The pair at a place.
+    /// Returns the key of the pair at an index.
     pub(crate) fn key(&self, place: u32) -> PairKey {
         self.keys[place as usize]
     }
 
-    /// The pairs, in the order in which they lie.
+    /// Returns the keys of all pairs, by index.
     pub(crate) fn keys(&self) -> &[PairKey] {
         &self.keys
     }
 
-    /// Their states.
+    /// Returns the states of all pairs, by index.
     pub(crate) fn states(&self) -> &[S] {
         &self.states
     }
 
-    /// Which of them touch, sixty-four in a word.
+    /// Returns the touching flags, 64 in a word.
     pub(crate) fn touching(&self) -> &[u64] {
         &self.touching
     }
 
-    /// The touching pairs with their states, in the order in which they lie.
+    /// Iterates over the touching pairs with their states, by ascending index.
     pub(crate) fn iter_touching(&self) -> impl Iterator<Item = (PairKey, &S)> {
         let pairs = (0..).zip(&self.keys).zip(&self.states);
         let pairs = pairs.filter(|((place, _), _)| self.is_touching(*place));
         pairs.map(|((_, &key), state)| (key, state))
     }
 
-    /// There is no pair.
+    /// Returns `true` if there is no pair.
     pub(crate) const fn is_empty(&self) -> bool {
         self.keys.is_empty()
     }
 
-    /// All pairs, their states and their views.
+    /// Returns slices over all pairs.
     pub(crate) fn rows(&mut self) -> Rows<'_, S, V, R> {
         let views = self.views.get_mut().map_or(&mut [][..], Vec::as_mut_slice);
         let Self { keys, due, touching, states, references, .. } = self;
@@ -280,7 +290,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
 }
 
 impl Chosen {
-    /// Leaves out those that are not to stay.
+    /// Removes the indices for which `stays` is false.
     pub(super) fn retain(&mut self, mut stays: impl FnMut(usize) -> bool) {
         for index in self.indices() {
             let (word, bit) = flag(index);
@@ -288,7 +298,7 @@ impl Chosen {
         }
     }
 
-    /// Their indices, ascending.
+    /// Iterates over the indices in ascending order.
     pub(super) fn indices(mut self) -> impl Iterator<Item = usize> {
         let mut word = 0;
         core::iter::from_fn(move || {
@@ -303,18 +313,17 @@ impl Chosen {
 }
 
 impl<'a, S, V, R> Rows<'a, S, V, R> {
-    /// How many pairs there are.
+    /// Returns the number of pairs.
     pub(crate) const fn len(&self) -> usize {
         self.keys.len()
     }
 
-    /// The same rows, to be used once more afterwards.
     pub(crate) fn reborrow(&mut self) -> Rows<'_, S, V, R> {
         let Rows { keys, due, touching, states, views, references } = self;
         Rows { keys, due, touching, states, views, references }
     }
 
-    /// The rows in pieces of [`CHUNK`], the last one perhaps shorter.
+    /// Splits the slices into pieces of [`CHUNK`] pairs; the last one may be shorter.
     pub(crate) fn chunks(self) -> impl Iterator<Item = Rows<'a, S, V, R>> {
         let (mut views, mut due) = (self.views.chunks_mut(CHUNK), self.due.chunks_mut(CHUNK));
         let mut touching = self.touching.chunks_mut(CHUNK / WORD);
@@ -330,13 +339,14 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
         })
     }
 
-    /// A pair with its state and its view.
+    /// Returns a pair with its state and its view.
     #[inline]
     pub(crate) fn row(&mut self, index: usize) -> (PairKey, &mut S, Option<&mut V>) {
         (self.keys[index], &mut self.states[index], self.views.get_mut(index))
     }
 
-    /// The pair needs a new query: it is due, or one of its objects changed. If so, it is due no more.
+    /// Returns `true` if the pair needs a new query: it is due, or one of its objects changed.
+    /// Clears the mark.
     #[inline]
     pub(crate) fn take_due<N: Space<D>, const D: usize>(
         &mut self,
@@ -347,15 +357,15 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
         self.take_mark(index) | table.has_changed(first) | table.has_changed(second)
     }
 
-    /// The pair is marked as due; it is so no more.
+    /// Returns `true` if the pair is marked as due, and clears the mark.
     #[inline]
     pub(crate) fn take_mark(&mut self, index: usize) -> bool {
         core::mem::take(&mut self.due[index])
     }
 
-    /// Those of a chunk of pairs that need a new query. Nothing is due any more.
+    /// Returns the pairs of a chunk that need a new query, and clears their marks.
     ///
-    /// Whether objects changed is known before the memory of the pairs comes: no branch waits for it.
+    /// Branch-free over flags and change bits, so that nothing waits for the memory of the pairs.
     pub(super) fn take_all_due<N: Space<D>, const D: usize>(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -368,7 +378,7 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
         chosen
     }
 
-    /// Says that the pair has contact points, or none, and answers whether that is new.
+    /// Sets whether the pair has contact points; returns `true` if that is a change.
     #[inline]
     pub(crate) fn set_touching(&mut self, index: usize, is_touching: bool) -> bool {
         set_touching(self.touching, index, is_touching)

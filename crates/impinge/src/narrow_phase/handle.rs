@@ -1,14 +1,14 @@
-//! Names of objects.
+//! Handles of objects.
 
 use crate::generation::Generation;
 
-/// The name of a collision object; it never comes to mean another object of its world.
+/// The handle of a collision object; within its world it never refers to another object.
 ///
-/// Only the world that gave it accepts it: another world refuses it like a stale one, also where both
-/// were filled alike. (Worlds are distinguished by a tag of 16 bits, which is used again after 65535
-/// other worlds.) Handles of two worlds are never equal; [`CollisionWorld::counterpart`] translates
-/// them, and those that were deserialized, which belong to no world: the serialized form is the index
-/// and the generation.
+/// A world accepts only its own handles: it refuses one of another world like a stale one, even if
+/// both were filled alike. (Worlds are distinguished by a tag of 16 bits, which is used again after
+/// 65535 other worlds.) Handles of two worlds are never equal; [`CollisionWorld::counterpart`]
+/// translates them. It also translates deserialized handles, which belong to no world: the
+/// serialized form is index and generation.
 ///
 /// Ordered by the index in the handle table, then by generation: this is the canonical order of
 /// pairs, events and query results.
@@ -38,31 +38,32 @@ pub struct CollisionObjectHandle {
 }
 
 impl CollisionObjectHandle {
-    /// The handle of the object of a generation at an index of the table.
+    /// Creates the handle of the object with this generation at an index of the table.
     #[inline]
     pub(crate) const fn new(index: u32, generation: Generation) -> Self {
         Self { index, generation }
     }
 
-    /// The index in the handle table: dense, and in order of creation until the first removal.
+    /// Returns the index in the handle table: dense, and in order of creation until the first
+    /// removal.
     #[inline]
     #[must_use]
     pub const fn uid(&self) -> usize {
         self.index as usize
     }
 
-    /// The index in the handle table, as it is stored.
+    /// Returns the index in the handle table, as stored.
     #[inline]
     pub(crate) const fn index(self) -> u32 {
         self.index
     }
 
-    /// Which object at this index of which world.
+    /// Returns the generation, which identifies the world and the object among those at this index.
     #[inline]
     pub(crate) const fn generation(self) -> Generation {
         self.generation
     }
 }
 
-/// Two objects in order, and whether they started to be a pair (`true`) or stopped.
+/// Two objects in canonical order, and whether their pair started (`true`) or stopped.
 pub type Interaction = ((CollisionObjectHandle, CollisionObjectHandle), bool);

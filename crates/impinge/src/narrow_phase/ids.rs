@@ -1,11 +1,11 @@
-//! Where the names of contacts come from.
+//! Allocation of contact ids.
 //!
-//! A name is never given twice, also across an exchange of phases, which hands the counter on.
+//! No id is given twice, even when phases are replaced: the counter moves on to the new phase.
 
 /// Gives each pair a number that no other pair of the same world has or had.
 ///
-/// A contact is named by its pair's number and a number within the pair, so that names need no
-/// coordination between pairs that are updated at the same time.
+/// A contact id consists of its pair's number and a number within the pair, so that pairs updated
+/// at the same time need no coordination.
 ///
 /// ```
 /// use impinge::dim2::narrow_phase::IdAllocator;
@@ -19,14 +19,14 @@ pub struct IdAllocator {
 }
 
 impl IdAllocator {
-    /// An allocator that has given nothing yet.
+    /// Creates an allocator that has given no number yet.
     #[must_use]
     pub const fn new() -> Self {
         Self { next: 0 }
     }
 
-    /// The next number. It is never `u64::MAX`, the number of [`ContactId::NULL`](crate::query::ContactId::NULL):
-    /// 2⁶⁴ pairs are more than any program makes.
+    /// Returns the next number. It is never `u64::MAX`, the number of
+    /// [`ContactId::NULL`](crate::query::ContactId::NULL): no program creates 2⁶⁴ pairs.
     pub fn allocate(&mut self) -> u64 {
         self.next += 1;
         self.next - 1

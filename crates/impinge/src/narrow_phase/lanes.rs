@@ -1,4 +1,4 @@
-//! Where the state of each pair lies: one lane per algorithm.
+//! Groups of pairs by algorithm, and the location of each pair's state in them.
 
 use super::entry::{
     Change, ContactEntry, ContactView, CustomContactEntry, CustomProximityEntry, ProximityEntry,
@@ -12,32 +12,33 @@ use crate::memory::{Look, clone_fields};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::{Shape, ShapeKind};
 
-/// How many pairs of kinds there are; one built-in lane each for contacts and for proximity.
+/// Number of ordered pairs of shape kinds: the number of built-in groups for contacts, and for
+/// proximity.
 const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 
-/// Which algorithm serves a pair.
+/// The group of a pair: which algorithm serves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Lane {
-    /// The library's contacts, for this pair of kinds.
+    /// Built-in contacts of this pair of kinds.
     Contacts(u8),
-    /// The library's contacts of composites.
+    /// Built-in contacts with a composite.
     Composites,
-    /// The library's proximity, for this pair of kinds.
+    /// Built-in proximity of this pair of kinds.
     Proximity(u8),
     CustomContacts,
     CustomProximity,
-    /// The dispatcher has no algorithm for the pair.
+    /// No group: the dispatcher has no algorithm for the pair.
     Nothing,
 }
 
-/// A lane and the place in it.
+/// A group and the index of a pair in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Location {
     pub(crate) lane: Lane,
     pub(crate) place: u32,
 }
 
-/// What a pair carries over when its algorithm changes: what events follow from.
+/// The status of a pair that outlives a change of its algorithm; events follow from it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Carried {
     Contacts { is_touching: bool },
@@ -46,7 +47,7 @@ pub(crate) enum Carried {
 }
 
 impl Carried {
-    /// What the end of the pair means.
+    /// Returns the change at the end of the pair.
     pub(crate) fn end(self) -> Option<Change> {
         match self {
             Self::Contacts { is_touching } => {
@@ -57,7 +58,7 @@ impl Carried {
         }
     }
 
-    /// Whether the pair goes on touching, and the event if it had another query type before.
+    /// Returns whether the pair goes on touching, and the final change of another kind of query.
     pub(crate) fn into_touching(self) -> (bool, Option<Change>) {
         match self {
             Self::Contacts { is_touching } => (is_touching, None),
@@ -65,7 +66,7 @@ impl Carried {
         }
     }
 
-    /// The status to go on with, and the event if the pair had another query type before.
+    /// Returns the status to continue with, and the final change of another kind of query.
     pub(crate) fn into_status(self) -> (Status, Option<Change>) {
         match self {
             Self::Proximity(status) => (status, None),
@@ -74,11 +75,11 @@ impl Carried {
     }
 }
 
-/// The contacts of pairs of convex solids.
+/// Contacts of pairs of convex solids.
 pub(crate) type ContactGroup<N, const D: usize> =
     Group<ContactEntry<N, ContactState<N, D>>, ContactView<ContactManifold<N, D>>, Reference<N, D>>;
 
-/// The contacts of pairs with composites.
+/// Contacts of pairs with composites.
 pub(crate) type CompositeGroup<N, const D: usize> = Group<
     ContactEntry<N, CompositeState<N, D>>,
     ContactView<Vec<ContactManifold<N, D>>>,
@@ -111,7 +112,7 @@ impl<N: Space<D>, const D: usize> Default for PairLanes<N, D> {
     }
 }
 
-/// The number of the pair of kinds, the same for both orders.
+/// Returns the number of the unordered pair of kinds.
 pub(crate) fn kind_pair<N: Real, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,
@@ -122,7 +123,7 @@ pub(crate) fn kind_pair<N: Real, const D: usize>(
     u8::try_from(number).expect("there are fewer than 16 kinds")
 }
 
-/// The library's lane for the contacts of two shapes.
+/// Returns the group of built-in contacts of two shapes.
 pub(crate) fn contact_lane<N: Real, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,
@@ -134,13 +135,13 @@ pub(crate) fn contact_lane<N: Real, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> PairLanes<N, D> {
-    /// Without pairs, for contacts that may be kept while pairs hardly move.
+    /// Creates groups without pairs that store references, for contact reuse.
     pub(crate) fn with_references() -> Self {
         let contacts = (0..KIND_PAIRS).map(|_| Group::with_references()).collect();
         Self { contacts, composites: Group::with_references(), ..Self::default() }
     }
 
-    /// Takes a pair's state out; also answers which pair now has its place.
+    /// Removes the state of a pair; also returns the pair that moved to its index.
     pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<PairKey>) {
         let place = location.place;
         match location.lane {
@@ -162,7 +163,7 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
         }
     }
 
-    /// The pair has contact points.
+    /// Returns `true` if the pair has contact points.
     pub(crate) fn is_touching(&self, Location { lane, place }: Location) -> bool {
         match lane {
             Lane::Contacts(lane) => self.contacts[usize::from(lane)].is_touching(place),
@@ -172,14 +173,14 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
         }
     }
 
-    /// Gives back memory that lanes which have stopped to grow do not need.
+    /// Releases surplus memory of groups that have stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
         self.contacts.iter_mut().for_each(|group| group.fit(look));
         self.composites.fit(look);
         self.proximity.iter_mut().for_each(|group| group.fit(look));
     }
 
-    /// Asks for a pair to be updated even if both objects stand still.
+    /// Marks a pair as due even if both objects stand still.
     pub(crate) fn make_due(&mut self, location: Location) {
         let place = location.place;
         match location.lane {
@@ -193,7 +194,7 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
     }
 }
 
-/// What a pair that was taken out carries over, and which pair has its place.
+/// Returns the status of a removed pair, and the pair that moved to its index.
 fn contacts_of<S>(taken: Taken<S>) -> (Carried, Option<PairKey>) {
     (Carried::Contacts { is_touching: taken.is_touching }, taken.moved)
 }

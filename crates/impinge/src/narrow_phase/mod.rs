@@ -1,8 +1,17 @@
-//! Exact answers for the pairs that the broad phase proposes, kept from update to update.
+//! Contacts and proximities of the pairs that the broad phase proposes, kept from update to update.
 //!
 //! [`DefaultNarrowPhase`] keeps the pairs of a world. The traits [`ContactManifoldGenerator`] and
 //! [`ProximityDetector`] stand for the algorithm of one pair, to use alone or to plug in through a
-//! dispatcher. Nothing here knows users' data: objects are rows of an [`ObjectTable`].
+//! dispatcher. Nothing here has access to users' data: objects are rows of an [`ObjectTable`].
+//!
+//! ```text
+//! pairs: PairTable       (first, second) by index, both handle indices
+//! locations              index -> Location { lane, place }
+//! lanes: PairLanes       contacts[kind pair]   one Group for each pair of shape kinds
+//!                        composites            one Group for all pairs with a composite
+//!                        proximity[kind pair], custom_contacts, custom_proximity
+//! Group                  place -> keys | due | touching (bits) | states | views? | references?
+//! ```
 
 mod ahead;
 mod composite_views;

@@ -1,5 +1,12 @@
-//! What the narrow phase reads of the objects that have pairs: a structure of arrays apart from the users'
-//! data.
+//! The object table: poses, shapes and query types of the objects that have pairs, as a structure
+//! of arrays apart from the users' data.
+//!
+//! ```text
+//! handle index   rows: Vec<u32>          row -> handles | solids | bounds | queries | isometries | is_written
+//!       0          1 ───────────────┐     0      ...
+//!       1          NONE (no pair)   └───> 1      pose and shape in one cache line, the rest apart
+//!       2          0                      2      free
+//! ```
 
 use core::fmt;
 
@@ -13,18 +20,19 @@ use crate::memory::{Look, clone_fields};
 use crate::query::PlacedSolids;
 use crate::shape::{Geometry, ShapeHandle};
 
-/// The row of an object that has none.
+/// Entry in `rows` of an object without a row.
 const NONE: u32 = u32::MAX;
 
-/// The poses, shapes and query types as of the last update, by [`CollisionObjectHandle::uid`], of the
-/// objects that have pairs.
+/// Poses, shapes and query types of the objects that have pairs, as of the last update, by
+/// [`CollisionObjectHandle::uid`].
 ///
-/// The world writes an object's row here when its first pair starts, and again when an update begins if
-/// the object changed since the one before; between updates the rows stand still, so that manifolds read
-/// then are those of the last update. When the last pair of the object stops, another may get its row.
+/// The world writes an object's row when its first pair starts, and again when an update begins if
+/// the object changed since the one before. Between updates the rows are constant, so that
+/// manifolds read then are those of the last update. When the last pair of the object stops, its
+/// row is free for another object.
 ///
-/// The table also knows which rows were written in the update under way: pairs of rows that
-/// stand still need no new query.
+/// The table also records which rows were written in the update under way: pairs of unchanged rows
+/// need no new query.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -42,34 +50,34 @@ const NONE: u32 = u32::MAX;
 /// world.set_position(b, Isometry::translation(9.0, 9.0));
 /// let object = world.collision_object(b).expect("it is there");
 /// assert_eq!(object.position().translation.x, 9.0, "the world knows at once");
-/// // The table of the narrow phase follows at the next update.
+/// // The table of the narrow phase is written at the next update.
 /// world.update();
 /// # assert!(world.contains(a));
 /// ```
 pub struct ObjectTable<N: Space<D>, const D: usize> {
-    /// By handle index: where the row stands, or [`NONE`].
+    /// By handle index: the row of the object, or [`NONE`].
     rows: Vec<u32>,
-    /// By row, as all below.
+    /// By row, as all arrays up to `is_written`.
     handles: Vec<CollisionObjectHandle>,
     solids: Vec<ObjectSolid<N, D>>,
-    /// Balls and boxes that hold the shapes: most pairs that are far apart are rejected by these, without a
-    /// look at the shapes, which lie far off in memory.
+    /// Bounding balls and boxes of the shapes: they reject most distant pairs without loading the
+    /// shapes.
     bounds: Vec<ReachBounds<N, D>>,
     queries: Vec<GeometricQueryType<N>>,
-    /// The poses as the user gave them, for algorithms of the user's own.
+    /// The poses as the user gave them, for custom algorithms.
     isometries: Vec<N::Isometry>,
     /// The row was written in the update under way.
     is_written: Vec<bool>,
-    /// Rows without an object, the next one to be used at the end.
+    /// Rows without an object; the last one is used next.
     free: Vec<u32>,
-    /// The objects whose rows were written in the update under way, in order of writing. One that lost its
-    /// row since has none or stands here again.
+    /// Handle indices of the objects whose rows were written in the update under way, in order of
+    /// writing. An object that has lost its row since may still be listed, or listed again.
     changed: Vec<u32>,
-    /// How many rows were lent since they were in order.
+    /// Number of rows taken since they were last sorted.
     lent: usize,
-    /// The pairs that were computed since the last update, sorted by key.
+    /// Pairs computed since the last update, sorted by key, with the poses used.
     pub(super) substeps: Vec<PairSolids<N, D>>,
-    /// By handle index, as long as the last object with a skin needs.
+    /// Skins by handle index, up to the last object with one.
     pub(super) skins: Vec<N>,
     journal: Journal<RowNote<N, D>, Vec<PairSolids<N, D>>>,
 }
@@ -78,12 +86,12 @@ clone_fields!([N: Space<D>, const D: usize] ObjectTable<N, D> {
     rows, handles, solids, bounds, queries, isometries, is_written, free, changed, lent, substeps, skins, journal,
 });
 
-/// What was known of an object before it changed.
+/// The state of an object before a change.
 #[derive(Clone, Debug)]
 enum RowNote<N: Space<D>, const D: usize> {
-    /// It was here when it moved.
+    /// The isometry before a move.
     Moved(u32, N::Isometry),
-    /// It had this row, if any, and this skin.
+    /// The row, if any, and the skin.
     Whole(u32, Option<ObjectRow<N, D>>, N),
 }
 
@@ -94,7 +102,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ObjectTable<N, D> {
     }
 }
 
-/// What every query of a pair reads of an object: of `f32` in 3D one cache line.
+/// Data of an object that every query of a pair reads: one cache line for `f32` in 3D.
 #[derive(Debug)]
 #[repr(align(64))]
 pub(super) struct ObjectSolid<N: Real, const D: usize> {
@@ -139,8 +147,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Forgets which rows were written: those written from now on are the changed ones. All pairs are read by
-    /// the rows.
+    /// Begins an update: clears the list of written rows and the poses of single computed pairs.
     pub(crate) fn begin_update(&mut self) {
         self.substeps.clear();
         for index in self.changed.drain(..) {
@@ -150,12 +157,12 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Whether the object has a row.
+    /// Returns `true` if the object has a row.
     pub(crate) fn has_row(&self, index: u32) -> bool {
         self.rows.get(index as usize).is_some_and(|&row| row != NONE)
     }
 
-    /// Gives the object a row if it has none.
+    /// Writes a row for an object that has none.
     pub(crate) fn lend(&mut self, index: u32, row: impl FnOnce() -> ObjectRow<N, D>) {
         if self.has_row(index) {
             return;
@@ -174,7 +181,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Takes the object's row back, if it has one.
+    /// Frees the row of an object, if it has one.
     pub(crate) fn release(&mut self, index: u32) {
         if self.has_row(index) {
             self.note(index);
@@ -184,7 +191,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Writes an object's row, if it has one.
+    /// Overwrites the row of an object, if it has one.
     pub(crate) fn set(&mut self, index: u32, row: impl FnOnce() -> ObjectRow<N, D>) {
         if self.has_row(index) {
             self.note(index);
@@ -210,7 +217,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.queries.push(row.query);
     }
 
-    /// Moves an object without touching the rest of its row, if it has one.
+    /// Writes the position of an object, if it has a row, and leaves the rest of the row.
     pub(crate) fn set_position(&mut self, index: u32, isometry: &N::Isometry) {
         if !self.has_row(index) {
             return;
@@ -228,7 +235,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Exchanges the pose in an object's row, which does not count as written; answers the one that was there.
+    /// Replaces the pose in an object's row without marking it as written, and returns the old one.
     pub(super) fn replace_pose(
         &mut self,
         index: u32,
@@ -239,7 +246,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         (pose, core::mem::replace(&mut self.isometries[row], isometry))
     }
 
-    /// Says how far from its surface the contacts of an object are measured.
+    /// Sets the skin of an object.
     pub(crate) fn set_skin(&mut self, index: u32, skin: N) {
         self.note(index);
         let (index, len) = (index as usize, self.skins.len());
@@ -251,41 +258,43 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// How far from its surface the contacts of an object are measured, as of the last update.
+    /// Returns the skin of an object as of the last update.
     pub(crate) fn skin(&self, index: u32) -> N {
         self.skins.get(index as usize).copied().unwrap_or(N::ZERO)
     }
 
-    /// The skins of a pair.
+    /// Returns the skins of a pair.
     pub(super) fn skins_of(&self, key: PairKey) -> [N; 2] {
         key.mapped(|object| self.skin(object))
     }
 
-    /// The distance of two solids up to which they have contacts, if it is `linear` beyond their skins.
+    /// Returns the prediction of a pair for its unexpanded shapes: `linear` plus both skins.
     pub(super) fn beyond_skins(&self, key: PairKey, linear: N) -> N {
         let [first, second] = self.skins_of(key);
         linear + (first + second)
     }
 
-    /// The objects whose rows were written since the last update began.
+    /// Returns the handle indices of the objects whose rows were written since the last update
+    /// began.
     pub(crate) fn changed(&self) -> &[u32] {
         &self.changed
     }
 
-    /// The row was written since the last update began; `false` for an object without one.
+    /// Returns `true` if the object's row was written since the last update began; `false`
+    /// for an object without one.
     #[inline]
     pub(crate) fn has_changed(&self, index: u32) -> bool {
         self.is_written.get(self.row(index)).is_some_and(|&is_written| is_written)
     }
 
-    /// Where the row of an object stands, which has one.
+    /// Returns the row of an object, which must have one.
     #[inline]
     fn row(&self, index: u32) -> usize {
         self.rows[index as usize] as usize
     }
 
-    /// Brings the rows into the order of the objects if many have been lent since they were: who goes
-    /// through the objects then goes through memory.
+    /// Sorts the rows by handle index and drops free ones, if more than a quarter have been taken
+    /// since the last time: a pass over the objects then accesses memory in order.
     pub(crate) fn tidy(&mut self) {
         if self.lent * 4 <= self.handles.len() {
             return;
@@ -307,7 +316,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.free.clear();
     }
 
-    /// Exchanges a row in use with another, which may be free.
+    /// Swaps a row in use with another, which may be free.
     fn exchange(&mut self, row: usize, other: usize) {
         let (owner, other_owner) = (self.handles[row].uid(), self.handles[other].uid());
         if self.rows[other_owner] as usize == other {
@@ -322,7 +331,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.is_written.swap(row, other);
     }
 
-    /// Gives memory back that has not been needed for some time.
+    /// Releases memory that has not been needed for some time.
     pub(crate) fn give_back(&mut self, look: Look) {
         self.lent += self.free.len();
         self.tidy();
@@ -337,17 +346,17 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         look.fit(&mut self.skins);
     }
 
-    /// Adds a mark; see [`Journal`].
+    /// Sets a mark; see [`Journal`].
     pub(crate) fn mark(&mut self, number: u64) {
         self.journal.mark(number, self.substeps.clone());
     }
 
-    /// Forgets the marks with smaller numbers.
+    /// Drops the marks with smaller numbers.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
     }
 
-    /// Goes back to a mark.
+    /// Undoes all changes since a mark.
     pub(crate) fn rewind(&mut self, number: u64) {
         let mut journal = core::mem::take(&mut self.journal);
         while let Some(note) = journal.undo(number) {
@@ -367,7 +376,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.journal = journal;
     }
 
-    /// Notes an object that is about to change.
+    /// Notes the row and skin of an object before they change.
     fn note(&mut self, index: u32) {
         if self.journal.is_first_whole(index as usize) {
             let row = self.has_row(index).then(|| ObjectRow {
@@ -381,7 +390,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// What is wrong with the rows, if anything.
+    /// Checks that each row belongs to one object or is free; the error says what is wrong.
     pub(crate) fn validate(&self) -> Result<(), String> {
         let mut owners = vec![0_u8; self.handles.len()];
         let used = self.rows.iter().filter(|&&row| row != NONE);
@@ -392,40 +401,40 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// The handle of the object that the row was written for.
+    /// Returns the handle of the object that the row was written for.
     pub(crate) fn handle(&self, index: u32) -> CollisionObjectHandle {
         self.handles[self.row(index)]
     }
 
-    /// The pose at the last update; the rotation of a ball is none.
+    /// Returns the pose at the last update; the rotation of a ball is the identity.
     #[inline]
     pub(crate) fn pose(&self, index: u32) -> &Pose<N, D> {
         &self.solids[self.row(index)].pose
     }
 
-    /// The shape and the pose at the last update.
+    /// Returns shape and pose at the last update.
     pub(super) fn solid(&self, index: u32) -> &ObjectSolid<N, D> {
         &self.solids[self.row(index)]
     }
 
-    /// The pose at the last update, as the user gave it.
+    /// Returns the pose at the last update, as the user gave it.
     pub(crate) fn isometry(&self, index: u32) -> &N::Isometry {
         &self.isometries[self.row(index)]
     }
 
-    /// The shape at the last update.
+    /// Returns the shape at the last update.
     #[inline]
     pub(crate) fn shape(&self, index: u32) -> &ShapeHandle<N, D> {
         &self.solids[self.row(index)].shape
     }
 
-    /// What holds the shape.
+    /// Returns the bounds of the shape.
     #[inline]
     pub(crate) fn bounds(&self, index: u32) -> &ReachBounds<N, D> {
         &self.bounds[self.row(index)]
     }
 
-    /// The query type at the last update.
+    /// Returns the query type at the last update.
     pub(crate) fn query(&self, index: u32) -> GeometricQueryType<N> {
         self.queries[self.row(index)]
     }

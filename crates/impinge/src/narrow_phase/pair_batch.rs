@@ -1,6 +1,6 @@
-//! The pairs that begin and end in an update, all together.
+//! The pairs that begin and end in an update, processed in batches.
 //!
-//! A pair that begins may get the index of one that ends, so the order in which pairs lie is no promise.
+//! A pair that begins may get the index of one that ends, so the order of pairs is unspecified.
 
 use smallvec::SmallVec;
 
@@ -13,18 +13,18 @@ use crate::collide::ManifoldRequest;
 use crate::math::Space;
 use crate::pairs::pack;
 
-/// Pairs of each sort whose memory is fetched together.
+/// Number of started and of stopped pairs whose memory is prefetched together.
 const AT_ONCE: usize = 16;
 
-/// Some pairs, by handle index.
+/// Keys of some pairs.
 type BatchKeys = SmallVec<[PairKey; AT_ONCE]>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Takes in the pairs that began and lets those go that ended, as
-    /// [`pair_started`](Self::pair_started) and [`pair_stopped`](Self::pair_stopped) do.
+    /// Adds the pairs that began and removes those that ended, as [`pair_started`](Self::pair_started) and
+    /// [`pair_stopped`](Self::pair_stopped) do.
     ///
-    /// Pairs lie anywhere in memory: what is known of several is fetched at once. One that begins gets the
-    /// place of one that ends, if the same algorithm serves both, so that no third one moves.
+    /// Pairs are scattered in memory, so several are prefetched at once. A pair that begins gets the place of one that
+    /// ends, if both are in the same group, so that no third one moves.
     pub(crate) fn begin_and_end_pairs(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -47,7 +47,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Takes some pairs in and lets others go.
+    /// Adds some pairs and removes others, pairwise where possible.
     fn begin_and_end_some_pairs(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -66,8 +66,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Brings what is known of some pairs into the cache, where whoever goes through them would wait for
-    /// one after the other. Changes nothing.
+    /// Prefetches the data of some pairs, whose loads would otherwise wait for each other. Changes nothing.
     fn fetch(&self, table: &ObjectTable<N, D>, started: &[PairKey], stopped: &[PairKey]) {
         let packed = |&[first, second]: &PairKey| pack(first, second);
         let keys: SmallVec<[u64; 2 * AT_ONCE]> =
@@ -87,7 +86,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         core::hint::black_box(seen);
     }
 
-    /// Lets one pair go and takes another one in.
+    /// Removes one pair and adds another.
     fn exchange(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -101,7 +100,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Puts a new pair in the place of an old one, if the library's contacts of the same kinds serve both.
+    /// Puts a new pair in the place of an old one; `None` if they are not in the same group of built-in contacts.
     fn replace(
         &mut self,
         table: &ObjectTable<N, D>,

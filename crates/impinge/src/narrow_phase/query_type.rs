@@ -1,8 +1,8 @@
-//! What is asked of an object's pairs.
+//! Query types: whether contacts or proximity are computed for an object's pairs.
 
 use crate::math::Real;
 
-/// What the narrow phase computes for the pairs of an object.
+/// Kind of query that the narrow phase computes for the pairs of an object.
 ///
 /// If either object of a pair has the type `Proximity`, only proximity is computed for the pair.
 ///
@@ -11,23 +11,23 @@ use crate::math::Real;
 ///
 /// let (body, sensor) = (GeometricQueryType::Contacts(0.1_f32, 0.0), GeometricQueryType::Proximity(0.5));
 /// assert_eq!((body.query_limit(), sensor.query_limit()), (0.1, 0.5));
-/// // The same with named fields, which worlds take as well:
+/// // Equal types with named fields, which worlds take as well:
 /// assert_eq!(body, ContactQuery::new(0.1).into());
 /// assert_eq!(sensor, ProximityQuery { margin: 0.5 }.into());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum GeometricQueryType<N: Real> {
-    /// Contacts, given the linear prediction and the angular one in radians.
+    /// Contacts, with the linear prediction and the angular one in radians.
     ///
-    /// Contact points exist while the solids penetrate or are no farther apart than the *sum* of the
-    /// linear predictions of both objects. The sum of the angular predictions adds the points that
-    /// would come that near if the solids were turned by that angle; above a right angle it counts
-    /// as one.
+    /// Contact points exist while the solids penetrate or are no farther apart than the *sum* of
+    /// the linear predictions of both objects. The sum of the angular predictions adds the points
+    /// that would come that near if the solids rotated by up to that angle; a sum above a right
+    /// angle counts as a right angle.
     Contacts(N, N),
-    /// Proximity, given the margin: farther apart than the *sum* of the margins is disjoint.
+    /// Proximity, with the margin: solids farther apart than the *sum* of the margins are disjoint.
     ///
-    /// An object with the type `Contacts` adds nothing to the sum.
+    /// An object of type `Contacts` adds nothing to the sum.
     Proximity(N),
 }
 
@@ -51,7 +51,8 @@ pub enum GeometricQueryType<N: Real> {
 pub struct ContactQuery<N: Real> {
     /// The object's share of the distance up to which contact points exist.
     pub prediction: N,
-    /// Its share of the angle, in radians, by which the solids may turn until they are that near.
+    /// The object's share of the angle, in radians, by which the solids may rotate until they are
+    /// that near.
     pub angular_prediction: N,
 }
 
@@ -79,13 +80,14 @@ pub struct ProximityQuery<N: Real> {
 }
 
 impl<N: Real> ContactQuery<N> {
-    /// Contact points up to a distance, whatever the angle.
+    /// Requests contact points up to the distance `prediction`, without an angular prediction.
     #[must_use]
     pub const fn new(prediction: N) -> Self {
         Self { prediction, angular_prediction: N::ZERO }
     }
 
-    /// The same with the points that turning by an angle, in radians, would bring that near.
+    /// Also keeps points that come within the prediction if the solids rotate by up to
+    /// `angular_prediction` radians.
     #[must_use]
     pub const fn with_angular_prediction(self, angular_prediction: N) -> Self {
         Self { angular_prediction, ..self }
@@ -93,7 +95,7 @@ impl<N: Real> ContactQuery<N> {
 }
 
 impl<N: Real> ProximityQuery<N> {
-    /// Proximity up to a distance.
+    /// Requests proximity with this margin.
     #[must_use]
     pub const fn new(margin: N) -> Self {
         Self { margin }
@@ -112,7 +114,7 @@ impl<N: Real> From<ProximityQuery<N>> for GeometricQueryType<N> {
     }
 }
 
-/// What is asked of a pair: the sums over its two objects.
+/// Query of a pair: the sums over its two objects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PairQuery<N: Real> {
     Contacts { linear: N, angular: N },
@@ -120,8 +122,8 @@ pub(crate) enum PairQuery<N: Real> {
 }
 
 impl<N: Real> GeometricQueryType<N> {
-    /// The distance up to which the object wants to know of others; the broad phase adds it to the
-    /// object's box.
+    /// Returns the prediction or margin, the distance at which the object has pairs; the broad
+    /// phase grows its box by it.
     #[must_use]
     pub fn query_limit(&self) -> N {
         match *self {
@@ -130,7 +132,7 @@ impl<N: Real> GeometricQueryType<N> {
         }
     }
 
-    /// The predictions by their names; `None` for an object that asks for proximity.
+    /// Returns the predictions with named fields; `None` for a proximity query.
     #[must_use]
     pub fn as_contacts(&self) -> Option<ContactQuery<N>> {
         match *self {
@@ -141,7 +143,7 @@ impl<N: Real> GeometricQueryType<N> {
         }
     }
 
-    /// The margin by its name; `None` for an object that asks for contacts.
+    /// Returns the margin with a named field; `None` for a contact query.
     #[must_use]
     pub fn as_proximity(&self) -> Option<ProximityQuery<N>> {
         match *self {
@@ -150,7 +152,7 @@ impl<N: Real> GeometricQueryType<N> {
         }
     }
 
-    /// What a pair of objects with these types asks.
+    /// Returns the query of a pair of objects with these types; proximity prevails.
     pub(crate) fn pair(self, other: Self) -> PairQuery<N> {
         match (self, other) {
             (Self::Contacts(linear1, angular1), Self::Contacts(linear2, angular2)) => {
@@ -164,7 +166,7 @@ impl<N: Real> GeometricQueryType<N> {
         }
     }
 
-    /// The first number that is negative or not finite, if there is one.
+    /// Returns the first number that is negative or not finite, if there is one.
     pub(crate) fn bad_number(&self) -> Option<N> {
         let numbers = match *self {
             Self::Contacts(linear, angular) => [linear, angular],
@@ -174,8 +176,8 @@ impl<N: Real> GeometricQueryType<N> {
     }
 }
 
-/// A query type in less memory: its numbers, and −1 for the second of one that asks for proximity. No
-/// number of a query type is negative.
+/// A query type in less memory: both predictions, or the margin and −1. Numbers of a query type are
+/// never negative.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PackedQuery<N: Real>([N; 2]);
 
@@ -187,7 +189,7 @@ impl<N: Real> PackedQuery<N> {
         }
     }
 
-    /// The query type.
+    /// Returns the query type.
     #[inline]
     pub(crate) fn get(self) -> GeometricQueryType<N> {
         let [first, second] = self.0;

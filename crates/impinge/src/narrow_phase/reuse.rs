@@ -1,14 +1,14 @@
-//! Contacts kept while a pair hardly moves: an approximation that users may ask for.
+//! Contact reuse: contacts kept while a pair hardly moves, as an option.
 //!
-//! To most pairs of a scene that comes to rest a step brings a thousandth of a size, and what a fresh query
-//! would find is what was found before, moved along. So the pose of a pair at its last query is kept (its
-//! *reference*), and while no point of the smaller solid has moved farther from there than a tolerance,
-//! beside the other, the points stay: each where it was on both solids, with its distance measured anew
-//! along the normal. This is the contact recycling of Box2D and Box3D (E. Catto), with motion measured
-//! from the last query rather than from step to step, so that what is kept cannot drift.
+//! In a scene that comes to rest, most pairs move by a thousandth of their size in a step, and a new query would find
+//! the old points, moved along. So the relative pose of a pair at its last query is kept (its *reference*). While no
+//! point of the smaller solid has moved farther than a tolerance from there, relative to the other solid, the points
+//! stay fixed to both solids, and their distances are measured again along the normal. This is the contact recycling of
+//! Box2D and Box3D (E. Catto), but with motion measured from the last query rather than from step to step, so that
+//! errors do not accumulate.
 //!
-//! Signed distances change by no more than their solids move. Those that are handed on are therefore at
-//! most twice the tolerance off those of a query, and as far beyond the prediction; the nearest is within it.
+//! A signed distance changes by no more than its solids move. So reused distances differ from those of a query by at
+//! most twice the tolerance, and may exceed the prediction by as much; the nearest is within it.
 
 use core::fmt;
 
@@ -20,7 +20,7 @@ use super::group::{PairKey, Rows};
 use super::state::{KeptContacts, KeptPoints};
 use crate::math::{Mapped, Pose, Real, Space, max, min};
 
-/// A tolerance of motion is negative, infinite or NaN.
+/// The tolerance of contact reuse is negative, infinite or NaN.
 ///
 /// ```
 /// use impinge::dim3::narrow_phase::{DefaultNarrowPhase, ReuseError};
@@ -30,7 +30,7 @@ use crate::math::{Mapped, Pose, Real, Space, max, min};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReuseError {
-    /// The number, exactly.
+    /// The tolerance, exactly.
     pub value: f64,
 }
 
@@ -42,7 +42,7 @@ impl fmt::Display for ReuseError {
 
 impl std::error::Error for ReuseError {}
 
-/// The tolerance, if it is finite and not negative.
+/// Returns the tolerance, if it is finite and not negative.
 pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
     if tolerance < N::ZERO || !tolerance.is_finite_number() {
         return Err(ReuseError { value: tolerance.as_f64() });
@@ -50,24 +50,24 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
     Ok(tolerance)
 }
 
-/// A pair as it was when its contacts were computed.
+/// Relative pose and distances of a pair at the computation of its contacts.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference<N: Real, const D: usize> {
-    /// The pose of the solid in whose frame contacts are kept in that of the other.
+    /// Pose of the solid in whose frame contacts are stored, relative to the other solid.
     pose21: Pose<N, D>,
-    /// How far the points that matter are from the origin of that solid at most; infinite if nothing can be
-    /// kept.
+    /// Upper bound of the distance of the relevant points from the origin of that solid; infinite if the contacts
+    /// cannot be reused.
     reach: N,
-    /// For so many updates nothing is held against this, nor noted: the pair is fast.
+    /// Number of further updates for which the reference is neither compared nor set, because the pair is fast.
     pause: u8,
-    /// Of the contacts, in their order.
+    /// Distance of each contact, in order.
     distances: SmallVec<[N; 4]>,
 }
 
-/// A pair that has moved by so many times what may be kept is fast.
+/// A pair is fast if it has moved by more than `FAST` times the limit of reuse.
 const FAST: f64 = 4.0;
-/// So many updates of a fast pair are not noted before one is, for the next to be held against: where
-/// everything moves fast, that is what keeping contacts costs.
+/// Number of updates that a fast pair skips before its reference is set again. This bounds the cost of reuse in scenes
+/// where everything moves fast.
 const PAUSE: u8 = 6;
 
 impl<N: Real, const D: usize> Default for Reference<N, D> {
@@ -78,11 +78,10 @@ impl<N: Real, const D: usize> Default for Reference<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Reference<N, D> {
-    /// Moves the contacts of a pair along, if it has moved so little that this will do; `pose21` is how its solids lie
-    /// now.
+    /// Moves the contacts of a pair along and returns `true`, if the pair has moved by less than the limit and a
+    /// contact is still near. `pose21` returns the present relative pose.
     ///
-    /// Nobody may miss a contact of solids that overlap: where less than the tolerance is predicted, no
-    /// motion beyond that counts as little.
+    /// The limit is the smaller of tolerance and prediction, so that no contact of overlapping solids is missed.
     #[inline]
     pub(super) fn keeps<S: KeptPoints<N, D>>(
         &mut self,
@@ -105,8 +104,8 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
         motion < limit && self.measure(&pose21, state, prediction)
     }
 
-    /// Holds the contacts, which were computed just now, and how the solids lie; `reaches` are those of the solids, the
-    /// one in whose frame contacts are kept first.
+    /// Stores the contacts, which were just computed, and the relative pose as the reference. `reaches` returns the
+    /// bounding radii, first of the solid in whose frame contacts are stored.
     #[inline]
     pub(super) fn note<S: KeptPoints<N, D>>(
         &mut self,
@@ -118,30 +117,29 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
             return;
         }
         self.pose21 = pose21();
-        // Solids meet where both of them are: of one without end, or larger, only what is near the other
-        // counts.
+        // Contacts lie on both solids: of an unbounded or larger solid, only the part near the other one matters.
         let [own, others] = reaches();
         self.reach = min(own, self.pose21.translation.norm() + others);
         self.distances.clear();
         state.each_point(|_, distance, _| self.distances.push(*distance));
     }
 
-    /// How far a point of the first solid has come from where it was, beside the second, at most; no
-    /// number or infinite if that is not known.
+    /// Returns an upper bound of the distance that a point of the first solid has moved relative to the second; NaN or
+    /// infinite if there is no bound.
     fn motion(&self, pose21: &Pose<N, D>) -> N {
-        // The Frobenius norm of a difference of rotations is no less than its greatest stretch.
+        // The Frobenius norm of a difference of rotations bounds its spectral norm.
         let turn = (pose21.rotation - self.pose21.rotation).norm();
         (pose21.translation - self.pose21.translation).norm() + turn * self.reach
     }
 
-    /// Measures the distance of each contact, whose points are fixed to the solids, along its normal in
-    /// the first of them. Answers whether one is within `limit`, or there is none: of many contacts one or the
-    /// other leaves the prediction at every step, which ends nothing.
+    /// Measures the distance of each contact, with both points fixed to their solids, along its normal fixed to the
+    /// first solid. Returns `true` if a contact is within `limit` or its old distance, or if there is no contact. Of
+    /// many contacts some leave the prediction at every step; that alone does not end the reuse.
     ///
-    /// With x ↦ R x + t for `pose21` and R' and t' for that of the reference, a point p of the first solid
-    /// and the one opposite, by d n, were at R' p + t' and R' (p + d n) + t'. Of the second one's way to the
-    /// first as it is now, (R' − R) p + (t' − t) + d R' n, the part along R n is the distance: only
-    /// differences that are small, so that little is lost far away from the origin.
+    /// `pose21` maps x to R x + t, the reference to R' x + t'. A point p of the first solid and its opposite point, at
+    /// distance d along n, were at R' p + t' and R' (p + d n) + t'. The distance is the component along R n of the
+    /// vector from the first point as it is now to the opposite point: (R' − R) p + (t' − t) + d R' n. Only small
+    /// differences occur, so that little precision is lost far from the origin.
     fn measure<S: KeptPoints<N, D>>(&self, pose21: &Pose<N, D>, state: &mut S, limit: N) -> bool {
         let turned = self.pose21.rotation - pose21.rotation;
         let moved = self.pose21.translation - pose21.translation;
@@ -159,20 +157,20 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
     }
 }
 
-/// What it takes to keep contacts: where objects are, and how far they may have moved.
+/// Context of contact reuse: the object table and the tolerance.
 #[derive(Clone, Copy)]
 pub(super) struct Reuse<'t, N: Space<D>, const D: usize> {
     pub(super) table: &'t ObjectTable<N, D>,
     pub(super) tolerance: N,
 }
 
-/// The rows of pairs that the library computes contacts for.
+/// Slices over pairs with built-in contacts.
 type KeptRows<'a, N, S, V, const D: usize> =
     Rows<'a, ContactEntry<N, S>, ContactView<V>, Reference<N, D>>;
 
 impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
-    /// Moves the contacts of a pair along, if it has moved so little that this will do. Nothing is said
-    /// about it in events: there are as many contacts as before.
+    /// Moves the contacts of a pair along and returns `true`, if the pair has moved little enough. The number of
+    /// contacts stays, so there are no events.
     #[inline]
     pub(super) fn keeps<S: KeptContacts<N, D>>(
         &self,
@@ -182,7 +180,7 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         !rows.references.is_empty() && self.moves_along(rows, place)
     }
 
-    /// [`Self::keeps`] of pairs that have references.
+    /// As [`Self::keeps`], for groups that have references.
     fn moves_along<S: KeptContacts<N, D>>(
         &self,
         rows: &mut KeptRows<'_, N, S, S::Manifolds, D>,
@@ -199,7 +197,7 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         is_kept
     }
 
-    /// Makes the poses and contacts of a pair, which were computed just now, its reference.
+    /// Makes the present poses and contacts of a pair, which were just computed, its reference.
     #[inline]
     pub(super) fn note<S: KeptContacts<N, D>>(
         &self,
@@ -214,14 +212,14 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         reference.note(state, || self.pose21(key, is_swapped), reaches);
     }
 
-    /// The pose of the solid in whose frame contacts are kept in that of the other.
+    /// Returns the pose of the solid in whose frame contacts are stored, relative to the other solid.
     fn pose21(&self, key: PairKey, is_swapped: bool) -> Pose<N, D> {
         let [home, other] = home_first(key, is_swapped);
         Pose::relative(self.table.pose(other), self.table.pose(home))
     }
 }
 
-/// The object in whose frame contacts are kept, then the other.
+/// Returns the object in whose frame contacts are stored, then the other.
 const fn home_first([first, second]: PairKey, is_swapped: bool) -> [u32; 2] {
     if is_swapped { [second, first] } else { [first, second] }
 }

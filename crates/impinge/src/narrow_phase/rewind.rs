@@ -1,7 +1,7 @@
-//! Going back to a mark.
+//! Rewinding the narrow phase to a mark.
 //!
-//! Pairs in groups come back to the places that they had, since contacts are read in that order. Where pairs stand in the
-//! table of pairs decides nothing, so these are just put in and taken out.
+//! Pairs in groups return to their former indices, since contacts are read in that order. The order
+//! of the pair table affects no result, so its pairs are simply inserted and removed.
 
 use super::default_narrow_phase::NOWHERE;
 use super::entry::{ContactEntry, CustomContactEntry, CustomProximityEntry, ProximityEntry};
@@ -13,26 +13,26 @@ use crate::collide::{PairIds, RawManifold, RawPoint};
 use crate::journal::Journal;
 use crate::math::{Pose, Real, Space, Vector};
 
-/// What is known of a pair in a group.
+/// All data of a pair in a group.
 #[derive(Clone, Debug)]
 pub(crate) struct GroupRow<S, R> {
     key: PairKey,
     due: bool,
     is_touching: bool,
     state: S,
-    /// If the group has references.
+    /// `None` if the group has no references.
     reference: Option<R>,
 }
 
-/// What is kept of a pair, in pieces, of which there are as many as it takes: a note of a pair with one contact is a short
-/// one.
+/// A state that can be noted in pieces of constant size: the note of a pair with one contact then
+/// takes less memory than one of four.
 pub(crate) trait Parts: Clone {
     type Part;
 
-    /// Calls with each piece of what an update may change.
+    /// Calls `each` with each piece of the data that an update may change.
     fn each_part(&self, each: impl FnMut(Self::Part));
 
-    /// Takes the pieces over, which come in order.
+    /// Restores the data from the pieces, which come in the order of [`Self::each_part`].
     fn put_together(&mut self, parts: impl Iterator<Item = Self::Part>);
 }
 
@@ -70,7 +70,7 @@ impl<N: Space<D>, const D: usize> Parts for ContactEntry<N, ContactState<N, D>> 
     }
 }
 
-/// States that are one piece.
+/// States that are noted in one piece.
 macro_rules! in_one_part {
     ($([$($generics:tt)*] $type:ty;)*) => {
         $(impl<$($generics)*> Parts for $type {
@@ -99,15 +99,15 @@ in_one_part! {
     [] u32;
 }
 
-/// A change of a group.
+/// One undoable change of a group.
 pub(crate) enum GroupNote<S: Parts, R> {
-    /// A pair came, behind all others.
+    /// A pair was added at the end.
     Pushed,
-    /// A pair left its place to the last one.
+    /// A pair was removed, and the last one moved to its index.
     Removed(u32, Box<GroupRow<S, R>>),
-    /// A pair is about to change, or another gets its place.
+    /// A pair before a change other than an update, or before its replacement.
     Replaced(u32, Box<GroupRow<S, R>>),
-    /// An update is about to compute a pair, of which the parts follow.
+    /// A pair before its computation in an update; its parts follow.
     Written {
         place: u32,
         due: bool,
@@ -128,7 +128,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         })
     }
 
-    /// Notes a pair that an update is about to compute, if there are marks.
+    /// Notes a pair before an update computes it, if there are marks and it was not noted since the
+    /// last.
     pub(super) fn note(&mut self, place: u32) {
         let at = place as usize;
         if !self.journal.is_on()
@@ -144,7 +145,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Notes a pair that is about to change in another way than by an update, if there are marks.
+    /// Notes a pair before a change other than an update, if there are marks.
     pub(super) fn note_whole(&mut self, place: u32) {
         if self.journal.is_on() {
             self.journal.note(GroupNote::Replaced(place, self.row(place)));
@@ -152,7 +153,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Notes a pair that is about to leave, if there are marks.
+    /// Notes a pair before its removal, if there are marks.
     pub(super) fn note_removed(&mut self, place: u32) {
         if self.journal.is_on() {
             self.journal.note(GroupNote::Removed(place, self.row(place)));
@@ -170,7 +171,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Adds a mark. A group that is empty and has no older mark needs none.
+    /// Sets a mark. A group that is empty and has no older mark needs none.
     fn mark(&mut self, number: u64) {
         if !self.is_empty() || self.journal.is_on() {
             self.journal.mark(number, ());
@@ -198,11 +199,12 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Goes back to a mark, and calls with each place whose pair may be another.
+    /// Undoes all changes since a mark. Calls `changed` with each index whose pair may be another
+    /// now.
     fn rewind(&mut self, number: u64, mut changed: impl FnMut(u32)) {
         let mut journal = core::mem::take(&mut self.journal);
         if !journal.has(number) {
-            // The group was empty.
+            // Without this mark the group was empty at that time.
             while !self.is_empty() {
                 self.pop();
             }
@@ -267,7 +269,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     }
 }
 
-/// Calls with each group of the lanes and the lane.
+/// Runs `action` for each group, with its location.
 macro_rules! each_group {
     ($lanes:expr, |$lane:pat_param, $group:ident| $action:expr) => {{
         let PairLanes { contacts, composites, proximity, custom_contacts, custom_proximity } =
@@ -296,7 +298,7 @@ macro_rules! each_group {
 }
 
 impl<N: Space<D>, const D: usize> PairLanes<N, D> {
-    /// Notes the pairs of one lane that are about to change.
+    /// Notes the pairs at some locations before they are computed.
     pub(super) fn note(&mut self, picked: &[Location]) {
         for &Location { lane, place } in picked {
             match lane {
@@ -316,7 +318,7 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
     }
 }
 
-/// What is kept whole with a mark.
+/// State that is copied whole with a mark.
 #[derive(Clone, Debug)]
 pub(crate) struct NarrowHead {
     ids: IdAllocator,
@@ -324,7 +326,7 @@ pub(crate) struct NarrowHead {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Adds a mark; see [`Journal`](crate::journal::Journal).
+    /// Sets a mark; see [`Journal`](crate::journal::Journal).
     pub(crate) fn mark(&mut self, number: u64) {
         let head = NarrowHead { ids: self.ids.clone(), due: self.due.clone() };
         self.journal.mark(number, head);
@@ -332,14 +334,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         each_group!(&mut self.lanes, |_, group| group.mark(number));
     }
 
-    /// Forgets the marks with smaller numbers.
+    /// Drops the marks with smaller numbers.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
         self.pairs.forget_before(number);
         each_group!(&mut self.lanes, |_, group| group.forget_before(number));
     }
 
-    /// Goes back to a mark. Costs as much as what changed since.
+    /// Undoes all changes since a mark. The cost is proportional to their number.
     pub(crate) fn rewind(&mut self, number: u64) {
         let locations = &mut self.locations;
         self.pairs.rewind(number, |undone| match undone {

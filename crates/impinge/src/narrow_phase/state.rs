@@ -1,6 +1,6 @@
-//! What is kept of one built-in pair between updates, and how it is brought up to date.
+//! State of one built-in pair between updates, and its update.
 //!
-//! What a world computes of a pair has the bits of a generator that follows that pair alone.
+//! A world computes the same bits for a pair as a generator that follows that pair alone.
 
 use super::ObjectTable;
 use super::group::PairKey;
@@ -19,50 +19,50 @@ use crate::shape::{Geometry, Kind, Shape};
 use crate::tables::ByDimension;
 use crate::tables::entries;
 
-/// Two solids placed in the world.
+/// Two solids placed in the world, with their bounds.
 #[derive(Clone, Copy)]
 pub(crate) struct Posed<'a, N: Real, const D: usize> {
     pub(crate) pose1: &'a Pose<N, D>,
     pub(crate) shape1: &'a dyn Shape<N, D>,
     pub(crate) pose2: &'a Pose<N, D>,
     pub(crate) shape2: &'a dyn Shape<N, D>,
-    /// What holds the shapes.
+    /// Bounding balls and boxes of the shapes.
     pub(crate) bounds: [&'a ReachBounds<N, D>; 2],
-    /// Both are one object, which is tested against itself.
+    /// Both solids are the same object, which is tested against itself.
     pub(crate) is_self: bool,
 }
 
 impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
-    /// The pair in the order in which every query computes it.
+    /// Returns the pair in canonical order, and whether that is the reverse of its own.
     fn canonical(&self) -> (Pair<'a, N, D>, bool) {
         canonical(self.pose1, self.shape1.geometry(), self.pose2, self.shape2.geometry())
     }
 
-    /// The two solids, each for itself.
+    /// Returns the two placed solids in the pair's own order.
     pub(super) fn placed(&self) -> [Placed<'a, N, D>; 2] {
         [(self.pose1, self.shape1), (self.pose2, self.shape2)]
             .mapped(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() })
     }
 
-    /// The solids are certainly farther apart than `limit`.
+    /// Returns `true` if the bounds prove that the solids are farther apart than `limit`.
     fn are_beyond(&self, limit: N) -> bool {
         let between = self.pose2.translation - self.pose1.translation;
         self.bounds[0].is_clear_of(self.bounds[1], &between, limit)
     }
 
-    /// As [`Self::are_beyond`], by boxes, for the poses of a pair in canonical order.
+    /// As [`Self::are_beyond`], by boxes. `pose12` is the relative pose in canonical order.
     fn have_boxes_beyond(&self, pose12: &Pose<N, D>, is_swapped: bool, limit: N) -> bool {
         let [first, second] = [usize::from(is_swapped), usize::from(!is_swapped)];
         self.bounds[first].has_box_clear_of(self.bounds[second], pose12, limit)
     }
 
-    /// A composite is among them.
+    /// Returns `true` if one of the two is a composite.
     pub(crate) fn has_composite(&self) -> bool {
         has_composite(self.shape1, self.shape2)
     }
 }
 
-/// Two placed solids as a pair, in the order in which its contacts are kept.
+/// Returns two placed solids as a pair, in the order in which its contacts are kept.
 fn in_order<'a, N: Real, const D: usize>(
     placed: &[Placed<'a, N, D>; 2],
     is_swapped: bool,
@@ -71,7 +71,7 @@ fn in_order<'a, N: Real, const D: usize>(
     Pair::new([first.shape, second.shape], [&first.pose, &second.pose])
 }
 
-/// One of two shapes at least is a composite.
+/// Returns `true` if at least one of two shapes is a composite.
 pub(crate) fn has_composite<N: Real, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,
@@ -80,28 +80,29 @@ pub(crate) fn has_composite<N: Real, const D: usize>(
     is_composite(shape1) || is_composite(shape2)
 }
 
-/// The contact points of a pair.
+/// Contact points of a pair.
 pub(crate) trait KeptPoints<N: Real, const D: usize> {
-    /// How many contact points there are.
+    /// Returns the number of contact points.
     fn len(&self) -> usize;
 
-    /// Contacts are kept in the frame of the pair's second solid.
+    /// Returns `true` if contacts are stored in the frame of the pair's second solid.
     fn is_swapped(&self) -> bool;
 
-    /// Calls with the normal, the distance and the first point of each contact, as they are kept.
+    /// Calls `each` with the normal, the distance and the first point of each contact, in the
+    /// stored frame.
     fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>));
 }
 
-/// The contacts of a pair, kept from update to update.
+/// Contacts of a pair, kept from update to update.
 pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Default {
-    /// As users see them.
+    /// The contacts in the public form.
     type Manifolds: Default;
 
     /// Computes the contacts for new poses; points that moved keep their ids.
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>);
 
-    /// The contacts as users see them; the solids are those of the last update and `pair_number` names
-    /// the pair; `old` gives its memory.
+    /// Returns the contacts in the public form. `placed` are the solids at the last update,
+    /// `pair_number` is the first half of contact ids, and the memory of `old` is reused.
     fn manifolds(
         &self,
         placed: &[Placed<'_, N, D>; 2],
@@ -110,34 +111,34 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Defau
     ) -> Self::Manifolds;
 }
 
-/// What an algorithm keeps of a pair, in the frame of the solid that comes first in canonical order.
+/// Contacts in the frame of the solid that is first in canonical order.
 #[derive(Debug, Default)]
 #[repr(C)]
 pub(crate) struct InOrder<C> {
-    /// The canonical order at the last update was the reverse of the pair's own.
+    /// The canonical order at the last update was the reverse of the pair's own order.
     swapped: bool,
     contacts: C,
 }
 
 clone_fields!([C: Clone] InOrder<C> { swapped, contacts });
 
-/// The contacts of two convex solids. What readers look at stands in front.
+/// Contacts of two convex solids. The fields that readers need come first.
 #[derive(Debug, Default)]
 #[repr(C)]
 pub(crate) struct ContactState<N: Real, const D: usize> {
     kept: InOrder<RawManifold<N, D>>,
-    /// Copies of the solids in the pair's own order, if both are such that a copy is worth it.
+    /// Copies of the solids in the pair's own order, if both are small enough.
     solids: Option<[Solid<N, D>; 2]>,
 }
 
 clone_fields!([N: Real, const D: usize] ContactState<N, D> { kept, solids });
 
-/// The contacts of a pair of which one solid at least is a composite.
+/// Contacts of a pair with at least one composite.
 pub(crate) type CompositeState<N, const D: usize> = InOrder<CompositeContacts<N, D>>;
 
 impl<N: Real, const D: usize> InOrder<RawManifold<N, D>> {
-    /// Puts what is kept, and two solids of these kinds, in the order in which they are computed; gives
-    /// the index of the solid that comes first and that of the other.
+    /// Brings the stored contacts into the canonical order of two solids of these kinds. Returns
+    /// the indices of the solids that come first and second.
     #[inline(always)]
     fn order(
         &mut self,
@@ -156,7 +157,7 @@ impl<N: Real, const D: usize> InOrder<RawManifold<N, D>> {
 }
 
 impl<C> InOrder<C> {
-    /// The canonical order is this one now.
+    /// Sets the canonical order; calls `flip` on the contacts if it has changed.
     #[inline(always)]
     fn turn(&mut self, swapped: bool, flip: impl FnOnce(&mut C)) {
         if swapped != self.swapped {
@@ -196,7 +197,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
             return self.clear();
         }
         let (pair, swapped) = posed.canonical();
-        // Boxes tell no more than the algorithm: what was near is mostly near.
+        // Only for pairs without contacts: boxes rarely reject a pair that had some.
         if self.kept.contacts.points.is_empty()
             && posed.have_boxes_beyond(&pair.pose12, swapped, request.prediction)
         {
@@ -223,25 +224,25 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
 }
 
 impl<N: Real, const D: usize> ContactState<N, D> {
-    /// The manifold, and whether it is in the frame of the second solid.
+    /// Returns the manifold, and whether it is in the frame of the second solid.
     pub(super) const fn kept(&self) -> (&RawManifold<N, D>, bool) {
         (&self.kept.contacts, self.kept.swapped)
     }
 
-    /// The manifold is this one, in the frame of the second solid if that is said.
+    /// Sets the manifold; `swapped` if it is in the frame of the second solid.
     pub(super) fn keep(&mut self, contacts: RawManifold<N, D>, swapped: bool) {
         self.kept = InOrder { swapped, contacts };
     }
 
-    /// There are no contacts.
+    /// Removes all contacts.
     pub(super) fn clear(&mut self) {
         self.kept.contacts.points.clear();
     }
 }
 
 impl<N: Space<D>, const D: usize> ContactState<N, D> {
-    /// Computes the contacts of two solids of which nothing else is known but, perhaps, copies; points that moved keep
-    /// their ids.
+    /// Computes the contacts of two solids without bounds, perhaps with copies; points that moved
+    /// keep their ids.
     pub(super) fn update_alone(
         &mut self,
         ([pose1, pose2], [one, other]): (&[Pose<N, D>; 2], [Geometry<'_, N, D>; 2]),
@@ -261,25 +262,25 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         <N::Algorithms>::contacts_of_separation(&pair, request, raw);
     }
 
-    /// The solids are these from now on.
+    /// Stores copies of the solids, if both are small enough.
     pub(super) fn set_solids(&mut self, shapes: [&dyn Shape<N, D>; 2]) {
         let [one, other] = shapes.mapped(Shape::geometry);
         self.solids = Solid::of(one).zip(Solid::of(other)).map(<[_; 2]>::from);
     }
 
-    /// The copies of the solids, if both are such that a copy is worth it.
+    /// Returns the copies of the solids in the pair's own order.
     pub(super) const fn solids(&self) -> Option<&[Solid<N, D>; 2]> {
         self.solids.as_ref()
     }
 
-    /// The manifold, in canonical order.
+    /// Returns the manifold, in canonical order.
     #[inline]
     pub(super) const fn raw_mut(&mut self) -> &mut RawManifold<N, D> {
         &mut self.kept.contacts
     }
 
-    /// The solids in canonical order, and the manifold of the last update in that order; `None` if there
-    /// are no copies of the solids.
+    /// Returns the solids in canonical order and the manifold, flipped to that order; `None`
+    /// without copies of the solids.
     #[inline(always)]
     pub(super) fn turned<'a>(
         &'a mut self,
@@ -293,21 +294,21 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
     }
 
-    /// Of the two objects of the pair, that in whose frame the contacts are kept.
+    /// Returns the handle index of the object in whose frame the contacts are stored.
     #[inline]
     pub(super) const fn home(&self, [first, second]: PairKey) -> u32 {
         if self.kept.swapped { second } else { first }
     }
 
-    /// Reads something of every cache line of the contacts that [`Self::view`] is going to look at; returns
-    /// nothing of use.
+    /// Touches every cache line of the contacts that [`Self::view`] reads; the returned value is
+    /// meaningless and only keeps the loads alive.
     #[inline]
     pub(super) fn fetch(&self) -> u32 {
         let names = self.kept.contacts.points.iter().map(|point| point.id);
         names.fold(0, u32::wrapping_add)
     }
 
-    /// The contacts, which are not none, read in place.
+    /// Returns a view of the contacts, of which there must be at least one.
     #[inline]
     pub(super) fn view<'a>(
         &'a self,
@@ -322,26 +323,28 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
 }
 
 impl<N: Real, const D: usize> CompositeState<N, D> {
-    /// A number of each place in memory that an update reads first, of no meaning: reading it brings them near.
+    /// Touches the cache lines that an update reads first; the returned value is meaningless and
+    /// only keeps the loads alive.
     #[inline]
     pub(super) fn prefetch(&self) -> N {
         self.contacts.prefetch()
     }
 
-    /// Of the two objects of the pair, that in whose frame the contacts are kept.
+    /// Returns the handle index of the object in whose frame the contacts are stored.
     #[inline]
     pub(super) const fn home(&self, [first, second]: PairKey) -> u32 {
         if self.swapped { second } else { first }
     }
 
-    /// One of the shapes may be another one now.
+    /// Drops cached facts about the shapes, one of which may have been replaced.
     pub(crate) fn forget_shapes(&mut self) {
         self.contacts.forget_shapes();
     }
 }
 
 impl<N: Space<D>, const D: usize> CompositeState<N, D> {
-    /// Computes the contacts of two shapes, or with `is_self` of one with itself; points that moved keep their ids.
+    /// Computes the contacts of two shapes, or with `is_self` of one shape with itself; points that
+    /// moved keep their ids.
     pub(crate) fn update_between(
         &mut self,
         [one, other]: &[Placed<'_, N, D>; 2],
@@ -353,7 +356,8 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         self.contacts.update(&Between::of_ordered(&ordered), is_self, request);
     }
 
-    /// Calls with what each contact lies on, in their order; the solids are those of the last update.
+    /// Calls `each` with the solids that each contact lies on, in the order of contacts; `placed`
+    /// are the solids at the last update.
     pub(super) fn each_touched(
         &self,
         placed: &[Placed<'_, N, D>; 2],
@@ -365,7 +369,8 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         }
     }
 
-    /// The contacts as users see them: of each, in their order, `next` tells what it lies on.
+    /// Returns the contacts in the public form. `next` returns the solids that a contact lies on,
+    /// once for each in order.
     pub(super) fn manifolds_on<'a>(
         &self,
         poses: &[Pose<N, D>; 2],
@@ -379,7 +384,7 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         self.contacts.manifolds_on([pose1, pose2], &placement, next, old)
     }
 
-    /// As [`ContactState::view`], of one patch of several; `None` behind the last.
+    /// As [`ContactState::view`], for one patch; `None` if there are not that many.
     #[inline]
     pub(super) fn view<'a>(
         &'a self,
@@ -427,7 +432,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
     }
 }
 
-/// How near two solids are, by the same fact that contacts are derived from.
+/// Returns the proximity of two solids, derived from the same distance as contacts are.
 pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
     posed: &Posed<'_, N, D>,
     margin: N,

@@ -1,4 +1,4 @@
-//! The manifolds of two placed shapes, without a world and without memory.
+//! Contact manifolds of two placed shapes, without a world and without state.
 
 use super::generator::{PairContacts, conforming_points};
 use super::state::KeptPoints;
@@ -9,22 +9,22 @@ use crate::query::ContactManifold;
 use crate::shape::Shape;
 use crate::tables::entries;
 
-/// The contact manifolds of `g1` placed at `m1` with `g2` placed at `m2`: those that a new world has after its
-/// first update, with the same bits.
+/// Returns the contact manifolds of `g1` placed at `m1` with `g2` placed at `m2`. They have the
+/// same bits as in a new world after its first update.
 ///
-/// Two convex shapes have one manifold, composites one for each flat patch that they touch in; none is empty.
-/// The list is empty if the shapes are farther apart than [`ContactPrediction::linear`], if a pose is not
-/// finite, and for half-spaces that overlap without bound. In a world the prediction of a pair is the sum of
-/// the predictions of both objects.
+/// Two convex shapes have one manifold, composites one for each flat patch that they touch in; none
+/// is empty. The list is empty if the shapes are farther apart than [`ContactPrediction::linear`],
+/// if a pose is not finite, and for half-spaces that overlap without bound. In a world the
+/// prediction of a pair is the sum of the predictions of both objects.
 ///
-/// A manifold has at most `max_points` points, and at least one; by default (`None`) two in 2D and four in 3D.
-/// Points, normals and depths are in the world frame; normals point from the first shape to the second.
-/// Swapping the shapes flips each manifold and changes nothing else.
+/// A manifold has at most `max_points` points, and at least one; by default (`None`) two in 2D and
+/// four in 3D. Points, normals and depths are in the world frame; normals point from the first
+/// shape to the second. Swapping the shapes flips each manifold and changes nothing else.
 ///
-/// Nothing is kept between calls. A [`ContactId`](crate::query::ContactId) here names a contact within one
-/// answer; ids that last over motion are those of a world or of a
-/// [`PairManifoldGenerator`](super::PairManifoldGenerator). Many pairs at once are quicker in
-/// [`PairBatch::manifolds`](crate::batch::PairBatch::manifolds).
+/// Nothing is kept between calls. A [`ContactId`](crate::query::ContactId) identifies a contact
+/// within one result only; ids that persist under motion come from a world or a
+/// [`PairManifoldGenerator`](super::PairManifoldGenerator). For many pairs,
+/// [`PairBatch::manifolds`](crate::batch::PairBatch::manifolds) is faster.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -74,7 +74,7 @@ pub(crate) fn contact_manifolds_at<N: Space<D>, const D: usize>(
     entries::manifolds_of_placed(&[placed1, placed2], &prediction.request(max_points))
 }
 
-/// The manifolds that hold a contact. The pair has the number 0.
+/// Returns the manifolds that hold a contact. The pair has the number 0.
 pub(crate) fn manifolds_of_placed<N: Space<D>, const D: usize>(
     placed: &[Placed<'_, N, D>; 2],
     request: &ManifoldRequest<N>,

@@ -1,7 +1,8 @@
-//! Pairs that were computed anew between two updates.
+//! Pairs computed between two updates.
 //!
-//! The rows of the table keep the poses of the last update, by which all other pairs are read. A pair that was
-//! computed since is read by poses of its own, which the table keeps until the next update begins.
+//! The rows of the table keep the poses of the last update, by which all other pairs are read. A
+//! pair computed since then is read at its own poses, which the table keeps until the next update
+//! begins.
 
 use super::ObjectTable;
 use super::entry::posed;
@@ -10,24 +11,24 @@ use super::objects::ObjectSolid;
 use crate::collide::Placed;
 use crate::math::{Mapped, Pose, Real, Space};
 
-/// A pair, and its objects where they were when it was computed.
+/// A pair, with shapes and poses at the time of its computation.
 #[derive(Clone, Debug)]
 pub(super) struct PairSolids<N: Real, const D: usize> {
     key: PairKey,
     solids: [ObjectSolid<N, D>; 2],
 }
 
-/// The poses of the last update, while other ones stand in the rows of a pair.
+/// The poses of the last update, while the rows of a pair hold other ones.
 #[derive(Debug)]
 pub(crate) struct Substep<N: Space<D>, const D: usize> {
     key: PairKey,
-    /// In the order in which they were replaced.
+    /// Replaced poses of the first and the second object.
     replaced: [(Pose<N, D>, N::Isometry); 2],
 }
 
 impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
-    /// Puts other poses into the rows of a pair's objects, to be taken out again by [`Self::end_substep`];
-    /// `None` if an object has no row, and so no pair.
+    /// Puts other poses into the rows of a pair's objects until [`Self::end_substep`]; `None` if an
+    /// object has no row, and so no pair.
     pub(crate) fn begin_substep(
         &mut self,
         key: PairKey,
@@ -43,8 +44,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         Some(Substep { key, replaced: [first, second] })
     }
 
-    /// Puts the poses of the last update back. If the pair was computed with the other ones (`is_computed`),
-    /// it is read by these until the next update.
+    /// Restores the poses of the last update. With `is_computed` the pair is read at the other
+    /// poses until the next update.
     pub(crate) fn end_substep(&mut self, substep: &Substep<N, D>, is_computed: bool) {
         let Substep { key, replaced: [first, second] } = *substep;
         if is_computed {
@@ -55,12 +56,12 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
                 Err(place) => self.substeps.insert(place, pair),
             }
         }
-        // Backwards: of a pair of an object with itself the second row is the first.
+        // In reverse order: both rows of a self-pair are the same.
         self.replace_pose(key[1], second);
         self.replace_pose(key[0], first);
     }
 
-    /// The pair as it is to be read: where its objects were when it was computed.
+    /// Returns the two solids of a pair at the poses by which it is read.
     pub(super) fn placed_pair(&self, key: PairKey) -> [Placed<'_, N, D>; 2] {
         match self.solids_between(key) {
             None => posed(self, key).placed(),
@@ -72,18 +73,19 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// The contacts of a pair are not those of the rows: it was computed since, or an object has a skin. Such a pair
-    /// is read from manifolds made for it.
+    /// Returns `true` if the contacts of a pair cannot be read in place at the poses of the rows:
+    /// the pair was computed since the last update, or an object has a skin. Readers then get
+    /// manifolds built for it.
     pub(super) fn is_particular(&self, key: PairKey) -> bool {
         self.solids_between(key).is_some() || self.skins_of(key) != [N::ZERO; 2]
     }
 
-    /// No pair is [particular](Self::is_particular).
+    /// Returns `true` if no pair is [particular](Self::is_particular).
     pub(super) fn is_plain(&self) -> bool {
         self.substeps.is_empty() && self.skins.is_empty()
     }
 
-    /// The objects of a pair that was computed since the last update.
+    /// Returns the solids of a pair that was computed since the last update.
     fn solids_between(&self, key: PairKey) -> Option<&PairSolids<N, D>> {
         let place = self.substeps.binary_search_by_key(&key, |pair| pair.key).ok()?;
         Some(&self.substeps[place])

@@ -1,4 +1,5 @@
-//! Algorithms for one pair as objects: to use a pair alone, and to plug in algorithms of one's own.
+//! Traits for the algorithm of one pair: to use a pair without a world, and to plug in custom
+//! algorithms.
 
 use super::IdAllocator;
 use crate::collide::ManifoldRequest;
@@ -6,7 +7,7 @@ use crate::math::{Real, Space};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::Shape;
 
-/// How far ahead contacts are wanted.
+/// Distance and angles up to which contacts are predicted.
 ///
 /// ```
 /// use impinge::dim3::query::ContactPrediction;
@@ -23,32 +24,32 @@ pub struct ContactPrediction<N: Real> {
 }
 
 impl<N: Real> ContactPrediction<N> {
-    /// Contacts up to the distance `linear`, and those that turning the first solid by `angular1`
-    /// radians and the second by `angular2` would bring about.
+    /// Requests contacts up to the distance `linear`, and those that would come that near if the
+    /// first solid rotated by up to `angular1` radians and the second by up to `angular2`.
     #[must_use]
     pub const fn new(linear: N, angular1: N, angular2: N) -> Self {
         Self { linear, angular1, angular2 }
     }
 
-    /// The distance up to which there are contact points.
+    /// Returns the distance up to which there are contact points.
     #[must_use]
     pub const fn linear(&self) -> N {
         self.linear
     }
 
-    /// The angle in radians by which the first solid may turn.
+    /// Returns the angle in radians by which the first solid may rotate.
     #[must_use]
     pub const fn angular1(&self) -> N {
         self.angular1
     }
 
-    /// The angle in radians by which the second solid may turn.
+    /// Returns the angle in radians by which the second solid may rotate.
     #[must_use]
     pub const fn angular2(&self) -> N {
         self.angular2
     }
 
-    /// The question about a pair whose manifolds have at most `max_points` points.
+    /// Returns the request for manifolds of at most `max_points` points. Both angles are added.
     pub(crate) fn request(&self, max_points: usize) -> ManifoldRequest<N> {
         ManifoldRequest::new(self.linear, self.angular1 + self.angular2, max_points)
     }
@@ -77,9 +78,9 @@ impl<N: Real> ContactPrediction<N> {
 pub trait ContactManifoldGenerator<N: Space<D>, const D: usize>: Send + Sync {
     /// Computes the contacts of `a` placed at `ma` with `b` placed at `mb`.
     ///
-    /// `dispatcher` is for composite solids, whose parts need algorithms of their own. Contacts
-    /// that are new take their names from `ids`; those that only moved keep theirs. Answers whether
-    /// this algorithm can treat the two solids; if not, it holds no contact.
+    /// `dispatcher` serves composite solids, whose parts need algorithms of their own. New contacts
+    /// take their ids from `ids`; contacts that only moved keep theirs. Returns `false` if this
+    /// algorithm does not support the two solids; it then holds no contact.
     #[expect(clippy::too_many_arguments, reason = "the two posed solids and what is asked")]
     fn update(
         &mut self,
@@ -92,13 +93,14 @@ pub trait ContactManifoldGenerator<N: Space<D>, const D: usize>: Send + Sync {
         ids: &mut IdAllocator,
     ) -> bool;
 
-    /// How many contact points there are, over all manifolds.
+    /// Returns the number of contact points over all manifolds.
     fn num_contacts(&self) -> usize;
 
-    /// Pushes the manifolds that hold a contact.
+    /// Appends the manifolds that hold a contact to `out`.
     fn contacts<'a>(&'a self, out: &mut Vec<&'a ContactManifold<N, D>>);
 
-    /// A copy, which goes on as this one does: `Box::new(self.clone())`. For worlds that are cloned.
+    /// Returns a clone that behaves as this one does from then on: `Box::new(self.clone())`. For
+    /// cloned worlds.
     fn boxed_clone(&self) -> ContactAlgorithm<N, D>;
 }
 
@@ -123,22 +125,23 @@ pub trait ContactManifoldGenerator<N: Space<D>, const D: usize>: Send + Sync {
 /// assert_eq!(algorithm.num_contacts(), 2);
 /// ```
 pub trait ContactDispatcher<N: Space<D>, const D: usize>: Send + Sync {
-    /// A new algorithm for the contacts of `a` with `b`; `None` if there shall be none.
+    /// Returns a new algorithm for the contacts of `a` with `b`; `None` if the pair has no
+    /// contacts.
     fn get_contact_algorithm(
         &self,
         a: &dyn Shape<N, D>,
         b: &dyn Shape<N, D>,
     ) -> Option<ContactAlgorithm<N, D>>;
 
-    /// The most points of a manifold, where the pair is left to the library's own algorithm without
-    /// a box of its own; `None` if [`Self::get_contact_algorithm`] shall be asked.
+    /// Returns the maximum number of points of a manifold if the library's own algorithm serves the
+    /// pair without a box; `None` if [`Self::get_contact_algorithm`] chooses the algorithm.
     #[doc(hidden)]
     fn built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> Option<usize> {
         None
     }
 }
 
-/// The nearness of one pair of solids, kept from update to update.
+/// Proximity of one pair of solids, kept from update to update.
 ///
 /// ```
 /// use impinge::dim2::events::Proximity;
@@ -155,9 +158,11 @@ pub trait ContactDispatcher<N: Space<D>, const D: usize>: Send + Sync {
 /// assert_eq!(detector.proximity(), Proximity::WithinMargin);
 /// ```
 pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
-    /// Computes the proximity of `a` placed at `ma` and `b` placed at `mb`: `margin` apart at most is within the margin.
+    /// Computes the proximity of `a` placed at `ma` and `b` placed at `mb`. Solids that do not
+    /// overlap are within the margin if their distance is at most `margin`.
     ///
-    /// Answers whether this algorithm can treat the two solids; if not, they are disjoint.
+    /// Returns `false` if this algorithm does not support the two solids; they then count as
+    /// disjoint.
     fn update(
         &mut self,
         dispatcher: &dyn ProximityDispatcher<N, D>,
@@ -168,10 +173,11 @@ pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
         margin: N,
     ) -> bool;
 
-    /// The proximity at the last update.
+    /// Returns the proximity at the last update.
     fn proximity(&self) -> Proximity;
 
-    /// A copy, which goes on as this one does: `Box::new(self.clone())`. For worlds that are cloned.
+    /// Returns a clone that behaves as this one does from then on: `Box::new(self.clone())`. For
+    /// cloned worlds.
     fn boxed_clone(&self) -> ProximityAlgorithm<N, D>;
 }
 
@@ -192,23 +198,23 @@ pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
 /// assert_eq!(detector.proximity(), Proximity::WithinMargin);
 /// ```
 pub trait ProximityDispatcher<N: Space<D>, const D: usize>: Send + Sync {
-    /// A new algorithm for the proximity of `a` and `b`; `None` if there shall be none.
+    /// Returns a new algorithm for the proximity of `a` and `b`; `None` if the pair has none.
     fn get_proximity_algorithm(
         &self,
         a: &dyn Shape<N, D>,
         b: &dyn Shape<N, D>,
     ) -> Option<ProximityAlgorithm<N, D>>;
 
-    /// The pair is left to the library's own algorithm without a box of its own.
+    /// Returns `true` if the library's own algorithm serves the pair without a box.
     #[doc(hidden)]
     fn is_built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> bool {
         false
     }
 }
 
-/// A contact algorithm in a box.
+/// A boxed contact algorithm.
 pub type ContactAlgorithm<N, const D: usize> = Box<dyn ContactManifoldGenerator<N, D>>;
-/// A proximity algorithm in a box.
+/// A boxed proximity algorithm.
 pub type ProximityAlgorithm<N, const D: usize> = Box<dyn ProximityDetector<N, D>>;
 
 impl<N: Space<D>, const D: usize> Clone for ContactAlgorithm<N, D> {

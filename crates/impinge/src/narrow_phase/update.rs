@@ -1,4 +1,4 @@
-//! The step: which pairs need a new query, and the batches that give it to them.
+//! The update of all pairs: selects those that need a new query and computes them in batches.
 
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -17,18 +17,18 @@ use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::collide::Solid;
 use crate::math::Space;
 
-/// Below one pair to update in this many, the pairs are found from the objects that changed rather
-/// than by going through all of them.
+/// If fewer than one in `SPARSE` pairs must be updated, they are found from the changed objects
+/// instead of by scanning all pairs.
 const SPARSE: usize = 8;
 
-/// Places of pairs in a chunk.
+/// Indices of pairs within a chunk.
 type LanePlaces = SmallVec<[usize; CHUNK]>;
 
-/// What changed, pair by pair.
+/// Changes of an update by pair.
 pub(super) type PairChanges = Vec<(PairKey, Change)>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Brings all pairs up to date with the rows of the table and reports what changed.
+    /// Updates all pairs to the rows of the table and pushes the events.
     pub(crate) fn update_pairs(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
         entries::update_pairs(self, table, events);
     }
@@ -47,8 +47,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.due.clear();
     }
 
-    /// Brings one pair up to date with the rows of the table and reports what changed; `false` if there is no
-    /// such pair.
+    /// Updates one pair to the rows of the table and pushes its event; returns `false` if there is
+    /// no such pair.
     pub(crate) fn update_pair(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -62,7 +62,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         true
     }
 
-    /// Puts changes into events, and keeps the memory.
+    /// Pushes the events of `changes`, whose memory is kept.
     fn report(&mut self, table: &ObjectTable<N, D>, mut changes: PairChanges, events: &mut Events) {
         if changes.iter().any(|(_, change)| matches!(change, Change::Contact { .. })) {
             self.touching.take();
@@ -73,7 +73,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.changes = changes;
     }
 
-    /// Few of the pairs are to be updated: those of objects that changed and some more.
+    /// Returns `true` if few pairs need an update: those of changed objects, and `more` others.
     fn is_sparse(&self, table: &ObjectTable<N, D>, more: usize) -> bool {
         let mut affected = more;
         table.changed().iter().all(|&row| {
@@ -82,13 +82,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }) && affected * SPARSE < self.pairs.len()
     }
 
-    /// Goes through all pairs, lane by lane.
+    /// Updates all pairs by scanning group after group.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut PairChanges) {
         if self.journal.is_on() {
             self.lanes.note_due(table);
         }
         let reuse = Reuse { table, tolerance: self.tolerance };
-        // Of the hundreds of groups most are empty.
+        // Most of the hundreds of groups are empty.
         for group in self.lanes.contacts.iter_mut().filter(|group| !group.is_empty()) {
             let solids = group.state(0).state.solids().copied();
             update_group(group, changes, |rows, changes| {
@@ -113,7 +113,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.update_all_custom(table, changes);
     }
 
-    /// One by one: algorithms of the user's share one source of names.
+    /// Updates pairs with custom algorithms one by one, since they share one allocator of ids.
     fn update_all_custom(&mut self, table: &ObjectTable<N, D>, changes: &mut PairChanges) {
         for place in 0..self.lanes.custom_contacts.keys().len() {
             if self.lanes.custom_contacts.rows().take_due(place, table) {
@@ -151,7 +151,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         changes.extend(change.map(|change| (key, change)));
     }
 
-    /// Updates the pairs of the objects that changed, and those that are due.
+    /// Updates the pairs of changed objects, and those marked due.
     fn update_some(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -167,11 +167,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.picked = picked;
     }
 
-    /// Lists where the pairs of the objects that changed are, and those that are due: each once, lane by
-    /// lane, in the order in which they lie.
+    /// Lists the locations of the pairs of changed objects and of those marked due: each once,
+    /// sorted by group and index.
     fn pick(&self, table: &ObjectTable<N, D>, due: &[PairKey], picked: &mut Vec<Location>) {
         for &row in table.changed() {
-            // A pair of two changed objects is taken from the end with the smaller index.
+            // A pair of two changed objects is taken from the one with the smaller index.
             let mine = |partner: u32| !(table.has_changed(partner) && partner < row);
             let partners = self.pairs.partners(row).filter(|(partner, _)| mine(*partner));
             picked.extend(partners.map(|(_, index)| self.locations[index]));
@@ -183,7 +183,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         picked.dedup();
     }
 
-    /// Updates some pairs of one lane.
+    /// Updates some pairs of one group.
     fn update_picked(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -228,7 +228,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 }
 
-/// Says whether a pair touches, and lists it if that is new.
+/// Sets whether a pair touches, and lists the change if there is one.
 #[inline]
 pub(super) fn note_touching<S, V, R>(
     rows: &mut Rows<'_, S, V, R>,
@@ -241,8 +241,8 @@ pub(super) fn note_touching<S, V, R>(
     }
 }
 
-/// Brings the contacts of some pairs of convex solids up to date, several at a time where that can be
-/// done for their kinds. `solids` are those of one of them: all have copies if one has.
+/// Updates the contacts of a chunk of pairs of convex solids, in SIMD lanes if their kinds allow
+/// it. `solids` are the copies in one of the pairs; if one pair of a group has copies, all do.
 fn update_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
     reuse: Reuse<'_, N, D>,
@@ -261,12 +261,13 @@ fn update_convex<N: Space<D>, const D: usize>(
     }
 }
 
-/// The contacts of such pairs are never kept: their closed forms are as quick as moving contacts along.
+/// Returns `true` if a solid is a ball. Such pairs do not reuse contacts: their closed forms are as
+/// fast.
 fn has_ball<N: Space<D>, const D: usize>(solids: Option<&[Solid<N, D>; 2]>) -> bool {
     solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))))
 }
 
-/// Computes the contacts of the pairs at the given places of a chunk.
+/// Computes the contacts of the pairs at the given indices of a chunk.
 fn compute_convex<N: Space<D>, const D: usize>(
     rows: &mut ContactRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -284,7 +285,7 @@ fn compute_convex<N: Space<D>, const D: usize>(
     }
 }
 
-/// Brings the contacts of the picked pairs of convex solids up to date.
+/// Updates the contacts of the picked pairs of convex solids.
 fn update_picked_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
     reuse: Reuse<'_, N, D>,
@@ -307,7 +308,7 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     }
 }
 
-/// Updates the picked pairs of some other kind.
+/// Updates the picked pairs of another group, one by one.
 fn update_places<S, V, R>(
     rows: &mut Rows<'_, S, V, R>,
     picked: &[Location],
@@ -319,7 +320,7 @@ fn update_places<S, V, R>(
     }
 }
 
-/// Brings the contacts of one pair up to date.
+/// Updates the contacts of one pair.
 fn update_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
     reuse: Reuse<'_, N, D>,
@@ -344,7 +345,7 @@ fn compute_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     note_touching(rows, place, is_touching, changes);
 }
 
-/// Brings the proximity of one pair up to date.
+/// Updates the proximity of one pair.
 fn update_status<N: Space<D>, const D: usize>(
     rows: &mut Rows<'_, ProximityEntry<N>, ()>,
     table: &ObjectTable<N, D>,
@@ -356,8 +357,8 @@ fn update_status<N: Space<D>, const D: usize>(
     changes.extend(change.map(|change| (key, change)));
 }
 
-/// Updates the pairs of a group chunk by chunk, on several threads where the feature says so; what
-/// changed comes in the order of the group either way.
+/// Updates the pairs of a group chunk by chunk, with the feature `parallel` on several threads.
+/// Changes are listed in the order of the group in either case.
 fn update_group<
     S: Parts + Send + Sync,
     V: Default + Send + Sync,

@@ -1,4 +1,4 @@
-//! Reading pairs: what the world hands out for one pair, and all pairs in canonical order.
+//! Reading pairs: one pair, all pairs in canonical order, or all manifolds in memory order.
 
 use crate::tables::entries;
 use core::fmt;
@@ -14,9 +14,9 @@ use crate::math::Space;
 use crate::pairs::PairTable;
 use crate::query::{ContactManifold, ManifoldView, Proximity};
 
-/// Manifolds that hold a contact: of convex solids, then of composites, then those of algorithms of the user's own.
+/// Manifolds that hold a contact: of convex solids, then of composites, then of custom algorithms.
 pub(crate) struct Views<'a, N: Space<D>, const D: usize> {
-    /// Every pair may be read where its contacts lie.
+    /// Every pair can be read in place.
     pub(crate) is_plain: bool,
     convex: ConvexViews<'a, N, D>,
     composites: CompositeViews<'a, N, D>,
@@ -24,8 +24,8 @@ pub(crate) struct Views<'a, N: Space<D>, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
-    /// All of them, read where they lie, each as `name` has it, before they meet: views that come from two places are
-    /// copied.
+    /// Iterates over all of them, read in place and mapped by `name`. The sources are mapped before
+    /// they are chained, because the result of a chain is copied.
     pub(crate) fn plain<R>(
         self,
         name: impl Fn(View<'a, N, D>) -> R + Copy,
@@ -35,7 +35,8 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
         Behind { first: self.convex.map(name), others }
     }
 
-    /// All of them, those of [particular](ObjectTable::is_particular) pairs made for the reader.
+    /// Iterates over all of them; manifolds of [particular](ObjectTable::is_particular) pairs are
+    /// built for the reader.
     pub(crate) fn particular<R>(
         self,
         name: impl Fn(View<'a, N, D>) -> R,
@@ -45,10 +46,11 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
     }
 }
 
-/// Two objects and a manifold of theirs.
+/// Two handle indices and a manifold.
 pub(crate) type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>);
 
-/// One iterator after another: forgets nothing and asks nothing of the second until it gets there.
+/// Chains two iterators. Unlike `chain`, it does not fuse the first, and leaves the second alone
+/// until then.
 struct Behind<A, B> {
     first: A,
     others: B,
@@ -66,7 +68,7 @@ impl<A: Iterator, B: Iterator<Item = A::Item>> Iterator for Behind<A, B> {
     }
 }
 
-/// The contacts of a pair of objects, as of the last update.
+/// Contacts of a pair of objects, as of the last update.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -98,7 +100,7 @@ enum ViewedContacts<'a, N: Space<D>, const D: usize> {
     Custom(&'a dyn ContactManifoldGenerator<N, D>),
 }
 
-/// Where the contacts of one of the library's own pairs are.
+/// Position of the contacts of a built-in pair of convex solids.
 #[derive(Clone, Copy)]
 pub(super) struct BuiltIn<'a, N: Space<D>, const D: usize> {
     pub(super) table: &'a ObjectTable<N, D>,
@@ -106,7 +108,7 @@ pub(super) struct BuiltIn<'a, N: Space<D>, const D: usize> {
     pub(super) place: u32,
 }
 
-/// Where the contacts of a pair with a composite are.
+/// Position of the contacts of a pair with a composite.
 #[derive(Clone, Copy)]
 pub(super) struct Composite<'a, N: Space<D>, const D: usize> {
     pub(super) table: &'a ObjectTable<N, D>,
@@ -115,7 +117,7 @@ pub(super) struct Composite<'a, N: Space<D>, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
-    /// The manifold, if it holds a contact.
+    /// Returns the manifold, if it holds a contact.
     fn manifold(&self) -> Option<&'a ContactManifold<N, D>> {
         if !self.group.is_touching(self.place) {
             return None;
@@ -129,7 +131,7 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
         Some(group.view(place).manifolds(make))
     }
 
-    /// The same, read in place where the rows tell it.
+    /// Returns a view of the manifold, read in place unless the pair is particular.
     pub(super) fn view(&self) -> Option<ManifoldView<'a, N, D>> {
         let (group, place, key) = (self.group, self.place, self.group.key(self.place));
         if self.table.is_particular(key) {
@@ -141,7 +143,7 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
-    /// The manifolds, all of which hold a contact.
+    /// Returns the manifolds, each of which holds a contact.
     fn manifolds(&self) -> &'a [ContactManifold<N, D>] {
         let (group, place) = (self.group, self.place);
         let placed = || self.table.placed_pair(group.key(place));
@@ -155,7 +157,7 @@ impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
         group.view(place).manifolds(make)
     }
 
-    /// The same, read in place where the rows tell them.
+    /// Iterates over views of the manifolds, read in place unless the pair is particular.
     pub(super) fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
         let (key, entry) = (self.group.key(self.place), self.group.state(self.place));
         let is_particular = self.table.is_particular(key);
@@ -167,13 +169,13 @@ impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
 }
 
 impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
-    /// The contacts that an algorithm of one's own holds.
+    /// Wraps the contacts of a custom algorithm.
     #[must_use]
     pub fn from_algorithm(algorithm: &'a dyn ContactManifoldGenerator<N, D>) -> Self {
         Self(ViewedContacts::Custom(algorithm))
     }
 
-    /// How many contact points there are, over all manifolds.
+    /// Returns the number of contact points over all manifolds.
     #[must_use]
     pub fn num_contacts(&self) -> usize {
         match self.0 {
@@ -183,7 +185,7 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         }
     }
 
-    /// The manifolds that hold a contact.
+    /// Iterates over the manifolds that hold a contact.
     pub(crate) fn manifolds(self) -> impl Iterator<Item = &'a ContactManifold<N, D>> {
         let (mut own, mut parts, mut others) = (None, &[][..], Vec::new());
         match self.0 {
@@ -195,8 +197,8 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         own.into_iter().chain(parts).chain(others)
     }
 
-    /// The manifolds that hold a contact, read where they are kept: the same contacts as
-    /// [`Self::contacts`] gives, in the same order.
+    /// Iterates over the manifolds that hold a contact, read in place: the contacts of
+    /// [`Self::contacts`] in the same order.
     pub fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
         let (mut own, mut patches, mut others) = (None, None, Vec::new());
         match self.0 {
@@ -208,7 +210,7 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         own.into_iter().chain(patches.into_iter().flatten()).chain(others)
     }
 
-    /// Pushes the manifolds that hold a contact.
+    /// Appends the manifolds that hold a contact to `out`.
     pub fn contacts(&self, out: &mut Vec<&'a ContactManifold<N, D>>) {
         match self.0 {
             ViewedContacts::BuiltIn(pair) => out.extend(pair.manifold()),
@@ -224,7 +226,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ContactPair<'_, N, D> {
     }
 }
 
-/// The proximity of a pair of objects, as of the last update.
+/// Proximity of a pair of objects, as of the last update.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -247,20 +249,21 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ContactPair<'_, N, D> {
 pub struct ProximityPair(Proximity);
 
 impl ProximityPair {
-    /// A pair of this proximity, for a narrow phase of one's own.
+    /// Creates a pair with this proximity, for a custom narrow phase.
     #[must_use]
     pub const fn new(proximity: Proximity) -> Self {
         Self(proximity)
     }
 
-    /// How near the two objects are.
+    /// Returns the proximity of the two objects.
     #[must_use]
     pub const fn proximity(&self) -> Proximity {
         self.0
     }
 }
 
-/// The places of the wanted pairs, sorted by pair: object by object, each with its partners in order.
+/// Returns the indices of the wanted pairs, sorted by pair: object by object, each with its
+/// partners in order.
 fn sorted(pairs: &PairTable, is_wanted: impl Fn(usize) -> bool) -> Vec<u32> {
     let objects = pairs.pairs().iter().map(|&(_, second)| second + 1).max().unwrap_or(0);
     let (mut order, mut partners) = (Vec::new(), Vec::new());
@@ -278,7 +281,8 @@ fn sorted(pairs: &PairTable, is_wanted: impl Fn(usize) -> bool) -> Vec<u32> {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// The contacts of a pair; `None` if there is no such pair or its contacts are not asked for.
+    /// Returns the contacts of a pair; `None` if there is no such pair or its query type is
+    /// proximity.
     pub(crate) fn contact_pair<'a>(
         &'a self,
         table: &'a ObjectTable<N, D>,
@@ -288,12 +292,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.contacts_at(table, self.pairs.index_of(first, second)?)
     }
 
-    /// The proximity of a pair; `None` if there is no such pair or its proximity is not asked for.
+    /// Returns the proximity of a pair; `None` if there is no such pair or its query type is
+    /// contacts.
     pub(crate) fn proximity_pair(&self, first: u32, second: u32) -> Option<ProximityPair> {
         self.proximity_at(self.pairs.index_of(first, second)?)
     }
 
-    /// All pairs whose contacts are asked for, sorted by handle index.
+    /// Iterates over all pairs whose query type is contacts, sorted by handle index.
     pub(crate) fn contact_pairs<'a>(
         &'a self,
         table: &'a ObjectTable<N, D>,
@@ -304,7 +309,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
-    /// All manifolds that hold a contact, sorted by the handle indices of their pairs.
+    /// Iterates over all manifolds that hold a contact, sorted by the handle indices of their
+    /// pairs.
     pub(crate) fn contact_manifolds<'a>(
         &'a self,
         table: &'a ObjectTable<N, D>,
@@ -319,21 +325,22 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
-    /// All manifolds that hold a contact, in the order in which they lie.
+    /// Returns all manifolds that hold a contact, in memory order.
     pub(crate) fn contact_views<'a>(&'a self, table: &'a ObjectTable<N, D>) -> Views<'a, N, D> {
         let convex = ConvexViews::new(&self.lanes.contacts, table);
         let composites = CompositeViews::new(&self.lanes.composites, table);
         Views { is_plain: table.is_plain(), convex, composites, custom: Some(self) }
     }
 
-    /// The same, cut into at most so many pieces of about as many pairs, in their order.
+    /// Splits [`Self::contact_views`] into at most `pieces` consecutive parts of about as many
+    /// pairs each.
     pub(crate) fn contact_view_pieces<'a>(
         &'a self,
         table: &'a ObjectTable<N, D>,
         pieces: usize,
     ) -> impl Iterator<Item = Views<'a, N, D>> + 'a {
         let PairLanes { contacts, composites, .. } = &self.lanes;
-        // Cut between words of flags: first those of convex solids, then those of composites.
+        // Cuts are between words of flags: first of convex solids, then of composites.
         let convex = ConvexViews::num_words(contacts);
         let words = convex + composites.touching().len();
         let pieces = pieces.min(words).max(1);
@@ -351,7 +358,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
-    /// The manifolds of algorithms of the user's own that hold a contact.
+    /// Iterates over the manifolds of custom algorithms that hold a contact.
     fn custom_views<'a>(&'a self) -> impl Iterator<Item = View<'a, N, D>> + Send + 'a {
         self.lanes.custom_contacts.iter_touching().flat_map(|(key, entry)| {
             let manifolds = ContactPair::from_algorithm(&*entry.algorithm).manifolds();
@@ -360,7 +367,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
-    /// All pairs whose proximity is asked for, sorted by handle index.
+    /// Iterates over all pairs whose query type is proximity, sorted by handle index.
     pub(crate) fn proximity_pairs(&self) -> impl Iterator<Item = (u32, u32, ProximityPair)> + '_ {
         self.sorted().filter_map(move |index| {
             let (first, second) = self.pairs.pairs()[index];
@@ -404,13 +411,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         Some(ProximityPair(status.0))
     }
 
-    /// The places of the pairs, sorted by pair.
+    /// Iterates over the indices of the pairs, sorted by pair.
     fn sorted(&self) -> impl Iterator<Item = usize> + '_ {
         let order = self.order.get_or_init(|| sorted(&self.pairs, |_| true));
         order.iter().map(|&index| index as usize)
     }
 
-    /// The objects that have a pair with this one, sorted by handle index.
+    /// Returns the objects that have a pair with this one, sorted by handle index.
     pub(crate) fn partners(&self, object: u32) -> Vec<u32> {
         let mut partners: Vec<_> =
             self.pairs.partners(object).map(|(partner, _)| partner).collect();
@@ -418,16 +425,16 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         partners
     }
 
-    /// How many pairs there are.
+    /// Returns the number of pairs.
     #[must_use]
     pub fn num_pairs(&self) -> usize {
         self.pairs.len()
     }
 
-    /// Checks that pairs, locations and lanes agree.
+    /// Checks that pairs, locations and groups agree.
     ///
     /// # Errors
-    /// A sentence that says what does not.
+    /// A sentence that names the mismatch.
     pub fn validate(&self) -> Result<(), String> {
         self.pairs.validate()?;
         if self.locations.len() != self.pairs.len() {

@@ -1,70 +1,82 @@
-//! The links of each object: a cache line of its own if it has any, and a run of further lines if it has
-//! many.
+//! The links of all objects: one cache line for each object with links, and a run of further lines
+//! for objects with many.
+//!
+//! ```text
+//! object   owned ──> head (64 bytes): link 0 … link 6 | start | count and class
+//!                                                        │
+//! pool     line, line, ... <─── run of 2^class lines, eight links each
+//! places   (object, partner) -> place of the link, for heavy objects (class >= 5)
+//! ```
 
 use super::places::Places;
 use crate::memory::{Look, clone_fields};
 
 /// Links in one line.
 const PER_LINE: usize = 8;
-/// Links in the line that an object with links has, beside what describes the rest.
+/// Links in a head, which uses the rest of its line to describe the run.
 const INLINE: usize = PER_LINE - 1;
-/// More idle heads than this, and than others, are given back.
+/// Idle heads are dropped when they exceed half of all heads by more than `MAX_IDLE`.
 const MAX_IDLE: usize = 256;
-/// The line of an object without links.
+/// Entry in `owned` of an object without links.
 const NO_HEAD: u32 = u32::MAX;
-/// The class of a run that is not there.
+/// The class of a head without a run.
 const NO_RUN: u32 = 31;
-/// The class from which on an object is heavy: more than 135 links came. It stays so until its run
-/// is given back, so that objects do not come and go between the two. Searching the seventeen lines
-/// of the heaviest light object costs about what the table does.
+/// The class from which on an object is heavy: it has had more than 135 links. It stays heavy until
+/// its run is released, so that objects do not alternate between both states. Searching the
+/// seventeen lines of the largest light object costs about as much as a look-up in the table.
 const HEAVY: u32 = 5;
 
-/// One end of a pair, as the object at the other end sees it.
+/// One end of a pair, stored with the object at the other end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Link {
-    /// The number of the object at the other end.
+    /// The object at the other end.
     pub(super) partner: u32,
-    /// Where the pair stands in the dense array.
+    /// Index of the pair in the dense array.
     pub(super) pair: u32,
 }
 
-/// The first links of an object, and where the others are.
+/// The first links of an object, and the position of the others.
 ///
-/// Most objects have few partners: for them everything is in this one line.
+/// Most objects have few partners, and so nothing but this line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 struct Head {
     links: [Link; INLINE],
     /// The first line of the run, `2^class` lines long.
     start: u32,
-    /// The class of the run in the lowest five bits, [`NO_RUN`] while there is none; above them the
-    /// number of links.
+    /// The class of the run in the lowest five bits, [`NO_RUN`] if there is none; the number of
+    /// links above them.
     count_and_class: u32,
 }
 
 impl Head {
+    /// The line of an object without links.
     const EMPTY: Self =
         Self { links: [Link { partner: 0, pair: 0 }; INLINE], start: 0, count_and_class: NO_RUN };
 
+    /// Returns the number of links.
     const fn count(&self) -> u32 {
         self.count_and_class >> 5
     }
 
+    /// Returns the class of the run, or [`NO_RUN`].
     const fn class(&self) -> u32 {
         self.count_and_class & 31
     }
 
+    /// Sets the number of links; the class stays.
     fn set_count(&mut self, count: u32) {
         assert!(count < 1 << 27, "an object has fewer than 2^27 partners");
         self.count_and_class = count << 5 | self.class();
     }
 
+    /// Sets the first line and the class of the run; the number of links stays.
     fn set_run(&mut self, start: u32, class: u32) {
         self.start = start;
         self.count_and_class = self.count_and_class & !31 | class;
     }
 
-    /// How many links fit.
+    /// Returns the number of links that fit.
     const fn capacity(&self) -> usize {
         if self.class() == NO_RUN { INLINE } else { INLINE + (PER_LINE << self.class()) }
     }
@@ -80,23 +92,23 @@ struct Line {
 /// The links of all objects.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    /// By object: which of the heads is its own, or [`NO_HEAD`].
+    /// By object: index of its head, or [`NO_HEAD`].
     owned: Vec<u32>,
     heads: Vec<Head>,
-    /// The heads that belong to nobody. They have no links and no runs.
+    /// Indices of heads without an owner. They have no links and no runs.
     idle: Vec<u32>,
-    /// The runs.
+    /// The lines of all runs.
     pool: Vec<Line>,
-    /// Starts of abandoned runs, by class.
+    /// Starts of released runs, by class.
     free: Vec<Vec<u32>>,
-    /// The places of the links of heavy objects.
+    /// Places of the links of heavy objects.
     places: Places,
 }
 
 clone_fields!([] Lines { owned, heads, idle, pool, free, places });
 
-/// Where among the first `count` links that to the partner stands. All are looked at: where a search
-/// ends, no processor foresees.
+/// Returns the place of the link to the partner among the first `count` links. Compares all links,
+/// since the end of a search is unpredictable for the branch predictor.
 #[inline]
 fn place_in(links: &[Link], count: usize, partner: u32) -> Option<u32> {
     let hit = |at: usize| u32::from(links[at].partner == partner) << at;
@@ -105,13 +117,13 @@ fn place_in(links: &[Link], count: usize, partner: u32) -> Option<u32> {
     ((place as usize) < count.min(links.len())).then_some(place)
 }
 
-/// The link from an object to a partner, as one number.
+/// Returns the link from an object to a partner as a key.
 #[inline]
 fn directed(object: u32, partner: u32) -> u64 {
     u64::from(object) << 32 | u64::from(partner)
 }
 
-/// A position or count as the `u32` it is stored as.
+/// Converts an index or count to `u32`.
 pub(super) fn small(value: usize) -> u32 {
     u32::try_from(value).expect("a pair table holds fewer than 2^32 entries")
 }
@@ -125,31 +137,31 @@ impl Lines {
         }
     }
 
-    /// One more than the largest object number seen.
+    /// Returns one more than the largest object number seen.
     pub(super) fn objects(&self) -> usize {
         self.owned.len()
     }
 
-    /// Which head is the object's.
+    /// Returns the index of the object's head.
     #[inline]
     fn at(&self, object: u32) -> Option<usize> {
         let at = *self.owned.get(object as usize)? as usize;
         (at < self.heads.len()).then_some(at)
     }
 
-    /// The head of the object.
+    /// Returns the head of the object.
     #[inline]
     fn head(&self, object: u32) -> &Head {
         self.at(object).map_or(&Head::EMPTY, |at| &self.heads[at])
     }
 
-    /// How many links the object has; 0 for one never seen.
+    /// Returns the number of links of the object; 0 for one never seen.
     #[inline]
     pub(super) fn count(&self, object: u32) -> usize {
         self.head(object).count() as usize
     }
 
-    /// The links of the object, by place.
+    /// Iterates over the links of the object, by place.
     pub(super) fn links(&self, object: u32) -> impl Iterator<Item = Link> + '_ {
         let head = self.head(object);
         let count = head.count() as usize;
@@ -159,13 +171,13 @@ impl Lines {
         head.links.iter().chain(rest).take(count).copied()
     }
 
-    /// The last link of the object, if it has any.
+    /// Returns the last link of the object, if it has any.
     pub(super) fn last_link(&self, object: u32) -> Option<Link> {
         let at = self.at(object)?;
         Some(self.link(at, self.heads[at].count() - 1))
     }
 
-    /// The link at `place` among those of a head.
+    /// Returns the link at `place` among those of a head.
     #[inline]
     fn link(&self, at: usize, place: u32) -> Link {
         let head = &self.heads[at];
@@ -176,7 +188,7 @@ impl Lines {
         self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// The link at `place` among those of a head, to write.
+    /// Returns the link at `place` among those of a head, to write it.
     #[inline]
     fn link_mut(&mut self, at: usize, place: u32) -> &mut Link {
         let head = &mut self.heads[at];
@@ -188,13 +200,14 @@ impl Lines {
         &mut self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// The object of a head has so many links that it should not be searched.
+    /// Returns `true` if the object of a head is heavy, so that its links are looked up in
+    /// `places`.
     #[inline]
     fn is_heavy(&self, at: usize) -> bool {
         (HEAVY..NO_RUN).contains(&self.heads[at].class())
     }
 
-    /// The head of the object and the place of the link to the partner among its links.
+    /// Returns the index of the object's head, and the place of the link to the partner.
     #[inline]
     fn find(&self, object: u32, partner: u32) -> Option<(usize, u32)> {
         let at = self.at(object)?;
@@ -215,7 +228,8 @@ impl Lines {
         })
     }
 
-    /// Where the pair stands in the dense array, if the two have one: asks the one with fewer links.
+    /// Returns the index of the pair in the dense array, if there is one; searches the object with
+    /// fewer links.
     #[inline]
     pub(super) fn pair_of(&self, a: u32, b: u32) -> Option<usize> {
         let a_is_lighter = self.count(a) <= self.count(b);
@@ -224,7 +238,7 @@ impl Lines {
         Some(self.link(at, place).pair as usize)
     }
 
-    /// Tells the link from the object to the partner, which must be there, where the pair stands.
+    /// Writes the index of the pair to the link from the object to the partner, which must exist.
     #[inline]
     pub(super) fn set_pair(&mut self, object: u32, link: Link) {
         let found = self.find(object, link.partner);
@@ -258,8 +272,8 @@ impl Lines {
         at as usize
     }
 
-    /// Takes the link to the partner out, if it is there, and says where the pair stands. The
-    /// object's last link takes its place.
+    /// Removes the link to the partner, if there is one, and returns the index of the pair. The
+    /// last link of the object moves to its place.
     #[inline]
     pub(super) fn remove(&mut self, object: u32, partner: u32) -> Option<usize> {
         let (at, place) = self.find(object, partner)?;
@@ -297,7 +311,7 @@ impl Lines {
         }
     }
 
-    /// Enters the links of an object that became heavy.
+    /// Enters the links of an object that became heavy into `places`.
     #[cold]
     fn enter_places(&mut self, object: u32, at: usize) {
         for place in 0..self.heads[at].count() {
@@ -306,12 +320,13 @@ impl Lines {
         }
     }
 
+    /// Returns the first line and the class of an object's run.
     fn run(&self, at: usize) -> (u32, u32) {
         let head = &self.heads[at];
         (head.start, head.class())
     }
 
-    /// A run of `2^class` lines: an abandoned one or new lines at the end of the pool.
+    /// Returns a run of `2^class` lines: a released one, or new lines at the end of the pool.
     fn take_run(&mut self, class: u32) -> u32 {
         let class = class as usize;
         if self.free.len() <= class {
@@ -324,7 +339,7 @@ impl Lines {
         })
     }
 
-    /// Gives the run of an object back to the pool; what it has left fits its head.
+    /// Releases the run of an object, whose remaining links fit in its head.
     fn release(&mut self, object: u32, at: usize) {
         let (start, class) = self.run(at);
         if class >= HEAVY {
@@ -335,7 +350,7 @@ impl Lines {
         self.heads[at].set_run(0, NO_RUN);
     }
 
-    /// Gives memory back.
+    /// Releases surplus memory.
     pub(super) fn fit(&mut self, look: Look) {
         if self.idle.len() > self.heads.len() / 2 + MAX_IDLE {
             self.drop_idle();
@@ -345,7 +360,7 @@ impl Lines {
         look.fit(&mut self.pool);
     }
 
-    /// Forgets the heads that belong to nobody, and brings the others into the order of their objects.
+    /// Removes the heads without an owner, and sorts the others by object.
     fn drop_idle(&mut self) {
         let used = self.heads.len() - self.idle.len();
         let mut heads = Vec::with_capacity(used + used / 8);
@@ -357,8 +372,8 @@ impl Lines {
         self.idle = Vec::new();
     }
 
-    /// Checks that no two objects share a head, no two runs a line, no run leaves the pool, and none is
-    /// overfull.
+    /// Checks that no two objects share a head and no two runs a line, that runs are inside the
+    /// pool, and that none is overfull.
     pub(super) fn validate(&self) -> Result<(), String> {
         self.validate_heads()?;
         let mut used = vec![false; self.pool.len()];
@@ -379,7 +394,7 @@ impl Lines {
         self.validate_places()
     }
 
-    /// Every head belongs to one object with links, or is idle and has none.
+    /// Checks that every head belongs to one object with links, or is idle and has none.
     fn validate_heads(&self) -> Result<(), String> {
         let mut owners = vec![0_u8; self.heads.len()];
         for (object, &at) in self.owned.iter().enumerate().filter(|(_, at)| **at != NO_HEAD) {
@@ -398,7 +413,7 @@ impl Lines {
         }
     }
 
-    /// Every link of a heavy object is listed, and no other.
+    /// Checks that `places` has exactly the links of heavy objects.
     fn validate_places(&self) -> Result<(), String> {
         let mut heavy = 0;
         let is_heavy = |object: &u32| self.at(*object).is_some_and(|at| self.is_heavy(at));

@@ -1,27 +1,26 @@
-//! Where the links of objects with very many stand: a hash table, so that these are not searched.
+//! A hash table of link places, for objects with very many links.
 //!
-//! Entries lie where multiplications of the two numbers say (linear probing; Knuth 1973, vol. 3,
-//! § 6.4, with his removal that leaves no graves). Nothing ever walks over the entries, so their
-//! order shows nowhere.
+//! Open addressing with linear probing and deletion without tombstones (Knuth 1973, vol. 3, § 6.4).
+//! The table is never iterated, so the order of entries affects nothing.
 
 use crate::memory::clone_fields;
 
-/// The place of an entry without a key.
+/// The place in an entry without a key.
 const FREE: u32 = u32::MAX;
-/// The least number of entries, once there is one.
+/// Least capacity of a table that is not empty.
 const LEAST: usize = 256;
 
-/// A link, named by its two ends, and its place.
+/// A link, as the key of both ends, and its place.
 #[derive(Clone, Copy, Debug)]
 struct PlaceEntry {
     key: u64,
     place: u32,
 }
 
-/// From links, named by their two ends, to places.
+/// A map from links, as keys of both ends, to places.
 #[derive(Debug, Default)]
 pub(super) struct Places {
-    /// A power of two of entries, at most half of them in use; or none.
+    /// Empty, or a power of two of entries, at most half of them in use.
     entries: Vec<PlaceEntry>,
     used: usize,
 }
@@ -29,7 +28,7 @@ pub(super) struct Places {
 clone_fields!([] Places { entries, used });
 
 impl Places {
-    /// The place of the link, if it is in the table.
+    /// Returns the place of the link, if it is in the table.
     pub(super) fn get(&self, key: u64) -> Option<u32> {
         if self.entries.is_empty() {
             return None;
@@ -38,7 +37,7 @@ impl Places {
         (entry.place != FREE).then_some(entry.place)
     }
 
-    /// Adds the link, or gives it another place.
+    /// Inserts the link, or changes its place.
     pub(super) fn set(&mut self, key: u64, value: u32) {
         if (self.used + 1) * 2 > self.entries.len() {
             self.grow();
@@ -48,8 +47,8 @@ impl Places {
         self.entries[place] = PlaceEntry { key, place: value };
     }
 
-    /// Takes the link out, if it is there: entries behind it that could not stand here before move
-    /// up, until one is free.
+    /// Removes the link, if it is in the table: later entries of the probe sequence move up until
+    /// an entry is free.
     pub(super) fn remove(&mut self, key: u64) {
         if self.entries.is_empty() {
             return;
@@ -62,7 +61,8 @@ impl Places {
         self.used -= 1;
         let mut next = (gap + 1) & mask;
         while self.entries[next].place != FREE {
-            // How far each stands from where its key would like it: who came past the gap may move.
+            // Distances from the home slot: an entry that was displaced past the gap may move into
+            // it.
             let from_home = next.wrapping_sub(self.home(self.entries[next].key)) & mask;
             if from_home >= next.wrapping_sub(gap) & mask {
                 self.entries[gap] = self.entries[next];
@@ -73,13 +73,13 @@ impl Places {
         self.entries[gap].place = FREE;
     }
 
-    /// The links in the table.
+    /// Returns the number of links in the table.
     pub(super) const fn len(&self) -> usize {
         self.used
     }
 
-    /// The entry of the key, or the free one where it belongs. At most half are in use, so the
-    /// search ends.
+    /// Returns the slot of the key, or the free slot where it belongs. At most half of the slots
+    /// are in use, so the loop ends.
     fn place_of(&self, key: u64) -> usize {
         let mask = self.entries.len() - 1;
         let mut place = self.home(key);
@@ -89,14 +89,15 @@ impl Places {
         place
     }
 
-    /// Where the key would like to stand.
+    /// Returns the home slot of the key, the first of its probe sequence.
     fn home(&self, key: u64) -> usize {
-        // Numbers from the golden ratio and from SplitMix64 (Steele et al. 2014).
+        // Constants from the golden ratio and from SplitMix64 (Steele et al. 2014).
         let mixed = (key ^ key >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mixed = (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         (mixed >> 32) as usize & (self.entries.len() - 1)
     }
 
+    /// Doubles the number of slots and enters all keys again.
     fn grow(&mut self) {
         let length = (2 * self.entries.len()).max(LEAST);
         let free = PlaceEntry { key: 0, place: FREE };
@@ -122,7 +123,7 @@ mod tests {
         };
         let mut removed = 0;
         for step in 0..20_000 {
-            // 30 × 30 keys of two halves, which crowd; every other call takes one out.
+            // 30 × 30 keys cause collisions; every other call removes a key.
             let key = next(30) << 32 | next(30);
             if next(2) == 0 {
                 let value = u32::try_from(next(1000)).expect("small");

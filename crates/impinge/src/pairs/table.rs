@@ -1,13 +1,13 @@
-//! The table of pairs.
+//! The set of pairs with its dense array.
 
 use super::lines::{Lines, Link, small};
 use crate::journal::Journal;
 use crate::memory::{Look, clone_fields};
 
-/// A set of unordered pairs; see the module's page for its layout.
+/// A set of unordered pairs; see the module for its layout.
 ///
-/// A number may be paired with any number, itself included. Finding, adding and removing a pair cost
-/// constant time.
+/// A number may be paired with any number, itself included. Finding, adding and removing a pair
+/// cost constant time.
 #[derive(Debug, Default)]
 pub(crate) struct PairTable {
     pairs: Vec<(u32, u32)>,
@@ -17,7 +17,7 @@ pub(crate) struct PairTable {
 
 clone_fields!([] PairTable { pairs, lines, journal });
 
-/// A change of the set.
+/// One undoable change of the set.
 #[derive(Clone, Copy, Debug)]
 enum PairNote {
     Inserted(u32, u32),
@@ -27,22 +27,22 @@ enum PairNote {
 /// The outcome of [`PairTable::insert`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Inserted {
-    /// Where the pair stands in [`PairTable::pairs`].
+    /// Index of the pair in [`PairTable::pairs`].
     pub index: usize,
-    /// Whether it was not there before; it then stands last.
+    /// The pair was not there before, and is now the last.
     pub is_new: bool,
 }
 
-/// What a removal did to the dense array: exactly `swap_remove(index)`.
+/// Effect of a removal on the dense array: exactly `swap_remove(index)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Removed {
-    /// Where the pair stood.
+    /// Index of the removed pair.
     pub index: usize,
-    /// Where the pair that now stands at `index` stood; `None` if the removed pair was the last.
+    /// Old index of the pair that is now at `index`; `None` if the removed pair was the last.
     pub moved_from: Option<usize>,
 }
 
-/// The pair as one number whose order is the order of `(smaller, larger)`.
+/// Packs a pair into one number; the order of these numbers is that of `(smaller, larger)`.
 #[inline]
 #[must_use]
 pub(crate) fn pack(a: u32, b: u32) -> u64 {
@@ -50,7 +50,7 @@ pub(crate) fn pack(a: u32, b: u32) -> u64 {
     u64::from(low) << 32 | u64::from(high)
 }
 
-/// The pair `(smaller, larger)` that [`pack`] made the number of.
+/// Returns the pair `(smaller, larger)` of a number from [`pack`].
 #[inline]
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "takes the two halves apart")]
@@ -59,49 +59,50 @@ pub(crate) const fn unpack(key: u64) -> (u32, u32) {
 }
 
 impl PairTable {
-    /// A table without pairs.
+    /// Creates a table without pairs.
     #[must_use]
     pub(crate) fn new() -> Self {
         Self::default()
     }
 
-    /// The number of pairs.
+    /// Returns the number of pairs.
     #[must_use]
     pub(crate) fn len(&self) -> usize {
         self.pairs.len()
     }
 
-    /// The pairs, each as `(smaller, larger)`, in the order that insertions and removals left.
+    /// Returns the pairs, each as `(smaller, larger)`, in the order that insertions and removals
+    /// left.
     #[must_use]
     pub(crate) fn pairs(&self) -> &[(u32, u32)] {
         &self.pairs
     }
 
-    /// How many partners `a` has.
+    /// Returns the number of partners of `a`.
     #[must_use]
     pub(crate) fn count(&self, a: u32) -> usize {
         self.lines.count(a)
     }
 
-    /// The partners of `a`, each with the index of the pair in [`Self::pairs`].
+    /// Iterates over the partners of `a`, each with the index of the pair in [`Self::pairs`].
     pub(crate) fn partners(&self, a: u32) -> impl Iterator<Item = (u32, usize)> + '_ {
         self.lines.links(a).map(|link| (link.partner, link.pair as usize))
     }
 
-    /// Where one of the pairs of `a` stands in [`Self::pairs`], in constant time: taking that pair
-    /// out until there is none takes an object out.
+    /// Returns the index of one of the pairs of `a`, in constant time; an object is removed by
+    /// removing such pairs until there is none.
     #[must_use]
     pub(crate) fn any_pair_of(&self, a: u32) -> Option<usize> {
         Some(self.lines.last_link(a)?.pair as usize)
     }
 
-    /// Where the pair stands in [`Self::pairs`], in either order of its ends.
+    /// Returns the index of the pair in [`Self::pairs`], in either order of its ends.
     #[must_use]
     pub(crate) fn index_of(&self, a: u32, b: u32) -> Option<usize> {
         self.lines.pair_of(a, b)
     }
 
-    /// Adds the pair unless it is there.
+    /// Inserts the pair, unless it is there.
     pub(crate) fn insert(&mut self, a: u32, b: u32) -> Inserted {
         match self.index_of(a, b) {
             Some(index) => Inserted { index, is_new: false },
@@ -109,7 +110,7 @@ impl PairTable {
         }
     }
 
-    /// Adds a pair that the caller knows not to be there; constant time.
+    /// Inserts a pair, which must not be there, and returns its index; constant time.
     pub(crate) fn insert_new(&mut self, a: u32, b: u32) -> usize {
         debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
         let index = self.pairs.len();
@@ -119,8 +120,8 @@ impl PairTable {
         index
     }
 
-    /// Takes the pair of `old` out, if it is there, and puts that of `new`, which the caller knows not
-    /// to be there, in its place: no other pair moves. Returns where it stands. Constant time.
+    /// Removes the pair `old`, if it is there, and puts `new`, which must not be there, at its
+    /// index, so that no other pair moves. Returns the index; constant time.
     pub(crate) fn replace(&mut self, old: (u32, u32), new: (u32, u32)) -> Option<usize> {
         let index = self.unlink(old.0, old.1)?;
         debug_assert!(self.index_of(new.0, new.1).is_none(), "the pair {new:?} is in the table");
@@ -130,27 +131,27 @@ impl PairTable {
         Some(index)
     }
 
-    /// Writes the pair to `index` and gives both ends their links.
+    /// Writes the pair at `index` and adds its links.
     fn link(&mut self, index: usize, a: u32, b: u32) {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
         self.pairs[index] = (low, high);
         self.lines.reach(high);
         let pair = small(index);
         self.lines.push(low, Link { partner: high, pair });
-        // A number paired with itself has one link, which stands for both ends.
+        // A number paired with itself has a single link for both ends.
         if low != high {
             self.lines.push(high, Link { partner: low, pair });
         }
     }
 
-    /// Takes the pair out, if it is there.
+    /// Removes the pair, if it is there.
     pub(crate) fn remove(&mut self, a: u32, b: u32) -> Option<Removed> {
         let index = self.unlink(a, b)?;
         self.journal.note(PairNote::Removed(a, b));
         Some(self.close_gap(index))
     }
 
-    /// Takes out the pair that stands at `index`; constant time.
+    /// Removes the pair at `index`; constant time.
     ///
     /// # Panics
     /// If `index` is not below [`Self::len`].
@@ -161,7 +162,7 @@ impl PairTable {
         self.close_gap(index)
     }
 
-    /// Takes the links of the pair out, if it is there, and says where it stands.
+    /// Removes the links of the pair, if it is there, and returns its index.
     #[inline]
     fn unlink(&mut self, a: u32, b: u32) -> Option<usize> {
         let index = self.lines.remove(a, b)?;
@@ -171,7 +172,7 @@ impl PairTable {
         Some(index)
     }
 
-    /// Moves the last pair to where one without links stands.
+    /// Moves the last pair to `index`, whose pair has no links any more.
     fn close_gap(&mut self, index: usize) -> Removed {
         self.pairs.swap_remove(index);
         let was_last = index == self.pairs.len();
@@ -181,15 +182,15 @@ impl PairTable {
         Removed { index, moved_from: (!was_last).then_some(self.pairs.len()) }
     }
 
-    /// Tells both links of the pair at `index` that it stands there.
+    /// Writes the index of the pair at `index` to its links.
     fn relink(&mut self, index: usize) {
         let ((low, high), pair) = (self.pairs[index], small(index));
         self.lines.set_pair(low, Link { partner: high, pair });
         self.lines.set_pair(high, Link { partner: low, pair });
     }
 
-    /// Brings what is known of the ends of some packed pairs into the cache: several waits for memory
-    /// pass at once where the changes that follow would wait one by one. Changes nothing.
+    /// Prefetches the heads of both ends of some packed pairs, so that their loads overlap. Changes
+    /// nothing.
     #[inline]
     pub(crate) fn fetch(&self, keys: &[u64]) {
         let count = |key: u64| {
@@ -199,18 +200,18 @@ impl PairTable {
         core::hint::black_box(keys.iter().fold(0, |sum, &key| count(key).wrapping_add(sum)));
     }
 
-    /// Adds a mark; see [`Journal`].
+    /// Sets a mark; see [`Journal`].
     pub(crate) fn mark(&mut self, number: u64) {
         self.journal.mark(number, ());
     }
 
-    /// Forgets the marks with smaller numbers.
+    /// Drops the marks with smaller numbers.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
     }
 
-    /// Goes back to the pairs of a mark, in any order. Calls with each pair that is taken out, or with `None` for each that
-    /// is put back, last in the dense array.
+    /// Restores the pairs of a mark, in unspecified order. Calls `undone` for each pair that is
+    /// removed, and with `None` for each that is inserted at the end of the dense array.
     pub(crate) fn rewind(&mut self, number: u64, mut undone: impl FnMut(Option<Removed>)) {
         let mut journal = core::mem::take(&mut self.journal);
         while let Some(note) = journal.undo(number) {
@@ -225,7 +226,7 @@ impl PairTable {
         self.journal = journal;
     }
 
-    /// Gives back memory that a table that has stopped to grow does not need.
+    /// Releases surplus memory of a table that has stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
         look.fit(&mut self.pairs);
         self.lines.fit(look);
@@ -234,7 +235,7 @@ impl PairTable {
     /// Checks every invariant of the layout; for tests.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// A sentence that names the violated invariant.
     pub(crate) fn validate(&self) -> Result<(), String> {
         self.lines.validate()?;
         for (index, &(low, high)) in self.pairs.iter().enumerate() {
@@ -260,7 +261,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// Numbers from a linear congruential generator, below `bound`.
+    /// Returns a number below `bound` from a linear congruential generator.
     fn next(state: &mut u64, bound: u32) -> u32 {
         *state =
             state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -272,7 +273,7 @@ mod tests {
         let (mut state, mut table, mut set) = (7, PairTable::new(), BTreeSet::new());
         let (mut payload, mut found) = (Vec::new(), 0);
         for step in 0..20_000_u32 {
-            // 40 numbers: 820 pairs, so that about every second call hits one that is there.
+            // 40 numbers have 820 pairs, so that about every second call hits an existing one.
             let (a, b) = (next(&mut state, 40), next(&mut state, 40));
             assert_eq!(table.index_of(a, b).is_some(), set.contains(&pack(a, b)), "step {step}");
             if next(&mut state, 2) == 0 {
@@ -312,7 +313,7 @@ mod tests {
             table.insert(0, b);
         }
         assert_eq!(table.count(0), 200_000, "all are partners of 0");
-        // Quadratic searching would need 2·10^10 steps here.
+        // A search linear in the partners would need 2·10^10 steps here.
         for b in (1..=200_000).rev().step_by(2) {
             assert!(table.remove(b, 0).is_some(), "{b} was there");
         }
@@ -328,14 +329,14 @@ mod tests {
 
     #[test]
     fn many_objects_with_many_partners() {
-        // All pairs of 180 numbers: every one is heavy.
+        // All pairs of 180 numbers: every number is heavy.
         let mut table = PairTable::new();
         for b in 0..180 {
             (0..=b).for_each(|a| _ = table.insert(b, a));
         }
         table.validate().expect("sound");
         assert_eq!(table.len(), 180 * 181 / 2, "each with each, and with itself");
-        // Removals and replacements until all but a few are light again.
+        // Removals and replacements until few numbers are heavy.
         let (mut state, mut set) = (3, BTreeSet::new());
         set.extend(table.pairs().iter().map(|&(a, b)| pack(a, b)));
         for step in 0..16_000_u32 {

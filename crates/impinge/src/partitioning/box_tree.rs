@@ -1,4 +1,4 @@
-//! The tree over a user's own boxes.
+//! A tree over a user's boxes.
 
 use super::entries;
 use core::fmt;
@@ -9,14 +9,15 @@ use crate::bounding_volume::{Aabb, Ray};
 use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::{Point, Real, Space, Vector, max};
 
-/// A tree over boxes that stay where they are, or move all at once; known by their indices.
+/// A tree over boxes that stay where they are, or move all at once; boxes are identified by index.
 ///
-/// All tests are closed: boxes that only touch meet. Answers are exact for the boxes as they were given
-/// and the same on every machine. Boxes may coincide, be flat, or be unbounded; those with a face
-/// beyond the range of `f32` count as unbounded and are tested one by one in each search: few are best.
+/// All tests are closed: boxes that only touch overlap. Results are exact for the boxes as given, and equal on every
+/// machine. Boxes may coincide, be flat, or be unbounded; those with a face beyond the range of `f32` count as
+/// unbounded and are tested one by one in each search, so there should be few.
 ///
-/// Making it costs O(n log n). A search looks at O(log n) blocks of sixteen boxes and at what it finds, as long as boxes
-/// do not all overlap. Beside its box, an object takes about 60 bytes in 2D and 85 in 3D, at most twice that with reserves.
+/// Building costs O(n log n). A search opens O(log n) blocks of sixteen boxes plus the blocks of its results, unless
+/// boxes overlap heavily. Besides its box, an object takes about 60 bytes in 2D and 85 in 3D, at most twice that with
+/// spare capacity.
 ///
 /// ```
 /// use impinge::bounding_volume::{Aabb, Ray};
@@ -41,10 +42,10 @@ use crate::math::{Point, Real, Space, Vector, max};
 #[derive(Clone)]
 pub struct BoxTree<N: Real, const D: usize> {
     boxes: Vec<Aabb<N, D>>,
-    /// Around all boxes; `None` if there are none.
+    /// Union of all boxes; `None` if there are none.
     bounds: Option<Aabb<N, D>>,
     tree: Tree<D>,
-    /// The boxes that no finite `f32` box encloses, ascending.
+    /// Boxes that no finite `f32` box encloses, ascending.
     unbounded: Vec<u32>,
     lanes: Lanes,
 }
@@ -55,7 +56,7 @@ impl<N: Real, const D: usize> fmt::Debug for BoxTree<N, D> {
     }
 }
 
-/// What a search without an order of its own asks.
+/// A search whose results have no order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Question<'a, N: Real, const D: usize> {
     Overlapping(&'a Aabb<N, D>),
@@ -64,7 +65,7 @@ pub(crate) enum Question<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> BoxTree<N, D> {
-    /// The tree over some boxes, which are known by their indices; there may be none.
+    /// Builds the tree over some boxes, identified by index; there may be none.
     ///
     /// # Panics
     /// Where [`Self::try_from_boxes`] returns an error.
@@ -77,21 +78,21 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         }
     }
 
-    /// The tree over some boxes, which are known by their indices; there may be none.
+    /// Builds the tree over some boxes, identified by index; there may be none.
     ///
     /// # Errors
-    /// If a box is inverted or holds a NaN, which [`Aabb`] refuses but arithmetic on boxes can yield,
-    /// or if 32 bits cannot number the boxes.
+    /// If a box is inverted or has a NaN, which [`Aabb`] refuses but arithmetic on boxes can yield, or if 32 bits
+    /// cannot number the boxes.
     pub fn try_from_boxes(boxes: &[Aabb<N, D>]) -> Result<Self, BoxTreeError> {
         Self::try_from_vec(boxes.to_vec())
     }
 
-    /// [`Self::try_from_boxes`] of boxes that are no longer needed.
+    /// As [`Self::try_from_boxes`], without copying the boxes.
     pub(crate) fn try_from_vec(boxes: Vec<Aabb<N, D>>) -> Result<Self, BoxTreeError> {
         entries::build(boxes)
     }
 
-    /// Gives the boxes other places and sizes; see [`Self::try_refit`].
+    /// Replaces all boxes; see [`Self::try_refit`].
     ///
     /// # Panics
     /// Where [`Self::try_refit`] returns an error.
@@ -102,12 +103,11 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         }
     }
 
-    /// Gives the boxes other places and sizes, all of them, in the order of [`Self::boxes`].
+    /// Replaces all boxes, in the order of [`Self::boxes`].
     ///
-    /// Answers are those of a tree made anew. The order of the tree is kept and its upper layers follow:
-    /// O(n), without a sort. When the boxes have grown together by a fifth of their surface the order
-    /// is renewed, over several calls of O(n) each; until then searches are slower. On an error nothing
-    /// has changed.
+    /// Results are those of a new tree. The order of the tree stays and its upper layers are refitted: O(n), without a
+    /// sort. When the surface of the blocks has grown by a fifth, the order is renewed over several calls of O(n) each;
+    /// until then searches are slower. On an error nothing has changed.
     ///
     /// ```
     /// use impinge::bounding_volume::Aabb;
@@ -126,31 +126,31 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         entries::refit(self, boxes)
     }
 
-    /// The boxes whose volume meets `aabb`, ascending.
+    /// Returns the boxes that overlap `aabb`, ascending.
     #[must_use]
     pub fn overlapping(&self, aabb: &Aabb<N, D>) -> Vec<usize> {
         self.collect(&Question::Overlapping(aabb))
     }
 
-    /// The boxes that hold the point, ascending.
+    /// Returns the boxes that contain the point, ascending.
     #[must_use]
     pub fn containing(&self, point: &Point<N, D>) -> Vec<usize> {
         self.collect(&Question::Containing(point))
     }
 
-    /// The boxes that the ray meets, ascending. A ray that is not finite meets nothing.
+    /// Returns the boxes that the ray meets, ascending. A ray that is not finite meets nothing.
     #[must_use]
     pub fn hit_by(&self, ray: &Ray<N, D>) -> Vec<usize> {
         self.collect(&Question::HitBy(ray))
     }
 
-    /// Calls `visit` with each box that meets `aabb`; nothing is allocated, and the order is
-    /// arbitrary, but always the same.
+    /// Calls `visit` with each box that overlaps `aabb`, without allocating; the order is unspecified, but always the
+    /// same.
     pub fn visit_overlapping(&self, aabb: &Aabb<N, D>, visit: impl FnMut(usize)) {
         self.each(&Question::Overlapping(aabb), visit);
     }
 
-    /// Calls `visit` with each box that holds the point, as [`Self::visit_overlapping`] does.
+    /// Calls `visit` with each box that contains the point, as [`Self::visit_overlapping`] does.
     pub fn visit_containing(&self, point: &Point<N, D>, visit: impl FnMut(usize)) {
         self.each(&Question::Containing(point), visit);
     }
@@ -160,12 +160,12 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         self.each(&Question::HitBy(ray), visit);
     }
 
-    /// Calls `visit` with the boxes that the ray enters at or before `max_time`, in units of the length
-    /// of its direction, and the time of entry: the first first, by index at equal times.
+    /// Calls `visit` with each box that the ray enters at or before `max_time`, and the time of entry, in ascending
+    /// order of (time, index). Times are in units of the length of the ray's direction.
     ///
-    /// `visit` returns the new `max_time`: the time of the best hit so far to find the first thing that
-    /// the ray meets, the old one to see them all, a negative one to stop. It never grows. A ray that
-    /// starts in a box enters it at time zero; one that is not finite meets nothing.
+    /// `visit` returns the new `max_time`: the time of the best hit so far to find the first object that the ray meets,
+    /// the old one to visit all boxes, a negative one to stop. It must not increase. A ray that starts in a box enters
+    /// it at time zero; one that is not finite meets nothing.
     ///
     /// ```
     /// use impinge::bounding_volume::{Aabb, Ray};
@@ -193,16 +193,16 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         entries::by_time(self, &Sweep::along(ray), max_time, &mut found);
     }
 
-    /// Calls `visit` with the boxes that `aabb`, moving with `velocity`, touches at or before
-    /// `max_time`, and the first time of that: the first first, by index at equal times.
+    /// Calls `visit` with each box that `aabb`, moving with `velocity`, touches at or before `max_time`, and the first
+    /// such time, in ascending order of (time, index).
     ///
-    /// [`Self::visit_ray`] for a box in place of a point, with the same rules: `visit` returns the new
-    /// `max_time`, which never grows; boxes that meet `aabb` are touched at time zero, whatever the
-    /// velocity; a velocity of zero finds these alone. `aabb` may be unbounded. A velocity that is
-    /// not finite and a box at infinity touch nothing.
+    /// The rules are those of [`Self::visit_ray`], with a box in place of a point: `visit` returns the new `max_time`,
+    /// which must not increase. Boxes that overlap `aabb` are touched at time zero, for any velocity; with a velocity
+    /// of zero only these are found. `aabb` may be unbounded. A velocity that is not finite and a box at infinity touch
+    /// nothing.
     ///
-    /// The time at which a solid in the moving box touches one in a box of the tree is never earlier, so
-    /// that of the best hit so far is the `max_time` to return in a search for the first.
+    /// The time at which a solid in the moving box touches one in a box of the tree is never earlier. So in a search
+    /// for the first impact, `visit` returns the time of the best one so far.
     ///
     /// ```
     /// use impinge::bounding_volume::Aabb;
@@ -234,12 +234,12 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         entries::by_time(self, &sweep, max_time, &mut found);
     }
 
-    /// Calls `visit` with the boxes at most `max_distance` from the point and their distance: the
-    /// nearest first, by index at equal distances. Boxes that hold the point are at distance zero.
+    /// Calls `visit` with each box at most `max_distance` from the point, and the distance, in ascending order of
+    /// (distance, index). Boxes that contain the point have distance zero.
     ///
-    /// `visit` returns the new `max_distance`: the distance of the best thing so far to find the
-    /// nearest, the old one to see them all, a negative one to stop. It never grows. A point that is not
-    /// finite is near nothing. Distances whose squares are too small for `N` count as zero.
+    /// `visit` returns the new `max_distance`: the distance of the best object so far to find the nearest, the old one
+    /// to visit all boxes, a negative one to stop. It must not increase. A point that is not finite is near nothing.
+    /// Distances whose squares underflow in `N` count as zero.
     pub fn visit_nearest(
         &self,
         point: &Point<N, D>,
@@ -249,15 +249,15 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         self.visit_nearest_to_box(&Aabb::at(*point), max_distance, visit);
     }
 
-    /// Calls `visit` with the boxes at most `max_distance` from `aabb` and their distance: the nearest
-    /// first, by index at equal distances. Boxes that meet `aabb` are at distance zero.
+    /// Calls `visit` with each box at most `max_distance` from `aabb`, and the distance, in ascending order of
+    /// (distance, index). Boxes that overlap `aabb` have distance zero.
     ///
-    /// [`Self::visit_nearest`] for a box in place of a point, with the same rules: `visit` returns the
-    /// new `max_distance`, which never grows. `aabb` may be unbounded; one at infinity, or that
-    /// arithmetic has made NaN, is near nothing.
+    /// The rules are those of [`Self::visit_nearest`], with a box in place of a point: `visit` returns the new
+    /// `max_distance`, which must not increase. `aabb` may be unbounded; one at infinity, or with a NaN from
+    /// arithmetic, is near nothing.
     ///
-    /// The distance of a solid in `aabb` from one in a box of the tree is never smaller, so that of the
-    /// nearest so far is the `max_distance` to return in a search for the nearest.
+    /// The distance of a solid in `aabb` from one in a box of the tree is never smaller. So in a search for the nearest
+    /// solid, `visit` returns the distance of the nearest so far.
     ///
     /// ```
     /// use impinge::bounding_volume::Aabb;
@@ -286,8 +286,8 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         entries::by_distance(self, aabb, max_distance, &mut found);
     }
 
-    /// The box that the ray enters first, at or before `max_time`, and when; of several the one of
-    /// least index.
+    /// Returns the box that the ray enters first, at or before `max_time`, and the time; at equal times the lowest
+    /// index.
     #[must_use]
     pub fn first_hit(&self, ray: &Ray<N, D>, max_time: N) -> Option<(usize, N)> {
         let (mut first, sweep) = (Best::none(max_time), Sweep::along(ray));
@@ -295,8 +295,8 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         first.of
     }
 
-    /// The box nearest to the point, at most `max_distance` away, and its distance; of several the one
-    /// of least index.
+    /// Returns the box nearest to the point, at most `max_distance` away, and its distance; at equal distances the
+    /// lowest index.
     #[must_use]
     pub fn nearest(&self, point: &Point<N, D>, max_distance: N) -> Option<(usize, N)> {
         let mut nearest = Best::none(max_distance);
@@ -319,25 +319,25 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
 }
 
 impl<N: Real, const D: usize> BoxTree<N, D> {
-    /// The number of boxes.
+    /// Returns the number of boxes.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.boxes.len()
     }
 
-    /// There is no box.
+    /// Returns `true` if there is no box.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.boxes.is_empty()
     }
 
-    /// The boxes, as they were given.
+    /// Returns the boxes, as given.
     #[must_use]
     pub fn boxes(&self) -> &[Aabb<N, D>] {
         &self.boxes
     }
 
-    /// The smallest box around all boxes; `None` if there are none.
+    /// Returns the smallest box around all boxes; `None` if there are none.
     #[must_use]
     pub const fn bounds(&self) -> Option<&Aabb<N, D>> {
         self.bounds.as_ref()
@@ -346,7 +346,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
     /// Checks every invariant; for tests.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// A sentence that names the violated invariant.
     pub fn validate(&self) -> Result<(), String> {
         self.tree.validate()?;
         if self.tree.len() + self.unbounded.len() != self.boxes.len() {
@@ -402,10 +402,10 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         Ok(())
     }
 
-    /// How far the things in the boxes reach along a direction: not less, and more by at most a few
-    /// rounding units of `f32` of their coordinates. `reach_of` tells it of one of them, which lies in
-    /// its box. Minus infinity if there are none. It asks O(log n) of them where they bulge, more
-    /// where many reach almost equally far.
+    /// Returns the extent of the objects in the boxes along `direction`: the maximum of `reach_of` over all ids. The
+    /// result is not less, and exceeds it by at most a few `f32` rounding units of the coordinates. Minus infinity if
+    /// there are no objects. Calls `reach_of` for O(log n) objects on curved surfaces, and for more where many are
+    /// almost equally extreme.
     pub(crate) fn reach_along(
         &self,
         direction: Vector<N, D>,
@@ -432,7 +432,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().by_time(sweep, max_time, found);
     }
 
-    /// [`Self::by_time`] in no exact order, which is faster.
+    /// As [`Self::by_time`], only roughly in order, which is faster.
     pub(crate) fn near_first(
         &self,
         sweep: &Sweep<N, D>,
@@ -442,7 +442,8 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().near_first(sweep, max_time, found);
     }
 
-    /// Helps searches for near pairs of faces, until the next refit. Of unbounded things nothing is known.
+    /// Adds the slabs of faces, which speed up searches for near pairs of faces until the next refit. Unbounded objects
+    /// have none.
     pub(crate) fn add_slabs<F: Fn(u32) -> [Point<N, D>; 3]>(
         &mut self,
         normals: &[Vector<N, D>],
@@ -457,7 +458,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         &self.tree
     }
 
-    /// The packed tree, if it holds all boxes.
+    /// Returns the packed tree, if it contains all boxes.
     pub(crate) fn packed_whole(&self) -> Option<&Tree<D>> {
         self.unbounded.is_empty().then_some(&self.tree)
     }
@@ -475,7 +476,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().by_distance(aabb, max_distance, found);
     }
 
-    /// [`Self::by_distance`] in no exact order, which is faster.
+    /// As [`Self::by_distance`], only roughly in order, which is faster.
     pub(crate) fn nearest_first(
         &self,
         aabb: &Aabb<N, D>,

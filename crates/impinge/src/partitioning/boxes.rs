@@ -1,11 +1,12 @@
-//! Boxes as a user gives them: checked, counted, one around all, and packed into a tree.
+//! A user's boxes: checked, counted, united, and packed into a tree.
 
 use super::BoxTreeError;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::Real;
 
-/// The tree of some boxes with different ids, and the ids of those that no finite `f32` box encloses, in order.
+/// Builds the tree of boxes with different ids; also returns the ids of those that no finite `f32`
+/// box encloses, in order.
 pub(crate) fn packed<N: Real, const D: usize>(
     lanes: Lanes,
     boxes: impl Iterator<Item = (u32, Aabb<N, D>)>,
@@ -21,7 +22,7 @@ pub(crate) fn packed<N: Real, const D: usize>(
     (Tree::of_still(lanes, bounded), unbounded)
 }
 
-/// No box is inverted or holds a NaN.
+/// Returns an error if a box is inverted or has a NaN.
 pub(super) fn check<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
     for (index, aabb) in boxes.iter().enumerate() {
         Aabb::try_new(*aabb.mins(), *aabb.maxs())
@@ -30,12 +31,12 @@ pub(super) fn check<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Result<(),
     Ok(())
 }
 
-/// The smallest box around some boxes.
+/// Returns the smallest box around some boxes; `None` for no boxes.
 pub(super) fn around<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Option<Aabb<N, D>> {
     boxes.iter().copied().reduce(|all, aabb| all.merged(&aabb))
 }
 
-/// The number of boxes as the tree counts them, which keeps one number for "none".
+/// Returns the number of boxes as a `u32` below `u32::MAX`, which the tree reserves for "none".
 pub(super) fn count(given: usize) -> Result<u32, BoxTreeError> {
     let count = u32::try_from(given).ok().filter(|&count| count < u32::MAX);
     count.ok_or(BoxTreeError::TooMany { given })

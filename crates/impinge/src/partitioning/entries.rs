@@ -1,11 +1,11 @@
-//! The entries of trees of boxes.
+//! The entries of trees of boxes, compiled in this crate.
 
 use super::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::bounding_volume::Aabb;
 use crate::tables::compiled;
 
 compiled! {
-    /// Making and searching trees of boxes.
+    /// Entries for building and searching trees of boxes.
     trait SearchEntries;
 
     fn build(boxes: Vec<Aabb<N, D>>) -> Result<BoxTree<N, D>, BoxTreeError> = BoxTree::build;

@@ -1,10 +1,10 @@
-//! Why boxes make no tree.
+//! Errors of a tree of boxes.
 
 use core::fmt;
 
 use crate::bounding_volume::AabbError;
 
-/// Why a [`BoxTree`](super::BoxTree) refused its boxes.
+/// The reason why a [`BoxTree`](super::BoxTree) refused its boxes.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -18,23 +18,23 @@ use crate::bounding_volume::AabbError;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BoxTreeError {
-    /// A box is inverted or holds a NaN, as arithmetic on good boxes may yield.
+    /// A box is inverted or has a NaN, as arithmetic on valid boxes can yield.
     BadBox {
         /// The index of the box.
         index: usize,
-        /// What is wrong with it.
+        /// The reason.
         error: AabbError,
     },
     /// There are more boxes than 32 bits can number.
     TooMany {
-        /// How many were given.
+        /// The number of boxes given.
         given: usize,
     },
-    /// A refitted tree keeps its number of boxes.
+    /// The number of boxes differs in a refit.
     WrongCount {
-        /// How many were given.
+        /// The number of boxes given.
         given: usize,
-        /// How many it has.
+        /// The number of boxes in the tree.
         needed: usize,
     },
 }

@@ -1,12 +1,13 @@
-//! Searches among boxes: a tree over a user's own, and what the broad phase shares with it.
+//! Searches among boxes: a tree over a user's boxes, and the searches that it shares with the broad
+//! phase.
 //!
-//! [`BoxTree`] is for those who have things of their own, each with a box, that do not move: the
-//! triangles of a scene, the rooms of a building. It answers with indices, and what lies in the boxes is
-//! the user's business. Things that move belong into a broad phase.
+//! [`BoxTree`] is for static objects of the user's own, each with a box: the triangles of a scene,
+//! the rooms of a building. It returns indices; the objects themselves stay with the user. Objects
+//! that move belong in a broad phase.
 //!
-//! The packed tree (`bvh`) holds boxes rounded outwards to `f32`, so it proposes and never
-//! misses; every answer is checked against the box as it was given. Boxes that no `f32` box encloses
-//! stand in a list beside the tree.
+//! The packed tree (`bvh`) contains boxes rounded outwards to `f32`, so it misses none; every
+//! proposal is tested against the exact box. Boxes that no `f32` box encloses are kept in a list
+//! beside the tree.
 
 mod box_tree;
 mod boxes;

@@ -1,11 +1,11 @@
-//! Searches of trees whose boxes stand for exact ones: the trees propose, the exact boxes decide.
+//! Searches with exact boxes: trees of `f32` boxes propose, exact boxes decide.
 
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Block, Bounds, Frontier, GROUP, Gaps, Keys, LANES, Lanes, Slabs, Tree};
 use crate::math::{Point, Real, Vector, min};
 
-/// Boxes by id, and where to look for them: each id in use is in one tree, within a box that encloses
-/// its exact one, or in the list.
+/// Exact boxes by id, and the trees over them. Each id in use is in one tree, with a box that
+/// encloses its exact one, or in the list of unbounded boxes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Search<'a, N: Real, const D: usize, const TREES: usize> {
     pub(crate) exact: &'a [Aabb<N, D>],
@@ -14,28 +14,28 @@ pub(crate) struct Search<'a, N: Real, const D: usize, const TREES: usize> {
     pub(crate) lanes: Lanes,
 }
 
-/// A box that moves without turning, from time zero on.
+/// A box that moves without rotating, from time zero on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep<N: Real, const D: usize> {
-    /// Where it is at time zero.
+    /// The box at time zero.
     pub(crate) aabb: Aabb<N, D>,
     pub(crate) velocity: Vector<N, D>,
 }
 
 impl<N: Real, const D: usize> Sweep<N, D> {
-    /// A box that is a point and moves as the ray says.
+    /// Returns the sweep of a point along the ray.
     pub(crate) fn along(ray: &Ray<N, D>) -> Self {
         Self { aabb: Aabb::at(ray.origin), velocity: ray.dir }
     }
 }
 
 impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
-    /// Calls `found` with each object whose box meets `aabb`, in no particular order.
+    /// Calls `found` with each object whose box overlaps `aabb`, in unspecified order.
     pub(crate) fn each_overlapping(&self, aabb: &Aabb<N, D>, found: impl FnMut(u32)) {
         self.each_within(&Bounds::enclosing(aabb), |own| own.intersects(aabb), found);
     }
 
-    /// Calls `found` with each object whose box holds the point, in no particular order.
+    /// Calls `found` with each object whose box contains the point, in unspecified order.
     pub(crate) fn each_containing(&self, point: &Point<N, D>, found: impl FnMut(u32)) {
         let query = Bounds::enclosing_point(point);
         self.each_within(&query, |own| own.contains_point(point), found);
@@ -54,7 +54,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         self.unbounded.iter().copied().for_each(propose);
     }
 
-    /// Calls `found` with each object whose box the ray meets, in no particular order. A ray that is
+    /// Calls `found` with each object whose box the ray meets, in unspecified order. A ray that is
     /// not finite meets nothing.
     pub(crate) fn each_hit(&self, ray: &Ray<N, D>, found: impl FnMut(u32)) {
         let Sweep { aabb, velocity } = Sweep::along(ray);
@@ -69,7 +69,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         self.unbounded.iter().copied().for_each(propose);
     }
 
-    /// Hands on what the exact boxes accept.
+    /// Wraps `found` so that it is called only if the exact box is accepted.
     fn accepted(
         &self,
         accept: impl Fn(&Aabb<N, D>) -> bool,
@@ -82,10 +82,10 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         }
     }
 
-    /// Calls `found` with each object whose box the moving one touches at or before `limit` and the
-    /// first time of that, in ascending order of (time, id); `found` returns the new limit, which
-    /// never grows. Nothing is met with a velocity that is not finite, or by a box without a finite
-    /// point, as that of a ray is whose origin is not finite.
+    /// Calls `found` with each object whose box the moving box touches at or before `limit`, and
+    /// the first such time, in ascending order of (time, id). `found` returns the new limit, which
+    /// must not increase. A velocity that is not finite and a box without a finite point, such as
+    /// that of a ray with an infinite origin, meet nothing.
     pub(crate) fn by_time(&self, sweep: &Sweep<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
         let Sweep { aabb, velocity } = sweep;
         if !aabb.holds_finite_point() || !velocity.iter().all(|x| x.is_finite_number()) {
@@ -99,9 +99,9 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         self.best_first(limit, &keys, found);
     }
 
-    /// Calls `found` with each object whose box is at most `limit` from `aabb` and the distance, in
-    /// ascending order of (distance, id); `found` returns the new limit, which never grows. A box
-    /// without a finite point is near nothing.
+    /// Calls `found` with each object whose box is at most `limit` from `aabb`, and the distance,
+    /// in ascending order of (distance, id). `found` returns the new limit, which must not
+    /// increase. A box without a finite point is near nothing.
     pub(crate) fn by_distance(&self, aabb: &Aabb<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
         if !aabb.holds_finite_point() {
             return;
@@ -113,7 +113,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         self.best_first(limit, &keys, found);
     }
 
-    /// [`Self::by_time`] in no exact order, but near ones first.
+    /// As [`Self::by_time`], only roughly in order.
     pub(crate) fn near_first(&self, sweep: &Sweep<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
         let Some(slabs) = self.slabs(sweep) else { return };
         let Sweep { aabb, velocity } = sweep;
@@ -125,7 +125,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// [`Self::by_distance`] in no exact order, but near ones first.
+    /// As [`Self::by_distance`], only roughly in order.
     pub(crate) fn nearest_first(
         &self,
         aabb: &Aabb<N, D>,
@@ -144,8 +144,9 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// The objects whose boxes the trees propose to [`Self::near_first`], several at a time, each with a
-    /// time not after that of its box: for those who test what lies in the boxes, which tells all.
+    /// Calls `found` with the objects that the trees propose to [`Self::near_first`], in groups,
+    /// each with a lower bound of the time. For callers that test the objects themselves, which
+    /// makes the exact boxes superfluous.
     pub(crate) fn groups_by_time(
         &self,
         sweep: &Sweep<N, D>,
@@ -162,8 +163,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// The objects whose boxes the trees propose to [`Self::nearest_first`], as
-    /// [`Self::groups_by_time`].
+    /// Calls `found` with the objects that the trees propose to [`Self::nearest_first`], in groups,
+    /// each with a lower bound of the distance.
     pub(crate) fn groups_by_distance(
         &self,
         aabb: &Aabb<N, D>,
@@ -183,7 +184,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// Hands on the unbounded objects; returns the new limit.
+    /// Calls `found` with the unbounded objects, with key zero; returns the new limit.
     fn first_unbounded(&self, limit: N, found: &mut impl FnMut(&[(u32, N)]) -> N) -> N {
         self.unbounded.chunks(GROUP).fold(limit, |limit, ids| {
             let mut group = [(0, N::ZERO); GROUP];
@@ -194,7 +195,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         })
     }
 
-    /// The moving box; `None` if it goes nowhere that is finite.
+    /// Returns the slabs of the moving box; `None` if the velocity is not finite or the box has no
+    /// finite point.
     fn slabs(&self, sweep: &Sweep<N, D>) -> Option<Slabs<D>> {
         let Sweep { aabb, velocity } = sweep;
         let is_path = velocity.iter().all(|x| x.is_finite_number());
@@ -202,7 +204,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         moves.then(|| Slabs::new(aabb, velocity, self.size()))
     }
 
-    /// Hands on an object if its key is within the limit; returns the new limit.
+    /// Wraps `found` so that it is called only if the key of the exact box is within the limit;
+    /// returns the new limit.
     fn within(
         &self,
         limit: N,
@@ -218,7 +221,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         }
     }
 
-    /// The largest magnitude of a coordinate in the trees.
+    /// Returns the largest magnitude of a coordinate in the trees.
     fn size(&self) -> f32 {
         self.trees.iter().map(|tree| tree.size()).fold(0.0, f32::max)
     }
@@ -235,7 +238,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
                 frontier.push_object(key, id);
             }
         }
-        // What was beyond an earlier limit is gone. A NaN passes, and ends the search.
+        // The frontier drops objects beyond an earlier limit. A NaN limit passes through `min`, and
+        // ends the search.
         let mut lowest = limit;
         let lowered = |id: u32, key: N| {
             lowest = min(lowest, found(id, key));
@@ -245,7 +249,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
     }
 }
 
-/// The box of least key so far, of several that of least index.
+/// The box with the least key so far; at equal keys the lowest index.
 pub(super) struct Best<N: Real> {
     pub(super) of: Option<(usize, N)>,
     limit: N,
@@ -256,7 +260,7 @@ impl<N: Real> Best<N> {
         Self { of: None, limit }
     }
 
-    /// Takes a box into account that is within the limit; returns the new limit.
+    /// Considers a box within the limit; returns the new limit.
     pub(super) fn offer(&mut self, id: u32, key: N) -> N {
         let index = id as usize;
         if self.of.is_none_or(|(best, least)| key < least || (key == least && index < best)) {
@@ -266,7 +270,7 @@ impl<N: Real> Best<N> {
     }
 }
 
-/// A few objects with their keys as the caller counts, and how many.
+/// Converts the keys of a group; returns the group and its length.
 #[inline(always)]
 fn converted<N: Real>(
     proposed: &[(u32, f32)],

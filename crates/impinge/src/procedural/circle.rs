@@ -1,33 +1,33 @@
-//! Directions spread evenly around a circle.
+//! Evenly spaced directions around a circle.
 
 use core::f64::consts::FRAC_PI_2;
 
 use crate::math::{Real, Vector};
 
-/// The least number of parts of a full turn: fewer enclose nothing.
+/// The minimum number of parts of a full turn: fewer enclose no area.
 pub const MIN_SUBDIVISIONS: u32 = 3;
 
-/// The greatest number of parts of a full turn. The gap to a ball of radius 1 is then 4e-8, below what
-/// an `f32` distinguishes, and the vertices of every surface can be numbered in 32 bits.
+/// The maximum number of parts of a full turn. The gap to a ball of radius 1 is then 4e-8, below
+/// the resolution of `f32`, and 32 bits can number the vertices of every surface.
 pub const MAX_SUBDIVISIONS: u32 = 1 << 14;
 
-/// The number of parts that stands for the number asked for.
+/// Clamps a requested number of parts to the supported range.
 pub(super) fn parts_of_turn(subdivisions: u32) -> u32 {
     subdivisions.clamp(MIN_SUBDIVISIONS, MAX_SUBDIVISIONS)
 }
 
-/// The unit vector that is `index / count` of a full turn from x, towards y; `index` may be anything
-/// up to some turns, `count` up to four times [`MAX_SUBDIVISIONS`].
+/// The unit vector at `index / count` of a full turn from x towards y; `index` may be up to some
+/// turns, `count` up to four times [`MAX_SUBDIVISIONS`].
 ///
-/// Each is computed for itself, from an angle of an eighth of a turn at most: errors do not add up, and
-/// quarter turns are exact.
+/// Each is computed on its own, from an angle of at most 45°: errors do not accumulate, and quarter
+/// turns are exact.
 pub(super) fn direction<N: Real>(index: u32, count: u32) -> Vector<N, 2> {
     let (quarters, rest) = (4 * index / count, 4 * index % count);
     let is_mirrored = 2 * rest > count;
     let part = if is_mirrored { count - rest } else { rest };
     let (sine, cosine) = N::lit(f64::from(part) / f64::from(count) * FRAC_PI_2).sine_cosine();
     let (x, y) = if is_mirrored { (sine, cosine) } else { (cosine, sine) };
-    // Differences, so that no zero has a sign.
+    // Subtracted from zero, so that no zero is negative.
     match quarters % 4 {
         0 => Vector::<N, 2>::new(x, y),
         1 => Vector::<N, 2>::new(N::ZERO - y, x),
@@ -55,7 +55,8 @@ mod tests {
                     (f64::from(index) / f64::from(count) * 4.0 * FRAC_PI_2).sin_cos();
                 let found = direction::<N>(index, count).map(N::as_f64);
                 let error = (found - Vector::<f64, 2>::new(cosine, sine)).norm();
-                // An angle of up to 2π, itself rounded, is what the standard library is asked about.
+                // The reference is the standard library at an angle up to 2π, which is itself
+                // rounded.
                 let allowed = 1.5 * N::EPSILON.as_f64() + 4.0 * f64::EPSILON;
                 assert!(error <= allowed, "{index} of {count}: off by {error}");
             }

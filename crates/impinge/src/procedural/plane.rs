@@ -1,4 +1,4 @@
-//! Outlines of the shapes of the plane.
+//! Outlines of 2D shapes.
 
 use super::Outline;
 use super::circle::{direction, parts_of_turn};
@@ -8,7 +8,8 @@ use crate::shape::{
     Triangle,
 };
 
-/// A regular polygon of `n = subdivisions` corners inscribed in a disk; the first lies on the x axis.
+/// Returns a regular polygon of `n = subdivisions` corners inscribed in a disk; the first lies on
+/// the x axis.
 ///
 /// The gap is at most `radius · (1 − cos(π / n))`.
 ///
@@ -27,7 +28,7 @@ pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> Outline<N> {
     Outline { points: (0..count).map(corner).collect() }
 }
 
-/// The polygon of [`ball`] stretched along the axes: `n = subdivisions` corners.
+/// Returns the polygon of [`ball`] scaled along the axes: `n = subdivisions` corners.
 ///
 /// The gap is at most `(1 − cos(π / n))` times the longer half axis.
 #[must_use]
@@ -38,17 +39,18 @@ pub fn ellipse<N: Real>(ellipse: &Ellipsoid<N, 2>, subdivisions: u32) -> Outline
     Outline { points: (0..count).map(corner).collect() }
 }
 
-/// The four corners of a rectangle, from the one of greatest x and least y on.
+/// Returns the four corners of a rectangle, starting at the greatest x and the least y.
 #[must_use]
 pub fn cuboid<N: Real>(cuboid: &Cuboid<N, 2>) -> Outline<N> {
     let corner = |index| cuboid.vertex(FeatureId::Vertex(index));
     Outline { points: [1, 3, 2, 0].map(corner).to_vec() }
 }
 
-/// Two half circles of `k = ⌈subdivisions / 2⌉` parts each, one around each end: 2 k + 2 corners.
+/// Returns two half circles of `k = ⌈subdivisions / 2⌉` parts each, one around each end: 2 k + 2
+/// corners.
 ///
-/// The first half circle is that around the second end of the segment. The gap is at most
-/// `radius · (1 − cos(π / 2k))`.
+/// The half circle around the second end of the segment comes first. The gap is at most `radius ·
+/// (1 − cos(π / 2k))`.
 #[must_use]
 pub fn capsule<N: Real>(capsule: &Capsule<N, 2>, subdivisions: u32) -> Outline<N> {
     let half_turn = parts_of_turn(subdivisions).div_ceil(2);
@@ -64,12 +66,13 @@ pub fn capsule<N: Real>(capsule: &Capsule<N, 2>, subdivisions: u32) -> Outline<N
     Outline { points: around_b.chain(around_a).collect() }
 }
 
-/// A part of a circle around each end, joined by the two sides.
+/// Returns an arc around each end, joined by the two sides.
 ///
-/// Of `n = subdivisions` directions, evenly spread from the right of the segment on, those that the
-/// ball around an end faces give a corner on it; with the four ends of the sides there are at most
-/// `n + 4` corners. The gap is at most `(1 − cos(π / n))` times the larger radius. Where one ball holds
-/// the other, the outline is that ball's: `n` corners.
+/// The `n = subdivisions` directions are evenly spaced, starting on the right of the segment. A
+/// direction in which the ball around an end lies on the surface gives a corner on it; with the
+/// four ends of the sides there are at most `n + 4` corners. The gap is at most `(1 − cos(π / n))`
+/// times the larger radius. If one ball contains the other, the outline is that ball's: `n`
+/// corners.
 #[must_use]
 pub fn tapered_capsule<N: Real>(capsule: &TaperedCapsule<N, 2>, subdivisions: u32) -> Outline<N> {
     let count = parts_of_turn(subdivisions);
@@ -88,8 +91,8 @@ pub fn tapered_capsule<N: Real>(capsule: &TaperedCapsule<N, 2>, subdivisions: u3
     };
     let [right_side, left_side] =
         [taper.cosine, -taper.cosine].map(|away| placed(Vector::<N, 2>::new(away, taper.sine)));
-    // Those of either end may lie on both sides of the direction that counting starts from: the second
-    // goes on from below it, the first ends above it.
+    // The directions of each end may wrap around the first direction: the second end starts below
+    // it, the first end after the highest.
     let (highest, lowest) = (count.div_ceil(4), 3 * count / 4 + 1);
     let mut points = vec![corner(1, right_side)];
     points.extend(facing(1, lowest..count));
@@ -101,7 +104,7 @@ pub fn tapered_capsule<N: Real>(capsule: &TaperedCapsule<N, 2>, subdivisions: u3
     Outline { points }
 }
 
-/// The corners of a triangle from `a` on, in the order that is counter-clockwise.
+/// Returns the corners of a triangle, starting at `a`, counter-clockwise.
 #[must_use]
 pub fn triangle<N: Real>(triangle: &Triangle<N, 2>) -> Outline<N> {
     let [a, b, c] = *triangle.corners();
@@ -110,7 +113,7 @@ pub fn triangle<N: Real>(triangle: &Triangle<N, 2>) -> Outline<N> {
     Outline { points: if is_in_order { vec![a, b, c] } else { vec![a, c, b] } }
 }
 
-/// The vertices of a convex polygon.
+/// Returns the vertices of a convex polygon.
 #[must_use]
 pub fn convex_polygon<N: Real>(polygon: &ConvexPolygon<N>) -> Outline<N> {
     Outline { points: polygon.vertices().to_vec() }

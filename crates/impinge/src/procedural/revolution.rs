@@ -1,26 +1,26 @@
-//! Surfaces of revolution: what balls, capsules, cylinders and cones have in common.
+//! Surfaces of revolution: the common part of balls, capsules, cylinders and cones.
 
 use super::TriangleSurface;
 use super::circle::direction;
 use crate::math::{Point, Real, Vector, cross, orthonormal_basis};
 
-/// A circle around the axis through which the surface goes; the first and the last of a profile are
-/// points on the axis, whatever their radius says.
+/// A circle around the axis that the surface passes through; the first and the last of a profile
+/// are points on the axis, whatever their radius.
 ///
-/// Normals are (away from the axis, along the axis). Those of the surface on the two sides of the
-/// circle differ where it is a crease.
+/// Normals are (away from the axis, along the axis). At a crease the normals on the two sides of
+/// the circle differ.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stop<N: Real> {
     pub(super) center: Point<N, 3>,
     pub(super) radius: N,
-    /// The normal at the end of what comes before.
+    /// The normal at the end of the preceding band.
     pub(super) before: Vector<N, 2>,
-    /// The normal at the start of what follows.
+    /// The normal at the start of the following band.
     pub(super) after: Vector<N, 2>,
 }
 
 impl<N: Real> Stop<N> {
-    /// A circle on which the normal is the same on both sides.
+    /// A circle with the same normal on both sides.
     pub(super) fn smooth(center: Point<N, 3>, radius: N, normal: Vector<N, 2>) -> Self {
         Self { center, radius, before: normal, after: normal }
     }
@@ -35,24 +35,24 @@ pub(super) struct RevolutionFrame<N: Real> {
 }
 
 impl<N: Real> RevolutionFrame<N> {
-    /// The frame around a unit vector.
+    /// A frame around a unit vector.
     pub(super) fn around(axis: Vector<N, 3>) -> Self {
         let (across, _) = orthonormal_basis(&axis);
         Self { across, axis, third: cross(&across, &axis) }
     }
 
-    /// The vector away from the axis that a unit vector of the plane stands for.
+    /// Converts a 2D unit vector to the direction away from the axis.
     fn radial(&self, toward: &Vector<N, 2>) -> Vector<N, 3> {
         self.across * toward.x + self.third * toward.y
     }
 
-    /// The normal, given as (away from the axis, along the axis), in a direction around the axis.
+    /// Converts a normal (away from the axis, along the axis) at a direction around the axis to 3D.
     fn normal(&self, profile: &Vector<N, 2>, toward: &Vector<N, 2>) -> Vector<N, 3> {
         self.radial(toward) * profile.x + self.axis * profile.y
     }
 }
 
-/// The surface that a profile, from the far end of the axis to the near one, leaves behind in a turn of
+/// Returns the surface of a profile, from the far end of the axis to the near one, rotated in
 /// `count` parts.
 pub(super) fn revolve<N: Real>(
     frame: &RevolutionFrame<N>,
@@ -74,7 +74,7 @@ pub(super) fn revolve<N: Real>(
     bands.surface
 }
 
-/// The surface as it grows, band by band.
+/// The surface under construction, band by band.
 struct Bands<'a, N: Real> {
     frame: &'a RevolutionFrame<N>,
     directions: Vec<Vector<N, 2>>,
@@ -82,10 +82,10 @@ struct Bands<'a, N: Real> {
 }
 
 impl<N: Real> Bands<'_, N> {
-    /// Adds what lies between the stops `row` and `row + 1`.
+    /// Adds the band between the stops `row` and `row + 1`.
     ///
-    /// From outside, with the far end of the axis up, directions run to the left: from the third vector
-    /// of the frame, the axis and the first it is right-handed.
+    /// Seen from outside, with the far end of the axis up, directions run to the left: the third
+    /// vector of the frame, the axis and the first are right-handed.
     fn push(&mut self, row: u32, is_last: bool, stops: &[Stop<N>]) {
         let count = u32::try_from(self.directions.len()).expect("a turn has few parts");
         let ring = |row: u32, column: u32| 1 + (row - 1) * count + column;
@@ -109,7 +109,7 @@ impl<N: Real> Bands<'_, N> {
         }
     }
 
-    /// The normals at two neighbouring columns; on the axis, that of the middle between them twice.
+    /// The normals at two neighbouring columns; at a pole twice the normal midway between them.
     fn normals(
         &self,
         profile: &Vector<N, 2>,

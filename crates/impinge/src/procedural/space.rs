@@ -1,4 +1,4 @@
-//! Surfaces of the shapes of space.
+//! Surfaces of 3D shapes.
 
 use super::TriangleSurface;
 use super::circle::{direction, parts_of_turn};
@@ -9,8 +9,8 @@ use crate::shape::{
     FeatureId, TaperedCapsule, Tetrahedron, Triangle,
 };
 
-/// Meridians and parallels: `n = subdivisions` of the former, and `4 k` parts with
-/// `k = ⌈n / 4⌉` to a full turn along each of them.
+/// Returns a surface of meridians and parallels: `n = subdivisions` meridians, each with `4 k`
+/// parts to a full turn, `k = ⌈n / 4⌉`.
 ///
 /// There are `2 + n (2 k − 1)` vertices and `2 n (2 k − 1)` triangles; the first vertex is the pole on
 /// the positive side of y, the last the one on the negative side. The gap is at most
@@ -26,8 +26,8 @@ use crate::shape::{
 /// ```
 #[must_use]
 pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
-    // Quadrilaterals between meridians and parallels are flat trapezoids inscribed in the sphere. The
-    // one whose middle is nearest to the centre would straddle the equator: its middle is at
+    // Quadrilaterals between meridians and parallels are flat trapezoids inscribed in the sphere.
+    // The one whose middle is nearest to the centre would straddle the equator: its middle is at
     // cos(π / n) · cos(π / 4k) of the radius, which is not below cos²(π / n).
     let count = parts_of_turn(subdivisions);
     let quarter = count.div_ceil(4);
@@ -38,8 +38,8 @@ pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
     revolve(&sphere.frame, count, &profile)
 }
 
-/// A half ball at each end, each like half of [`ball`], and `n = subdivisions` rectangles between
-/// them, whatever the length.
+/// Returns a half ball at each end, each like half of [`ball`], and `n = subdivisions` rectangles
+/// between them, for every length.
 ///
 /// There are `2 + 2 n k` vertices and `4 n k` triangles, with `k = ⌈n / 4⌉`; the first vertex is the
 /// pole beyond the second end of the segment, the last the one beyond the first end. The gap is at most
@@ -58,7 +58,7 @@ pub fn capsule<N: Real>(capsule: &Capsule<N, 3>, subdivisions: u32) -> TriangleS
     revolve(&sphere.frame, count, &profile)
 }
 
-/// The surface of [`ball`] stretched along the axes, with as many vertices and triangles.
+/// Returns the surface of [`ball`] scaled along the axes, with as many vertices and triangles.
 ///
 /// The gap is at most `sin²(π / n)` times the longest half axis, with `n = subdivisions`.
 #[must_use]
@@ -71,7 +71,7 @@ pub fn ellipsoid<N: Real>(ellipsoid: &Ellipsoid<N, 3>, subdivisions: u32) -> Tri
     let is_flat = half_axes.iter().any(|&half| half == N::ZERO);
     let least = half_axes.iter().fold(N::INFINITY, |least, &half| min(half, least));
     for normal in surface.normals.iter_mut().flatten() {
-        // Across the axes that are zero, or else divided by the half axes.
+        // Along the axes that are zero, or else divided by the half axes.
         let steep = normal.zip_map(half_axes, |x, half| match (is_flat, half == N::ZERO) {
             (true, false) => N::ZERO,
             (true, true) => x,
@@ -82,12 +82,12 @@ pub fn ellipsoid<N: Real>(ellipsoid: &Ellipsoid<N, 3>, subdivisions: u32) -> Tri
     surface
 }
 
-/// A part of a ball at each end, like [`ball`]'s parallels on the side that the ball faces, and
-/// `n = subdivisions` quadrilaterals between the two circles where the side begins.
+/// Returns a part of a ball at each end, with those parallels of [`ball`] that lie on the surface,
+/// and `n = subdivisions` quadrilaterals between the two circles where the side begins.
 ///
-/// There are at most `2 + n (2 k + 1)` vertices, with `k = ⌈n / 4⌉`; the first is the pole beyond the
-/// second end of the segment, the last the one beyond the first end. The gap is at most `sin²(π / n)`
-/// times the larger radius. Where one ball holds the other, the surface is that ball's.
+/// There are at most `2 + n (2 k + 1)` vertices, with `k = ⌈n / 4⌉`; the first is the pole beyond
+/// the second end of the segment, the last the one beyond the first end. The gap is at most `sin²(π
+/// / n)` times the larger radius. If one ball contains the other, the surface is that ball's.
 #[must_use]
 pub fn tapered_capsule<N: Real>(
     capsule: &TaperedCapsule<N, 3>,
@@ -118,7 +118,7 @@ pub fn tapered_capsule<N: Real>(
     revolve(&frame, count, &profile)
 }
 
-/// The four faces of a tetrahedron: triangle `i` is `Face(i)`, vertex `i` is `Vertex(i)`.
+/// Returns the four faces of a tetrahedron: triangle `i` is `Face(i)`, vertex `i` is `Vertex(i)`.
 #[must_use]
 pub fn tetrahedron<N: Real>(tetrahedron: &Tetrahedron<N>) -> TriangleSurface<N> {
     let mut surface = TriangleSurface::of_vertices(tetrahedron.corners().to_vec());
@@ -135,10 +135,12 @@ pub fn tetrahedron<N: Real>(tetrahedron: &Tetrahedron<N>) -> TriangleSurface<N> 
     surface
 }
 
-/// `n = subdivisions` rectangles around, and `n` triangles in each cap that meet at its middle.
+/// Returns `n = subdivisions` rectangles around, and `n` triangles in each cap that meet at its
+/// centre.
 ///
-/// There are `2 + 2 n` vertices and `4 n` triangles; the first vertex is the middle of the cap on the
-/// positive side of y, the last that of the other. The gap is at most `radius · (1 − cos(π / n))`.
+/// There are `2 + 2 n` vertices and `4 n` triangles; the first vertex is the centre of the cap on
+/// the positive side of y, the last that of the other. The gap is at most `radius · (1 − cos(π /
+/// n))`.
 #[must_use]
 pub fn cylinder<N: Real>(cylinder: &Cylinder<N>, subdivisions: u32) -> TriangleSurface<N> {
     let (radius, top, bottom) =
@@ -154,10 +156,10 @@ pub fn cylinder<N: Real>(cylinder: &Cylinder<N>, subdivisions: u32) -> TriangleS
     revolve(&RevolutionFrame::around(up()), parts_of_turn(subdivisions), &profile)
 }
 
-/// `n = subdivisions` triangles up to the apex and `n` in the base that meet at its middle.
+/// Returns `n = subdivisions` triangles up to the apex and `n` in the base that meet at its centre.
 ///
-/// There are `2 + n` vertices and `2 n` triangles; the first vertex is the apex, the last the middle of
-/// the base. The gap is at most `radius · (1 − cos(π / n))`.
+/// There are `2 + n` vertices and `2 n` triangles; the first vertex is the apex, the last the
+/// centre of the base. The gap is at most `radius · (1 − cos(π / n))`.
 #[must_use]
 pub fn cone<N: Real>(cone: &Cone<N>, subdivisions: u32) -> TriangleSurface<N> {
     let (radius, half_height) = (cone.radius(), cone.half_height());
@@ -174,7 +176,7 @@ pub fn cone<N: Real>(cone: &Cone<N>, subdivisions: u32) -> TriangleSurface<N> {
     revolve(&RevolutionFrame::around(up()), parts_of_turn(subdivisions), &profile)
 }
 
-/// Twelve triangles between the eight vertices of a box.
+/// Returns twelve triangles between the eight vertices of a box.
 ///
 /// Vertex `i` is the box's `Vertex(i)`; the triangles `2 i` and `2 i + 1` are its `Face(i)`.
 ///
@@ -205,7 +207,8 @@ pub fn cuboid<N: Real>(cuboid: &Cuboid<N, 3>) -> TriangleSurface<N> {
     surface
 }
 
-/// The faces of a convex hull, each cut into triangles that meet at its first vertex, in order.
+/// Returns the faces of a convex hull, each divided into triangles that meet at its first vertex,
+/// in order.
 ///
 /// Vertex `i` is the hull's `Vertex(i)`. A hull of `v` vertices gives `2 v − 4` triangles.
 #[must_use]
@@ -217,7 +220,7 @@ pub fn convex_hull<N: Real>(hull: &ConvexHull<N>) -> TriangleSurface<N> {
     surface
 }
 
-/// The two sides of a triangle, `Face(0)` first: a closed surface around nothing.
+/// Returns the two sides of a triangle, `Face(0)` first: a closed surface without volume.
 #[must_use]
 pub fn triangle<N: Real>(triangle: &Triangle<N, 3>) -> TriangleSurface<N> {
     let mut surface = TriangleSurface::of_vertices(triangle.corners().to_vec());
@@ -226,7 +229,7 @@ pub fn triangle<N: Real>(triangle: &Triangle<N, 3>) -> TriangleSurface<N> {
     surface
 }
 
-/// The circles of a sphere across an axis, `quarter` parts to a quarter turn.
+/// The circles of a sphere across an axis, with `quarter` parts to a quarter turn.
 #[derive(Clone, Copy)]
 struct Sphere<N: Real> {
     radius: N,
@@ -236,7 +239,7 @@ struct Sphere<N: Real> {
 }
 
 impl<N: Real> Sphere<N> {
-    /// The circle that is `index` parts from the pole that the axis points to.
+    /// The circle at `index` parts from the pole towards which the axis points.
     fn stop(&self, center: &Point<N, 3>, index: u32) -> Stop<N> {
         let toward = direction::<N>(index, 4 * self.quarter);
         let center = center + self.axis * (toward.x * self.radius);

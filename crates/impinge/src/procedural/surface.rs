@@ -1,9 +1,9 @@
-//! What the functions of this module return.
+//! The results of the procedural functions: outlines and surfaces.
 
 use crate::math::{Point, Real, Vector};
 use crate::shape::{MeshError, Polyline, TriMesh};
 
-/// A closed line through 2D points, counter-clockwise; the last leads back to the first.
+/// A closed line through 2D points, counter-clockwise; the last is joined to the first.
 ///
 /// ```
 /// use impinge::dim2::procedural;
@@ -21,8 +21,8 @@ pub struct Outline<N: Real> {
 
 /// A closed surface of triangles in 3D.
 ///
-/// Triangles share their vertices: each edge belongs to two triangles, once in each direction. Where
-/// the surface has a crease, the triangles on its two sides differ in their normals only.
+/// Triangles share their vertices: each edge belongs to two triangles, once in each direction. At a
+/// crease, the triangles on its two sides differ in their normals only.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -40,8 +40,8 @@ pub struct TriangleSurface<N: Real> {
     pub vertices: Vec<Point<N, 3>>,
     /// The vertices of each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// For each triangle the outward unit normals, at its vertices, of the true surface: what smooth
-    /// shading asks for. At the tip of a cone it is the normal on the middle of the triangle.
+    /// For each triangle the outward unit normals of the true surface at its vertices, for smooth
+    /// shading. At the tip of a cone it is the normal at the middle of the triangle.
     pub normals: Vec<[Vector<N, 3>; 3]>,
 }
 
@@ -51,12 +51,13 @@ impl<N: Real> TriangleSurface<N> {
         self.triangles.iter().map(|triangle| triangle.map(|index| self.vertices[index as usize]))
     }
 
-    /// A surface of these vertices, without triangles so far.
+    /// A surface of these vertices, without triangles.
     pub(super) const fn of_vertices(vertices: Vec<Point<N, 3>>) -> Self {
         Self { vertices, triangles: Vec::new(), normals: Vec::new() }
     }
 
-    /// Adds a flat convex face, given counter-clockwise, as triangles that meet at its first vertex.
+    /// Appends a flat convex face, given counter-clockwise, as triangles that meet at its first
+    /// vertex.
     pub(super) fn push_face(&mut self, ring: &[u32], normal: Vector<N, 3>) {
         for side in ring[1..].windows(2) {
             self.triangles.push([ring[0], side[0], side[1]]);
@@ -65,7 +66,7 @@ impl<N: Real> TriangleSurface<N> {
     }
 }
 
-/// The closed surface as a shape. Its vertices, triangles and their numbers stay.
+/// Converts the closed surface to a shape. Its vertices and triangles keep their numbers.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -85,7 +86,7 @@ impl<N: Real> TryFrom<TriangleSurface<N>> for TriMesh<N, 3> {
     }
 }
 
-/// The closed line as a shape: segment `i` starts at point `i`.
+/// Converts the closed line to a shape: segment `i` starts at point `i`.
 ///
 /// ```
 /// use impinge::dim2::procedural;

@@ -1,4 +1,4 @@
-//! The points of two solids that are nearest to each other.
+//! The nearest points of two solids.
 
 use crate::collide::{AtIsometry, Placed};
 use crate::math::{AbstractRotation, Isometry, IsometryRef, Point, Real, Space, max};
@@ -22,15 +22,15 @@ use crate::tables::entries;
 pub enum ClosestPoints<N: Real, const D: usize> {
     /// The solids touch or overlap.
     Intersecting,
-    /// A point on the first solid and one on the second, in the world frame, whose distance is that
-    /// of the solids.
+    /// A point on the first solid and one on the second, in the world frame, whose distance is the
+    /// distance of the solids.
     WithinMargin(Point<N, D>, Point<N, D>),
-    /// The solids are farther apart than was asked.
+    /// The solids are farther apart than `max_distance`.
     Disjoint,
 }
 
 impl<N: Real, const D: usize> ClosestPoints<N, D> {
-    /// The same answer with the solids swapped.
+    /// Returns the answer with the solids swapped.
     #[must_use]
     pub fn flipped(&self) -> Self {
         match self {
@@ -40,12 +40,12 @@ impl<N: Real, const D: usize> ClosestPoints<N, D> {
     }
 }
 
-/// The nearest points of two solids that are at most `max_distance` apart.
+/// Returns the nearest points of two solids that are at most `max_distance` apart.
 ///
-/// Where several pairs of points are equally near, one is chosen, the same for every order of the
-/// arguments. A distance equal to `max_distance` counts as within; a negative or NaN
-/// `max_distance` counts as zero. [`ClosestPoints::Disjoint`] if a pose is not finite. Of composites the
-/// points lie on the nearest parts, which [`witness`](super::witness()) names.
+/// If several pairs of points are equally near, one is chosen, the same for both orders of the
+/// arguments. A distance equal to `max_distance` counts as within; a negative or NaN `max_distance`
+/// counts as zero. [`ClosestPoints::Disjoint`] if a pose is not finite. For composites the points
+/// lie on the nearest parts; [`witness`](super::witness()) returns their numbers.
 pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

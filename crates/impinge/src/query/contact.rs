@@ -35,7 +35,8 @@ pub struct Contact<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Contact<N, D> {
-    /// The contact of the two solids grown by these lengths: its points are on the grown surfaces.
+    /// The contact of the solids inflated by these lengths; its points are on the inflated
+    /// surfaces.
     pub(crate) fn grown(&self, [first, second]: [N; 2]) -> Self {
         let normal = self.normal.into_inner();
         Self {
@@ -46,23 +47,24 @@ impl<N: Real, const D: usize> Contact<N, D> {
         }
     }
 
-    /// The same contact with the solids swapped.
+    /// Returns the contact with the solids swapped.
     #[must_use]
     pub fn flipped(&self) -> Self {
         Self { world1: self.world2, world2: self.world1, normal: -self.normal, depth: self.depth }
     }
 }
 
-/// The contact of two solids that overlap, touch, or are at most `prediction` apart.
+/// Returns the contact of two solids that overlap, touch, or are at most `prediction` apart.
 ///
-/// Where they overlap, the depth is the length of the shortest translation that parts them and the
-/// normal its direction for the second solid. A distance equal to `prediction` counts. A negative
-/// `prediction` asks for contacts at least that deep. `None` if `prediction` is NaN or a pose is not
-/// finite, and for half-spaces that overlap without bound, which have no depth.
+/// If they overlap, the depth is the length of the shortest translation that separates them, and
+/// the normal its direction for the second solid. A distance equal to `prediction` counts. A
+/// negative `prediction` restricts the answer to contacts at least that deep. `None` if
+/// `prediction` is NaN or a pose is not finite, and for half-spaces that overlap without bound,
+/// which have no depth.
 ///
-/// Of a composite it is the deepest contact of its manifolds: that of a part, with a normal that the
-/// whole surface has there ([`Surface`](crate::shape::Surface)). A surface with one side has none from
-/// behind. Cost: that of [`distance`](crate::query::distance), and of the parts that overlap.
+/// For a composite it is the deepest contact of its manifolds: the contact of a part, with a normal
+/// of the whole surface ([`Surface`](crate::shape::Surface)). A surface with one side has none from
+/// behind. Cost: that of [`distance`](crate::query::distance), plus the parts that overlap.
 ///
 /// ```
 /// use impinge::math::{Isometry3, Vector};
@@ -100,7 +102,7 @@ pub(crate) fn contact_at<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Contact<N, D> {
-    /// Of a separation in the world; `None` of half-spaces that overlap without bound.
+    /// Converts a separation in the world; `None` for half-spaces that overlap without bound.
     #[inline]
     pub(crate) fn of_separation(found: &Separation<N, D>) -> Option<Self> {
         found.distance.is_finite_number().then(|| Self {

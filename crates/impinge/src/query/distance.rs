@@ -1,17 +1,17 @@
-//! How far apart two solids are.
+//! The distance between two solids.
 
 use crate::collide::{AtIsometry, Placed, Placing};
 use crate::math::{AbstractRotation, Isometry, IsometryRef, Space, max};
 use crate::shape::Shape;
 use crate::tables::entries;
 
-/// The distance between two solids: zero if they touch or overlap.
+/// Returns the distance between two solids: zero if they touch or overlap.
 ///
-/// The smallest length of a translation that makes them touch. Swapping the solids gives the same
-/// bits. Infinite if a pose is not finite, and for a composite without parts.
+/// It is the length of the shortest translation that makes them touch. Swapping the solids gives
+/// the same bits. Infinite if a pose is not finite, and for a composite without parts.
 ///
-/// That of composites is the distance of their nearest parts: [`witness`](super::witness()) names them,
-/// and says what it costs.
+/// The distance of composites is that of their nearest parts; [`witness`](super::witness()) returns
+/// the parts and documents the cost.
 ///
 /// ```
 /// use impinge::math::{Isometry2, Vector};
@@ -43,7 +43,7 @@ pub(crate) fn distance_at<N: Space<D>, const D: usize>(
     distance_between(&AtIsometry::new(isometry1, shape1), &AtIsometry::new(isometry2, shape2))
 }
 
-/// [`distance`] of shapes that are placed in any way.
+/// [`distance`] of shapes placed by any [`Placing`].
 #[inline]
 pub(crate) fn distance_between<'a, N: Space<D>, const D: usize>(
     one: &impl Placing<'a, N, D>,
@@ -53,7 +53,7 @@ pub(crate) fn distance_between<'a, N: Space<D>, const D: usize>(
     found.map_or(N::INFINITY, |distance| max(distance, N::ZERO))
 }
 
-/// The distance of two shapes that are at most `limit` apart, which is zero or more.
+/// The distance of two shapes, zero or more; `None` if it is above `limit`.
 #[inline]
 pub(crate) fn distance_within<'a, N: Space<D>, const D: usize>(
     one: &impl Placing<'a, N, D>,

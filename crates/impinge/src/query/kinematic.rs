@@ -1,4 +1,5 @@
-//! How a contact moves with its solids, to first order and without a new query.
+//! Contact kinematics: the motion of a contact with its solids, to first order and without a new
+//! query.
 
 mod own;
 mod side;
@@ -15,7 +16,7 @@ use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Mapped, Point, Pose, Real, Unit, Vector, min, unit};
 use crate::shape::{FeatureId, Geometry};
 
-/// What the core of a solid looks like near a contact, in its local frame.
+/// The local geometry of a solid's core near a contact, in its local frame.
 ///
 /// ```
 /// use impinge::dim2::math::Vector;
@@ -37,24 +38,24 @@ pub enum NeighborhoodGeometry<N: Real, const D: usize> {
     Plane(Vector<N, D>),
 }
 
-/// Where the normal of a moved contact comes from.
+/// The source of the normal of a moved contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NormalRule<N: Real, const D: usize> {
-    /// It turns with the first solid, a face of which defines it.
+    /// It rotates with the first solid, one of whose faces defines it.
     First,
-    /// It turns with the second solid.
+    /// It rotates with the second solid.
     Second,
-    /// The points and lines themselves: it is perpendicular to the lines.
+    /// The points and lines of the contact: it is perpendicular to the lines.
     Geometry,
-    /// It is perpendicular to an edge of either solid, each given in its own frame: those whose
-    /// crossing gives the manifold its normal.
+    /// It is perpendicular to an edge of either solid, each in its own frame: the two edges whose
+    /// crossing defines the manifold's normal.
     Edges(Vector<N, D>, Vector<N, D>),
 }
 
-/// What it takes to predict a contact for new poses of its two solids.
+/// The data to predict a contact at new poses of its two solids.
 ///
-/// All in the local frames of the solids, on their cores; the rounding radii are added at the end. A
-/// round side counts as its axis, rounded.
+/// All in the local frames of the solids, on their cores; the rounding radii are added at the end.
+/// A round side is represented by its axis, with a radius.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -84,13 +85,13 @@ pub struct ContactKinematic<N: Real, const D: usize> {
     pub(crate) geometry2: NeighborhoodGeometry<N, D>,
     pub(crate) rounding1: N,
     pub(crate) rounding2: N,
-    /// The normal from the first solid to the second, in the frame of the first: used where the
+    /// The normal from the first solid to the second, in the frame of the first: used if the
     /// geometry defines none.
     pub(crate) normal1: Vector<N, D>,
-    /// The same normal in the frame of the second.
+    /// The normal from the first solid to the second, in the frame of the second.
     pub(crate) normal2: Vector<N, D>,
     rule: NormalRule<N, D>,
-    /// The frame of each solid turns with it; that of a ball does not.
+    /// Whether the frame of each solid rotates with it; false for a ball.
     turns: [bool; 2],
 }
 
@@ -109,7 +110,8 @@ impl<N: Real, const D: usize> fmt::Debug for ContactKinematic<N, D> {
 type Feet<N, const D: usize> = (Point<N, D>, Point<N, D>);
 
 impl<N: Real, const D: usize> ContactKinematic<N, D> {
-    /// The kinematic of a point of a manifold whose normal is given, in the frame of the first solid.
+    /// The kinematic of a point of a manifold with the normal `normal`, in the frame of the first
+    /// solid.
     #[cfg(test)]
     pub(crate) fn new(
         pair: &Pair<'_, N, D>,
@@ -131,16 +133,16 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         self.feature2
     }
 
-    /// The same features in contact once the solids are at new poses, without a new query.
+    /// Returns the contact of the same features with the solids at new poses, without a new query.
     ///
     /// At the poses of the last update it is the contact itself; for a small motion its error is of
-    /// second order. It does not notice that other features came nearer, or that the contact left its
-    /// features: ask again when the motion is not small. A corner stays on the plane or line of the
+    /// second order. It does not detect that other features came nearer, or that the contact left
+    /// its features: query again after a larger motion. A corner stays on the plane or line of the
     /// other solid, two crossing lines give their nearest points, two points or a point and a line
-    /// the shortest connection; where that vanishes, and for lines that are nearly parallel, the
-    /// points and the normal at the last update move with their solids. Of the
-    /// deepest contact on a round rim the distance and normal are that good, its place on the rim is
-    /// of first order only; so are the other contacts on that rim, which follow the deepest round it.
+    /// the shortest connection. If that vanishes, and for lines that are nearly parallel, the
+    /// points and the normal at the last update move with their solids. The deepest contact on a
+    /// round rim has distance and normal of that accuracy, but its position on the rim is accurate
+    /// to first order only; so are the other contacts on that rim, which follow the deepest one.
     /// Poses that are not finite give a contact that is not.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
@@ -161,13 +163,13 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
-    /// The same of the solids grown by these lengths, which round their cores.
+    /// The kinematic of the solids inflated by these lengths, which adds to their rounding.
     pub(super) fn grown(&self, [first, second]: [N; 2]) -> Self {
         let (rounding1, rounding2) = (self.rounding1 + first, self.rounding2 + second);
         Self { rounding1, rounding2, ..*self }
     }
 
-    /// The same with the solids swapped.
+    /// The kinematic with the solids swapped.
     pub(crate) fn flipped(&self) -> Self {
         Self {
             feature1: self.feature2,
@@ -190,16 +192,17 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
-    /// The same, if the normal is that of a face of the first solid or the second, though the solid
-    /// alone does not say so: where the geometry does not give the normal, it turns with that solid.
+    /// The kinematic of a contact whose normal belongs to a face of the first or second shape that
+    /// the solid alone does not have: unless the geometry gives the normal, it rotates with that
+    /// solid.
     pub(super) fn turning_with(self, is_second: bool) -> Self {
         let own = if is_second { NormalRule::Second } else { NormalRule::First };
         let rule = if self.rule == NormalRule::Geometry { NormalRule::Geometry } else { own };
         Self { rule, ..self }
     }
 
-    /// The same in the frames of two shapes of which the solids are parts, or all: `pose1` and
-    /// `pose2` are the poses of the solids in these, `turns` says whether a rotation changes these.
+    /// The kinematic in the frames of two shapes whose parts the solids are: `pose1` and `pose2`
+    /// are the poses of the solids in these frames, `turns` is whether rotations change the shapes.
     pub(super) fn seen_from(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
         Self {
             turns,
@@ -219,7 +222,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
-    /// The contact in the frame of the first solid, for a pose of the second in it.
+    /// Predicts the contact in the frame of the first solid, for a pose of the second in it.
     pub(crate) fn predicted(&self, pose12: &Pose<N, D>) -> Separation<N, D> {
         let point2 = pose12.point(&self.local2);
         let geometry2 = self.geometry2.moved(pose12);
@@ -231,7 +234,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         Separation { distance, normal, point1, point2: point1 + normal * distance }
     }
 
-    /// The geometry alone gives the normal that the manifold has, up to rounding.
+    /// Whether the geometry alone gives the manifold's normal, up to rounding.
     fn reproduces(&self, pose12: &Pose<N, D>) -> bool {
         let is_flat = |geometry| matches!(geometry, NeighborhoodGeometry::Plane(_));
         if is_flat(self.geometry1) || is_flat(self.geometry2) {
@@ -244,8 +247,9 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         (normal - self.normal1).norm() <= least_angle()
     }
 
-    /// A line leans so much along the manifold's normal that no normal perpendicular to it comes
-    /// near: a quick and one-sided test. Of two lines that are nearly parallel only the first counts.
+    /// Whether the slope of a line along the manifold's normal excludes that any normal
+    /// perpendicular to the line is near it: a quick sufficient test. Of two nearly parallel lines
+    /// only the first counts.
     fn is_steep(&self) -> bool {
         let leans = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
             match geometry {
@@ -281,13 +285,13 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 }
 
-/// Unit vectors that differ by no more than this differ by rounding: a normal comes from a query,
-/// which loses more than one operation does.
+/// Unit vectors that differ by at most this differ by rounding. The margin is for normals from a
+/// query, which accumulates more rounding than one operation.
 fn least_angle<N: Real>() -> N {
     N::lit(256.0) * N::EPSILON
 }
 
-/// What the kinematics of all points of one manifold have in common.
+/// The common data of the kinematics of all points of one manifold.
 pub(super) struct KinematicSides<'a, N: Real, const D: usize> {
     pose12: &'a Pose<N, D>,
     /// The manifold's normal in the frames of the two solids.
@@ -296,12 +300,12 @@ pub(super) struct KinematicSides<'a, N: Real, const D: usize> {
     side1: KinematicSide<N, D>,
     side2: KinematicSide<N, D>,
     turns: [bool; 2],
-    /// The rule of points whose own geometry does not give the normal, once it was asked for.
+    /// The rule of points whose own geometry does not give the normal, computed on first use.
     rule: Option<NormalRule<N, D>>,
 }
 
 impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
-    /// The sides of a manifold whose normal is given in the frame of the first solid.
+    /// The sides of a manifold; `normal` is in the frame of the first solid.
     pub(super) fn new(pair: &'a Pair<'_, N, D>, normal: &Vector<N, D>) -> Self {
         let normal2 = pair.pose12.inverse_vector(normal);
         Self {
@@ -315,7 +319,7 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
         }
     }
 
-    /// The kinematic of a point of the manifold.
+    /// Returns the kinematic of a point of the manifold.
     pub(super) fn kinematic(&mut self, point: &RawPoint<N, D>) -> ContactKinematic<N, D> {
         let point2 = self.pose12.inverse_point(&(point.point1 + self.normal1 * point.distance));
         let mut kinematic = ContactKinematic {
@@ -338,8 +342,9 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
         kinematic
     }
 
-    /// The rule where a contact's own geometry does not give the manifold's normal: the face that
-    /// is perpendicular to it, or else the edges that are; or else the face that comes nearest.
+    /// The rule if a contact's own geometry does not give the manifold's normal: the face
+    /// perpendicular to it, else the edges perpendicular to it, else the face with the smaller
+    /// tilt.
     fn rule(&mut self) -> NormalRule<N, D> {
         let (side1, side2) = (&self.side1, &self.side2);
         *self.rule.get_or_insert_with(|| {
@@ -355,7 +360,7 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
     }
 }
 
-/// Edges of the two solids, each in its own frame, whose crossing gives the manifold its normal.
+/// Edges of the two solids, each in its own frame, whose crossing defines the manifold's normal.
 fn level_edges<N: Real, const D: usize>(
     side1: &KinematicSide<N, D>,
     side2: &KinematicSide<N, D>,
@@ -367,7 +372,7 @@ fn level_edges<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> NeighborhoodGeometry<N, D> {
-    /// The same, seen from the frame that `pose` leads to.
+    /// The geometry in the frame that `pose` maps to.
     fn moved(self, pose: &Pose<N, D>) -> Self {
         match self {
             Self::Point => Self::Point,
@@ -377,7 +382,7 @@ impl<N: Real, const D: usize> NeighborhoodGeometry<N, D> {
     }
 }
 
-/// Orthonormal directions that a contact may slide along: none, one or two.
+/// Orthonormal directions along which a contact may slide: none, one or two.
 struct SlideLines<N: Real, const D: usize> {
     first: Vector<N, D>,
     second: Vector<N, D>,
@@ -404,20 +409,20 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
         }
     }
 
-    /// What is left of a vector perpendicular to the lines.
+    /// The component of a vector perpendicular to the lines.
     fn reject(&self, v: &Vector<N, D>) -> Vector<N, D> {
         let once = v - self.first * self.first.dot(v);
         once - self.second * self.second.dot(&once)
     }
 
-    /// A unit vector made perpendicular to the lines.
+    /// A unit vector projected perpendicular to the lines and normalised.
     fn upright(&self, usual: &Vector<N, D>) -> Vector<N, D> {
         unit(&self.reject(usual)).map_or(*usual, |(upright, _)| upright)
     }
 
     /// The unit vector of the shortest connection of two points that may slide along the lines, on
-    /// the side of `usual`; `usual` itself, made
-    /// perpendicular, where the connection vanishes or two lines leave no choice of direction.
+    /// the side of `usual`. Returns `usual` itself, projected perpendicular, if the connection
+    /// vanishes or two lines leave no choice.
     fn connection(
         &self,
         point1: &Point<N, D>,
@@ -438,13 +443,13 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
     }
 }
 
-/// Below this squared sine of the angle between two lines their crossing is not looked for.
+/// Below this squared sine of the angle between two lines, their crossing is not computed.
 const MIN_SINE_SQUARED: f64 = 1e-6;
 
 /// The points of the two cores that face each other along the normal.
 ///
-/// A point or line stays where its solid takes it and the plane gives way; both planes: the point on
-/// the first stays.
+/// A point or line moves with its solid, and the point on a plane follows it; for two planes the
+/// point on the first stays.
 fn feet<N: Real, const D: usize>(
     [point1, point2]: [&Point<N, D>; 2],
     geometries: [NeighborhoodGeometry<N, D>; 2],
@@ -466,14 +471,14 @@ fn feet<N: Real, const D: usize>(
     }
 }
 
-/// How far along `side` a vector reaches, in units of `side`; 0 if `side` is zero.
+/// The coordinate of a vector along `side`, in units of `side`; 0 if `side` is zero.
 fn ratio<N: Real, const D: usize>(v: &Vector<N, D>, side: &Vector<N, D>) -> N {
     let squared = side.norm_squared();
     if squared > N::ZERO { v.dot(side) / squared } else { N::ZERO }
 }
 
-/// The parameters of the nearest points of two lines whose starting points are `gap` apart; zeros if
-/// the lines are nearly parallel.
+/// The parameters of the nearest points of two lines whose starting points are `gap` apart; zeros
+/// if the lines are nearly parallel.
 fn crossing<N: Real, const D: usize>(
     gap: &Vector<N, D>,
     along1: &Vector<N, D>,

@@ -1,17 +1,18 @@
-//! Contact manifolds as users see them: world frame, kinematics, ids.
+//! Contact manifolds in the public interface: world frame, kinematics, ids.
 
 use super::kinematic::KinematicSides;
 use super::{Contact, ContactKinematic};
 use crate::collide::{Pair, Placed, RawManifold, RawPoint};
 use crate::math::{Pose, Real, Unit, Vector};
 
-/// The name of a contact: no two contacts of a world, at any time, share one.
+/// The id of a contact: no two contacts of a world, at any time, share one.
 ///
-/// A contact that moved between two updates keeps its id: one on the same features, or one that has moved by no more
-/// than 1/16 of the size of the smaller solid (half the diagonal of its box), on either solid, while the normal turned by
-/// less than 45°. Two edges that cross are the same features up to half of that size. The id says nothing
-/// else; its order is that of creation within one pair. [`ContactId::NULL`], which is also the default, names no
-/// contact: for the slots of a cache that are empty.
+/// A contact that moved between two updates keeps its id: one on the same features, or one that has
+/// moved by no more than 1/16 of the size of the smaller solid (half the diagonal of its box), on
+/// either solid, while the normal rotated by less than 45°. Two edges that cross are the same
+/// features up to half of that size. The id has no other meaning; its order is that of creation
+/// within one pair. [`ContactId::NULL`], which is also the default, is the id of no contact: for
+/// empty slots of a cache.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -38,14 +39,15 @@ use crate::math::{Pose, Real, Unit, Vector};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactId {
-    /// The number of the pair, never given twice.
+    /// The number of the pair, never reused.
     pub(crate) pair: u64,
-    /// The number of the contact within the pair, never given twice.
+    /// The number of the contact within the pair, never reused.
     pub(crate) number: u32,
 }
 
 impl ContactId {
-    /// The id of no contact: no world and no algorithm of the library ever gives it. It is the largest.
+    /// The id of no contact: no world and no algorithm of the library ever assigns it. It is the
+    /// largest id.
     ///
     /// ```
     /// use impinge::query::ContactId;
@@ -58,15 +60,15 @@ impl ContactId {
     /// ```
     pub const NULL: Self = Self { pair: u64::MAX, number: u32::MAX };
 
-    /// The name of a contact by an algorithm of one's own: `pair` is a number that
-    /// [`IdAllocator`](crate::narrow_phase::IdAllocator) gave to the pair, `number` one that the
-    /// pair gives to no other contact.
+    /// The id of a contact of a user's algorithm: `pair` is a number that
+    /// [`IdAllocator`](crate::narrow_phase::IdAllocator) assigned to the pair, `number` one that no
+    /// other contact of the pair has.
     #[must_use]
     pub const fn new(pair: u64, number: u32) -> Self {
         Self { pair, number }
     }
 
-    /// It is [`Self::NULL`].
+    /// Whether it is [`Self::NULL`].
     #[must_use]
     pub const fn is_null(self) -> bool {
         self.pair == u64::MAX && self.number == u32::MAX
@@ -80,8 +82,9 @@ impl Default for ContactId {
     }
 }
 
-/// A contact, how it moves, and its name: what [`ManifoldView::tracked_contact`](super::ManifoldView::tracked_contact)
-/// gives, and what a [`ContactManifold`] holds.
+/// A contact with its kinematic and id: returned by
+/// [`ManifoldView::tracked_contact`](super::ManifoldView::tracked_contact), stored in a
+/// [`ContactManifold`].
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -109,9 +112,9 @@ impl Default for ContactId {
 pub struct TrackedContact<N: Real, const D: usize> {
     /// The geometry at the last update, in the world frame.
     pub contact: Contact<N, D>,
-    /// What it takes to move the contact with its solids.
+    /// Predicts the contact when its solids move.
     pub kinematic: ContactKinematic<N, D>,
-    /// The name, kept while the contact lives.
+    /// The id, kept while the contact lives.
     pub id: ContactId,
     /// The part of the first shape that touches; 0 if the shape is not a composite.
     pub part1: u32,
@@ -120,13 +123,13 @@ pub struct TrackedContact<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> TrackedContact<N, D> {
-    /// The contact of the two solids grown by these lengths; see [`Contact::grown`].
+    /// The contact of the solids inflated by these lengths; see [`Contact::grown`].
     pub(super) fn grown(&self, skins: [N; 2]) -> Self {
         let kinematic = self.kinematic.grown(skins);
         Self { contact: self.contact.grown(skins), kinematic, ..*self }
     }
 
-    /// The same contact with the solids swapped.
+    /// The contact with the solids swapped.
     pub(super) fn flipped(&self) -> Self {
         Self {
             contact: self.contact.flipped(),
@@ -138,18 +141,19 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
     }
 }
 
-/// Points that delimit a flat area of contact, with one common normal: a manifold that is kept by itself.
+/// Points that delimit a flat area of contact, with one common normal: a manifold with storage of
+/// its own.
 ///
-/// [`ManifoldView`](super::ManifoldView) is the manifold to read in a world, and
-/// [`ManifoldView::to_manifold`](super::ManifoldView::to_manifold) makes one of these of it, to be kept over an
-/// update; algorithms of one's own make them, too.
+/// [`ManifoldView`](super::ManifoldView) is the manifold to read in a world;
+/// [`ManifoldView::to_manifold`](super::ManifoldView::to_manifold) converts it to this type, to be
+/// kept across an update. Users' algorithms build this type, too.
 ///
-/// Two convex solids have one manifold, composites one for each flat patch that they touch in. A box
-/// that rests on a plane is one manifold of four points in 3D and two in 2D; a ball gives
-/// one point. [`Self::deepest_contact`] has the depth that the query for one contact returns. The first manifold
-/// of a pair holds its deepest point; in later ones a point that was there before may stand for it, if it is within
-/// 1/512 of the size of the smaller solid (half the diagonal of its box) of being as deep. Empty means that the
-/// solids are farther apart than the prediction.
+/// Two convex solids have one manifold, composites one for each flat patch of contact. A box that
+/// rests on a plane is one manifold of four points in 3D and two in 2D; a ball gives one point.
+/// [`Self::deepest_contact`] has the depth that the query for one contact returns. The first
+/// manifold of a pair contains its deepest point; in later ones an older point may stand for it, if
+/// its depth is within 1/512 of the size of the smaller solid (half the diagonal of its box) of the
+/// deepest. Empty means that the solids are farther apart than the prediction.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -172,18 +176,18 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactManifold<N: Real, const D: usize> {
-    /// On the heap: most pairs have fewer contacts than the most that there may be.
+    /// On the heap: most pairs have fewer contacts than the maximum.
     contacts: Vec<TrackedContact<N, D>>,
 }
 
 impl<N: Real, const D: usize> ContactManifold<N, D> {
-    /// The manifold that an algorithm of one's own has found; the order of the contacts is kept.
+    /// Builds the manifold of a user's algorithm; the order of the contacts is kept.
     #[must_use]
     pub fn from_contacts(contacts: impl IntoIterator<Item = TrackedContact<N, D>>) -> Self {
         Self { contacts: contacts.into_iter().collect() }
     }
 
-    /// The manifold of the two solids grown by these lengths; see [`Contact::grown`].
+    /// The manifold of the solids inflated by these lengths; see [`Contact::grown`].
     pub(crate) fn grown(mut self, skins: [N; 2]) -> Self {
         if skins != [N::ZERO; 2] {
             self.contacts.iter_mut().for_each(|contact| *contact = contact.grown(skins));
@@ -191,19 +195,19 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         self
     }
 
-    /// Holds other contacts from now on, in the same memory.
+    /// Replaces the contacts, reusing the memory.
     pub(super) fn refill(&mut self, contacts: impl Iterator<Item = TrackedContact<N, D>>) {
         self.contacts.clear();
         self.contacts.extend(contacts);
     }
 
-    /// How many contacts it holds.
+    /// The number of contacts.
     #[must_use]
     pub fn len(&self) -> usize {
         self.contacts.len()
     }
 
-    /// It holds no contact.
+    /// Whether it has no contact.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.contacts.is_empty()
@@ -230,27 +234,27 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
     }
 }
 
-/// What turns a raw manifold into one of a world.
+/// The data that convert a raw manifold to one in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement<'a, N: Real, const D: usize> {
     /// The pose of the first solid of the raw pair in the world.
     pub(crate) pose1: &'a Pose<N, D>,
     /// The number of the pair, for the ids.
     pub(crate) pair: u64,
-    /// The user's first solid is the second of the raw pair: all comes out flipped.
+    /// Whether the user's first solid is the second of the raw pair: then the result is flipped.
     pub(crate) is_swapped: bool,
 }
 
 impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
-    /// Of two solids in the user's order.
+    /// The placement of two solids in the user's order.
     #[inline]
     pub(crate) fn of_pair(placed: &'a [Placed<'_, N, D>; 2], pair: u64, is_swapped: bool) -> Self {
         Self { pose1: &placed[usize::from(is_swapped)].pose, pair, is_swapped }
     }
 }
 
-/// The manifold as users see it; `pair` is the one that `raw` was built for. It is written over the
-/// memory of a manifold that is no longer needed.
+/// Converts a raw manifold to the public type; `pair` is the one for which `raw` was built. Reuses
+/// the memory of `old`.
 pub(crate) fn materialise<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     raw: &RawManifold<N, D>,
@@ -265,7 +269,7 @@ pub(crate) fn materialise<N: Real, const D: usize>(
     ContactManifold { contacts }
 }
 
-/// A contact of two convex solids as users see it; `sides` and `normal` are those of its manifold.
+/// Converts a contact of two convex solids; `sides` and `normal` are those of its manifold.
 pub(super) fn tracked<N: Real, const D: usize>(
     sides: &mut KinematicSides<'_, N, D>,
     normal: &Vector<N, D>,
@@ -279,7 +283,7 @@ pub(super) fn tracked<N: Real, const D: usize>(
     if placement.is_swapped { tracked.flipped() } else { tracked }
 }
 
-/// A point in the world; `own` is the manifold's normal, `normal` that in the world.
+/// A point in the world; `own` is the manifold's normal as stored, `normal` the same in the world.
 #[inline]
 pub(super) fn placed<N: Real, const D: usize>(
     own: &Vector<N, D>,

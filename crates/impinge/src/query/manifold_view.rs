@@ -1,4 +1,4 @@
-//! Manifolds read where they are kept.
+//! Views of manifolds, read in place.
 //!
 //! A view has the contacts of the public manifold, to the bit.
 
@@ -15,8 +15,8 @@ use crate::collide::{Pair, RawManifold, RawPoint};
 use crate::math::{Pose, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Geometry};
 
-/// A contact as [`ManifoldView::contacts`] gives it: where it is, its name, and what touches. How it moves
-/// is [`ManifoldView::kinematic`].
+/// A contact as [`ManifoldView::contacts`] returns it: its geometry, id, features and parts. Its
+/// motion is [`ManifoldView::kinematic`].
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -41,7 +41,7 @@ use crate::shape::{FeatureId, Geometry};
 pub struct ContactPoint<N: Real, const D: usize> {
     /// The geometry at the last update, in the world frame.
     pub contact: Contact<N, D>,
-    /// The name, kept while the contact lives.
+    /// The id, kept while the contact lives.
     pub id: ContactId,
     /// The feature of the first solid that touches.
     pub feature1: FeatureId,
@@ -54,7 +54,7 @@ pub struct ContactPoint<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> ContactPoint<N, D> {
-    /// The same contact with the solids swapped.
+    /// Returns the contact with the solids swapped.
     #[must_use]
     pub fn flipped(&self) -> Self {
         Self {
@@ -70,25 +70,25 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 
 /// Points that delimit a flat area of contact, with one common normal: the manifold to read.
 ///
-/// It is read where the narrow phase keeps it. Each contact is placed in the world when it is asked for,
-/// and nothing is stored: to read every contact of a world once, as a solver does, moves a fifth of the
-/// memory that a [`ContactManifold`] for each pair would. It always holds a contact.
+/// It reads the narrow phase's storage. Each contact is placed in the world on access, and nothing
+/// is stored: reading every contact of a world once, as a solver does, moves a fifth of the memory
+/// that a [`ContactManifold`] for each pair would. It always has at least one contact.
 ///
-/// | to read | ask |
+/// | to read | use |
 /// |---|---|
 /// | the common normal, from the first solid to the second | [`Self::normal`] |
 /// | points, depth, id, features and parts of each contact | [`Self::contacts`], a [`ContactPoint`] for each |
 /// | the deepest of them | [`Self::deepest_contact`] |
-/// | how a contact moves with its solids | [`Self::kinematic`] |
-/// | both at once, as the guide of ncollide has it | [`Self::tracked_contact`], a [`TrackedContact`] |
-/// | the manifold to keep over an update | [`Self::to_manifold`], a [`ContactManifold`] |
+/// | the motion of a contact with its solids | [`Self::kinematic`] |
+/// | both at once, as in ncollide's guide | [`Self::tracked_contact`], a [`TrackedContact`] |
+/// | the manifold to keep across an update | [`Self::to_manifold`], a [`ContactManifold`] |
 ///
-/// A world gives views of all its manifolds
-/// ([`CollisionWorld::contact_views`](crate::world::CollisionWorld::contact_views)) and of those of a pair
-/// ([`ContactPair::views`](crate::narrow_phase::ContactPair::views));
+/// A world returns views of all its manifolds
+/// ([`CollisionWorld::contact_views`](crate::world::CollisionWorld::contact_views)) and of those of
+/// a pair ([`ContactPair::views`](crate::narrow_phase::ContactPair::views));
 /// [`CollisionWorld::contact_manifolds`](crate::world::CollisionWorld::contact_manifolds) and
-/// [`ContactPair::contacts`](crate::narrow_phase::ContactPair::contacts) give the same contacts, to the bit
-/// and in the same order, as manifolds that are made when first asked for.
+/// [`ContactPair::contacts`](crate::narrow_phase::ContactPair::contacts) return the same contacts,
+/// to the bit and in the same order, as manifolds that are made on first use.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -114,7 +114,7 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 #[derive(Clone, Copy)]
 pub struct ManifoldView<'a, N: Real, const D: usize>(ViewSource<'a, N, D>);
 
-/// The objects of a pair, of which no view needs more than the pose of one until it is asked how contacts move.
+/// The objects of a pair. A view reads the pose of one; it reads both only for kinematics.
 #[derive(Clone, Copy)]
 pub(crate) struct PairRef<'a, N: Real, const D: usize> {
     solids: &'a dyn PlacedSolids<N, D>,
@@ -122,9 +122,9 @@ pub(crate) struct PairRef<'a, N: Real, const D: usize> {
     key: [u32; 2],
 }
 
-/// Objects by number, as of the last update.
+/// Objects by index, as of the last update.
 pub(crate) trait PlacedSolids<N: Real, const D: usize>: Sync {
-    /// Where an object is, and what it is.
+    /// Returns the pose and the geometry of an object.
     fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>);
 }
 
@@ -134,7 +134,7 @@ impl<'a, N: Real, const D: usize> PairRef<'a, N, D> {
         Self { solids, key }
     }
 
-    /// The solids in the order in which their contacts are kept.
+    /// The solids in the order in which their contacts are stored.
     fn in_order(&self, is_swapped: bool) -> Pair<'a, N, D> {
         let [first, second] = [usize::from(is_swapped), usize::from(!is_swapped)];
         let (pose1, solid1) = self.solids.placed(self.key[first]);
@@ -143,14 +143,14 @@ impl<'a, N: Real, const D: usize> PairRef<'a, N, D> {
     }
 }
 
-/// What a view looks at.
+/// The storage behind a view.
 #[derive(Clone, Copy)]
 enum ViewSource<'a, N: Real, const D: usize> {
     /// The contacts of two convex solids.
     Convex(&'a RawManifold<N, D>, Placement<'a, N, D>, PairRef<'a, N, D>),
     /// Some of the contacts of a composite.
     Patch(&'a Patch<N, D>, Placement<'a, N, D>, PairRef<'a, N, D>),
-    /// What an algorithm of the user's own has found.
+    /// The manifold of a user's algorithm.
     Made(&'a ContactManifold<N, D>),
 }
 
@@ -161,7 +161,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ManifoldView<'_, N, D> {
     }
 }
 
-/// The contacts of a view, each placed when it is asked for.
+/// The contacts of a view, each placed on access.
 struct Contacts<'a, N: Real, const D: usize> {
     view: ManifoldView<'a, N, D>,
     /// See [`ManifoldView::own_normal`].
@@ -215,7 +215,7 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         (!manifold.is_empty()).then_some(Self(ViewSource::Made(manifold)))
     }
 
-    /// How many contacts it holds: at least one.
+    /// The number of contacts: at least one.
     #[inline]
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "a view is never empty")]
@@ -227,8 +227,8 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         }
     }
 
-    /// The unit vector from the first solid to the second, in the world frame: that of the first
-    /// contact, which all contacts of a manifold share.
+    /// The unit vector from the first solid to the second, in the world frame: the normal of the
+    /// first contact, which all contacts of a manifold share.
     #[must_use]
     pub fn normal(&self) -> Unit<Vector<N, D>> {
         let world = |own: &Vector<N, D>, placement: &Placement<'_, N, D>| {
@@ -260,8 +260,8 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         self.contact((1..self.len()).fold(0, deeper), &self.own_normal())
     }
 
-    /// The normal of what is kept, from the solid that is kept as the first, and turned to the world;
-    /// nothing of use for manifolds that are made.
+    /// The stored normal, from the first solid in stored order, and the same rotated to the world;
+    /// zeros, which are not used, for a user's manifold.
     #[inline]
     pub(crate) fn own_normal(&self) -> [Vector<N, D>; 2] {
         let (own, pose1) = match self.0 {
@@ -298,9 +298,9 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
     }
 }
 
-/// What is computed anew each time it is asked for, from the solids as of the last update.
+/// Values computed on each call, from the solids as of the last update.
 impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
-    /// How a contact moves with its solids: what it will be at other poses, without a new query.
+    /// Returns the kinematic of a contact, which predicts it at other poses without a new query.
     ///
     /// # Panics
     /// If there is no contact of this index; the order is that of [`Self::contacts`].
@@ -318,7 +318,7 @@ impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
         entries::tracked_contact(self, index)
     }
 
-    /// The manifold by itself: all contacts with their kinematics.
+    /// Converts the view to a manifold of its own: all contacts with their kinematics.
     #[must_use]
     pub fn to_manifold(&self) -> ContactManifold<N, D> {
         ContactManifold::from_contacts((0..self.len()).map(|index| self.tracked_contact(index)))
@@ -341,7 +341,7 @@ impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
     }
 }
 
-/// A point in the world, by the normal as it is kept and in the world, as the user's order of the solids has it.
+/// A point in the world, in the user's order, from the stored normal and the same in the world.
 #[inline]
 fn point<N: Real, const D: usize>(
     [own, normal]: &[Vector<N, D>; 2],

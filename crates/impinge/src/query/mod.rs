@@ -1,4 +1,4 @@
-//! Questions about one solid or two, answered from nothing but the arguments.
+//! Queries about one shape or two, computed from the arguments alone.
 
 mod closest_points;
 pub(crate) mod composite;

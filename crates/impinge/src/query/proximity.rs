@@ -6,7 +6,7 @@ use crate::math::{AbstractRotation, Isometry, IsometryRef, Real, Space, max};
 use crate::shape::Shape;
 use crate::tables::entries;
 
-/// Whether two solids touch, are near, or are neither.
+/// The relation of two solids: they touch, are within a margin, or are farther apart.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -31,19 +31,19 @@ pub enum Proximity {
 }
 
 impl Proximity {
-    /// Of solids that are at most the margin apart.
+    /// The proximity of solids whose distance is known to be within the margin.
     #[inline]
     pub(crate) fn within<N: Real>(distance: N) -> Self {
         if distance <= N::ZERO { Self::Intersecting } else { Self::WithinMargin }
     }
 }
 
-/// Whether two solids touch or overlap, are at most `margin` apart, or neither.
+/// Returns whether two solids touch or overlap, are at most `margin` apart, or are farther apart.
 ///
 /// Touching counts as intersecting and a distance equal to `margin` as within it. A negative or NaN
 /// `margin` counts as zero. Half-spaces that overlap without bound intersect.
-/// [`Proximity::Disjoint`] if a pose is not finite. Of composites the nearest parts count; the search for
-/// them ends at any two that touch.
+/// [`Proximity::Disjoint`] if a pose is not finite. For composites the nearest parts count; their
+/// search ends at the first two that touch.
 pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,

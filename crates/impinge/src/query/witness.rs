@@ -1,4 +1,4 @@
-//! The nearest points of two shapes with all that is known about them.
+//! The nearest points of two shapes, with the parts and features that they lie on.
 
 use crate::collide::pair::Ordered;
 use crate::collide::parts::{Between, Wanted, nearest_between};
@@ -10,11 +10,11 @@ use crate::shape::{FeatureId, Shape};
 use crate::tables::ByDimension;
 use crate::tables::entries;
 
-/// What stands for features that are not asked for.
+/// Placeholders for features that were not computed.
 const NO_FEATURES: [FeatureId; 2] = [FeatureId::Face(u32::MAX); 2];
 
-/// The points of two shapes that are nearest to each other, or deepest in each other, and what they
-/// belong to.
+/// The points of two shapes that are nearest to each other, or deepest in each other, with their
+/// parts and features.
 ///
 /// `point2 = point1 + distance · normal` up to rounding.
 ///
@@ -37,8 +37,8 @@ pub struct Witness<N: Real, const D: usize> {
     pub point2: Point<N, D>,
     /// The unit vector from the first shape to the second.
     pub normal: Unit<Vector<N, D>>,
-    /// How far apart they are; negative where they overlap: minus the length of the shortest
-    /// translation that parts the two parts.
+    /// The distance; negative if they overlap: minus the length of the shortest translation that
+    /// separates the two parts.
     pub distance: N,
     /// The part of the first shape that the point lies on; 0 for a convex solid.
     pub part1: u32,
@@ -51,7 +51,7 @@ pub struct Witness<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Witness<N, D> {
-    /// The same witness with the shapes swapped.
+    /// Returns the witness with the shapes swapped.
     #[must_use]
     pub fn flipped(&self) -> Self {
         Self {
@@ -67,22 +67,24 @@ impl<N: Real, const D: usize> Witness<N, D> {
     }
 }
 
-/// The nearest points of two shapes that are at most `max_distance` apart, with the parts of composites
-/// and the features that they lie on.
+/// Returns the nearest points of two shapes that are at most `max_distance` apart, with the parts
+/// of composites and the features that they lie on.
 ///
-/// The one fact from which [`distance`](super::distance()), [`closest_points`](super::closest_points())
-/// and [`proximity`](super::proximity()) follow. Where several pairs of points are equally near, one is
-/// chosen, the same for every order of the arguments; among the parts of composites the first by
-/// number. Of composites that overlap it is the pair of parts that are deepest in each other: moving by
-/// `distance` along the normal parts these two, not always the shapes.
+/// [`distance`](super::distance()), [`closest_points`](super::closest_points()) and
+/// [`proximity`](super::proximity()) follow from the same result. If several pairs of points are
+/// equally near, one is chosen, the same for both orders of the arguments; among the parts of
+/// composites the lowest numbers win. For composites that overlap it is the pair of parts that are
+/// deepest in each other: moving by `distance` along the normal separates these two, not always the
+/// shapes.
 ///
-/// A rounded solid has the features of its core. A distance equal to `max_distance` counts; a negative
-/// one asks for overlaps at least that deep. `None` if it is NaN or a pose is not finite, for a composite
-/// without parts, and for half-spaces that overlap without bound.
+/// A rounded solid has the features of its core. A distance equal to `max_distance` counts; a
+/// negative `max_distance` restricts the answer to overlaps at least that deep. `None` if it is NaN
+/// or a pose is not finite, for a composite without parts, and for half-spaces that overlap without
+/// bound.
 ///
 /// Cost: that of the distance of two convex solids; a composite is searched for the parts near the
-/// other shape. Of two composites each part of the one with fewer that is near enough searches the
-/// other: n log m at most. Half-spaces that do not lie along an axis are held against every part.
+/// other shape. For two composites each part of the one with fewer that is near enough searches the
+/// other: n log m at most. A half-space not aligned with an axis is tested against every part.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -124,8 +126,8 @@ pub(crate) fn witness_at<N: Space<D>, const D: usize>(
     )
 }
 
-/// [`witness`] of shapes that are placed in any way; without their features, which take long to find, these are faces
-/// of no number.
+/// [`witness`] of shapes placed by any [`Placing`]. Features take long to find: without
+/// `with_features` they are `Face(u32::MAX)`.
 #[inline]
 pub(crate) fn witness_between<'a, N: Space<D>, const D: usize>(
     one: &impl Placing<'a, N, D>,
@@ -162,10 +164,10 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     Some(Witness::new(&separation, parts, features))
 }
 
-/// A separation in the frame of the first shape, the parts that it is of, and their features.
+/// A separation in the frame of the first shape, with its parts and their features.
 type Found<N, const D: usize> = (Separation<N, D>, [u32; 2], [FeatureId; 2]);
 
-/// Of two convex solids.
+/// The result for two convex solids.
 #[inline]
 fn of_convex<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -180,7 +182,7 @@ fn of_convex<N: Space<D>, const D: usize>(
     Some((found, [0; 2], features))
 }
 
-/// Of two shapes, at least one of them a composite.
+/// The result for two shapes, at least one of them a composite.
 fn of_composites<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,
@@ -194,7 +196,7 @@ fn of_composites<N: Space<D>, const D: usize>(
     Some((found.separation, found.parts, features))
 }
 
-/// The features of a pair of convex solids, from their separation.
+/// Returns the features of a pair of convex solids from their separation, if they are wanted.
 #[inline]
 fn features<N: Space<D>, const D: usize>(
     is_wanted: bool,
@@ -205,14 +207,14 @@ fn features<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Witness<N, D> {
-    /// Of a separation of two convex solids in the world, without features; `None` of half-spaces that overlap without
-    /// bound.
+    /// Converts a separation of two convex solids in the world, without features; `None` for
+    /// half-spaces that overlap without bound.
     #[inline]
     pub(crate) fn of_separation(found: &Separation<N, D>) -> Option<Self> {
         found.distance.is_finite_number().then(|| Self::new(found, [0; 2], NO_FEATURES))
     }
 
-    /// Of a separation in the world.
+    /// Builds a witness from a separation in the world.
     #[inline]
     fn new(
         in_world: &Separation<N, D>,

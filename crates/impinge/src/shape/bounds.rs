@@ -1,4 +1,4 @@
-//! Boxes and spheres around shapes placed somewhere.
+//! Bounding boxes and spheres of placed shapes.
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::lanes::{highest_lane, load, with_lanes};
@@ -8,8 +8,8 @@ use crate::shape::polytope::LANES;
 use crate::shape::solids::segment::length_of;
 use crate::shape::{Polytope, Shape, SupportMap};
 
-/// The box around a shape placed at `pose`, in the frame that the pose leads to; as small as is
-/// cheap. Unbounded for a half-space, but for the axis that its normal lies along exactly.
+/// Returns a box around a shape placed at `pose`, in the frame that the pose maps to; as small as
+/// is cheap. Unbounded for a half-space, except on the axis along which its normal lies exactly.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::aabb;
@@ -26,8 +26,8 @@ pub fn aabb<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     shape.aabb(&Pose::from_isometry(pose))
 }
 
-/// The sphere around a shape placed at `pose`, in the frame that the pose leads to; infinite for a
-/// half-space.
+/// Returns a sphere around a shape placed at `pose`, in the frame that the pose maps to; infinite
+/// for a half-space.
 ///
 /// ```
 /// use impinge::dim3::bounding_volume::bounding_sphere;
@@ -47,17 +47,17 @@ pub fn bounding_sphere<N: Real, R: AbstractRotation<N, D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// The smallest box around the solid placed at `pose`, rounded outwards.
+    /// Returns the smallest box around the solid placed at `pose`, rounded outwards.
     pub(super) fn aabb_at(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        // A pose that is not finite gives no box; then everything is in it.
+        // If the rotation gives NaN, there are no extents and the box is unbounded.
         let extents = extents(Level::new(), &self.blocks, &pose.rotation);
         extents.map_or_else(Aabb::unbounded, |[low, high]| {
             Aabb::of_turned(low, high, self.reach(), pose)
         })
     }
 
-    /// The sphere around the middle of the box; a little larger than the farthest vertex asks for,
-    /// by the rounding of its distance.
+    /// Returns a sphere around the centre of the box; its radius exceeds the distance of the
+    /// farthest vertex by a bound of the rounding error.
     pub(super) fn bounding_sphere(&self) -> BoundingSphere<N, D> {
         let center = self.aabb_at(&Pose::identity()).center();
         let distance = |vertex: &Point<N, D>| length_of(&(vertex - center));
@@ -67,7 +67,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
-/// [`extents_in_lanes`] with the vectors of an instruction set; the numbers do not depend on it.
+/// Runs [`extents_in_lanes`] with the vectors of an instruction set, on which the result does not
+/// depend.
 fn extents<N: Real, const D: usize>(
     level: Level,
     blocks: &[[[N; LANES]; D]],
@@ -76,7 +77,8 @@ fn extents<N: Real, const D: usize>(
     with_lanes!(level, simd => extents_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, rotation))
 }
 
-/// The least and the greatest coordinates of turned vertices, eight at a time. `None` if one is not a number.
+/// Returns the componentwise minimum and maximum of the rotated vertices, a packet of eight at a
+/// time. `None` if a coordinate is NaN.
 #[inline(always)]
 fn extents_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

@@ -1,17 +1,19 @@
-//! The sizes of a ball or a box, copied into the object's record: the shape behind a handle is elsewhere in
-//! memory.
+//! A copy of the sizes of a ball or a box in the object's record, which saves the cache miss of the
+//! shape behind its handle.
 //!
-//! A query of a world reads the copy; the answer is that of the solid itself.
+//! Queries of a world read the copy; the answer is the same as from the shape itself.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Pose, Real, Space, Vector, filled};
 use crate::shape::{Ball, Cuboid, Geometry, Kind, Shape, ShapeHandle};
 
-/// A copy of the numbers of a ball or a box, of which worlds have most; of any other shape only that it
-/// is one.
+/// The sizes of a ball or a box, the commonest shapes of worlds; for any other shape only a marker.
 ///
-/// The half extents of a box; the radius of a ball, then a number below zero; a number below zero first
-/// for any other shape. None of these sizes is negative.
+/// ```text
+/// box    h0    h1  [h2]     half extents, none negative
+/// ball   r     -1  [-1]
+/// other  -1    -1  [-1]
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Compact<N: Real, const D: usize>([N; D]);
 
@@ -26,7 +28,7 @@ impl<N: Real, const D: usize> Compact<N, D> {
         Self(numbers)
     }
 
-    /// The box of the shape, which is `own`, at a pose.
+    /// Returns the box of the shape `own` at `pose`.
     #[inline(always)]
     pub(crate) fn aabb(&self, own: &ShapeHandle<N, D>, pose: &Pose<N, D>) -> Aabb<N, D>
     where
@@ -41,7 +43,8 @@ impl<N: Real, const D: usize> Compact<N, D> {
         }
     }
 
-    /// Asks the shape, which is `own`; looks at that only if the numbers do not tell all.
+    /// Calls `question` with the geometry of the shape `own`; reads `own` only if the copy does not
+    /// suffice.
     #[inline(always)]
     pub(crate) fn ask<R>(
         &self,

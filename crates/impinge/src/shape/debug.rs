@@ -1,5 +1,5 @@
-//! What shapes print: what users gave and would ask for, without trees and tables. Meshes, lines and fields
-//! may hold millions of numbers and print how many there are.
+//! `Debug` output of shapes: the input that a user gave, without trees and tables. Meshes, lines
+//! and fields may hold millions of numbers; they print counts.
 
 use core::fmt;
 

@@ -1,7 +1,7 @@
-//! Why numbers make no shape.
+//! Errors of shape constructors.
 //!
-//! Sizes are finite and not negative, coordinates finite: constructors refuse everything else, so that no
-//! algorithm has to ask again.
+//! Sizes are finite and not negative, coordinates finite: constructors refuse everything else, so
+//! that no algorithm has to check again.
 
 use core::fmt;
 
@@ -34,7 +34,7 @@ pub enum ShapeError {
         /// The number.
         value: f64,
     },
-    /// A vector that has to be a unit vector is none: its length differs from 1 by more than 0.8 %.
+    /// A vector that has to be a unit vector is not: its length differs from 1 by more than 0.8 %.
     NotUnit {
         /// Which vector, as the constructor names it.
         what: &'static str,
@@ -45,7 +45,7 @@ pub enum ShapeError {
     TooFewPoints {
         /// How many were given.
         given: usize,
-        /// How many it takes.
+        /// How many the shape needs.
         needed: usize,
     },
     /// The coordinate of a point is NaN or infinite.
@@ -63,16 +63,16 @@ pub enum ShapeError {
         /// The index of the point.
         index: usize,
     },
-    /// A face of a solid names a point that does not exist.
+    /// A face of a solid refers to a point that does not exist.
     NoSuchPoint {
         /// The index of the face.
         face: usize,
-        /// The index that it names.
+        /// The index that it refers to.
         point: u32,
         /// How many points there are.
         points: usize,
     },
-    /// The faces of a solid do not close: a side of one is not that of exactly one other.
+    /// The faces of a solid do not close: a side of one face is not a side of exactly one other.
     NotClosed {
         /// The index of the face.
         face: usize,
@@ -99,31 +99,32 @@ pub enum ShapeError {
     ChildRotation {
         /// The index of the child.
         index: usize,
-        /// The length.
+        /// Its length.
         length: f64,
     },
-    /// Compounds and rounded shapes hold each other deeper than [`MAX_NESTING`](crate::shape::MAX_NESTING).
+    /// The nesting depth of compounds and rounded shapes exceeds
+    /// [`MAX_NESTING`](crate::shape::MAX_NESTING).
     TooDeep {
-        /// How deep the shape would be.
+        /// The depth that the shape would have.
         depth: u32,
     },
     /// There are more parts than 32 bits can number.
     TooManyParts {
-        /// How many they would be.
+        /// The number of parts.
         needed: u64,
     },
-    /// A height field with fewer heights along an axis than a cell has.
+    /// A height field with too few heights along an axis for one cell.
     TooFewHeights {
         /// How many there are along the axis.
         given: usize,
-        /// How many it takes.
+        /// How many a cell needs.
         needed: usize,
     },
-    /// The number of heights is not that of the rows times that of the columns.
+    /// The number of heights differs from the product of the numbers of rows and columns.
     WrongHeightCount {
         /// How many were given.
         given: usize,
-        /// How many it takes.
+        /// The product of rows and columns.
         needed: usize,
     },
     /// A height, or the height times the scale, is NaN or infinite.
@@ -194,7 +195,8 @@ impl fmt::Display for ShapeError {
 
 impl std::error::Error for ShapeError {}
 
-/// A unit vector, up to rounding that adds up.
+/// Checks that `vector` is finite and its length within 0.8 % of 1, a margin for accumulated
+/// rounding.
 pub(super) fn unit_vector<N: Real, const D: usize>(
     what: &'static str,
     vector: &Vector<N, D>,
@@ -207,13 +209,14 @@ pub(super) fn unit_vector<N: Real, const D: usize>(
     Err(ShapeError::NotUnit { what, length: squared.as_f64().sqrt() })
 }
 
-/// How deep a shape is that holds shapes of these depths, if that is no deeper than allowed.
+/// Returns the depth of a shape that holds shapes of the depths `inner`; an error above
+/// [`MAX_NESTING`].
 pub(super) fn nesting(inner: impl Iterator<Item = u32>) -> Result<u32, ShapeError> {
     let depth = inner.max().map_or(1, |inner| inner.saturating_add(1));
     if depth <= MAX_NESTING { Ok(depth) } else { Err(ShapeError::TooDeep { depth }) }
 }
 
-/// A size: finite and not negative.
+/// Checks a size: finite and not negative.
 pub(super) fn size<N: Real>(what: &'static str, value: N) -> Result<N, ShapeError> {
     if !value.is_finite_number() {
         return Err(ShapeError::NotFinite { what, value: value.as_f64() });
@@ -224,7 +227,7 @@ pub(super) fn size<N: Real>(what: &'static str, value: N) -> Result<N, ShapeErro
     Ok(value)
 }
 
-/// Coordinates: all finite.
+/// Checks coordinates: all finite.
 pub(super) fn finite<N: Real, const D: usize>(
     what: &'static str,
     coordinates: &Vector<N, D>,
@@ -235,7 +238,7 @@ pub(super) fn finite<N: Real, const D: usize>(
     }
 }
 
-/// The value, or a panic with the error's text: the end of every panicking constructor.
+/// Returns the value, or panics with the error's text: the end of every panicking constructor.
 #[track_caller]
 pub(super) fn or_panic<S>(result: Result<S, ShapeError>) -> S {
     match result {

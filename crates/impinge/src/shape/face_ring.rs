@@ -1,33 +1,41 @@
-//! The face of a 3D solid with few corners, in lists of fixed size.
+//! The face of a 3D solid with few corners, in arrays of fixed size.
+//!
+//! ```text
+//! corners[0]  x0 x1 x2 … 0      one row per coordinate, one lane per corner, zeros beyond `count`
+//! corners[1]  y0 y1 y2 … 0
+//! corners[2]  z0 z1 z2 … 0
+//! ids         v0 v1 v2 …        corner `at`
+//! sides       s0 s1 s2 …        side from corner `at` to the next
+//! ```
 
 use crate::math::{Point, Real, Vector};
 use crate::shape::solids::cuboid::CuboidPart;
 use crate::shape::tilt::Tilt;
 use crate::shape::{Cuboid, FeatureId};
 
-/// So many corners a face may have here: as many as there are lanes.
+/// The largest number of corners: as many as there are lanes.
 const MAX: usize = 8;
 
-/// A face, its corners and sides in the order of [`Feature`](super::Feature).
+/// A face with its corners and sides, in the order of [`Feature`](super::Feature).
 #[derive(Clone, Debug)]
 pub(crate) struct FaceRing<N: Real> {
     pub(crate) id: FeatureId,
-    /// Three at least.
+    /// At least 3 for a filled ring.
     pub(crate) count: usize,
-    /// By coordinate; beyond the last there are zeros.
+    /// By coordinate; zero beyond `count`.
     pub(crate) corners: [[N; MAX]; 3],
     pub(crate) ids: [FeatureId; MAX],
-    /// Of the sides from each corner to the next.
+    /// The id of the side from each corner to the next.
     pub(crate) sides: [FeatureId; MAX],
     /// Unit, outward.
     pub(crate) normal: Vector<N, 3>,
 }
 
 impl<N: Real> FaceRing<N> {
-    /// So many corners a face may have here.
+    /// The largest number of corners of a ring.
     pub(crate) const MAX: usize = MAX;
 
-    /// No face yet.
+    /// A ring without corners.
     #[inline]
     pub(crate) fn blank() -> Self {
         let (id, corners) = (FeatureId::Face(0), [[N::ZERO; MAX]; 3]);
@@ -35,7 +43,7 @@ impl<N: Real> FaceRing<N> {
         Self { id, count: 0, corners, ids, sides: ids, normal }
     }
 
-    /// Appends a corner and the side that leaves it; there must be room.
+    /// Appends a corner and the side that leaves it. `count` must be below [`Self::MAX`].
     #[inline]
     pub(crate) fn push(&mut self, corner: &Point<N, 3>, [id, side]: [FeatureId; 2]) {
         let at = self.count;
@@ -48,13 +56,15 @@ impl<N: Real> FaceRing<N> {
 }
 
 impl<N: Real> Cuboid<N, 3> {
-    /// The name of what [`core_feature`](super::SupportMap::core_feature) answers of a box with a volume.
+    /// Returns the id of the [`core_feature`](super::SupportMap::core_feature) of a box with a
+    /// volume.
     #[inline]
     pub(crate) fn part_shown(direction: &Vector<N, 3>) -> FeatureId {
         CuboidPart::<3>::facing(direction, Tilt::usual()).name()
     }
 
-    /// Makes a blank ring the face with a number; answers whether it has an area.
+    /// Fills a blank ring with face `index`. Returns false, with the ring unchanged, if the face
+    /// has no area.
     pub(crate) fn fill_ring(&self, index: u32, face: &mut FaceRing<N>) -> bool {
         let (axis, is_negative) = ((index / 2) as usize, index % 2 == 1);
         if (0..3).any(|other| other != axis && self.half_extents()[other] == N::ZERO) {
@@ -80,7 +90,7 @@ mod tests {
         Point::<f64, 3>::new(x[at], y[at], z[at])
     }
 
-    /// The ring of the part shown, if that is a face.
+    /// The ring of the supporting feature, if that is a face.
     fn ring_of(
         part: FeatureId,
         fill: impl FnOnce(u32, &mut FaceRing<f64>) -> bool,
@@ -90,7 +100,7 @@ mod tests {
         fill(face, &mut ring).then_some(ring)
     }
 
-    /// What a solid shows of itself in a ring and as a feature.
+    /// Whether a ring and a feature are equal.
     fn same(ring: Option<FaceRing<f64>>, feature: &Feature<f64, 3>, what: &str) -> bool {
         let is_face = feature.normal.is_some() && feature.vertices.len() > 2;
         assert_eq!(ring.is_some(), is_face, "{what}: {feature:?}");
@@ -117,7 +127,7 @@ mod tests {
         for at in 0..1000_usize {
             let way = |prime: usize| (at * prime % 201) as f64 / 100.0 - 1.0;
             let way = Vector::<f64, 3>::new(way(7), way(11), way(13)).normalize();
-            // Every other one is close to that of a face.
+            // Every second direction is close to a face normal.
             let way = if at % 2 == 0 { way } else { way.map(|x| x.powi(41)).normalize() };
             for half in solids {
                 let cuboid = Cuboid::new(Vector::<f64, 3>::from(half));

@@ -1,4 +1,4 @@
-//! Vertices, edges and faces: the parts of a solid's surface that contacts are named by.
+//! Vertices, edges and faces: the parts of a solid's surface, with the ids that contacts refer to.
 
 use smallvec::SmallVec;
 
@@ -6,9 +6,9 @@ use crate::math::{Point, Real, Vector};
 
 /// A part of a solid's surface.
 ///
-/// In 2D a polygon has vertices and faces (its sides); edges occur in 3D only. The curved
-/// parts of a surface are faces too, except that the core of a capsule is a segment: an edge in
-/// 3D and a face in 2D. Each shape documents its numbering.
+/// In 2D a polygon has vertices and faces (its sides). The curved parts of a surface are faces too,
+/// except that the side of a capsule is the segment that is its core: `Edge(0)`, in 2D too. Each
+/// shape documents its numbering.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -32,8 +32,8 @@ pub enum FeatureId {
 }
 
 impl FeatureId {
-    /// The name of a flat part of `dimension` of a solid in `D` dimensions: a point is a vertex, a
-    /// part that bounds the solid (a side in 2D, a polygon in 3D) a face, else an edge.
+    /// Returns the id of a flat part of dimension `dimension` of a solid in `D` dimensions: a point
+    /// is a vertex, a part of dimension `D - 1` a face, any other an edge.
     pub(crate) const fn flat<const D: usize>(dimension: usize, index: u32) -> Self {
         if dimension == 0 {
             Self::Vertex(index)
@@ -44,7 +44,7 @@ impl FeatureId {
         }
     }
 
-    /// What [`Self::flat`] calls a part of `dimension`, for messages.
+    /// Returns the word for [`Self::flat`] of `dimension`, for messages.
     pub(super) const fn word<const D: usize>(dimension: usize) -> &'static str {
         match Self::flat::<D>(dimension, 0) {
             Self::Vertex(_) => "vertex",
@@ -54,9 +54,10 @@ impl FeatureId {
     }
 }
 
-/// The part of a core that faces some direction, as a point, a segment or a flat convex polygon.
+/// The supporting feature of a core for some direction: a point, a segment or a flat convex
+/// polygon.
 ///
-/// All in the local frame of the solid, roundings left out.
+/// All in the local frame of the solid, without its rounding.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -69,14 +70,14 @@ impl FeatureId {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feature<N: Real, const D: usize> {
-    /// Its name.
+    /// Its id.
     pub id: FeatureId,
     /// One point, two for a segment, more for a polygon: in 3D counter-clockwise seen from
     /// outside; in 2D a side is given with the solid on its left.
     pub vertices: SmallVec<[Point<N, D>; 8]>,
-    /// The name of each vertex.
+    /// The id of each vertex.
     pub vertex_ids: SmallVec<[FeatureId; 8]>,
-    /// The name of the side from each vertex to the next; for a segment one entry; for a point none.
+    /// The id of the side from each vertex to the next: one for a segment, none for a point.
     pub side_ids: SmallVec<[FeatureId; 8]>,
     /// The outward normal, where the feature has one: a polygon in 3D, a side in 2D.
     pub normal: Option<Vector<N, D>>,
@@ -95,7 +96,7 @@ impl<N: Real, const D: usize> Default for Feature<N, D> {
 }
 
 impl<N: Real, const D: usize> Feature<N, D> {
-    /// Empties the feature, keeping its memory.
+    /// Empties the feature, keeping its allocation.
     pub fn clear(&mut self) {
         self.id = FeatureId::Face(0);
         self.vertices.clear();
@@ -104,7 +105,7 @@ impl<N: Real, const D: usize> Feature<N, D> {
         self.normal = None;
     }
 
-    /// Makes it a single point.
+    /// Makes the feature a single point.
     pub fn set_point(&mut self, id: FeatureId, point: Point<N, D>) {
         self.clear();
         self.id = id;
@@ -112,7 +113,7 @@ impl<N: Real, const D: usize> Feature<N, D> {
         self.vertex_ids.push(id);
     }
 
-    /// Makes it a segment with the given names for itself and its ends.
+    /// Makes the feature a segment with the given ids for itself and its ends.
     pub fn set_segment(&mut self, id: FeatureId, ends: [(FeatureId, Point<N, D>); 2]) {
         self.clear();
         self.id = id;
@@ -123,15 +124,16 @@ impl<N: Real, const D: usize> Feature<N, D> {
         self.side_ids.push(id);
     }
 
-    /// Adds a vertex and its name.
+    /// Appends a vertex and its id.
     #[inline]
     pub(super) fn push(&mut self, id: FeatureId, vertex: Point<N, D>) {
         self.vertices.push(vertex);
         self.vertex_ids.push(id);
     }
 
-    /// Drops vertices that equal the one after, and the sides between them: what is left of a
-    /// polygon without width is a segment or a point, named so and without a normal.
+    /// Drops each vertex that equals the next one, and the side between them. A polygon without
+    /// width becomes a segment, one without extent a point; both lose the normal and take the id of
+    /// what remains.
     pub(super) fn drop_repeated(&mut self) {
         let mut at = self.vertices.len();
         while at > 0 && self.vertices.len() > 1 {
@@ -153,6 +155,8 @@ impl<N: Real, const D: usize> Feature<N, D> {
         self.rename_collapsed();
     }
 
+    /// Makes a feature of one or two vertices a point or a segment: sets its id and drops the
+    /// normal.
     fn rename_collapsed(&mut self) {
         match self.vertices.len() {
             1 => {

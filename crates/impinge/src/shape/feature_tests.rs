@@ -42,7 +42,7 @@ fn tolerance<N: Real, const D: usize, S: SupportMap<N, D> + ?Sized>(solid: &S) -
     N::lit(16.0) * N::EPSILON * max(solid.reach(), N::MIN_POSITIVE)
 }
 
-/// The feature holds the support point, its lists fit, and its points are points of the solid.
+/// The feature holds the support point, its lists fit, and its points belong to the solid.
 fn faces<N: Real, const D: usize>(
     solid: &dyn SupportMap<N, D>,
     direction: &Vector<N, D>,
@@ -65,7 +65,7 @@ fn faces<N: Real, const D: usize>(
     feature
 }
 
-/// Everything the solid has at the height of the supporting plane is in the feature.
+/// Each point of the solid at the height of the supporting plane is in the feature.
 fn holds_what_touches<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     solid: &dyn SupportMap<N, D>,
@@ -117,7 +117,7 @@ fn face2<N: Real>(solid: &dyn ConvexPolyhedron<N, 2>, id: FeatureId) {
     assert_eq!(ends.map(|(id, ..)| id).as_slice(), face.vertex_ids.as_slice(), "one order");
 }
 
-/// The normal of a feature is unit and the feature touches the supporting plane it defines.
+/// The normal of a feature is unit, and the feature lies in the supporting plane of that normal.
 fn points_out<N: Real, const D: usize>(
     solid: &dyn ConvexPolyhedron<N, D>,
     id: FeatureId,

@@ -1,4 +1,4 @@
-//! How queries see a shape: one of a closed set of kinds.
+//! How queries see a shape: as one of a closed set of kinds.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use crate::shape::{
     Segment, SupportMap, TaperedCapsule, Triangle,
 };
 
-/// The kinds of solid that the pair table knows, in the order in which pairs are named.
+/// The kinds of solid that the pair tables know, in the canonical order of a pair.
 ///
 /// ```
 /// use impinge::dim3::shape::{Ball, Capsule, Shape, ShapeKind};
@@ -65,8 +65,8 @@ pub enum ShapeKind {
 #[derive(Clone, Copy)]
 pub struct Geometry<'a, N: Real, const D: usize>(pub(crate) Kind<'a, N, D>);
 
-/// The closed set. Kinds of one dimension only carry their numbers and a support map, so that this
-/// type needs no bound; their constructors exist in their dimension only.
+/// The closed set of kinds. A kind of one dimension only (cylinder, cone) carries its sizes and a
+/// support map, so that this type needs no bound; its constructor exists in that dimension only.
 #[derive(Clone, Copy)]
 pub(crate) enum Kind<'a, N: Real, const D: usize> {
     Ball(&'a Ball<N>),
@@ -86,17 +86,17 @@ pub(crate) enum Kind<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
-    /// A convex solid of the user's own.
+    /// Wraps a user's convex solid.
     pub fn support_map(map: &'a dyn SupportMap<N, D>) -> Self {
         Self(Kind::SupportMap(map))
     }
 
-    /// A composite of the user's own.
+    /// Wraps a user's composite.
     pub fn composite(composite: &'a dyn CompositeShape<N, D>) -> Self {
         Self(Kind::Composite(composite))
     }
 
-    /// Which kind it is.
+    /// Returns the kind.
     #[inline]
     #[must_use]
     pub fn kind(&self) -> ShapeKind {
@@ -118,13 +118,15 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
         }
     }
 
-    /// A rotation about the origin changes it, so that its pose has one: not that of a ball.
+    /// Whether a rotation about the origin changes the solid, so that its pose needs one: false for
+    /// a ball.
     #[inline]
     pub(crate) fn turns(&self) -> bool {
         !matches!(self.0, Kind::Ball(_))
     }
 
-    /// Where an isometry of the user's puts it.
+    /// Converts a user's isometry to a pose; the rotation is dropped where [`Self::turns`] is
+    /// false.
     #[inline]
     pub(crate) fn pose_at(&self, isometry: &N::Isometry) -> Pose<N, D>
     where
@@ -152,8 +154,8 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
         })
     }
 
-    /// The radius of a ball around the origin of the frame that holds the solid, up to rounding: infinite
-    /// for a half-space, and where it is not known at once.
+    /// Returns an upper bound, up to rounding, of the distance of the solid's points from the
+    /// origin of its frame: infinite for a half-space, a composite and a user's support map.
     #[inline]
     pub(crate) fn extent(&self) -> N {
         let squared = |point: &Point<N, D>| point.coords.norm_squared();
@@ -190,7 +192,7 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
 }
 
 impl ShapeKind {
-    /// How many kinds there are.
+    /// The number of kinds.
     pub(crate) const COUNT: usize = Self::Composite as usize + 1;
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::math::{Real, Vector};
 use crate::shape::{ScaleError, Shape};
 
-/// A counted reference to an immutable shape; cloning it is cheap and shares the shape.
+/// A reference-counted handle of an immutable shape; cloning it is cheap and shares the shape.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, Cuboid, Shape, ShapeHandle};
@@ -25,7 +25,7 @@ impl<N: Real, const D: usize> Clone for ShapeHandle<N, D> {
         Self(Arc::clone(&self.0))
     }
 
-    /// Touches no count if both share the shape already.
+    /// Leaves the count alone if both share the shape already.
     fn clone_from(&mut self, source: &Self) {
         if !self.is_same(source) {
             *self = source.clone();
@@ -34,12 +34,12 @@ impl<N: Real, const D: usize> Clone for ShapeHandle<N, D> {
 }
 
 impl<N: Real, const D: usize> ShapeHandle<N, D> {
-    /// Takes a shape into shared ownership.
+    /// Moves a shape into shared ownership.
     pub fn new<S: Shape<N, D>>(shape: S) -> Self {
         Self(Arc::new(shape))
     }
 
-    /// Shares a shape that is already counted.
+    /// Wraps a shape that is already shared.
     pub fn from_arc(shape: Arc<dyn Shape<N, D>>) -> Self {
         Self(shape)
     }
@@ -66,13 +66,13 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
         self.0.scaled(scale)
     }
 
-    /// There is no other handle of the shape.
+    /// Whether this is the only handle of the shape.
     #[cfg(feature = "debug_render")]
     pub(crate) fn is_sole(&self) -> bool {
         Arc::strong_count(&self.0) == 1
     }
 
-    /// The two handles share one shape.
+    /// Whether both handles share one shape.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)

@@ -1,10 +1,10 @@
-//! The solids: what they are, in their own frame, and nothing about pairs or worlds.
+//! Solids in their own frame. This module knows nothing about pairs or worlds.
 //!
 //! A convex solid is a *core* inflated by a *rounding* radius: a ball is a point inflated by its
-//! radius, a capsule a segment. Algorithms run on cores and subtract the roundings at the end,
-//! which is exact and free. [`Shape`] is what a world stores; [`SupportMap`] is what a convex solid
-//! of a user's own must offer to join every query; [`ConvexPolyhedron`] names the features of solids
-//! with flat faces; [`CompositeShape`] is a union of solids.
+//! radius, a capsule a segment. Algorithms run on cores and subtract the radii at the end, which is
+//! exact and free. [`Shape`] is what a world stores; [`SupportMap`] is the trait by which a user's
+//! convex solid joins every query; [`ConvexPolyhedron`] gives access to the features of solids with
+//! flat faces; [`CompositeShape`] is a union of solids.
 
 mod bounds;
 mod compact;
@@ -68,7 +68,7 @@ pub(crate) use solids::tapered_capsule::Taper;
 pub use solids::tapered_capsule::TaperedCapsule;
 pub use solids::tetrahedron::Tetrahedron;
 pub use solids::triangle::Triangle;
-/// The limits by which a triangle shows a part clearly.
+/// Limits below which a triangle leaves its supporting feature undecided.
 pub(crate) use solids::triangle_feature::{CLEAR as CLEARLY_LARGER, THIN_SQUARED};
 pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
 #[doc(hidden)]
@@ -85,8 +85,8 @@ use crate::math::{Pose, Real, Vector};
 
 /// A solid in its own frame.
 ///
-/// Implement it for a type of your own to put that type into a world: give its box and say through
-/// [`Shape::geometry`] how queries shall see it.
+/// Implement it for a type of your own to put that type into a world: return its box, and from
+/// [`Shape::geometry`] how queries treat it.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -105,8 +105,8 @@ use crate::math::{Pose, Real, Vector};
             or `CompositeShape`"
 )]
 pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
-    /// How queries see the solid: [`Geometry::support_map`] for a convex solid of your own, or the
-    /// geometry of a built-in shape that yours stands for.
+    /// How queries treat the solid: [`Geometry::support_map`] for a convex solid of your own, or
+    /// the geometry of a built-in shape that stands for yours.
     fn geometry(&self) -> Geometry<'_, N, D>;
 
     /// A box around the solid in its own frame; as small as is cheap.
@@ -119,12 +119,13 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 
     /// The solid scaled along the axes of its frame, about its origin; factors may be negative.
     ///
-    /// The answer is exact up to rounding and of the same type, but that a ball may become an
-    /// [`Ellipsoid`]: no shape becomes an approximation of itself. Other round shapes need factors of
-    /// one magnitude, cylinders and cones across their axis; a cone cannot be turned over, a compound
-    /// not sheared.
-    /// Polygons number their vertices the other way round if mirrored; other parts and features keep
-    /// their numbers.
+    /// The result is exact up to rounding, never an approximation, and of the same type, except
+    /// that a ball may become an [`Ellipsoid`]. Other round shapes need factors of one magnitude,
+    /// cylinders and cones across their axis; a cone cannot be reversed, a compound not be sheared.
+    ///
+    /// Parts and features keep their numbers, unless the scale mirrors: then a polygon numbers its
+    /// vertices in the opposite order, a hull renumbers its edges, and triangles of meshes and
+    /// segments of polylines are reversed.
     ///
     /// # Errors
     /// If a factor is zero or not finite, no shape of the library is the scaled solid, or its numbers
@@ -134,9 +135,10 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
         Err(ScaleError::Unsupported)
     }
 
-    /// The mass properties of the solid with a density of one, of a shape that knows them better than
-    /// [`mass_properties`](crate::query::mass_properties) can: of a convex solid of your own, which that
-    /// integrates by its support points, or a surface of your own, which it refuses. The default is `None`.
+    /// Returns the mass properties of the solid at density one, for a shape that has a better
+    /// method than [`mass_properties`](crate::query::mass_properties): that integrates a user's
+    /// convex solid by its support points, and refuses a user's surface. `None` (the default)
+    /// selects the method of the query.
     fn unit_mass_properties(&self) -> Option<MassProperties<N, D>> {
         None
     }
@@ -146,19 +148,20 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
         BoundingSphere::around_box(&self.local_aabb())
     }
 
-    /// How deep the shape holds other shapes, at most [`MAX_NESTING`]: zero of a shape that holds none, and of
-    /// yours, for whose depth you answer.
+    /// Returns the nesting depth of the shape, at most [`MAX_NESTING`]; zero (the default) for a
+    /// shape that holds no other shape. A user's shape that holds others keeps zero and is itself
+    /// responsible for the depth of recursion.
     #[doc(hidden)]
     fn nesting(&self) -> u32 {
         0
     }
 }
 
-/// How deep shapes may hold each other: a [`Compound`] or [`Rounded`] is one deeper than what it holds.
-/// Constructors refuse more.
+/// The largest nesting depth of shapes: a [`Compound`] or [`Rounded`] is one deeper than the
+/// deepest shape that it holds. Constructors refuse more.
 ///
-/// Dropping a shape, and every question about it, calls itself once for each level. So deep, all of that takes a small
-/// part of the stack of a thread of 2 MB, for both shapes of a pair.
+/// Dropping a shape recurses once per level, and so does every query. The limit keeps this
+/// recursion, for both shapes of a pair, to a small part of the 2 MB stack of a thread.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -173,7 +176,7 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 /// ```
 pub const MAX_NESTING: u32 = 64;
 
-/// Finding out which type a shape has: for dispatchers that treat a type of their own.
+/// Downcasts, for dispatchers that treat a type of their own.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
@@ -183,8 +186,8 @@ pub const MAX_NESTING: u32 = 64;
 /// assert!(!handle.is_shape::<Cuboid<f32>>());
 /// ```
 impl<N: Real, const D: usize> dyn Shape<N, D> {
-    /// The way to a part of a composite that an answer names by its number; empty for a convex solid,
-    /// which is its own part 0.
+    /// Returns the path to part `part` of a composite, as queries number parts; empty for a convex
+    /// solid, whose only part is 0.
     #[must_use]
     pub fn path_to_part(&self, part: u32) -> PartPath {
         let mut path = PartPath::new();
@@ -194,13 +197,13 @@ impl<N: Real, const D: usize> dyn Shape<N, D> {
         path
     }
 
-    /// The shape is of the type `S`.
+    /// Whether the shape is of the type `S`.
     #[must_use]
     pub fn is_shape<S: Shape<N, D>>(&self) -> bool {
         self.as_shape::<S>().is_some()
     }
 
-    /// The shape as one of the type `S`; `None` if it is of another.
+    /// Returns the shape as an `S`; `None` if it is of another type.
     #[must_use]
     pub fn as_shape<S: Shape<N, D>>(&self) -> Option<&S> {
         (self as &dyn Any).downcast_ref()

@@ -20,22 +20,22 @@ use crate::shape::{MeshError, ShapeError};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ScaleError {
-    /// A factor is zero, infinite or NaN. Values are given as `f64`, exactly.
+    /// A factor is zero, infinite or NaN.
     BadFactor {
         /// The axis: 0 for x.
         axis: usize,
         /// The factor along it.
         value: f64,
     },
-    /// The scaled solid is none that the library has: it would have to be sheared, or a round shape
-    /// oval.
+    /// No shape of the library is the scaled solid: it would have to be sheared, or its round
+    /// section would become oval.
     NotSuch {
-        /// What the shape asks of the factors.
+        /// The condition that the factors have to meet.
         needs: &'static str,
     },
     /// The scaled coordinates are too large or too small for numbers of the type.
     OutOfRange,
-    /// A child of a compound cannot be scaled so, by itself or because it is turned.
+    /// A child of a compound cannot be scaled by these factors, by itself or because it is rotated.
     Child {
         /// The index of the child.
         index: usize,
@@ -60,14 +60,14 @@ impl fmt::Display for ScaleError {
 
 impl std::error::Error for ScaleError {}
 
-/// Of a shape that exists, only the size can be wrong.
+/// A shape that exists can only fail by its scaled size.
 impl From<ShapeError> for ScaleError {
     fn from(_: ShapeError) -> Self {
         Self::OutOfRange
     }
 }
 
-/// Of a mesh that exists, only the factors or the size can be wrong.
+/// A mesh that exists can only fail by the factors or by its scaled size.
 impl From<MeshError> for ScaleError {
     fn from(error: MeshError) -> Self {
         match error {
@@ -82,6 +82,7 @@ impl From<MeshError> for ScaleError {
 pub(super) struct Scale<'a, N: Real, const D: usize>(&'a Vector<N, D>);
 
 impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
+    /// Checks the factors: finite, and not zero.
     pub(super) fn try_new(factors: &'a Vector<N, D>) -> Result<Self, ScaleError> {
         let is_bad = |x: &N| *x == N::ZERO || !x.is_finite_number();
         match factors.iter().position(is_bad) {
@@ -100,12 +101,12 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
         self.0.map(|x| if x < N::ZERO { -N::ONE } else { N::ONE })
     }
 
-    /// A right hand becomes a left one.
+    /// Whether the factors mirror: an odd number of them is negative.
     pub(super) fn is_mirror(self) -> bool {
         self.0.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1
     }
 
-    /// The magnitude of all factors, if they have the same.
+    /// Returns the common magnitude of the factors.
     pub(super) fn uniform(self) -> Result<N, ScaleError> {
         let magnitudes = self.magnitudes();
         let is_uniform = magnitudes.iter().all(|&x| x == magnitudes[0]);
@@ -121,7 +122,8 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
         Point::from(self.vector(&point.coords))
     }
 
-    /// The corners of a solid with a volume: it must keep one.
+    /// Scales the corners of a solid with a volume; fails if the extent along an axis vanishes or
+    /// overflows.
     pub(super) fn corners(self, points: &[Point<N, D>]) -> Result<Vec<Point<N, D>>, ScaleError> {
         let scaled: Vec<_> = points.iter().map(|point| self.point(point)).collect();
         let solid = Aabb::from_points(&scaled).filter(Aabb::is_bounded);
@@ -129,7 +131,7 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
         solid.map(|_| scaled).ok_or(ScaleError::OutOfRange)
     }
 
-    /// The unit normal of a scaled plane, on the side of the same points.
+    /// Returns the unit normal of a scaled plane, pointing to the side of the same points.
     pub(super) fn normal(self, normal: &Vector<N, D>) -> Result<Vector<N, D>, ScaleError> {
         let largest = self.magnitudes().iter().copied().fold(N::ZERO, crate::math::max);
         let inverse = normal.component_div(&(self.0 / largest));

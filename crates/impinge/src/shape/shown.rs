@@ -3,11 +3,11 @@
 use crate::math::{Point, Real, Vector};
 use crate::shape::{Feature, FeatureId, Geometry, Kind, Segment, SupportMap};
 
-/// What [`SupportMap::core_feature`] says of a solid of the plane, in no more room than that takes.
+/// The result of [`SupportMap::core_feature`] in 2D, without a heap or a polygon's storage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shown<N: Real> {
     pub(crate) id: FeatureId,
-    /// Of a vertex twice the same.
+    /// Twice the same for a vertex.
     pub(crate) ends: [(FeatureId, Point<N, 2>); 2],
     pub(crate) is_side: bool,
 }
@@ -23,8 +23,8 @@ impl<N: Real> Shown<N> {
         Self { id, ends, is_side: true }
     }
 
-    /// The part that faces a unit vector; `None` for half-spaces and composites, and for support maps that
-    /// show more than a side.
+    /// Returns the supporting feature for the unit vector `direction`; `None` for half-spaces and
+    /// composites, and for support maps whose feature has more than two vertices.
     pub(crate) fn of(kind: Kind<'_, N, 2>, direction: &Vector<N, 2>) -> Option<Self> {
         let own = match kind {
             Kind::Segment(segment) => Some(Self::of_segment(segment)),
@@ -38,13 +38,14 @@ impl<N: Real> Shown<N> {
         own.or_else(|| Self::of_map(Geometry(kind).as_support_map()?, direction))
     }
 
-    /// A segment shows itself whatever the direction.
+    /// The feature of a segment is the segment itself, for every direction.
     #[inline]
     pub(crate) fn of_segment(segment: &Segment<N, 2>) -> Self {
         let ends = [(FeatureId::Vertex(0), *segment.a()), (FeatureId::Vertex(1), *segment.b())];
         Self::side(FeatureId::Edge(0), ends)
     }
 
+    /// The feature of a support map; `None` if it has more than two vertices.
     fn of_map(map: &dyn SupportMap<N, 2>, direction: &Vector<N, 2>) -> Option<Self> {
         let mut feature = Feature::default();
         map.core_feature(direction, &mut feature);

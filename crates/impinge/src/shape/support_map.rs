@@ -1,10 +1,10 @@
-//! What a convex solid offers to the algorithms.
+//! Support maps: the interface of convex solids to the algorithms.
 
 use crate::math::{Matrix, Point, Real, Vector, max, unit};
 use crate::shape::solids::segment::length_of;
 use crate::shape::{Feature, FeatureId};
 
-/// Where the support point of a curved part lies, and how it moves.
+/// The support point of a curved part, and its derivative by the direction.
 ///
 /// ```
 /// use impinge::dim2::math::Vector;
@@ -21,13 +21,14 @@ pub struct CurvedSupport<N: Real, const D: usize> {
     /// The point of the part farthest along the direction.
     pub point: Point<N, D>,
     /// The derivative of the point by the direction, for a unit direction: a symmetric matrix that
-    /// takes the direction itself to zero; of a ball, the radius across the direction.
+    /// takes the direction itself to zero. For a ball it is the radius times the projection across
+    /// the direction.
     pub bend: Matrix<N, D>,
 }
 
 /// A convex solid: a core, known by its support points, inflated by a rounding radius.
 ///
-/// All in the local frame. Without rounding (the default) the core is the solid itself.
+/// All in the local frame. Without rounding (the default zero) the core is the solid itself.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -55,16 +56,16 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
         N::ZERO
     }
 
-    /// The point farthest along the unit vector `direction` on the curved part of the core that
-    /// `point` lies on, and how it moves; `None` if `point` is a corner, or for a direction at which
-    /// there is no derivative, such as along the axis of a disk.
+    /// Returns the point farthest along the unit vector `direction` on the curved part of the core
+    /// that `point` lies on, with its derivative. `None` if `point` is a corner, or if the
+    /// derivative does not exist for `direction`, such as along the axis of a disk.
     ///
-    /// `point` is an answer of [`Self::core_support`] for a direction nearby, up to rounding. A core
-    /// may have several curved parts, as a cylinder has two rims, and the part of `point` may be
-    /// another than the one that is farthest.
+    /// `point` is an answer of [`Self::core_support`] for a direction nearby, up to rounding. A
+    /// core may have several curved parts, as a cylinder has two rims; the part of `point` need not
+    /// be the one that is farthest along `direction`.
     ///
-    /// The default is `None`, which is right for cores that are hulls of points. Curved ones are
-    /// found without it too, up to about half the digits in their normals.
+    /// The default is `None`, which is right for cores that are hulls of points. For curved cores
+    /// without this method, normals are accurate to about half of their digits.
     fn curved_support(
         &self,
         point: &Point<N, D>,
@@ -74,31 +75,32 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
         None
     }
 
-    /// The outward unit normal of the flat round face of the core that faces `direction`, such as the
-    /// cap of a cylinder; `None` if the side that faces `direction` has none.
+    /// Returns the outward unit normal of the flat round face of the core that faces `direction`,
+    /// such as the cap of a cylinder; `None` if there is none on that side.
     ///
-    /// There support points say least: they run around the rim. The default is `None`.
+    /// Near such a face support points carry little information: they run around its rim. The
+    /// default is `None`.
     fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
         let _ = direction;
         None
     }
 
-    /// The axis of the round side of the core, a unit vector, and the sine by which the normals of the side
-    /// lean along it: zero for a cylinder. `None` if there is no such side.
+    /// Returns the unit axis of the round side of the core, and the sine of the angle by which the
+    /// normals of the side tilt towards it: zero for a cylinder. `None` if there is no such side.
     ///
-    /// In or beside another solid about the same axis a whole ring of these normals is about as good; there
-    /// a local search has nothing to go by. The default is `None`.
+    /// Against another solid about the same axis a whole ring of these normals is nearly optimal,
+    /// which leaves a local search without a gradient. The default is `None`.
     fn round_side(&self) -> Option<(Vector<N, D>, N)> {
         None
     }
 
-    /// A point well inside the core.
+    /// Returns a point well inside the core.
     fn center(&self) -> Point<N, D> {
         Point::origin()
     }
 
-    /// A length that no point of the core exceeds in distance from the local origin, and that is
-    /// not much larger than needed: tolerances are in proportion to it.
+    /// Returns an upper bound of the distance of the core's points from the local origin, not much
+    /// larger than the maximum: tolerances are proportional to it.
     fn reach(&self) -> N {
         let mut corner = Vector::<N, D>::zeros();
         for axis in 0..D {
@@ -120,22 +122,22 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
         }
     }
 
-    /// The part of the core that faces the unit vector `direction`, for contact manifolds: a polygon,
-    /// a segment or a point, which always contains every point of the core that touches the
+    /// Writes the supporting feature of the core for the unit vector `direction`, for contact
+    /// manifolds: a polygon, a segment or a point that contains every point of the core on the
     /// supporting plane perpendicular to `direction`.
     ///
-    /// The rule for flat faces: among the edges at the support vertex take the one that leans least
-    /// out of the supporting plane; of the two faces beside it take the one whose normal is most
-    /// aligned. Answer with that face if it leans by at most atan(1/2) ≈ 26.6°, else with the edge if
-    /// it does, else with the vertex. In 2D the sides at the vertex are the faces. So the two
-    /// crossing edges of an edge-edge contact are found as edges or as sides of the faces answered.
-    /// The rule knows angles only, treats mirrored directions alike, and near its two limits both
-    /// answers contain the touching part. No regular polyhedron, nor a regular prism on an edge,
-    /// lies at a limit.
+    /// The rule for flat faces: among the edges at the support vertex take the one with the
+    /// smallest tilt out of the supporting plane; of the two faces beside it take the one whose
+    /// normal is most aligned with `direction`. Return that face if its tilt is at most atan(1/2) ≈
+    /// 26.6°, else the edge if its tilt is, else the vertex. In 2D the sides at the vertex are the
+    /// faces. So the two crossing edges of an edge-edge contact are found as edges or as sides of
+    /// the returned faces. The rule depends on angles only and treats mirrored directions alike;
+    /// near its two limits both alternatives contain the touching part. No regular polyhedron, nor
+    /// a regular prism on an edge, lies at a limit.
     ///
-    /// A flat cap that is round is answered as an inscribed polygon with a vertex towards
-    /// `direction`, a round side as its generating segment. The default is the support point alone,
-    /// named `Face(0)`: right for surfaces that are curved everywhere.
+    /// A flat round cap is returned as an inscribed polygon with a vertex towards `direction`, a
+    /// round side as its generating segment. The default is the support point alone with the id
+    /// `Face(0)`: right for surfaces that are curved everywhere.
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
         out.set_point(FeatureId::Face(0), self.core_support(direction));
     }
@@ -143,8 +145,8 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
 
 /// A convex solid whose core has flat faces: the geometry of its features.
 ///
-/// All in the local frame, of the core (for a rounded solid the faces lie `rounding` inside its
-/// surface). Asking for a feature that the solid does not have panics, and the message names it.
+/// All in the local frame, of the core (the faces of a rounded solid lie `rounding` inside its
+/// surface). A method panics if the solid does not have the feature; the message contains its id.
 ///
 /// ```
 /// use impinge::dim2::math::{Point, Vector};
@@ -162,7 +164,7 @@ pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
     /// If `id` is not a vertex of the solid.
     fn vertex(&self, id: FeatureId) -> Point<N, D>;
 
-    /// The two ends of an edge and their names (in 2D: of a side).
+    /// The two ends of an edge (in 2D: of a side) and their ids.
     ///
     /// # Panics
     /// If `id` is not an edge of the solid (in 2D: a face).
@@ -174,7 +176,7 @@ pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
     /// If `id` is not a face of the solid.
     fn face(&self, id: FeatureId, out: &mut Feature<N, D>);
 
-    /// A unit vector that points away from the solid on the feature: the face's normal, or the
+    /// Returns a unit vector that points out of the solid at the feature: the face's normal, or the
     /// normalised sum of the normals of the faces around a vertex or an edge.
     ///
     /// # Panics
@@ -184,13 +186,14 @@ pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
     /// The face whose normal is most aligned with the unit vector `direction`.
     fn support_face_toward(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>);
 
-    /// The largest feature that touches the supporting plane in `direction`, once the solid may be
-    /// turned by up to `angle` radians: a face, else an edge, else a vertex.
+    /// Writes the largest feature that touches the supporting plane in `direction` after the solid
+    /// is rotated by up to `angle` radians: a face, else an edge, else a vertex.
     ///
-    /// The rule of [`SupportMap::core_feature`] with `angle` in place of its limit; angles are cut
-    /// off at the smallest that arithmetic resolves and a little below a right angle.
+    /// The rule of [`SupportMap::core_feature`] with `angle` in place of its limit. `angle` is
+    /// clamped to the range from the smallest angle that arithmetic resolves to a little below a
+    /// right angle.
     fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>);
 
-    /// The name of the feature that [`Self::support_feature_toward`] finds for a tiny angle.
+    /// The id of the feature that [`Self::support_feature_toward`] finds for a tiny angle.
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId;
 }

@@ -1,11 +1,12 @@
-//! How far a feature may lean out of the supporting plane and still be the one that faces.
+//! The largest tilt of a feature out of the supporting plane at which it still is the supporting
+//! feature.
 
 use crate::math::{Real, Vector};
 
 /// The squared sine of atan(1/2), the limit of [`super::SupportMap::core_feature`].
 pub(crate) const FACING_SINE_SQUARED: f64 = 0.2;
 
-/// The limit, kept as the square of its sine: small angles lose nothing to rounding.
+/// A limit of the tilt, stored as its squared sine: small angles lose no digits to rounding.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tilt<N: Real> {
     sine_squared: N,
@@ -18,14 +19,14 @@ impl<N: Real> Tilt<N> {
         Self { sine_squared: N::lit(FACING_SINE_SQUARED) }
     }
 
-    /// The least angle that unit vectors in rounded arithmetic tell from zero.
+    /// The smallest angle that unit vectors in rounded arithmetic distinguish from zero.
     pub(super) fn least() -> Self {
         let sine = N::lit(64.0) * N::EPSILON;
         Self { sine_squared: sine * sine }
     }
 
-    /// The limit of `angle` radians, cut off at [`Self::least`] and a little below a right angle,
-    /// beyond which nothing faces any more.
+    /// The limit of `angle` radians, clamped to the range from [`Self::least`] to a little below a
+    /// right angle. NaN counts as a right angle.
     pub(super) fn of_angle(angle: N) -> Self {
         let largest = N::ONE - N::lit(0.001);
         let sine = if angle < N::lit(1.57) { angle.sine_cosine().0 } else { N::ONE };
@@ -35,13 +36,14 @@ impl<N: Real> Tilt<N> {
         Self { sine_squared: if sine_squared < largest { sine_squared } else { largest } }
     }
 
-    /// A part that leans out of the plane by an angle with this squared sine still faces.
+    /// Whether a part whose tilt has this squared sine is within the limit.
     #[inline]
     pub(super) fn admits(self, sine_squared: N) -> bool {
         sine_squared <= self.sine_squared
     }
 
-    /// A face with this unit normal faces the unit vector `direction`.
+    /// Whether a face with the unit normal `normal` is within the limit for the unit vector
+    /// `direction`.
     #[inline]
     pub(super) fn admits_face<const D: usize>(
         self,

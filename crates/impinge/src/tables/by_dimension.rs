@@ -35,15 +35,17 @@ use crate::shape::{
     ConvexHull, ConvexPolygon, FeatureId, Kind, MeshByDimension, ShapeHandle, TriMesh, Triangle,
 };
 
-/// The algorithms that differ by dimension; [`Here`] has them, so that scalars keep their own names.
+/// The algorithms that differ by dimension. They are methods of [`Here`] rather than of the scalar, so that a user's
+/// `N` does not get them.
 #[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
 pub trait ByDimension<N: Real, const D: usize>:
     MassByDimension<N, D> + MeshByDimension<N, D>
 {
-    /// The one fact about a pair of solids; see [`crate::query`].
+    /// Computes the separation of a pair of solids, from which all queries derive; see [`crate::query`].
     fn separation(pair: &Pair<'_, N, D>, limit: N) -> Option<Separation<N, D>>;
 
-    /// The contacts of a solid with faces and the triangles of a surface; `false` where there is no algorithm for many.
+    /// Computes the contacts of a polyhedral solid with triangles of a surface, in SIMD lanes; `false` if there is no
+    /// such algorithm.
     fn face_contacts(
         query: &Query<'_, N, D>,
         scene: &Scene<'_, N, D>,
@@ -53,38 +55,39 @@ pub trait ByDimension<N: Real, const D: usize>:
         arena: &mut Arena<N, D>,
     ) -> bool;
 
-    /// How far each of eight parts is from the solid in the slabs, at least.
+    /// Computes a lower bound of the distance of each of eight parts from the solid in the slabs.
     fn part_gaps(slabs: &AxisSlabs<N, D>, tiles: &PartPacket<N, D>, limit: N) -> [N; LANES];
 
-    /// Which of eight pairs of parts are beyond a limit, or within it.
+    /// Classifies eight pairs of parts: beyond a limit, or within it.
     fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairVerdicts;
 
-    /// Updates the contacts of a convex solid and a chain of segments, or of a ball and a surface; `false` where the
-    /// generic path must do it.
+    /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a surface (3D); `false` if
+    /// the pair needs the generic path.
     fn update_quickly(
         contacts: &mut CompositeContacts<N, D>,
         between: &Between<'_, N, D>,
         request: &ManifoldRequest<N>,
     ) -> bool;
 
-    /// The distance of a pair, and any number that is not positive for solids that overlap clearly.
+    /// Computes the distance of a pair up to `limit`; for solids that clearly overlap, some number that is not
+    /// positive.
     fn distance(pair: &Pair<'_, N, D>, limit: N) -> Option<N>;
 
-    /// The distances of many pairs of convex solids, up to a limit.
+    /// Computes the distances of many pairs of convex solids, up to a limit.
     fn distances(pairs: &mut [ConvexPair<'_, N, D>], limit: N, out: &mut [Option<N>]);
 
-    /// The separations of many pairs of convex solids, up to a limit.
+    /// Computes the separations of many pairs of convex solids, up to a limit.
     fn separations(
         pairs: &mut [ConvexPair<'_, N, D>],
         limit: N,
         out: &mut [Option<Separation<N, D>>],
     );
 
-    /// How a solid sees a point; `None` where there is no closed form.
+    /// Projects a point on a solid; `None` if there is no closed form.
     fn seen(solid: Kind<'_, N, D>, point: &Point<N, D>) -> Option<Projection<N, D>>;
 
-    /// The contact points of a pair: by the algorithm of its kinds for pairs in lanes where there is one, else from
-    /// the separation.
+    /// Computes the contact points of a pair: by the SIMD kernel of its kinds if there is one, else from the
+    /// separation.
     fn contacts(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, out: &mut RawManifold<N, D>)
     where
         N: Space<D>,
@@ -94,20 +97,20 @@ pub trait ByDimension<N: Real, const D: usize>:
         }
     }
 
-    /// The contact points of a pair from its separation.
+    /// Computes the contact points of a pair from its separation.
     fn contacts_of_separation(
         pair: &Pair<'_, N, D>,
         request: &ManifoldRequest<N>,
         out: &mut RawManifold<N, D>,
     );
 
-    /// The contact points of one pair by the algorithm for pairs in lanes; `false` if there is none for its kinds or it
-    /// declines the pair.
+    /// Computes the contact points of one pair by the SIMD kernel of its kinds; `false` if there is none or it does not
+    /// support the pair.
     fn update_pair(question: &PairQuestion<'_, N, D>, out: &mut RawManifold<N, D>) -> bool
     where
         N: Space<D>;
 
-    /// The contact points of a pair whose separation is known.
+    /// Computes the contact points of a pair whose separation is known.
     fn between(
         pair: &Pair<'_, N, D>,
         separation: &Separation<N, D>,
@@ -115,24 +118,24 @@ pub trait ByDimension<N: Real, const D: usize>:
         out: &mut RawManifold<N, D>,
     );
 
-    /// Contacts along the normal of a triangle; `false` where it makes none.
+    /// Computes contacts along the normal of a triangle; `false` if there are none.
     fn on_face(pair: &Pair<'_, N, D>, asked: &OnFace<N, D>, out: &mut RawManifold<N, D>) -> bool;
 
-    /// Updates some pairs of a group, several at a time; `false` if that cannot be done.
+    /// Updates some pairs of a group in SIMD lanes; `false` if there is no kernel for their kinds.
     fn update_lanes(solids: [&Solid<N, D>; 2], due: &mut DueContacts<'_, '_, N, D>) -> bool
     where
         N: Space<D>;
 
-    /// Computes some pairs of a batch, several at a time; `false` if that cannot be done.
+    /// Computes some pairs of a batch in SIMD lanes; `false` if there is no kernel for their kinds.
     fn update_group(solids: [&Solid<N, D>; 2], group: &mut SolidGroup<'_, '_, N, D>) -> bool;
 
-    /// Two directions across a normal; the second is zero in 2D.
+    /// Returns two directions perpendicular to a normal; the second is zero in 2D.
     fn tangents(normal: &Vector<N, D>) -> [Vector<N, D>; 2];
 
-    /// The features that the nearest points of two convex solids lie on.
+    /// Returns the features that the nearest points of two convex solids lie on.
     fn witness_features(pair: &Pair<'_, N, D>, separation: &Separation<N, D>) -> [FeatureId; 2];
 
-    /// The feature on one of the two solids alone.
+    /// Returns the feature of one of the two solids alone.
     fn witness_feature(
         pair: &Pair<'_, N, D>,
         separation: &Separation<N, D>,
@@ -140,13 +143,14 @@ pub trait ByDimension<N: Real, const D: usize>:
         is_second: bool,
     ) -> FeatureId;
 
-    /// The feature of a triangle that a ball is over; within `tolerance` is rounding.
+    /// Returns the feature of a triangle whose Voronoi region contains the centre of a ball; distances within
+    /// `tolerance` count as rounding errors.
     fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
 
-    /// When the line of a ray is inside a solid.
+    /// Returns the interval of times in which the line of a ray is inside a solid.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
 
-    /// The first hit of a ray on a mesh.
+    /// Returns the first hit of a ray on a mesh.
     fn first_on_mesh(
         mesh: &TriMesh<N, D>,
         question: &RayQuestion<N, D>,
@@ -154,7 +158,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     where
         N: Space<D>;
 
-    /// Those of many rays; `false` if there is no algorithm for many.
+    /// Computes the first hits of many rays on a mesh; `false` if there is no algorithm for many.
     fn first_hits_on_mesh(
         mesh: &TriMesh<N, D>,
         batch: &RayBatch<'_, N, D>,
@@ -163,16 +167,16 @@ pub trait ByDimension<N: Real, const D: usize>:
     where
         N: Space<D>;
 
-    /// The point of the boundary of a solid that is nearest to a point.
+    /// Returns the point of the boundary of a solid that is nearest to a point.
     fn surface_point(solid: Kind<'_, N, D>, point: &Point<N, D>) -> SurfacePoint<N, D>;
 
-    /// A solid of revolution as queries see it; there is none in 2D.
+    /// Returns a solid of revolution as a `Kind`; there is none in 2D.
     fn revolved(solid: &Revolved<N>) -> Kind<'_, N, D>;
 
-    /// The convex hull of points; `None` if they have none with a volume.
+    /// Returns the convex hull of points; `None` if it has no volume.
     fn hull(points: &[Point<N, D>]) -> Option<ShapeHandle<N, D>>;
 
-    /// Adds the drawing of a convex solid to a mesh.
+    /// Adds a convex solid to a sketch.
     #[cfg(feature = "debug_render")]
     fn sketch(solid: Kind<'_, N, D>, sketch: &mut Sketch<N, D>);
 }

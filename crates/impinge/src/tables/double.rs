@@ -1,4 +1,4 @@
-//! The scalar `f64`, all of which is a feature.
+//! The scalar `f64`; the feature `f64` enables this file.
 
 use super::{Compiled, Here};
 use crate::math::{Real, f64_power_of_two_below};

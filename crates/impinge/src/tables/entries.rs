@@ -24,38 +24,38 @@ use crate::query::{
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 compiled! {
-    /// Queries and pairs.
+    /// Entries of queries and pairs.
     trait Entries;
 
-    /// The separation of two placed shapes, up to a limit.
+    /// Computes the separation of two placed shapes, up to `limit`.
     fn separation_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
         limit: N,
     ) -> Option<Separation<N, D>> = separation::in_world;
 
-    /// Their deepest contact.
+    /// Computes the deepest contact of two placed shapes, up to `limit`.
     fn contact_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
         limit: N,
     ) -> Option<Separation<N, D>> = mesh::contact_in_world;
 
-    /// Their separation, or any overlap of their parts.
+    /// Computes the separation of two placed shapes, or an arbitrary overlap of their parts.
     fn touching_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
         limit: N,
     ) -> Option<Separation<N, D>> = separation::touching_in_world;
 
-    /// Their distance alone.
+    /// Computes the distance of two placed shapes alone.
     fn distance_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
         limit: N,
     ) -> Option<N> = separation::distance_in_world;
 
-    /// Their nearest points; the flag asks for features, too.
+    /// Computes the nearest points of two placed shapes, optionally with features.
     fn witness_in_world(
         one: &Placed<'_, N, D>,
         other: &Placed<'_, N, D>,
@@ -63,35 +63,36 @@ compiled! {
         with_features: bool,
     ) -> Option<Witness<N, D>> = witness_of_placed;
 
-    /// When two solids that move along lines touch, and where.
+    /// Computes when and where two solids that move along lines touch.
     fn impact(
         one: &Moving<'_, N, D>,
         other: &Moving<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Impact<N, D>> = impact_of_pair;
 
-    /// When they touch.
+    /// Computes when two solids that move along lines touch.
     fn time_of_impact(
         one: &Moving<'_, N, D>,
         other: &Moving<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<N> = time_of_pair;
 
-    /// When two solids that turn touch, and where.
+    /// Computes when and where two rotating solids touch.
     fn nonlinear_impact(
         flight: &Flight<'_, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Impact<N, D>> = impact_of_flight;
 
-    /// When the line of a ray is inside a solid.
+    /// Returns the interval of times in which the line of a ray is inside a solid.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>> =
         <Here as ByDimension<N, D>>::ray_span;
 
-    /// The point of the boundary of a solid that is nearest to a point.
+    /// Returns the point of the boundary of a solid that is nearest to a point.
     fn surface_point(solid: Kind<'_, N, D>, point: &Point<N, D>) -> SurfacePoint<N, D> =
         <Here as ByDimension<N, D>>::surface_point;
 
-    /// The part of a composite that is nearest to a point; any that holds it with the flag.
+    /// Returns the part of a composite that is nearest to a point; with `touching` any part that
+    /// contains it.
     fn nearest_part(
         parts: &dyn CompositeShape<N, D>,
         point: &Point<N, D>,
@@ -105,11 +106,11 @@ compiled! {
         found: &mut dyn FnMut(RayIntersection<N, D>) -> N,
     ) = composite::each_hit;
 
-    /// A ray meets a composite by a time.
+    /// Returns `true` if a ray meets a composite at or before `max_time`.
     fn is_crossed(parts: &dyn CompositeShape<N, D>, ray: &Ray<N, D>, max_time: N) -> bool =
         composite::is_crossed;
 
-    /// Updates the contacts of one pair that is kept alone.
+    /// Updates the contacts of a single pair.
     fn update_generator(
         generator: &mut PairManifoldGenerator<N, D>,
         isometries: [&<N as math::Space<D>>::Isometry; 2],
@@ -118,19 +119,19 @@ compiled! {
         ids: &mut IdAllocator,
     ) = PairManifoldGenerator::refresh;
 
-    /// Its manifolds as users see them, in the memory of `old`.
+    /// Returns the manifolds of a single pair in the public form, in the memory of `old`.
     fn read_generator(
         generator: &PairManifoldGenerator<N, D>,
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> = PairManifoldGenerator::read;
 
-    /// The manifolds of two placed shapes, computed from nothing.
+    /// Computes the manifolds of two placed shapes without state.
     fn manifolds_of_placed(
         placed: &[Placed<'_, N, D>; 2],
         request: &ManifoldRequest<N>,
     ) -> Vec<ContactManifold<N, D>> = narrow_phase::manifolds_of_placed;
 
-    /// The manifold of two convex solids as users keep it, in the memory of `old`.
+    /// Returns the manifold of two convex solids in the public form, in the memory of `old`.
     fn public_manifold(
         state: &ContactState<N, D>,
         placed: &[Placed<'_, N, D>; 2],
@@ -138,7 +139,7 @@ compiled! {
         old: ContactManifold<N, D>,
     ) -> ContactManifold<N, D> = ContactState::manifolds;
 
-    /// The manifolds of two shapes with a composite among them as users keep them, in the memory of `old`.
+    /// Returns the manifolds of a pair with a composite in the public form, in the memory of `old`.
     fn composite_manifolds(
         state: &CompositeState<N, D>,
         placed: &[Placed<'_, N, D>; 2],
@@ -146,37 +147,37 @@ compiled! {
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> = CompositeState::manifolds;
 
-    /// A contact of a manifold that is read in place, with its kinematic.
+    /// Returns a contact of a manifold view, with its kinematic.
     fn tracked_contact(view: &ManifoldView<'_, N, D>, index: usize) -> TrackedContact<N, D> =
         ManifoldView::tracked;
 
-    /// The step of a narrow phase.
+    /// Updates a narrow phase.
     fn update_pairs(
         narrow_phase: &mut DefaultNarrowPhase<N, D>,
         table: &ObjectTable<N, D>,
         events: &mut Events,
     ) = DefaultNarrowPhase::update_pairs_here;
 
-    /// The step of a broad phase: what is pending, the filter, and what hears of changes.
+    /// Updates a broad phase: `may_meet` filters, `changed` receives started and stopped pairs.
     fn find_pairs(
         finder: &mut PairFinder<N, D>,
         may_meet: &mut dyn FnMut(u32, u32) -> bool,
         changed: &mut dyn FnMut(u32, u32, bool),
     ) = PairFinder::update;
 
-    /// Adds the drawing of a convex solid to a mesh.
+    /// Adds a convex solid to a sketch.
     #[cfg(feature = "debug_render")]
     fn sketch(solid: Kind<'_, N, D>, sketch: &mut Sketch<N, D>) = <Here as ByDimension<N, D>>::sketch;
 }
 
 compiled! {
-    /// What is too small to be called in an optimised program.
+    /// Entries small enough to be inlined in an optimised program.
     inlined trait SmallEntries;
 
-    /// The pose that an isometry describes.
+    /// Returns the pose of an isometry.
     fn pose_of(isometry: IsometryRef<'_, N, D>) -> Pose<N, D> = math::pose_of;
 
-    /// The distance of two shapes.
+    /// Computes the distance of two shapes.
     fn distance(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -184,7 +185,7 @@ compiled! {
         shape2: &dyn Shape<N, D>,
     ) -> N = query::distance_at;
 
-    /// Their contact, up to a prediction.
+    /// Computes the contact of two shapes, up to a prediction.
     fn contact(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -193,7 +194,7 @@ compiled! {
         prediction: N,
     ) -> Option<Contact<N, D>> = query::contact_at;
 
-    /// Their nearest points, up to a distance.
+    /// Computes the nearest points of two shapes, up to a distance.
     fn closest_points(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -202,7 +203,7 @@ compiled! {
         max_distance: N,
     ) -> ClosestPoints<N, D> = query::closest_points_at;
 
-    /// Whether they intersect, are within a margin, or farther apart.
+    /// Computes whether two shapes intersect, are within a margin, or farther apart.
     fn proximity_at(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -211,7 +212,7 @@ compiled! {
         margin: N,
     ) -> Proximity = query::proximity_at;
 
-    /// Their nearest points with parts and features.
+    /// Computes the nearest points of two shapes with parts and features.
     fn witness(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -220,7 +221,7 @@ compiled! {
         max_distance: N,
     ) -> Option<Witness<N, D>> = query::witness_at;
 
-    /// Their manifolds, without memory.
+    /// Computes the manifolds of two shapes without state.
     fn contact_manifolds(
         isometry1: IsometryRef<'_, N, D>,
         shape1: &dyn Shape<N, D>,
@@ -230,14 +231,14 @@ compiled! {
         max_points: Option<usize>,
     ) -> Vec<ContactManifold<N, D>> = narrow_phase::contact_manifolds_at;
 
-    /// A shape that moves.
+    /// Creates a moving shape.
     fn moving<'a>(
         isometry: IsometryRef<'_, N, D>,
         velocity: &Vector<N, D>,
         shape: &'a dyn Shape<N, D>,
     ) -> Moving<'a, N, D> = Moving::at;
 
-    /// The first hit of a ray in the frame of a shape.
+    /// Returns the first hit of a ray, in the frame of the shape.
     fn cast_on(
         shape: Geometry<'_, N, D>,
         ray: &Ray<N, D>,
@@ -245,43 +246,44 @@ compiled! {
         solid: bool,
     ) -> Option<RayIntersection<N, D>> = ray::cast_on;
 
-    /// The first hits of many rays in the frame of a shape.
+    /// Computes the first hits of many rays, in the frame of the shape.
     fn cast_many_on(
         shape: Geometry<'_, N, D>,
         batch: &RayBatch<'_, N, D>,
         answer: Answers<'_, N, D>,
     ) = ray::cast_many_on;
 
-    /// A ray in the frame of a shape that stands at a pose.
+    /// Transforms a ray to the frame of a shape at `pose`.
     fn ray_within(ray: &Ray<N, D>, pose: &Pose<N, D>) -> Ray<N, D> = Ray::inverse_transformed_by;
 
-    /// A direction in the world.
+    /// Rotates a direction to the world frame.
     fn turned_vector(pose: &Pose<N, D>, local: &Vector<N, D>) -> Vector<N, D> = Pose::vector;
 
-    /// A point in the frame of a shape that stands at a pose.
+    /// Transforms a point to the frame of a shape at `pose`.
     fn point_within(pose: &Pose<N, D>, outer: &Point<N, D>) -> Point<N, D> = Pose::inverse_point;
 
-    /// The nearest point of the boundary of a shape, in its frame.
+    /// Returns the nearest point of the boundary of a shape, in its frame.
     fn project_on(
         shape: Geometry<'_, N, D>,
         point: &Point<N, D>,
     ) -> (PointProjection<N, D>, FeatureId) = point::project_on;
 
-    /// The same with the place on the part.
+    /// Returns the nearest point of a shape or its boundary and its location on the part, in the
+    /// frame of the shape.
     fn locate_on(
         shape: Geometry<'_, N, D>,
         point: &Point<N, D>,
         solid: bool,
     ) -> (PointProjection<N, D>, PointLocation<N>) = point::locate_on;
 
-    /// The distance of a point from the boundary of a shape, negative inside, in its frame.
+    /// Returns the distance of a point from the boundary of a shape, negative inside, in its frame.
     fn signed_distance_on(shape: Geometry<'_, N, D>, point: &Point<N, D>) -> N =
         point::signed_distance_on;
 
-    /// A shape holds a point, in its frame.
+    /// Returns `true` if a shape contains a point, in its frame.
     fn holds(shape: Geometry<'_, N, D>, point: &Point<N, D>) -> bool = point::holds;
 
-    /// A projection in the world.
+    /// Transforms a projection to the world frame.
     fn placed_projection(
         local: &PointProjection<N, D>,
         pose: &Pose<N, D>,
@@ -289,10 +291,10 @@ compiled! {
         solid: bool,
     ) -> PointProjection<N, D> = point::placed;
 
-    /// The normal of a manifold that is read in place, as it is kept and in the world.
+    /// Returns the normal of a manifold view, as stored and in the world frame.
     fn own_normal(view: &ManifoldView<'_, N, D>) -> [Vector<N, D>; 2] = ManifoldView::own_normal;
 
-    /// A contact of a manifold that is read in place, in the world.
+    /// Returns a contact of a manifold view, in the world frame.
     fn contact_of_view(
         view: &ManifoldView<'_, N, D>,
         index: usize,

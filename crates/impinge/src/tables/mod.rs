@@ -1,9 +1,9 @@
-//! What is compiled in this crate rather than in the caller, and what each dimension does in its own way.
+//! Entries, which are compiled in this crate instead of the caller, and algorithms by dimension.
 //!
-//! Generic code is compiled where it is first used with concrete types: in the crate of the user, at the level of
-//! optimisation of that crate, and again at each change there. So the public functions of the library are thin shells
-//! around *entries*: functions that this crate compiles for each scalar and dimension. [`compiled!`] makes them from a
-//! list of signatures. A program links those that it calls and what they reach.
+//! Generic code is compiled where it is first used with concrete types: in the user's crate, at the optimisation level
+//! of that crate, and again after each change there. So the public functions of the library are thin shells around
+//! *entries*: functions that this crate compiles for each scalar and dimension. [`compiled!`] generates them from a
+//! list of signatures. A program links those that it calls and what they call.
 //!
 //! ```text
 //!   query::distance::<f32, 3>     generic, compiled in the user's crate
@@ -12,8 +12,8 @@
 //!               -> separation::distance_in_world::<f32, 3>    generic code again, compiled here with the entry
 //! ```
 //!
-//! Inside the library code that differs by dimension is a method of [`ByDimension`], which has one `impl` for each.
-//! This module stands beside the floors: it is the one place that floors below may see of floors above.
+//! Code that differs by dimension is a method of [`ByDimension`], which has one `impl` for each. This module stands
+//! beside the floors: it is the only one that lower floors may use to reach higher ones.
 
 mod by_dimension;
 #[cfg(feature = "f64")]
@@ -22,17 +22,17 @@ pub(crate) mod entries;
 
 pub(crate) use self::by_dimension::ByDimension;
 
-/// Declares entries: a trait with a method for each, its four implementations for [`Here`], and for each a function that
-/// is generic over `N: Space<D>` and calls the method for `N` and `D`.
+/// Declares entries: a trait with a method for each, its four implementations for [`Here`], and for each entry a
+/// function that is generic over `N: Space<D>` and calls the method for `N` and `D`.
 ///
-/// An `inlined trait` has entries that are too small to be called: where the user's build has no debug assertions the
-/// generic code is compiled into the caller. In a debug build, which optimises nothing of the caller's, a call is many
-/// times as fast, whether this crate is optimised there or not.
+/// An `inlined trait` has entries that are too small to be called: if the user's build has no debug assertions, the
+/// generic code is compiled into the caller. In a debug build, which does not optimise the caller, a call is many times
+/// as fast, whether this crate is optimised there or not.
 ///
-/// A list `where feature = "…"` is compiled here only with that feature, too.
+/// A list `where feature = "…"` is compiled here only with that feature.
 ///
-/// The signatures speak of `N` and `D`, which are concrete where the targets are named. Without the feature of a
-/// dimension its entries are compiled where they are used, which is nowhere.
+/// Signatures use `N` and `D`, which are concrete where targets are named. Without the feature of a dimension its
+/// entries are compiled where they are used, which is nowhere.
 macro_rules! compiled {
     ($(#[$about:meta])* trait $entries:ident; $($list:tt)*) => {
         $crate::tables::compiled! { @list called, all(); $(#[$about])* trait $entries; $($list)* }
@@ -119,13 +119,13 @@ macro_rules! compiled {
 }
 pub(crate) use compiled;
 
-/// Implements the entries and algorithms of all scalars and dimensions. It stands apart from the scalars so that a user's
-/// `N` has no methods that are ours.
+/// Implements the entries and algorithms of all scalars and dimensions. A separate type, so that a user's `N` does not
+/// get methods of the library.
 #[expect(unnameable_types, reason = "for this crate alone")]
 #[derive(Debug)]
 pub struct Here;
 
-/// A scalar in `D` dimensions for which there are entries. Sealed by being unnameable outside.
+/// A scalar with entries in `D` dimensions. Sealed, since it cannot be named outside.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Compiled<const D: usize>: Sized {
     /// Always [`Here`].

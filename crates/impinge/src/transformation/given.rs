@@ -1,10 +1,10 @@
-//! Convex polyhedra whose faces are known already: checked, and made from their points.
+//! Convex polyhedra with given faces, which are checked against the hull of their points.
 
 use crate::math::{Point, Real, Vector, max, max_component};
 use crate::shape::{ConvexHull, ShapeError};
 
-/// The middle of a face may lie so many rounding units of the largest coordinate below the hull: what
-/// rounded corners make of a flat face.
+/// The centre of a face may lie up to this many rounding units of the largest coordinate below the
+/// hull: the error of a flat face with rounded corners.
 const SLACK: f64 = 64.0;
 
 impl<N: Real> ConvexHull<N> {
@@ -21,15 +21,15 @@ impl<N: Real> ConvexHull<N> {
         }
     }
 
-    /// The solid with these corners and faces, which are triangles or other polygons, each by the indices of
-    /// its corners in order, either way round.
+    /// Builds the solid with these corners and faces. Faces are triangles or other polygons, each
+    /// given by the indices of its corners in order, in either direction.
     ///
-    /// The hull is made from the points, as by [`Self::try_from_points`]: faces in one plane become one, and
-    /// corners that are none are left out, so vertices and faces are numbered anew. The faces given say that
-    /// the solid is what it is taken for: each must lie on the hull, up to 64 rounding units of the largest
-    /// coordinate in its middle, and together they must close.
+    /// The hull is computed from the points, as by [`Self::try_from_points`]: coplanar faces become
+    /// one, and points that are no corners are left out, so vertices and faces are renumbered. The
+    /// given faces are only checked: each must lie on the hull, up to 64 rounding units of the
+    /// largest coordinate at its centre, and together they must close.
     ///
-    /// Costs the hull, and a look at all of its faces for each one given.
+    /// Cost: the hull, and one test of all its faces for each given face.
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -46,9 +46,9 @@ impl<N: Real> ConvexHull<N> {
     /// ```
     ///
     /// # Errors
-    /// If a face has fewer than three corners or names a point that does not exist; if a side is not one of
-    /// two faces; if a face is not on the hull, as of solids that are not convex; and as
-    /// [`Self::try_from_points`].
+    /// If a face has fewer than three corners or refers to a point that does not exist; if a side
+    /// does not belong to two faces; if a face is not on the hull, as for solids that are not
+    /// convex; and as for [`Self::try_from_points`].
     pub fn try_new<F: AsRef<[u32]>>(
         points: &[Point<N, 3>],
         faces: &[F],
@@ -63,14 +63,14 @@ impl<N: Real> ConvexHull<N> {
             height >= lowest
         };
         match faces.iter().position(|face| !is_on_hull(face)) {
-            // A face whose middle is on the boundary of a convex set lies there wholly.
+            // A face whose centre is on the boundary of a convex set lies there wholly.
             Some(face) => Err(ShapeError::FaceNotOnHull { face }),
             None => Ok(hull),
         }
     }
 }
 
-/// Faces have three corners at least, all of which there are.
+/// Checks that faces have at least three corners, all of which exist.
 fn check_corners<F: AsRef<[u32]>>(points: usize, faces: &[F]) -> Result<(), ShapeError> {
     for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {
         if corners.len() < 3 {
@@ -83,7 +83,7 @@ fn check_corners<F: AsRef<[u32]>>(points: usize, faces: &[F]) -> Result<(), Shap
     Ok(())
 }
 
-/// Each side belongs to two faces.
+/// Checks that each side belongs to two faces.
 fn check_closed<F: AsRef<[u32]>>(faces: &[F]) -> Result<(), ShapeError> {
     let mut sides = Vec::new();
     for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {

@@ -6,17 +6,17 @@ use super::span::{Scaled, first_three, precedes};
 use crate::math::{Point, Real};
 use crate::shape::ShapeError;
 
-/// The convex hull of some points: the indices of its corners, counter-clockwise, from the one of
-/// least x (of least y among equals).
+/// Returns the convex hull of some points: the indices of its corners, counter-clockwise, starting
+/// at the least x (and least y among equals).
 ///
-/// Of points that coincide the first is named; points on a side are left out. A corner that lies
-/// within 4 rounding units of the largest coordinate (`4 · N::EPSILON · max |x|`) of the line between
-/// its neighbours counts as a point on a side, so every point given is inside the polygon or nearer
-/// to it than twice that. Time is O(n log n).
+/// The first of coinciding points is used; points on a side are left out. A corner within 4
+/// rounding units of the largest coordinate (`4 · N::EPSILON · max |x|`) of the line between its
+/// neighbours counts as a point on a side, so every given point is inside the polygon or within
+/// twice that distance of it. Time is O(n log n).
 ///
 /// # Errors
 /// For fewer than three points, a coordinate that is not finite, or points that span no area beyond
-/// rounding: [`ShapeError::Degenerate`] says whether they span a point or a line.
+/// rounding: [`ShapeError::Degenerate`] has the dimension of a point or a line.
 ///
 /// ```
 /// use impinge::math::Point;
@@ -38,7 +38,7 @@ pub fn convex_hull2<N: Real>(points: &[Point<N, 2>]) -> Result<Vec<usize>, Shape
     if ring.len() < 3 { Err(ShapeError::Degenerate { dimension: 1 }) } else { Ok(ring) }
 }
 
-/// The indices in order of coordinates, of equal points the first alone.
+/// The indices sorted by coordinates; of equal points only the first.
 fn distinct(points: &[Point<f64, 2>]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     // The coordinates are finite, and `precedes` orders them by value: a total order.

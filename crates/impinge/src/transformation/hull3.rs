@@ -6,7 +6,7 @@ use super::span::{Scaled, first_four};
 use crate::math::{Mapped, Point, Real, Vector};
 use crate::shape::{ConvexHull, ShapeError};
 
-/// A convex hull, in terms of the points it was made of.
+/// A convex hull as indices of the points it was computed from.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -20,30 +20,30 @@ use crate::shape::{ConvexHull, ShapeError};
 pub struct IndexedHull<N: Real> {
     /// The indices of the points that are vertices, ascending.
     pub vertices: Vec<usize>,
-    /// The polygons: for each the indices of its vertices, counter-clockwise seen from outside. Each
-    /// side of one is, backwards, a side of exactly one other.
+    /// The polygons: for each the indices of its vertices, counter-clockwise seen from outside.
+    /// Each side of one is, reversed, a side of exactly one other.
     pub faces: Vec<Vec<usize>>,
     /// The outward unit normal of each face.
     pub normals: Vec<Vector<N, 3>>,
 }
 
-/// How often vertices that add nothing are taken out. Each time no two neighbors go; what is left
-/// after the last are flat angles, not wrong ones.
+/// The maximum number of times that redundant vertices are removed. No two neighbours are removed
+/// at once; vertices left after the last round have flat angles, not wrong ones.
 const ROUNDS: usize = 8;
 
-/// The convex hull of some points.
+/// Returns the convex hull of some points.
 ///
 /// Let `u = N::EPSILON · max |coordinate|`, one rounding unit of the points. Points that are
 /// outside by less than 2 u are left out, triangles within 4 u of a plane are merged into one
 /// polygon, vertices within 4 u of the segment between two neighbors or of the plane of all their
-/// neighbors are taken out. A face has the normal of the largest triangle in it. So every point given is in
-/// front of no face, taken at its highest vertex, by more than 8 u, and usually by no more than 4 u;
-/// where two faces meet at an angle that is itself all rounding, as at the rim of a dish some 100 u
-/// deep, by up to 32 u;
-/// no vertex of a face lies lower than the highest by more than 8 u; every vertex is one of the points, bit by bit; of points that
-/// coincide one is named. Which faces a point sees is decided exactly, so no input leads astray.
+/// neighbors are removed. A face has the normal of its largest triangle. So every given point is in
+/// front of no face, measured from its highest vertex, by more than 8 u, and usually by no more
+/// than 4 u. Where two faces meet at an angle that is itself pure rounding, as at the rim of a dish
+/// some 100 u deep, the bound is 32 u. No vertex of a face lies lower than the highest by more than
+/// 8 u; every vertex is one of the points, bit by bit; of coinciding points one is used. The faces
+/// visible from a point are decided exactly, so no input breaks the algorithm.
 ///
-/// Expected time is O(n log n), with a quickhull. The answer depends on the points and their order
+/// Expected time is O(n log n), with a quickhull. The result depends on the points and their order
 /// only, and scaling them by a power of two changes nothing.
 ///
 /// # Errors
@@ -69,12 +69,12 @@ pub fn convex_hull3<N: Real>(points: &[Point<N, 3>]) -> Result<IndexedHull<N>, S
 
 /// A hull in terms of its own vertices.
 struct HullFaces {
-    /// The points that the vertices are, ascending.
+    /// The index of the point of each vertex, ascending.
     named: Vec<usize>,
     faces: FaceRings,
 }
 
-/// Takes redundant vertices out until there are none or nothing would be left.
+/// Removes redundant vertices until there are none, or too few would be left.
 fn hull_of<N: Real>(points: &[Point<N, 3>]) -> Result<HullFaces, ShapeError> {
     let mut grown = Grown::of(&Scaled::of(points, 4)?)?;
     for _ in 0..ROUNDS {
@@ -94,9 +94,9 @@ fn hull_of<N: Real>(points: &[Point<N, 3>]) -> Result<HullFaces, ShapeError> {
 
 /// The hull of some points, as triangles.
 struct Grown {
-    /// The points that the vertices are, ascending.
+    /// The index of the point of each vertex, ascending.
     named: Vec<usize>,
-    /// Their positions.
+    /// The positions of the vertices.
     vertices: Scaled<3>,
     facets: Vec<Facet>,
 }
@@ -115,7 +115,7 @@ impl Grown {
         Ok(Self { named, vertices: Scaled { points, unit: scaled.unit }, facets })
     }
 
-    /// The hull of the other vertices.
+    /// The hull without some vertices.
     fn without(&self, redundant: &[u32]) -> Result<Self, ShapeError> {
         let is_kept = |&vertex: &usize| redundant.binary_search(&index_of(vertex)).is_err();
         let kept: Vec<usize> = (0..self.named.len()).filter(is_kept).collect();
@@ -126,7 +126,7 @@ impl Grown {
     }
 }
 
-/// The vertices in use, ascending, and the place of each among them.
+/// Returns the used vertices, ascending, and the index of each among them.
 fn numbered(count: usize, corners: impl Iterator<Item = u32>) -> (Vec<usize>, Vec<u32>) {
     let (mut places, mut used) = (vec![0; count], Vec::with_capacity(count));
     corners.for_each(|corner| places[at(corner)] = 1);

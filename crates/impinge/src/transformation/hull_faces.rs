@@ -1,5 +1,5 @@
-//! From the triangles of a hull to its faces: which vertices add nothing, and which triangles are one
-//! polygon.
+//! Faces of a hull from its triangles: removal of redundant vertices, and merging of coplanar
+//! triangles into polygons.
 
 use super::lattice::area_vector;
 use super::quickhull::{DOUBT, Facet, at};
@@ -9,7 +9,7 @@ use crate::math::{Mapped, Point, Vector};
 
 type P3 = Point<f64, 3>;
 
-/// The smaller of two neighbors lies in the plane of the larger.
+/// Whether the smaller of two neighbors lies in the plane of the larger.
 fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
     let is_first_larger = facet1.doubled_area >= facet2.doubled_area;
     let (large, small) = if is_first_larger { (facet1, facet2) } else { (facet2, facet1) };
@@ -17,11 +17,11 @@ fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
     far.all(|&corner| large.height(&points.points, corner).abs() <= points.flat())
 }
 
-/// Vertices, no two next to each other, without which the hull stays the same within `flat`: they
-/// lie on the segment between two neighbors or in the plane of all of them.
+/// Returns vertices, no two of them adjacent, without which the hull stays the same within `flat`:
+/// each lies on the segment between two neighbors or in the plane of all its neighbors.
 pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
     let points = &scaled.points;
-    // For each vertex one of its facets, and at how many of its edges the surface turns.
+    // For each vertex one of its facets, and the number of its edges at which the surface bends.
     let mut around = vec![(0, 0_u32); points.len()];
     for (index, facet) in (0..).zip(facets) {
         for side in 0..3 {
@@ -33,7 +33,7 @@ pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
             around[from].0 = index;
         }
     }
-    // At a true corner three edges meet at least, or slivers hide some of them.
+    // At a true corner at least three such edges meet, unless slivers hide some of them.
     let candidates = (0..).zip(around).filter(|&(_, (_, turns))| turns <= 2);
     let (mut kept, mut redundant) = (Vec::new(), Vec::new());
     for (vertex, (facet, _)) in candidates {
@@ -51,7 +51,7 @@ pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
     redundant
 }
 
-/// The vertices next to a vertex, ascending, found from one of its facets.
+/// The vertices adjacent to a vertex, ascending, found from one of its facets.
 fn ring_around(vertex: u32, first: u32, facets: &[Facet]) -> Vec<u32> {
     let (mut ring, mut facet) = (Vec::new(), first);
     loop {
@@ -68,6 +68,8 @@ fn ring_around(vertex: u32, first: u32, facets: &[Facet]) -> Vec<u32> {
     ring
 }
 
+/// Whether a vertex lies, within `flat`, on the segment between two neighbors or amid all of them
+/// in one plane.
 fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
     let pairs =
         neighbors.iter().enumerate().flat_map(|(i, a)| neighbors[..i].iter().map(move |b| (a, b)));
@@ -79,8 +81,9 @@ fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
         || widest_normal(vertex, pairs).is_some_and(is_amid)
 }
 
-/// Seen along a normal, there are neighbors on both sides of each line from the vertex to one of them. At
-/// the rim of something hardly thicker than rounding all of them lie in one plane, but on one side.
+/// Whether, projected along a normal, there are neighbors on both sides of each line from the
+/// vertex to one of them. At the rim of a solid hardly thicker than rounding, all neighbors lie in
+/// one plane, but on one side.
 fn is_surrounded(vertex: &P3, neighbors: &[P3], normal: &Vector<f64, 3>) -> bool {
     neighbors.iter().all(|to| {
         let across = normal.cross(&(to - vertex));
@@ -100,15 +103,16 @@ fn widest_normal<'a>(
     direction(&widest).map(|(normal, _)| normal)
 }
 
-/// The faces of a hull, one after the other.
+/// The faces of a hull in one list.
 #[derive(Default)]
 pub(super) struct FaceRings {
-    /// The outward unit normal of the largest triangle in each face: the hull has no point in front of that,
-    /// however much smaller triangles are bent within the tolerance.
+    /// The outward unit normal of the largest triangle in each face: the hull has no point in front
+    /// of that, however much smaller triangles deviate within the tolerance.
     pub(super) normals: Vec<Vector<f64, 3>>,
-    /// The vertices of each face, counter-clockwise from outside, from the first in order of coordinates.
+    /// The vertices of each face, counter-clockwise from outside, starting at the first in order of
+    /// coordinates.
     pub(super) corners: Vec<u32>,
-    /// Where the vertices of each face end.
+    /// The end of each face's vertices.
     ends: Vec<usize>,
 }
 
@@ -118,12 +122,13 @@ impl FaceRings {
         Self { normals, corners: Vec::with_capacity(3 * faces), ends }
     }
 
-    /// Adds a face that has the normal of a facet. Points that came in `f32` are far coarser than the normal used so far.
+    /// Appends a face with the normal of a facet, recomputed exactly unless the points came in
+    /// `f32`, whose rounding is far coarser than the facet's normal.
     fn push(&mut self, scaled: &Scaled<3>, seed: &Facet, ring: &[u32]) {
         let points = &scaled.points;
         let exact = || area_vector(seed.corners.mapped(|corner| &points[at(corner)]));
         let is_coarse = scaled.unit > DOUBT;
-        // Of zeros the positive one.
+        // Adding zero makes zeros positive.
         let normal = if is_coarse { seed.normal.add_scalar(0.0) } else { exact().normalize() };
         self.normals.push(normal);
         let first = (1..ring.len()).fold(0, |first, candidate| {
@@ -141,9 +146,9 @@ impl FaceRings {
         starts.zip(&self.ends).map(|(start, &end)| &self.corners[start..end])
     }
 
-    /// Drops the vertices that only two faces share: in each of them the sides there form one line. Answers
-    /// false if there is one where they do not, as where two faces that hardly lean against each other meet all
-    /// around: a vertex of two sides is none.
+    /// Drops the vertices that only two faces share, where the sides of each form one line. Returns
+    /// false if there is one where they do not, as where two nearly coplanar faces meet all around:
+    /// a vertex of two sides is invalid.
     fn straighten(&mut self, scaled: &Scaled<3>) -> bool {
         let mut uses = vec![(0_u32, [0; 2]); scaled.points.len()];
         for (face, ring) in self.rings().enumerate() {
@@ -176,7 +181,7 @@ impl FaceRings {
         self.is_closed()
     }
 
-    /// Each side of a face is, backwards, the side of one other face.
+    /// Whether each side of a face is, reversed, a side of one other face.
     fn is_closed(&self) -> bool {
         let sides = self.rings().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
         let mut forward: Vec<(u32, u32)> = sides.map(|(&from, &to)| (from, to)).collect();
@@ -187,17 +192,17 @@ impl FaceRings {
     }
 }
 
-/// A vertex of a ring lies on the segment between those before and after it.
+/// Whether a vertex of a ring lies on the segment between those before and after it.
 fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
     let Some(place) = ring.iter().position(|&corner| corner == vertex) else { return false };
     let corner = |step: usize| &scaled.points[at(ring[(place + step) % ring.len()])];
     distance_from_segment(corner(0), corner(ring.len() - 1), corner(1)) <= scaled.flat()
 }
 
-/// The faces: triangles within the tolerance of one plane are one face.
+/// Merges triangles within the tolerance of one plane into faces.
 ///
-/// Each side of such a face is, backwards, a side of the triangle beyond and so of the face that this is in. Only the
-/// straightening can spoil that; then the triangles are the faces.
+/// Each side of such a face is, reversed, a side of the triangle beyond and so of the face that
+/// contains that triangle. Only straightening can break that; then the triangles are the faces.
 pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> FaceRings {
     let mut faces = Merger::new(facets, scaled).merged();
     if !faces.straighten(scaled) {
@@ -212,11 +217,11 @@ pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> FaceRings {
 struct Merger<'a> {
     facets: &'a [Facet],
     scaled: &'a Scaled<3>,
-    /// Which facets are part of a face.
+    /// Whether each facet is part of a face.
     is_taken: Vec<bool>,
-    /// For each vertex, one more than the last seed in whose face it is.
+    /// For each vertex, one more than the last seed whose face contains it.
     in_face_of: Vec<u32>,
-    /// The vertices of the face that grows.
+    /// The vertices of the face under construction.
     ring: Vec<u32>,
     /// For each of them the facet beyond the side to the next.
     beyond: Vec<u32>,
@@ -236,7 +241,7 @@ impl<'a> Merger<'a> {
 
     /// Grows a face from each facet that is in none yet, the largest first.
     fn merged(mut self) -> FaceRings {
-        // The bits of numbers that are not negative have their order.
+        // The bits of nonnegative numbers have the order of the numbers.
         let area = |facet: &Facet| !facet.doubled_area.to_bits();
         let mut seeds: Vec<(u64, u32)> = self.facets.iter().map(area).zip(0..).collect();
         sort_keyed(&mut seeds);
@@ -250,6 +255,7 @@ impl<'a> Merger<'a> {
         faces
     }
 
+    /// Grows a face from the facet `seed`: its loop goes to `ring`, the facets beyond to `beyond`.
     fn grow(&mut self, seed: u32) {
         let facet = &self.facets[at(seed)];
         self.is_taken[at(seed)] = true;
@@ -258,7 +264,7 @@ impl<'a> Merger<'a> {
         self.beyond.clear();
         self.beyond.extend(facet.neighbors);
         facet.corners.iter().for_each(|&corner| self.in_face_of[at(corner)] = seed + 1);
-        // Each success takes one facet more; after a whole turn without any the face is done.
+        // Each success adds one facet; after a whole turn without any the face is complete.
         let (mut position, mut failures) = (0, 0);
         while failures < self.ring.len() {
             position %= self.ring.len();
@@ -271,8 +277,7 @@ impl<'a> Merger<'a> {
         }
     }
 
-    /// Takes in the facet beyond a side, if it is coplanar with the seed and the face stays
-    /// convex.
+    /// Adds the facet beyond a side, if it is coplanar with the seed and the face stays convex.
     fn take_beyond(&mut self, seed: u32, position: usize) -> bool {
         let (from, beyond) = (self.ring[position], self.beyond[position]);
         let facet = &self.facets[at(beyond)];
@@ -282,7 +287,8 @@ impl<'a> Merger<'a> {
         let Some(shared) = facet.corners.iter().position(|&corner| corner == from) else {
             return false;
         };
-        // Seen from there the side runs backwards, to `from`; then come the far corner and back.
+        // In that facet the side runs backwards, to `from`; then come the far corner and the way
+        // back.
         let far = facet.corners[(shared + 1) % 3];
         let Scaled { points, .. } = self.scaled;
         let is_level = || self.facets[at(seed)].height(points, far).abs() <= self.scaled.flat();
@@ -298,6 +304,8 @@ impl<'a> Merger<'a> {
         true
     }
 
+    /// Whether the loop stays convex, within the tolerance, when `far` is inserted after
+    /// `position`.
     fn stays_convex(&self, seed: u32, position: usize, far: u32) -> bool {
         let count = self.ring.len();
         let vertex = |step: usize| self.ring[(position + step) % count];
@@ -305,7 +313,7 @@ impl<'a> Merger<'a> {
         let normal = &self.facets[at(seed)].normal;
         let turns_left = |corners: [u32; 3]| {
             let [a, b, c] = corners.mapped(|corner| self.scaled.points[at(corner)]);
-            // How far b lies outside the line from a to c, times its length.
+            // The distance of b outside the line from a to c, times the length of that line.
             (b - a).cross(&(c - b)).dot(normal) >= -self.scaled.flat() * (c - a).norm()
         };
         turns_left([before, from, far])

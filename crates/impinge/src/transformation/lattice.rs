@@ -1,8 +1,8 @@
-//! Exact areas and volumes of points with coordinates below 2 that are multiples of 2⁻⁶⁰.
+//! Exact areas and volumes for points on the lattice of multiples of 2⁻⁶⁰ with coordinates below 2.
 //!
-//! Times 2⁶⁰ such a coordinate is a whole number of 61 bits and a sign, a difference of two has 62 bits, a 2×2 minor of
-//! differences 125: it fits an `i128`. A volume has some 190, so its minors are cut in two. No product underflows, and the
-//! cost is the same for every input.
+//! Times 2⁶⁰ such a coordinate is an integer of 61 bits and a sign, a difference of two has 62
+//! bits, a 2×2 minor of differences 125: it fits an `i128`. A volume has some 190, so its minors
+//! are split in two. No product underflows, and the cost is the same for every input.
 
 use crate::math::{Mapped, Point, Vector, filled};
 
@@ -12,7 +12,7 @@ type P3 = Point<f64, 3>;
 /// 2⁶⁰.
 const PER_UNIT: f64 = (1_u64 << 60) as f64;
 
-/// How many bits of a minor the lower half has.
+/// The number of bits of the lower half of a minor.
 const HALF: u32 = 63;
 
 /// 2⁶³.
@@ -20,7 +20,8 @@ const PER_HALF: f64 = (1_u64 << HALF) as f64;
 
 /// Rounds a number to a multiple of 2⁻⁶⁰.
 pub(super) fn rounded(x: f64) -> f64 {
-    // The sum lies between 2⁻⁸ and 2⁻⁷, where doubles are 2⁻⁶⁰ apart. Larger numbers are multiples as they are.
+    // The sum lies between 2⁻⁸ and 2⁻⁷, where doubles are 2⁻⁶⁰ apart. Larger numbers are multiples
+    // already.
     let rounder = (1.0_f64 / 256.0).copysign(x);
     if x.abs() < 1.0 / 256.0 { (x + rounder) - rounder } else { x }
 }
@@ -30,7 +31,7 @@ fn whole(x: f64) -> i64 {
     (x * PER_UNIT) as i64
 }
 
-/// `p - q` in whole numbers.
+/// `p - q` as integers.
 fn offset<const D: usize>(p: &Point<f64, D>, q: &Point<f64, D>) -> [i64; D] {
     filled(|axis| whole(p[axis]) - whole(q[axis]))
 }
@@ -45,7 +46,7 @@ fn minors([ux, uy, uz]: [i64; 3], [vx, vy, vz]: [i64; 3]) -> [i128; 3] {
     [minor(uy, uz, vy, vz), minor(uz, ux, vz, vx), minor(ux, uy, vx, vy)]
 }
 
-/// A whole number of units of area.
+/// Converts an integer to an area.
 #[expect(clippy::cast_precision_loss, reason = "rounds to nearest")]
 fn area_of(minor: i128) -> f64 {
     minor as f64 / (PER_UNIT * PER_UNIT)
@@ -53,8 +54,8 @@ fn area_of(minor: i128) -> f64 {
 
 /// Twice the area of the triangle, positive if it is counter-clockwise. The sign is exact.
 ///
-/// The bound on the error of the rounded determinant is that of Shewchuk, "Adaptive Precision Floating-Point Arithmetic and
-/// Fast Robust Geometric Predicates" (1997).
+/// The error bound of the rounded determinant is that of Shewchuk, "Adaptive Precision
+/// Floating-Point Arithmetic and Fast Robust Geometric Predicates" (1997).
 pub(super) fn area(a: &P2, b: &P2, c: &P2) -> f64 {
     let (u, v) = (a - c, b - c);
     let (left, right) = (u.x * v.y, u.y * v.x);
@@ -68,14 +69,15 @@ fn exact_area(a: &P2, b: &P2, c: &P2) -> f64 {
     area_of(minor(ux, uy, vx, vy))
 }
 
-/// The vector out of the side from which the triangle is seen counter-clockwise, as long as twice its area: each coordinate
-/// is the nearest double to the exact one.
+/// The normal of the triangle on the side from which it appears counter-clockwise, with the length
+/// of twice its area: each coordinate is the double nearest to the exact one.
 pub(super) fn area_vector([a, b, c]: [&P3; 3]) -> Vector<f64, 3> {
     Vector::from(minors(offset(b, a), offset(c, a)).mapped(area_of))
 }
 
-/// Six times the volume of the tetrahedron, right to the last digits: positive if `q` lies on the side of the triangle from
-/// which its corners are seen counter-clockwise, 0 exactly if it lies in the plane.
+/// Six times the volume of the tetrahedron, accurate to the last digits: positive if `q` lies on
+/// the side of the triangle from which its corners appear counter-clockwise, exactly 0 if it lies
+/// in the plane.
 #[expect(clippy::cast_possible_truncation, reason = "an upper half has 62 bits, a lower one 63")]
 #[expect(clippy::cast_precision_loss, reason = "rounds to nearest")]
 #[cold]
@@ -89,7 +91,7 @@ pub(super) fn volume([a, b, c]: [&P3; 3], q: &P3) -> f64 {
     }
     upper += lower >> HALF;
     lower &= i128::from(i64::MAX);
-    // An upper half of more than 64 bits outweighs the rounding of the lower one.
+    // If the upper half has more than 64 bits, it dominates the rounding of the lower one.
     let is_short = i128::from(upper as i64) == upper;
     let value = if is_short { ((upper << HALF) + lower) as f64 } else { upper as f64 * PER_HALF };
     value / (PER_UNIT * PER_UNIT) / PER_UNIT
@@ -129,7 +131,8 @@ mod tests {
         }
     }
 
-    /// Signs and sizes against sums of doubles, for points at random and for points in planes and beside them.
+    /// Signs and magnitudes compared with expansions, for random points and for points in planes
+    /// and beside them.
     #[test]
     fn volumes_are_those_of_expansions() {
         let mut next = numbers();

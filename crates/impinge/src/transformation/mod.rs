@@ -1,8 +1,8 @@
-//! From points to solids: convex hulls and convex outlines.
+//! Convex hulls and convex outlines of points.
 //!
-//! Every decision about who is in front of what is exact, so that no input, however degenerate, can
-//! confuse the algorithms. Points are thinned by a tolerance only where a point that changes nothing
-//! would be kept: the noise of computed coordinates, a few rounding units of the largest one.
+//! Every visibility decision is exact, so that no input, however degenerate, can break the
+//! algorithms. A tolerance only removes points that change nothing: the rounding error of computed
+//! coordinates, a few rounding units of the largest one.
 
 mod given;
 mod hull2;

@@ -1,4 +1,4 @@
-//! Convex outlines in 2D, and polygons made of points.
+//! Convex outlines in 2D, and polygons from points.
 
 use super::hull2::convex_hull2;
 use super::lattice::area;
@@ -8,7 +8,7 @@ use crate::shape::{ConvexPolygon, ShapeError};
 
 type P2 = Point<f64, 2>;
 
-/// A ring of points without those that lie, within `noise`, between their neighbours.
+/// Removes points of a ring that lie, within `noise`, between their neighbours.
 pub(super) fn thinned(points: &[P2], ring: Vec<usize>, noise: f64) -> Vec<usize> {
     let adds_nothing = |before: usize, at: usize, after: usize| {
         distance_from_segment(&points[at], &points[before], &points[after]) <= noise
@@ -22,7 +22,7 @@ pub(super) fn thinned(points: &[P2], ring: Vec<usize>, noise: f64) -> Vec<usize>
         }
         kept.push(index);
     }
-    // Around the seam each turn of the loop removes a point or ends it.
+    // At the ends of the list each iteration removes a point or ends the loop.
     while let [first, second, .., before, last] = kept[..] {
         if adds_nothing(before, last, first) {
             kept.pop();
@@ -35,9 +35,10 @@ pub(super) fn thinned(points: &[P2], ring: Vec<usize>, noise: f64) -> Vec<usize>
     kept
 }
 
-/// A convex outline, counter-clockwise, from points in either order.
+/// Converts points in either order to a convex outline, counter-clockwise.
 ///
-/// Counter-clockwise at every corner and once around: the sides point upwards in one unbroken run.
+/// Checks that every corner turns left and the outline goes around once: its upward sides form one
+/// unbroken run.
 fn outline(points: &[P2], noise: f64) -> Result<Vec<usize>, ShapeError> {
     let mut ring = thinned(points, (0..points.len()).collect(), noise);
     let doubled: f64 = (0..ring.len())
@@ -67,8 +68,8 @@ fn outline(points: &[P2], noise: f64) -> Result<Vec<usize>, ShapeError> {
 }
 
 impl<N: Real> ConvexPolygon<N> {
-    /// The polygon with a given convex outline, counter-clockwise or clockwise; a clockwise one is
-    /// turned over, so the vertices then come in the opposite order.
+    /// Builds the polygon with a given convex outline, counter-clockwise or clockwise; a clockwise
+    /// one is reversed, so its vertices then come in the opposite order.
     ///
     /// Points that coincide with a neighbour or lie, within 4 rounding units of the largest
     /// coordinate, on the segment between their neighbours are left out.
@@ -76,7 +77,7 @@ impl<N: Real> ConvexPolygon<N> {
     /// # Errors
     /// For fewer than three points, a coordinate that is not finite, points that span no area
     /// ([`ShapeError::Degenerate`]), and an outline that is not convex or goes around twice
-    /// ([`ShapeError::NotConvex`], with the index of the point where this is seen).
+    /// ([`ShapeError::NotConvex`], with the index of the point at which this is detected).
     pub fn try_new(points: &[Point<N, 2>]) -> Result<Self, ShapeError> {
         let scaled = Scaled::of(points, 3)?;
         first_three(&scaled)?;

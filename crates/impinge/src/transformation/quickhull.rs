@@ -1,9 +1,9 @@
-//! Quickhull in 3D, with exact decisions and a tolerance on what is worth a vertex.
+//! Quickhull in 3D, with exact decisions and a tolerance for adding vertices.
 //!
-//! Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls" (1996). Who sees which
-//! facet is decided by exact orientation, so the facets a point sees are always connected, their
-//! border is always one loop, and no facet is without area: the surface stays closed and weakly convex
-//! whatever the input. Points that are outside by no more than the tolerance are left there.
+//! Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls" (1996). The facets
+//! visible from a point are decided by exact orientation, so they are always connected, their
+//! border is always one loop, and no facet is without area: the surface stays closed and weakly
+//! convex for every input. Points outside by at most the tolerance stay there.
 
 use super::lattice::{area_vector, volume};
 use super::span::{distance_from_segment, larger, precedes};
@@ -14,12 +14,13 @@ type P3 = Point<f64, 3>;
 
 const NONE: u32 = u32::MAX;
 
-/// The number of the last search of a facet that is part of the surface no more.
+/// The value of `seen` of a facet that was removed from the surface.
 const GONE: u32 = u32::MAX;
 
-/// 2⁻⁴⁰: heights above the plane of a facet that are larger have the right sign and the right magnitude within a quarter.
+/// 2⁻⁴⁰: heights above the plane of a facet beyond this have the right sign and a magnitude
+/// accurate within a quarter.
 ///
-/// A normal is off by 2⁻⁴⁵ and meets offsets below 7; rounding the products adds 2⁻⁴⁹.
+/// The error of a normal is 2⁻⁴⁵, times offsets below 7; rounding the products adds 2⁻⁴⁹.
 pub(super) const DOUBT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// A triangle of the surface, counter-clockwise from outside.
@@ -30,13 +31,13 @@ pub(super) struct Facet {
     pub(super) neighbors: [u32; 3],
     /// The outward unit normal, within 2⁻⁴⁵.
     pub(super) normal: Vector<f64, 3>,
-    /// How far its plane lies along the normal.
+    /// The offset of its plane along the normal.
     offset: f64,
-    /// Twice the area: volumes over it are heights.
+    /// Twice the area; the height is the volume over it.
     pub(super) doubled_area: f64,
-    /// The first of the points that wait in front of it.
+    /// The first of the points on its list.
     waiting: u32,
-    /// The number of the last search that came by.
+    /// The number of the last search that visited it.
     seen: u32,
 }
 
@@ -46,7 +47,8 @@ impl Facet {
         let [a, b, c] = places;
         let (u, v) = (b - a, c - a);
         let mut across = u.cross(&v);
-        // Rounding is 2⁻⁵⁰ of the product of the lengths: 2⁻⁴⁵ of an area that is 1/32 of it.
+        // The rounding error is 2⁻⁵⁰ of the product of the lengths: 2⁻⁴⁵ of an area that is 1/32 of
+        // it.
         if across.norm_squared() * 1024.0 < u.norm_squared() * v.norm_squared() {
             across = area_vector(places);
         }
@@ -56,12 +58,12 @@ impl Facet {
         Self { corners, neighbors, normal, offset, doubled_area, waiting: NONE, seen: 0 }
     }
 
-    /// How far a point lies in front of it, within [`DOUBT`].
+    /// The height of a point in front of it, within [`DOUBT`].
     fn rough_height(&self, point: &P3) -> f64 {
         self.normal.dot(&point.coords) - self.offset
     }
 
-    /// How far a point lies in front of it; the sign is exact.
+    /// The height of a point in front of it; the sign is exact.
     pub(super) fn height(&self, points: &[P3], point: u32) -> f64 {
         let point = &points[at(point)];
         let height = self.rough_height(point);
@@ -77,13 +79,13 @@ impl Facet {
 /// A point outside, on the list of one facet that it is in front of.
 #[derive(Clone, Copy)]
 struct WaitingPoint {
-    /// How far it is in front of the facet.
+    /// Its height over the facet.
     height: f64,
     /// The next on the list.
     next: u32,
 }
 
-/// A side of a visible facet beyond which lies an invisible one.
+/// A side between a visible and an invisible facet.
 #[derive(Clone, Copy)]
 struct HorizonSide {
     from: u32,
@@ -91,18 +93,18 @@ struct HorizonSide {
     beyond: u32,
 }
 
-/// The surface while it grows.
+/// The surface under construction.
 pub(super) struct HullSurface<'a> {
     points: &'a [P3],
     /// Points no higher than this above every facet are left outside.
     tolerance: f64,
     facets: Vec<Facet>,
-    /// For each point, its place on a list.
+    /// For each point, its entry in a list.
     waiting: Vec<WaitingPoint>,
     searches: u32,
     /// The facets that the last search found visible.
     visible: Vec<u32>,
-    /// Their border, in order of the vertices that its sides start from.
+    /// Their border, in order of the vertices where its sides start.
     horizon: Vec<HorizonSide>,
     /// For each vertex of the last border, the new facet on the side that starts there.
     fan: Vec<u32>,
@@ -117,8 +119,8 @@ pub(super) fn index_of(position: usize) -> u32 {
 }
 
 impl<'a> HullSurface<'a> {
-    /// The facets of the hull, grown from a tetrahedron of four of the points; `None` if these lie in
-    /// a plane.
+    /// Returns the facets of the hull, grown from a tetrahedron of four of the points; `None` if
+    /// these are coplanar.
     pub(super) fn grown(points: &'a [P3], first: [u32; 4], tolerance: f64) -> Option<Vec<Facet>> {
         let mut surface = Self {
             points,
@@ -134,8 +136,8 @@ impl<'a> HullSurface<'a> {
         for point in (0..).take(points.len()).filter(|point| !first.contains(point)) {
             surface.assign(point, 0);
         }
-        // Each call adds a vertex or finds that a facet has nothing to add. The last facet first: that stays where
-        // the memory is warm.
+        // Each call adds a vertex or finds that a facet has nothing to add. The last facet comes
+        // first: its data is in the cache.
         let mut pending: Vec<u32> = Vec::with_capacity(32);
         pending.extend([0, 1, 2, 3]);
         while !pending.is_empty() {
@@ -147,6 +149,7 @@ impl<'a> HullSurface<'a> {
         Some(surface.compacted())
     }
 
+    /// Makes the first tetrahedron; `None` if the four points are coplanar.
     fn start(&mut self, [a, b, c, d]: [u32; 4]) -> Option<()> {
         let [e, f, g] = [a, b, c].mapped(|corner| &self.points[at(corner)]);
         let height = volume([e, f, g], &self.points[at(d)]);
@@ -166,11 +169,11 @@ impl<'a> HullSurface<'a> {
         Some(())
     }
 
-    /// Puts a point on the list of the facet, among those from the `first` on, that it lies farthest in front of; drops
-    /// it if it is in front of none: then it is inside for good.
+    /// Puts a point on the list of the facet, among those from `first` on, over which it is
+    /// highest. Drops it if it is in front of none: then it is inside for good.
     ///
-    /// A point in front of a facet that was taken away, and outside, is in front of one of those put
-    /// in its place.
+    /// A point outside that was in front of a removed facet is in front of one of the facets that
+    /// replaced it.
     #[inline]
     fn assign(&mut self, point: u32, first: u32) {
         let place = self.points[at(point)];
@@ -183,7 +186,7 @@ impl<'a> HullSurface<'a> {
         }
     }
 
-    /// The facet, among those from the `first` on, with the largest height, and the height.
+    /// The facet, among those from `first` on, with the largest height, and the height.
     #[inline]
     fn highest(&self, first: u32, height: impl Fn(&Facet) -> f64) -> (u32, f64) {
         let (mut best, mut top) = (NONE, f64::NEG_INFINITY);
@@ -207,7 +210,8 @@ impl<'a> HullSurface<'a> {
         core::iter::successors(first, next).map(|point| (point, self.waiting[at(point)].height))
     }
 
-    /// The point farthest in front of a facet, if any is above the tolerance. Of points that coincide it is the first.
+    /// The point with the largest height over a facet, if that is above the tolerance; of
+    /// coinciding points the first.
     fn farthest(&self, facet: u32) -> Option<u32> {
         let top = self.waiting_at(facet).fold(0.0, |top, (_, height)| larger(top, height));
         if top <= self.tolerance {
@@ -222,7 +226,7 @@ impl<'a> HullSurface<'a> {
         tied.map(|(point, _)| point).reduce(later)
     }
 
-    /// Draws the surface out to the point farthest in front of a facet.
+    /// Extends the surface to the point with the largest height over a facet.
     fn raise(&mut self, facet: u32, pending: &mut Vec<u32>) {
         if self.facets[at(facet)].seen == GONE {
             return;
@@ -245,7 +249,8 @@ impl<'a> HullSurface<'a> {
         pending.extend(first..index_of(self.facets.len()));
     }
 
-    /// Finds the facets that a point is in front of, from one of them (they are connected), and their border.
+    /// Finds the facets visible from a point, starting from one of them (they are connected), and
+    /// their border.
     fn look(&mut self, point: u32, first: u32) {
         self.searches += 1;
         self.visible.clear();
@@ -273,7 +278,7 @@ impl<'a> HullSurface<'a> {
         }
     }
 
-    /// Puts a fan of facets from the border to a point; returns the first of them.
+    /// Adds a fan of facets from the border to a point; returns the first of them.
     fn replace(&mut self, point: u32) -> u32 {
         sort_few(&mut self.horizon, |one, other| one.from < other.from);
         let first = index_of(self.facets.len());
@@ -294,9 +299,9 @@ impl<'a> HullSurface<'a> {
         first
     }
 
-    /// Moves each point left outside to the facet that it is highest over, and names those facets
-    /// for which it is farther outside than the tolerance. The others stay: the surface may yet turn below
-    /// them.
+    /// Moves each point left outside to the facet over which it is highest, and appends to
+    /// `pending` those facets for which it is farther outside than the tolerance. The others stay:
+    /// later facets may turn below them.
     fn promote(&mut self, pending: &mut Vec<u32>) {
         for facet in 0..index_of(self.facets.len()) {
             if self.facets[at(facet)].seen == GONE {
@@ -315,9 +320,9 @@ impl<'a> HullSurface<'a> {
         }
     }
 
-    /// The facet over which a point is highest, found from one that it is in front of, and how far it is
-    /// outside: by that height, or from the surface. Beside the rim of something thin no facet has it in
-    /// front by much.
+    /// The facet over which a point is highest, found from one that it is in front of, and its
+    /// distance outside: that height, or the distance from the surface. Beside the rim of a thin
+    /// solid no facet has a large height.
     fn farthest_outside(&mut self, point: u32, first: u32) -> (u32, f64) {
         self.look(point, first);
         let mut best = (first, 0.0);
@@ -334,7 +339,7 @@ impl<'a> HullSurface<'a> {
         (best.0, larger(best.1, distances.fold(f64::INFINITY, f64::min)))
     }
 
-    /// How far a point in front of a facet is from it.
+    /// The distance of a point in front of a facet from it.
     fn distance(&self, facet: u32, point: u32) -> f64 {
         let facet = &self.facets[at(facet)];
         let [a, b, c] = facet.corners.mapped(|corner| &self.points[at(corner)]);
@@ -350,7 +355,7 @@ impl<'a> HullSurface<'a> {
         distances.into_iter().fold(f64::INFINITY, f64::min)
     }
 
-    /// The facets that are left, numbered anew.
+    /// Returns the facets that are left, renumbered.
     fn compacted(mut self) -> Vec<Facet> {
         let mut renamed = vec![NONE; self.facets.len()];
         let mut count = 0;

@@ -1,14 +1,15 @@
-//! What points span: numbers checked and scaled, and a first simplex.
+//! The span of points: coordinates checked and scaled, and a first simplex.
 
 use super::lattice::rounded;
 use crate::math::{Point, Real, Vector, max};
 use crate::shape::ShapeError;
 
-/// Points as doubles between −2 and 2, and what counts as noise among them.
+/// Points as doubles between −2 and 2, with their rounding unit.
 pub(super) struct Scaled<const D: usize> {
-    /// The points over a power of two, which is exact, rounded to multiples of 2⁻⁶⁰: at most 1/512 of `unit`.
+    /// The points divided by a power of two, which is exact, and rounded to multiples of 2⁻⁶⁰: at
+    /// most 1/512 of `unit`.
     pub(super) points: Vec<Point<f64, D>>,
-    /// One rounding unit of the scalar that the points came in, at the largest coordinate.
+    /// One rounding unit of the original scalar at the largest coordinate.
     pub(super) unit: f64,
 }
 
@@ -24,20 +25,21 @@ impl<const D: usize> Scaled<D> {
         }
         let largest = |size, p: &Point<N, D>| p.iter().fold(size, |size, x| max(size, x.abs()));
         let size = points.iter().fold(N::ZERO, largest);
-        // The inverse of a power of two is a number too, and as exact.
+        // The inverse of a power of two is representable too, and as exact.
         let scale = 1.0 / size.power_of_two_below().as_f64();
         let scaled = |p: &Point<N, D>| Point::from(p.coords.map(|x| rounded(x.as_f64() * scale)));
         let unit = N::EPSILON.as_f64() * (size.as_f64() * scale);
         Ok(Self { points: points.iter().map(scaled).collect(), unit })
     }
 
-    /// Points nearer than this to what the others span count as part of it.
+    /// The tolerance: a point closer than this to the span of the others counts as part of it.
     pub(super) fn flat(&self) -> f64 {
         4.0 * self.unit
     }
 }
 
-/// The larger of two numbers; nothing here asks for `f64` to be a scalar of the library.
+/// The larger of two numbers; `math::max` needs a scalar of the library, which `f64` is only with
+/// its feature.
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
@@ -48,13 +50,14 @@ pub(super) fn direction<const D: usize>(v: &Vector<f64, D>) -> Option<(Vector<f6
     (length > 0.0).then(|| (v / length, length))
 }
 
-/// `a` comes before `b` by the first coordinate that differs. Among points equally far along some
-/// direction the last one is a corner of the hull, never the middle of an edge or of a face.
+/// Whether `a` comes before `b` by the first coordinate that differs. Among points equally far
+/// along some direction the last one is a corner of the hull, never the interior of an edge or of a
+/// face.
 pub(super) fn precedes<const D: usize>(a: &Point<f64, D>, b: &Point<f64, D>) -> bool {
     (0..D).find(|&axis| a[axis] != b[axis]).is_some_and(|axis| a[axis] < b[axis])
 }
 
-/// The last in order of coordinates of the points whose measure is at least `tied`.
+/// The last, in order of coordinates, of the points whose measure is at least `tied`.
 fn last<const D: usize>(points: &[Point<f64, D>], measures: &[f64], tied: f64) -> usize {
     let mut last = None;
     for (index, &measure) in measures.iter().enumerate() {
@@ -66,8 +69,8 @@ fn last<const D: usize>(points: &[Point<f64, D>], measures: &[f64], tied: f64) -
     last.unwrap_or(0)
 }
 
-/// The two points that are farthest apart along the axis on which the points spread most; among points equally far along
-/// it the last in order of coordinates.
+/// Returns the two points that are farthest apart along the axis of the largest spread; of equal
+/// ones the last in order of coordinates.
 ///
 /// # Errors
 /// [`ShapeError::Degenerate`] with dimension 0 if the points coincide.
@@ -106,10 +109,10 @@ pub(super) fn distance_from_segment<const D: usize>(
     (point - nearest).norm()
 }
 
-/// Three points that span a triangle as wide as can be found at once.
+/// Returns three points that span a nearly widest triangle, found in one pass.
 ///
 /// # Errors
-/// [`ShapeError::Degenerate`] with dimension 0 or 1 if they lie in a point or on a line.
+/// [`ShapeError::Degenerate`] with dimension 0 or 1 if they coincide or lie on a line.
 pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 3], ShapeError> {
     let [first, second] = first_two(scaled)?;
     let line = ShapeError::Degenerate { dimension: 1 };
@@ -125,15 +128,15 @@ pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 
         return Err(line);
     }
     let tied = top.sqrt() - scaled.unit;
-    // Rounding may take the square above the largest.
+    // Rounding may raise the square above the largest.
     let tied = -larger(-tied * tied, -top);
     Ok([first, second, last(&scaled.points, &squares, tied)])
 }
 
-/// Four points that span a tetrahedron as large as can be found at once.
+/// Returns four points that span a nearly largest tetrahedron, found in one pass.
 ///
 /// # Errors
-/// [`ShapeError::Degenerate`] if they lie in a point, on a line or in a plane.
+/// [`ShapeError::Degenerate`] if they coincide or lie on a line or in a plane.
 pub(super) fn first_four(scaled: &Scaled<3>) -> Result<[usize; 4], ShapeError> {
     let [first, second, third] = first_three(scaled)?;
     let plane = ShapeError::Degenerate { dimension: 2 };

@@ -1,4 +1,5 @@
-//! The convex hull of points as the shape that it is: a solid, or what is left of one without volume.
+//! The convex hull of points as a shape of its own dimension: a solid, or a flat shape, a segment
+//! or a point.
 
 use super::convex_hull2;
 use super::span::{Scaled, first_three, first_two};
@@ -7,8 +8,9 @@ use crate::shape::{
     ConvexHull, ConvexPolygon, Segment, ShapeError, ShapeHandle, TriMesh, Triangle,
 };
 
-/// The convex hull of one point or more: a [`ConvexPolygon`]; a [`Segment`] if all points lie on a line; one
-/// of no length if they coincide. "On a line" is within rounding, as [`convex_hull2`] has it.
+/// Returns the convex hull of at least one point: a [`ConvexPolygon`]; a [`Segment`] if all points
+/// lie on a line, without length if they coincide. "On a line" is within rounding, as in
+/// [`convex_hull2`].
 ///
 /// # Errors
 /// If there is no point, or a coordinate is not finite.
@@ -32,9 +34,10 @@ pub fn convex_shape2<N: Real>(points: &[Point<N, 2>]) -> Result<ShapeHandle<N, 2
     }
 }
 
-/// The convex hull of one point or more: a [`ConvexHull`]; in a plane a [`Triangle`] or, with more corners,
-/// the [`TriMesh`] of a flat polygon with two sides; on a line a [`Segment`]; one of no length if all points
-/// coincide. "In a plane" is within rounding, as [`convex_hull3`](super::convex_hull3) has it.
+/// Returns the convex hull of at least one point: a [`ConvexHull`]; in a plane a [`Triangle`] or,
+/// with more corners, the [`TriMesh`] of a flat polygon with two sides; on a line a [`Segment`],
+/// without length if all points coincide. "In a plane" is within rounding, as in
+/// [`convex_hull3`](super::convex_hull3).
 ///
 /// # Errors
 /// If there is no point, or a coordinate is not finite.
@@ -63,7 +66,7 @@ pub fn convex_shape3<N: Real>(points: &[Point<N, 3>]) -> Result<ShapeHandle<N, 3
     }
 }
 
-/// The error says no more than that the points span no solid, perhaps because they are few.
+/// Checks that the error only says that the points span no solid, perhaps because they are few.
 fn without_volume(error: ShapeError) -> Result<(), ShapeError> {
     match error {
         ShapeError::Degenerate { .. } | ShapeError::TooFewPoints { given: 1.., .. } => Ok(()),
@@ -74,7 +77,7 @@ fn without_volume(error: ShapeError) -> Result<(), ShapeError> {
     }
 }
 
-/// The segment between the points that are farthest apart along the axis on which all spread most.
+/// The segment between the points that are farthest apart along the axis of the largest spread.
 fn segment<N: Real, const D: usize>(
     scaled: &Scaled<D>,
     points: &[Point<N, D>],
@@ -83,8 +86,8 @@ fn segment<N: Real, const D: usize>(
     Ok(ShapeHandle::new(Segment::try_new(points[low], points[high])?))
 }
 
-/// The polygon of points in a plane; `None` if they lie on a line. Its corners are found in the coordinate
-/// plane that faces it most, where no coordinate is rounded.
+/// The polygon of coplanar points; `None` if they lie on a line. Its corners are computed in the
+/// most nearly parallel coordinate plane, where no coordinate is rounded.
 fn flat_polygon<N: Space<3>>(
     scaled: &Scaled<3>,
     points: &[Point<N, 3>],

@@ -1,4 +1,4 @@
-//! What a world keeps of an object beside the user's data.
+//! The record of an object: all that a world keeps except the user's data.
 
 use super::changes::ChangeList;
 use super::error::usable_pose;
@@ -14,30 +14,35 @@ use crate::shape::{Compact, Geometry, Shape, ShapeHandle};
 /// The broad phase of a world.
 pub(crate) type WorldBroadPhase<N, const D: usize> = dyn WorldsBroadPhase<N, D>;
 
-/// The object is tested against itself, as the narrow phase knows.
+/// State bit: the narrow phase tests the object against itself.
 const SELF_PAIR: u32 = 1 << 31;
-/// The object has no pairs with others that have this bit.
+/// State bit: the object is fixed, and has no pairs with other fixed ones.
 const FIXED: u32 = 1 << 30;
-/// The volume in the broad phase holds a second pose as well, see [`ChangeList::predictions`].
+/// State bit: the volume in the broad phase also covers a predicted pose.
 const PREDICTED: u32 = 1 << 29;
-/// The bits of a place in the list of changes; all set for an object that has none.
+/// Mask of the place in the list of changes; all bits are set for an object that has none.
 const PLACE: u32 = PREDICTED - 1;
-/// The largest number of changes that can be listed: there are no more objects than these.
+/// The largest number of entries in the list of changes, and so of objects.
 pub(super) const MAX_CHANGES: u32 = PLACE;
 
-/// An object as the user left it: each fact is kept here and nowhere else, but for what the phases
-/// hold as of the last update. Of `f32` in 3D 96 bytes, and there are as many as objects.
+/// An object as the user left it. Each fact is kept here alone, apart from the copies that the
+/// phases hold as of the last update. 96 bytes for `f32` in 3D.
 ///
-/// What queries read stands side by side, the rest at both ends.
+/// Fields that queries read are adjacent, from `isometry` to `groups`; the rest is at both ends:
+///
+/// ```text
+/// shape | isometry | solid | proxy | state | handle | groups | query
+/// ```
 #[derive(Debug)]
 #[repr(C)]
 pub(crate) struct WorldBody<N: Space<D>, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
     pub(crate) isometry: N::Isometry,
-    /// The numbers of the shape, if they are all that there is.
+    /// A copy of the shape's numbers, if the shape is that small.
     solid: Compact<N, D>,
     pub(crate) proxy: ProxyHandle,
-    /// [`SELF_PAIR`], [`FIXED`], [`PREDICTED`] and a place in the list of changes.
+    /// [`SELF_PAIR`], [`FIXED`] and [`PREDICTED`] in the high bits, the place in the list of
+    /// changes below.
     state: u32,
     pub(crate) handle: CollisionObjectHandle,
     pub(crate) groups: CollisionGroups,
@@ -48,7 +53,8 @@ clone_fields!([N: Space<D>, const D: usize] WorldBody<N, D> {
     shape, isometry, solid, proxy, state, handle, groups, query,
 });
 
-/// What of a body changes when it moves, and when an update sees that.
+/// The fields of a body that change when it moves and when an update processes the move; a mark
+/// journals these.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyMotion<N: Space<D>, const D: usize> {
     isometry: N::Isometry,
@@ -64,26 +70,26 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         (self.isometry, self.state) = (motion.isometry, motion.state);
     }
 
-    /// The handle index.
+    /// Returns the handle index.
     pub(crate) const fn index(&self) -> u32 {
         self.handle.index()
     }
 
-    /// The record of a new object, which has no place in the list of changes.
+    /// Creates the record of a new object, which is not in the list of changes.
     pub(super) fn new(row: ObjectRow<N, D>, groups: CollisionGroups, proxy: ProxyHandle) -> Self {
         let ObjectRow { handle, isometry, shape, query } = row;
         let (solid, query) = (Compact::of(&shape), PackedQuery::new(query));
         Self { shape, isometry, solid, proxy, state: PLACE, handle, groups, query }
     }
 
-    /// Where the object stands in the list of changes, if it does.
+    /// Returns the object's place in the list of changes, if it has one.
     #[inline]
     pub(super) fn place(&self) -> Option<u32> {
         let place = self.state & PLACE;
         (place != PLACE).then_some(place)
     }
 
-    /// Notes the place of the object in the list of changes.
+    /// Sets the object's place in the list of changes, and returns it.
     #[inline]
     pub(super) fn set_place(&mut self, place: usize) -> u32 {
         let small = u32::try_from(place).ok().filter(|&place| place < PLACE);
@@ -92,45 +98,45 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         place
     }
 
-    /// Notes that the object has no place in the list of changes.
+    /// Clears the object's place in the list of changes.
     pub(super) const fn leave_place(&mut self) {
         self.state |= PLACE;
     }
 
-    /// The narrow phase begins or ends to test the object against itself.
+    /// Flips whether the narrow phase tests the object against itself.
     pub(super) const fn toggle_self_pair(&mut self) {
         self.state ^= SELF_PAIR;
     }
 
-    /// The narrow phase tests the object against itself.
+    /// Returns `true` if the narrow phase tests the object against itself.
     pub(crate) const fn has_self_pair(&self) -> bool {
         self.state & SELF_PAIR != 0
     }
 
-    /// The object has no pairs with other fixed ones.
+    /// Returns `true` if the object is fixed.
     #[inline]
     pub(crate) const fn is_fixed(&self) -> bool {
         self.state & FIXED != 0
     }
 
-    /// The two objects are not both fixed, and their groups allow the pair.
+    /// Returns `true` unless both objects are fixed or the groups of one refuse the other.
     #[inline]
     pub(crate) const fn can_interact(&self, other: &Self) -> bool {
         self.state & other.state & FIXED == 0 && self.groups.can_interact_with_groups(&other.groups)
     }
 
-    /// The object shall be tested against itself: its groups ask for it, and it has parts that could
-    /// touch each other.
+    /// Returns `true` if the object should be tested against itself: its groups ask for it, and it
+    /// is a composite.
     pub(crate) fn wants_self_pair(&self) -> bool {
         self.groups.can_interact_with_self() && self.shape.geometry().as_composite().is_some()
     }
 
-    /// The exact box of the shape where the object is now.
+    /// Returns the exact box of the shape at the present pose.
     pub(crate) fn aabb(&self) -> Aabb<N, D> {
         self.aabb_at(&N::pose(&self.isometry))
     }
 
-    /// Its box where it stands at a pose.
+    /// Returns the box of the shape at `pose`; unbounded if its numbers exceed the scalar's range.
     pub(super) fn aabb_at(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         usable(self.solid.aabb(&self.shape, pose))
     }
@@ -140,18 +146,19 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.query.get().query_limit()
     }
 
-    /// Asks the shape, which need not be fetched if its numbers are at hand.
+    /// Evaluates `question` on the geometry; if a copy of its numbers is at hand, the shape is not
+    /// loaded.
     #[inline(always)]
     pub(crate) fn ask<R>(&self, question: impl FnOnce(Geometry<'_, N, D>) -> R) -> R {
         self.solid.ask(&self.shape, question)
     }
 
-    /// The broad phase is to find the pairs on the way to a predicted pose, too.
+    /// Returns `true` if the volume covers a predicted pose as well.
     pub(super) const fn is_predicted(&self) -> bool {
         self.state & PREDICTED != 0
     }
 
-    /// What the narrow phase reads of the object.
+    /// Returns the row of the object for the narrow phase.
     pub(crate) fn row(&self) -> ObjectRow<N, D> {
         ObjectRow {
             handle: self.handle,
@@ -161,8 +168,9 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         }
     }
 
-    /// Moves the object, unless the position is none, and forgets the predicted pose. An
-    /// object that is there already does not count as changed.
+    /// Moves the object and clears the prediction. Fails if the isometry has a number that is not
+    /// finite or a rotation that is no unit. An object that is there already does not count as
+    /// changed.
     pub(crate) fn set_isometry(
         &mut self,
         list: &mut ChangeList<N, D>,
@@ -180,7 +188,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         Ok(())
     }
 
-    /// Moves the object and predicts the pose after that, unless either is no position.
+    /// Moves the object and sets its predicted pose. Fails if either pose is not finite or not a
+    /// unit rotation.
     pub(crate) fn set_predicted(
         &mut self,
         list: &mut ChangeList<N, D>,
@@ -227,13 +236,13 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         }
     }
 
-    /// Has the pairs of the object filtered again.
+    /// Makes the next update filter the pairs of the object again.
     pub(crate) fn refilter(&mut self, list: &mut ChangeList<N, D>) {
         list.note_filter(self);
     }
 }
 
-/// The box of a placed shape; the box of everything where the numbers go beyond the scalar's range.
+/// Returns the box of a placed shape; unbounded where its numbers exceed the scalar's range.
 pub(super) fn aabb_at<N: Real, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
@@ -241,15 +250,16 @@ pub(super) fn aabb_at<N: Real, const D: usize>(
     usable(shape.aabb(pose))
 }
 
-/// A box; the box of everything where its numbers go beyond the scalar's range.
+/// Returns the box; unbounded if a minimum exceeds its maximum or is NaN.
 fn usable<N: Real, const D: usize>(aabb: Aabb<N, D>) -> Aabb<N, D> {
     let is_usable = (0..D).all(|axis| aabb.mins()[axis] <= aabb.maxs()[axis]);
     if is_usable { aabb } else { Aabb::unbounded() }
 }
 
-/// The box grown by `limit`, what an object wants to know of others, so that two boxes meet whenever the
-/// solids are as near as the sum of both limits; and by a few units in the last place of what that makes
-/// of it, because the box, the sum and the distance that it is compared with are rounded.
+/// Returns the box grown by `limit` and by a rounding slack of a few units in the last place of the
+/// largest finite coordinate or `limit`. Two grown boxes overlap whenever the solids are at most as
+/// far apart as the sum of both limits; the slack covers the rounding of the boxes, the sum and the
+/// compared distance.
 pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aabb<N, D> {
     let mut reach = limit;
     for axis in 0..D {

@@ -1,8 +1,9 @@
-//! What changed since the last update: who learns of it at the next, and where queries look for it until then.
+//! Changes since the last update: written to the phases by the next one, and found by queries until
+//! then.
 //!
-//! The broad phase knows the boxes of the last update. Objects whose boxes changed since are dirty: they stand in
-//! a [`DirtyTree`], which the first query after a change makes and each later change keeps up to date. Without
-//! queries there is none.
+//! The broad phase holds the boxes of the last update. Objects whose boxes changed since are dirty.
+//! The first query after a change builds a [`DirtyTree`] of them, and each later change updates it.
+//! Without queries there is no such tree.
 
 use super::entries;
 use std::sync::OnceLock;
@@ -16,29 +17,29 @@ use crate::math::{Real, Space};
 use crate::memory::{Look, clone_fields};
 use crate::narrow_phase::{ObjectRow, ObjectTable};
 
-/// No handle index.
+/// Index of an entry whose object was removed.
 const GONE: u32 = u32::MAX;
 
-/// What happened to an object since the last update.
+/// Kinds of changes of an object since the last update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct BodyChanges {
-    /// Another object, shape or query type: the whole row is to be written.
+    /// Another object, shape or query type: the whole row of the table must be written.
     row: bool,
-    /// The shape or query type of an object that may have pairs.
+    /// The shape or query type of an object that may have pairs has changed.
     algorithm: bool,
     /// The volume in the broad phase is out of date: the object is dirty.
     volume: bool,
-    /// The pairs are to be filtered again.
+    /// The pairs must be filtered again.
     filter: bool,
 }
 
-/// An object that changed.
+/// One object in the list of changes.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyEntry<N: Real, const D: usize> {
-    /// The handle index; [`GONE`] if the object is.
+    /// Handle index, or [`GONE`] if the object was removed.
     index: u32,
     changes: BodyChanges,
-    /// The exact box of the shape where the object is now, if the volume changed.
+    /// Exact box of the shape at the present pose; unbounded unless the volume changed.
     aabb: Aabb<N, D>,
 }
 
@@ -46,17 +47,17 @@ pub(crate) struct BodyEntry<N: Real, const D: usize> {
 #[derive(Debug)]
 pub(crate) struct ChangeList<N: Space<D>, const D: usize> {
     entries: Vec<BodyEntry<N, D>>,
-    /// By handle index: the pose that an object whose position was set with a prediction may move to. As long as
-    /// the last such object needs; of no meaning for others.
+    /// Predicted poses by handle index, up to the last object with a prediction; meaningless for
+    /// objects without one.
     predictions: Vec<N::Isometry>,
-    /// By handle index, as long as the last object with a skin needs: how far contacts are measured from
-    /// the surface.
+    /// Skins by handle index, up to the last object with one: the distance outside the surface at
+    /// which contacts are measured.
     skins: Vec<N>,
-    /// The boxes of dirty objects, once a query has asked for them.
+    /// Tree of the dirty boxes, built by the first query.
     dirty: OnceLock<DirtyTree<D>>,
-    /// Memory for the handle indices of changed objects in order.
+    /// Scratch: handle indices of changed objects, sorted.
     order: Vec<u32>,
-    /// Of the last update: those whose pairs with themselves begin or end.
+    /// Handle indices of objects whose pair with themselves begins or ends in this update.
     self_changed: Vec<u32>,
 }
 
@@ -64,11 +65,11 @@ clone_fields!([N: Space<D>, const D: usize] ChangeList<N, D> {
     entries, predictions, skins, dirty, order, self_changed,
 });
 
-/// What learns of changes when an update begins.
+/// The receivers of changes when an update begins.
 pub(crate) struct Readers<'a, N: Space<D>, const D: usize> {
     pub(crate) table: &'a mut ObjectTable<N, D>,
     pub(crate) broad_phase: &'a mut WorldBroadPhase<N, D>,
-    /// Gets the objects whose pairs need other algorithms.
+    /// Receives the objects whose shape or query type changed.
     pub(crate) algorithms: &'a mut Vec<u32>,
 }
 
@@ -84,7 +85,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// The body of a new object, whose volume the broad phase learns of by `proxy`.
+    /// Creates the body of a new object; `proxy` registers its volume in the broad phase.
     pub(crate) fn admit(
         &mut self,
         row: ObjectRow<N, D>,
@@ -98,12 +99,12 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         body
     }
 
-    /// The pose that the object may move to, as the user predicts; `None` without a prediction.
+    /// Returns the predicted pose of an object; `None` without a prediction.
     pub(crate) fn prediction(&self, body: &WorldBody<N, D>) -> Option<&N::Isometry> {
         body.is_predicted().then(|| &self.predictions[body.index() as usize])
     }
 
-    /// How far from its surface the contacts of an object are measured.
+    /// Returns the skin of an object, 0 by default.
     pub(crate) fn skin(&self, index: u32) -> N {
         self.skins.get(index as usize).copied().unwrap_or(N::ZERO)
     }
@@ -122,12 +123,13 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.predictions[index] = predicted;
     }
 
-    /// The volume of an object for the broad phase.
+    /// Returns the volume of an object in the broad phase: its exact box, merged with the box at
+    /// the predicted pose and grown by query limit and skin.
     pub(crate) fn volume(&self, body: &WorldBody<N, D>) -> Aabb<N, D> {
         self.volume_around(body, &body.aabb())
     }
 
-    /// [`Self::volume`] of an object whose exact box is known.
+    /// As [`Self::volume`], with the exact box given.
     fn volume_around(&self, body: &WorldBody<N, D>, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         let limit = body.query_limit() + self.skin(body.index());
         match self.prediction(body) {
@@ -139,7 +141,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Forgets what an object that is gone changed, and its skin.
+    /// Clears the changes and the skin of an object that is being removed.
     pub(crate) fn forget(&mut self, body: &WorldBody<N, D>) {
         if let Some(skin) = self.skins.get_mut(body.index() as usize) {
             *skin = N::ZERO;
@@ -154,7 +156,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// The broad phase does not know where the object is now.
+    /// Returns `true` if the volume of the object in the broad phase is out of date.
     #[inline]
     pub(crate) fn is_dirty(&self, body: &WorldBody<N, D>) -> bool {
         body.place().is_some_and(|place| self.entries[place as usize].changes.volume)
@@ -165,12 +167,12 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.dirty_places().count()
     }
 
-    /// The boxes of the dirty objects, by place in this list.
+    /// Iterates over the boxes of the dirty objects, by place in this list.
     pub(crate) fn dirty_boxes(&self) -> impl Iterator<Item = (u32, Aabb<N, D>)> {
         self.dirty_places().map(|place| (place, self.box_at(place)))
     }
 
-    /// The box of an object, if it is dirty.
+    /// Returns the box of an object if it is dirty.
     pub(crate) fn dirty_box(&self, body: &WorldBody<N, D>) -> Option<Aabb<N, D>> {
         let place = body.place().filter(|_| self.is_dirty(body))?;
         Some(self.box_at(place))
@@ -181,13 +183,13 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         (0..).zip(&self.entries).filter(move |(_, entry)| is_dirty(entry)).map(|(place, _)| place)
     }
 
-    /// The box of the dirty object at a place, grown by what rounding may have taken from it.
+    /// Returns the box of the dirty object at a place, grown by the rounding slack.
     fn box_at(&self, place: u32) -> Aabb<N, D> {
         grown(&self.entries[place as usize].aabb, N::ZERO)
     }
 
-    /// The boxes that queries search beside those of the broad phase, or in their place: the tree that `make`
-    /// returns, kept until the next update. `None` if nothing changed.
+    /// Returns the tree that queries search beside the broad phase or instead of it, built by
+    /// `make` on the first call after an update. `None` if nothing changed.
     pub(crate) fn dirty_tree(&self, make: impl FnOnce() -> DirtyTree<D>) -> Option<&DirtyTree<D>> {
         if self.entries.is_empty() {
             return None;
@@ -195,25 +197,25 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         if let Some(tree) = self.made_dirty_tree() {
             return Some(tree);
         }
-        // Outside of the lock: a thread that waits for others to sort their share of the boxes may take up
-        // another query, which must not wait for this one.
+        // `make` runs outside the lock: a thread that waits for others to sort their share of the
+        // boxes may start another query, which must not wait for this one.
         let made = make();
         Some(self.dirty.get_or_init(|| made))
     }
 
-    /// The tree of dirty objects, if a query has made one since the last update.
+    /// Returns the tree of dirty objects, if a query has built one since the last update.
     pub(crate) fn made_dirty_tree(&self) -> Option<&DirtyTree<D>> {
         self.dirty.get()
     }
 
-    /// The handle index of an object that the tree knows by `id`.
+    /// Returns the handle index of the object that the tree has under `id`.
     #[inline]
     pub(crate) fn dirty_index(&self, tree: &DirtyTree<D>, id: u32) -> u32 {
         if tree.has_all() { id } else { self.entries[id as usize].index }
     }
 
-    /// The handle indices of the changed objects, in order. The memory is to be given back to
-    /// [`Self::clear`].
+    /// Returns the handle indices of the changed objects, sorted. [`Self::clear`] takes the list
+    /// back for reuse.
     pub(crate) fn take_order(&mut self) -> Vec<u32> {
         let mut order = core::mem::take(&mut self.order);
         order.extend(self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE));
@@ -221,7 +223,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         order
     }
 
-    /// Hands the changes of an object since the last update on, and forgets them.
+    /// Writes the changes of one object to the readers and clears them.
     pub(crate) fn flush(&mut self, body: &mut WorldBody<N, D>, readers: &mut Readers<'_, N, D>) {
         let Some(place) = body.place() else { return };
         let BodyEntry { changes, aabb, .. } = self.entries[place as usize];
@@ -248,7 +250,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Forgets all changes but those of pairs of objects with themselves.
+    /// Clears all changes, but not the list of objects whose self-pairs change.
     pub(crate) fn clear(&mut self, mut order: Vec<u32>) {
         order.clear();
         self.order = order;
@@ -256,22 +258,22 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.dirty.take();
     }
 
-    /// The objects whose pairs with themselves begin or end, as of the last flush; forgotten hereby.
+    /// Takes the handle indices of objects whose self-pairs begin or end, as of the last flush.
     pub(crate) fn take_self_changed(&mut self) -> Vec<u32> {
         core::mem::take(&mut self.self_changed)
     }
 
-    /// How many objects changed that are still there.
+    /// Returns the number of changed objects that still exist.
     pub(crate) fn num_present(&self) -> usize {
         self.entries.iter().filter(|entry| entry.index != GONE).count()
     }
 
-    /// How many objects changed.
+    /// Returns the length of the list, including removed objects.
     pub(crate) const fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// Gives the memory of lists that have been short for some time back.
+    /// Releases the memory of lists that have been short for some time.
     pub(crate) fn give_back(&mut self, look: Look) {
         look.trim(&mut self.entries);
         look.fit(&mut self.predictions);
@@ -279,19 +281,19 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         look.trim(&mut self.order);
     }
 
-    /// Notes the box of an object that moved.
+    /// Notes the new box of an object that moved.
     #[inline(always)]
     pub(super) fn note_box(&mut self, body: &mut WorldBody<N, D>, aabb: Aabb<N, D>) {
         self.note_volume(body, aabb);
     }
 
-    /// Notes that the shape or query type of an object is another.
+    /// Notes that the shape or query type of an object has changed.
     pub(super) fn note_row(&mut self, body: &mut WorldBody<N, D>) {
         let changes = self.note_volume(body, body.aabb());
         (changes.row, changes.algorithm) = (true, true);
     }
 
-    /// Notes that the pairs of an object are to be filtered again.
+    /// Notes that the pairs of an object must be filtered again.
     pub(super) fn note_filter(&mut self, body: &mut WorldBody<N, D>) {
         let place = self.note(body);
         self.entries[place as usize].changes.filter = true;
@@ -309,7 +311,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         &mut self.entries[place as usize].changes
     }
 
-    /// Gives the tree of dirty objects the box of one, or the tree up if it is worn.
+    /// Updates the box of an object in the dirty tree; drops the tree if it is worn.
     #[cold]
     fn follow(&mut self, body: &WorldBody<N, D>, place: u32) {
         let aabb = self.box_at(place);
@@ -321,7 +323,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Lists an object as changed; returns its place.
+    /// Puts an object into the list, unless it is there, and returns its place.
     #[inline]
     fn note(&mut self, body: &mut WorldBody<N, D>) -> u32 {
         body.place().unwrap_or_else(|| {
@@ -332,24 +334,23 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         })
     }
 
-    /// The objects that changed since the last update.
     pub(super) fn entries(&self) -> &[BodyEntry<N, D>] {
         &self.entries
     }
 
-    /// The objects that changed are these again.
+    /// Replaces the list of changes by `entries`, as a rewind needs.
     pub(super) fn go_back(&mut self, entries: &[BodyEntry<N, D>]) {
         self.entries.clear();
         self.entries.extend_from_slice(entries);
         self.dirty.take();
     }
 
-    /// The pose that stands here for an index, whether it is of meaning or not.
+    /// Returns the stored pose at an index, whether or not the object has a prediction.
     pub(super) fn known_prediction(&self, index: u32) -> Option<N::Isometry> {
         self.predictions.get(index as usize).copied()
     }
 
-    /// Gives an object a skin and a prediction back.
+    /// Restores the skin and prediction of an object.
     pub(super) fn keep(&mut self, index: u32, skin: N, prediction: Option<N::Isometry>) {
         if skin != self.skin(index) {
             self.put_skin(index, skin);
@@ -359,7 +360,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// What is wrong with the places of an object in the list, if anything.
+    /// Checks that the entry at the place of an object is its own.
     pub(crate) fn validate(&self, body: &WorldBody<N, D>) -> Result<(), String> {
         match body.place().map(|place| self.entries.get(place as usize)) {
             Some(entry) if entry.map(|entry| entry.index) != Some(body.index()) => {

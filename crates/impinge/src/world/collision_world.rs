@@ -54,13 +54,14 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) objects: CollisionObjects<N, D, T>,
     pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
     pub(super) narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>,
-    /// What takes over at the next update.
+    /// The phases that take over at the next update; `None` if they stay.
     pub(super) next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
     pub(super) next_narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     pub(super) filters: Filters<N, D, T>,
-    /// Those of the last update.
+    /// The events of the last update.
     pub(super) events: Events,
-    /// Those that removals and updates of single pairs have caused since.
+    /// Events caused by removals and [`Self::update_pair`] since the last update; the next one
+    /// delivers them.
     pub(super) queued: Events,
     /// The next update keeps the events of the last one.
     pub(super) keeps_events: bool,
@@ -70,18 +71,18 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) algorithms: Vec<u32>,
     /// Scratch: the pairs that started or stopped.
     pub(super) interactions: Vec<Interaction>,
-    /// How long the lists of the world have been lately.
+    /// Recent lengths of the scratch lists and events, by which memory is released.
     pub(super) recent: Recent,
     pub(super) history: History<N, D, T>,
 }
 
-/// Making a world and filling it.
+/// Creating and filling a world.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// An empty world.
+    /// Creates an empty world.
     ///
-    /// `margin` is how far the broad phase loosens the boxes, so that objects that move less cost
-    /// little: a fiftieth of the size of a typical object is a good value. It never changes an exact
-    /// answer.
+    /// `margin` is the length by which the broad phase loosens each box on every side, so that
+    /// objects that move less cost little. A fiftieth of the size of a typical object is a good
+    /// value. It never changes an exact answer.
     ///
     /// # Panics
     /// If the margin is negative or not finite; [`Self::try_new`] returns these.
@@ -91,7 +92,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         or_panic(Self::try_new(margin))
     }
 
-    /// An empty world; see [`Self::new`].
+    /// Creates an empty world; see [`Self::new`].
     ///
     /// # Errors
     /// If the margin is negative or not finite.
@@ -117,9 +118,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Adds an object. Queries see it at once, pairs at the next update. The query type is a
-    /// [`GeometricQueryType`], or a [`ContactQuery`](crate::narrow_phase::ContactQuery) or
-    /// [`ProximityQuery`](crate::narrow_phase::ProximityQuery), which name its numbers.
+    /// Adds an object and returns its handle. Queries see it at once, pairs at the next update.
+    ///
+    /// `query_type` is a [`GeometricQueryType`], a
+    /// [`ContactQuery`](crate::narrow_phase::ContactQuery) or a
+    /// [`ProximityQuery`](crate::narrow_phase::ProximityQuery); the last two name their numbers.
     ///
     /// # Panics
     /// If the position has a number that is not finite or a rotation of another length than 1, a number of the
@@ -158,8 +161,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(handle)
     }
 
-    /// Removes objects. Their pairs end at once; the events of that come first in the next batch. While
-    /// events name a removed object, [`Self::removed_object`] has it.
+    /// Removes objects. Their pairs end at once; the resulting events come first in the next batch.
+    /// As long as an event names a removed object, [`Self::removed_object`] returns it.
     ///
     /// # Panics
     /// If a handle is stale or occurs twice; [`Self::try_remove`] returns these.
@@ -197,7 +200,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// No handle occurs twice.
+/// Returns an error if a handle occurs twice.
 fn refuse_repeated(handles: &[CollisionObjectHandle]) -> Result<(), WorldError> {
     let mut sorted = handles.to_vec();
     sorted.sort_unstable();
@@ -233,8 +236,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         entries::set_isometry(body, changes, position)
     }
 
-    /// Moves many objects: all of them or, on an error, none. Of several positions for one object
-    /// the last one holds.
+    /// Moves many objects: all of them or, on an error, none. If a handle occurs several times, its
+    /// last position counts.
     ///
     /// # Panics
     /// If a handle is stale or a position has a number that is not finite or a rotation of another length
@@ -310,7 +313,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Asks something else of an object's pairs from the next update on.
+    /// Changes the query type of an object: its pairs are computed accordingly from the next update
+    /// on.
     ///
     /// # Panics
     /// If the handle is stale or a number of the query type is negative or not finite;
@@ -324,7 +328,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         or_panic(self.try_set_query_type(handle, query_type));
     }
 
-    /// Asks something else of an object's pairs; see [`Self::set_query_type`].
+    /// Changes the query type of an object; see [`Self::set_query_type`].
     ///
     /// # Errors
     /// If the handle is stale or a number of the query type is negative or not finite. The world is
@@ -342,7 +346,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
 /// Looking objects up.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The object of a handle; `None` for a stale one.
+    /// Returns the object of a handle; `None` for a stale one.
     #[must_use]
     pub fn collision_object(
         &self,
@@ -351,7 +355,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects.get(handle)
     }
 
-    /// The object of a handle, to change its data; `None` for a stale one.
+    /// Returns the object of a handle, to change its data; `None` for a stale one.
     #[must_use]
     pub fn collision_object_mut(
         &mut self,
@@ -365,11 +369,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects.iter()
     }
 
-    /// The handle by which this world names the object of the index and generation of `handle`, which may
-    /// be one of another world or a deserialized one; `None` if there is no such object.
+    /// Returns the handle in this world with the index and generation of `handle`, which may come
+    /// from another world or from a file. `None` if there is no such object.
     ///
-    /// For worlds that are filled alike: a server and its clients, a prediction, a replay. Whether the
-    /// two objects mean the same is up to the caller.
+    /// For worlds that are filled alike: a server and its clients, a prediction, a replay. The
+    /// caller must know that both objects mean the same thing.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -391,10 +395,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         (own.generation().count() == handle.generation().count()).then_some(own)
     }
 
-    /// The indices ([`CollisionObjectHandle::uid`]) that removed objects left and new objects take, in the
-    /// reverse of that order: the last one is taken first. After them come indices never used before.
+    /// Iterates over the free indices ([`CollisionObjectHandle::uid`]) of removed objects. New
+    /// objects take the last one first; after these come indices never used before.
     ///
-    /// With the objects this is all that the handles of later objects depend on.
+    /// Together with the objects, these indices determine the handles of all later objects.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -412,7 +416,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects.vacant()
     }
 
-    /// The names of the registered pair filters, sorted.
+    /// Iterates over the names of the registered pair filters, sorted.
     ///
     /// ```
     /// use impinge::dim2::world::{CollisionObject, CollisionWorld};
@@ -426,19 +430,19 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.filters.names()
     }
 
-    /// The handle names an object of this world.
+    /// Returns `true` if the handle is that of an object in this world.
     #[must_use]
     pub fn contains(&self, handle: CollisionObjectHandle) -> bool {
         self.objects.get(handle).is_some()
     }
 
-    /// How many objects there are.
+    /// Returns the number of objects.
     #[must_use]
     pub fn len(&self) -> usize {
         self.objects.len()
     }
 
-    /// There is no object.
+    /// Returns `true` if there is no object.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.objects.is_empty()

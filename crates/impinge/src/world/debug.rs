@@ -1,4 +1,4 @@
-//! What a world and its objects print, and whether its parts agree: for tests.
+//! `Debug` output of a world and its objects, and a check of its invariants for tests.
 
 use core::fmt;
 
@@ -8,8 +8,8 @@ use crate::bounding_volume::BoundingVolume;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// How many objects and pairs there are, and what waits for the next update: `pending: []` says that pairs,
-/// contacts and events are up to date.
+/// Prints the numbers of objects and pairs, and the changes that wait for the next update: with
+/// `pending: []` pairs, contacts and events are up to date.
 impl<N: Space<D>, const D: usize, T> fmt::Debug for CollisionWorld<N, D, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("CollisionWorld")
@@ -22,7 +22,7 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for CollisionWorld<N, D, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// What waits for the next update, in words.
+    /// Returns what waits for the next update, in words.
     fn pending(&self) -> Vec<String> {
         let counts = [
             (self.objects.changes.num_present(), "changed objects"),
@@ -60,25 +60,25 @@ impl<N: Space<D>, const D: usize, T: fmt::Debug> fmt::Debug for CollisionObject<
     }
 }
 
-/// A filter that does not change.
+/// A pair filter without state.
 type PairRule<'a, N, const D: usize, T> =
     dyn Fn(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool + 'a;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Checks the bookkeeping, and that the narrow phase knows every pair whose boxes meet and that
-    /// groups and filters allow. Looks at every pair of objects. Call it right after an update.
+    /// Checks the invariants, and that the narrow phase has every pair whose boxes overlap and that
+    /// groups and filters allow. Tests every pair of objects. Valid right after an update.
     ///
     /// # Errors
-    /// A sentence that says what does not agree.
+    /// A sentence that names the violated invariant.
     #[doc(hidden)]
     pub fn validate(&self) -> Result<(), String> {
         self.validate_with(&|_, _| true)
     }
 
-    /// [`Self::validate`] of a world whose updates are lent a filter ([`Self::update_with`]).
+    /// As [`Self::validate`], for a world whose updates borrow a filter ([`Self::update_with`]).
     ///
     /// # Errors
-    /// A sentence that says what does not agree.
+    /// A sentence that names the violated invariant.
     #[doc(hidden)]
     pub fn validate_with(&self, lent: &PairRule<'_, N, D, T>) -> Result<(), String> {
         self.objects.validate(&*self.broad_phase)?;
@@ -100,7 +100,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// The allowed pairs whose volumes meet.
+    /// Returns the allowed pairs whose volumes overlap.
     fn expected_pairs(
         &self,
         lent: &PairRule<'_, N, D, T>,
@@ -120,7 +120,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         pairs
     }
 
-    /// Groups and filters allow the pair.
+    /// Returns `true` if groups and filters allow the pair.
     fn is_allowed(
         &self,
         handle1: CollisionObjectHandle,

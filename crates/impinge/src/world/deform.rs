@@ -7,12 +7,14 @@ use crate::narrow_phase::CollisionObjectHandle;
 use crate::shape::{Shape, ShapeHandle};
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Changes the shape of an object, of which the type is given, and answers what `change` does.
+    /// Changes a copy of an object's shape, which must be of type `S`, and returns the result of
+    /// `change`.
     ///
-    /// The object gets a shape of its own: other objects that share the shape keep it as it is, and
-    /// so does the last update, whose contacts can be read until the next. Queries see the new shape
-    /// at once, pairs at the next update, as with [`Self::set_shape`]; contacts on features or at
-    /// places that stay keep their ids. Costs a copy of the shape besides what `change` costs.
+    /// The object gets the copy as its new shape: other objects that share the old one keep it, and
+    /// so do the contacts of the last update, which can be read until the next. Queries see the new
+    /// shape at once, pairs at the next update, as with [`Self::set_shape`]; contacts whose
+    /// features or places stay keep their ids. Costs a copy of the shape besides what `change`
+    /// costs.
     ///
     /// # Panics
     /// If the handle is stale or the shape of another type; [`Self::try_deform`] returns these.

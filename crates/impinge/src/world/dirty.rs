@@ -1,13 +1,13 @@
-//! The boxes of dirty objects in a tree, for the queries before the next update.
+//! Tree of the boxes of dirty objects, for the queries before the next update.
 //!
-//! Made at once, in an order that serves searches, and then changed box by box: each change costs the way from a
-//! leaf block to the top. Changes wear the order; after a quarter as many as there are boxes the tree is given up,
-//! and the next query makes another. So a change costs O(log n) in the long run, whether queries come after each
-//! one or after many. A search costs what it costs in the broad phase, and a block for each 16 boxes that came since
-//! the tree was made.
+//! The tree is built at once, in an order that serves searches, and then updated box by box: each change costs the path
+//! from a leaf block to the root. Changes wear the order: after `max(32, n / 4)` of them for `n` boxes the tree is
+//! dropped, and the next query builds another. So a change costs amortised O(log n), whether queries come after each
+//! one or after many. A search costs as much as in the broad phase, plus one block for each 16 boxes that were added
+//! since the tree was built.
 //!
-//! A search of two trees costs more than one of a tree of all. Where many objects are dirty, the tree holds the
-//! others too, and the broad phase is not asked.
+//! Searching two trees costs more than searching one tree of all boxes. If at least a quarter of the objects are dirty,
+//! this tree holds the others too (`has_all`), and queries skip the broad phase.
 
 use super::bodies::WorldBody;
 use crate::bounding_volume::Aabb;
@@ -15,28 +15,28 @@ use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::{Real, Space};
 use crate::partitioning::{Search, Sweep, packed};
 
-/// Changes that a tree of few boxes stands.
+/// Least number of changes that a tree takes before it is worn.
 const MIN_PATIENCE: usize = 32;
-/// One in so many boxes may change before the order is worn.
+/// A tree of `n` boxes takes `n / PATIENCE` changes before it is worn.
 const PATIENCE: usize = 4;
 
-/// Boxes by id: the handle indices of all objects, or the places of the dirty ones in the list of changes.
+/// Boxes by id. The ids are handle indices if the tree holds all objects, else places in the list of changes.
 #[derive(Clone, Debug)]
 pub(crate) struct DirtyTree<const D: usize> {
     has_all: bool,
     tree: Tree<D>,
-    /// The ids of boxes that no finite `f32` box encloses.
+    /// Ids of boxes that no finite `f32` box encloses.
     unbounded: Vec<u32>,
     lanes: Lanes,
-    /// Changes until the order is worn.
+    /// Number of changes left until the order is worn.
     patience: usize,
 }
 
-/// Gets a few ids with bounds below their keys, and returns the largest key that still counts.
+/// Receives a few ids with lower bounds of their keys; returns the largest key that still counts.
 pub(crate) type DirtyVisitor<'a, N> = dyn FnMut(&[(u32, N)]) -> N + 'a;
 
 impl<const D: usize> DirtyTree<D> {
-    /// The tree of some boxes with different ids: of all objects, if that is said.
+    /// Builds the tree of boxes with different ids; `has_all` if they are those of all objects.
     pub(crate) fn new<N: Real>(
         has_all: bool,
         boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
@@ -47,23 +47,23 @@ impl<const D: usize> DirtyTree<D> {
         Self { has_all, tree, unbounded, lanes, patience }
     }
 
-    /// Ids are handle indices, and the objects that are not dirty are here too.
+    /// Returns `true` if the tree also holds clean objects and its ids are handle indices.
     #[inline]
     pub(crate) const fn has_all(&self) -> bool {
         self.has_all
     }
 
-    /// Too much has changed for the order of the boxes to be a good one.
+    /// Returns `true` if the tree has taken too many changes and should be dropped.
     pub(crate) const fn is_worn(&self) -> bool {
         self.patience == 0
     }
 
-    /// The id of an object that may be here.
+    /// Returns the id that the object has here, if it is in the tree at all.
     pub(crate) fn id_of<N: Space<D>>(&self, body: &WorldBody<N, D>) -> Option<u32> {
         if self.has_all { Some(body.index()) } else { body.place() }
     }
 
-    /// Gives an id a box, whether it had one or not.
+    /// Sets the box of an id, new or known.
     pub(crate) fn put<N: Real>(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let bounds = Bounds::enclosing(aabb);
         if !self.tree.contains(id) || !bounds.is_finite() {
@@ -77,7 +77,7 @@ impl<const D: usize> DirtyTree<D> {
         self.patience = self.patience.saturating_sub(1);
     }
 
-    /// Takes the box of an id out, if it has one.
+    /// Removes the box of an id, if it has one.
     pub(crate) fn take(&mut self, id: u32) {
         if self.tree.contains(id) {
             self.tree.remove(id);
@@ -86,7 +86,8 @@ impl<const D: usize> DirtyTree<D> {
         }
     }
 
-    /// Calls `found` with the ids whose boxes the moving one may touch by `limit`, and times that are not after that.
+    /// Calls `found` with the ids whose boxes the moving box may touch by `limit`, and with lower bounds of these
+    /// times.
     pub(crate) fn by_time<N: Real>(
         &self,
         sweep: &Sweep<N, D>,
@@ -96,7 +97,8 @@ impl<const D: usize> DirtyTree<D> {
         self.search().groups_by_time(sweep, limit, found);
     }
 
-    /// Calls `found` with the ids whose boxes may be at most `limit` from `aabb`, and distances that are not larger.
+    /// Calls `found` with the ids whose boxes may be at most `limit` from `aabb`, and with lower bounds of these
+    /// distances.
     pub(crate) fn by_distance<N: Real>(
         &self,
         aabb: &Aabb<N, D>,
@@ -106,7 +108,7 @@ impl<const D: usize> DirtyTree<D> {
         self.search().groups_by_distance(aabb, limit, found);
     }
 
-    /// What is wrong, if anything: the tree, or that it has other boxes than these.
+    /// Checks the tree, and that it holds exactly these boxes; the error says what is wrong.
     pub(crate) fn validate<N: Real>(
         &self,
         boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
@@ -125,7 +127,7 @@ impl<const D: usize> DirtyTree<D> {
         (kept == count).then_some(()).ok_or(format!("{kept} dirty boxes are kept of {count}"))
     }
 
-    /// Proposals are made by the boxes of the tree alone.
+    /// Returns a search over the `f32` boxes of the tree, without exact boxes.
     fn search<N: Real>(&self) -> Search<'_, N, D, 1> {
         let trees = [&self.tree];
         Search { exact: &[], trees, unbounded: &self.unbounded, lanes: self.lanes }
@@ -146,7 +148,7 @@ mod tests {
     type Box2 = Aabb<f32, 2>;
     type World = CollisionWorld<f32, ()>;
 
-    /// A number from zero to below `bound`.
+    /// Returns a number from 0 to `bound - 1`.
     fn below(state: &mut u64, bound: u16) -> u16 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040);
         u16::try_from((*state >> 33) % u64::from(bound)).expect("below a u16")
@@ -160,7 +162,7 @@ mod tests {
         Vector::from([(); 2].map(|()| f32::from(below(state, side))))
     }
 
-    /// The blocks that a search of a square looks at.
+    /// Counts the blocks that a search for a square opens.
     fn opened(dirty: &DirtyTree<2>, square: &Box2) -> usize {
         let (mut count, still) = (0, Vector::zeros());
         let test = |block: &Block<2>| {
@@ -171,8 +173,8 @@ mod tests {
         count
     }
 
-    /// Blocks for each search, when as many boxes come one by one and then move one by one, with a search after
-    /// each change: where they come, and where they move.
+    /// Returns the mean number of opened blocks for each search, when `count` boxes are first added one by one and then
+    /// moved one by one, with a search after each change: one number for each of the two phases.
     fn opened_on_average(count: u16, state: &mut u64) -> [f64; 2] {
         let side = (1..256).find(|side| side * side > count).unwrap_or(256) - 1;
         let mut boxes: Vec<(u32, Box2)> = Vec::new();
@@ -198,7 +200,7 @@ mod tests {
     fn searches_among_many_changes_look_at_few_blocks() {
         let [[few_new, few], [many_new, many]] =
             [512, 8192].map(|count| opened_on_average(count, &mut 9));
-        // Boxes that came since the last sorting, an eighth of all in the mean, lie in blocks by age.
+        // Boxes added since the tree was built, an eighth of all on average, lie in blocks by age.
         let unsorted = |count: f64| count / 8.0 / 16.0;
         for (count, opened) in [(512.0, few_new), (8192.0, many_new)] {
             assert!(opened < 8.0 + unsorted(count), "{opened} blocks of {count} boxes");

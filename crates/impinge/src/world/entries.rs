@@ -1,4 +1,4 @@
-//! The entries of worlds: all that knows nothing of the user's data.
+//! The entries of worlds: functions without the user's data type, compiled in this crate.
 
 use super::bodies::WorldBody;
 use super::changes::{ChangeList, Readers};
@@ -21,10 +21,10 @@ use crate::shape::{Geometry, Shape, ShapeHandle};
 use crate::tables::compiled;
 
 compiled! {
-    /// Worlds.
+    /// Entries of worlds.
     trait WorldEntries;
 
-    /// The broad phase of a new world.
+    /// Creates the broad phase of a new world.
     fn new_broad_phase(margin: N) -> Box<WorldBroadPhase<N, D>> = boxed_broad_phase;
 
     fn set_isometry(
@@ -61,7 +61,7 @@ compiled! {
         readers: &mut Readers<'_, N, D>,
     ) = ChangeList::flush;
 
-    /// Making, changing and searching the tree of dirty objects.
+    /// Creates the tree of dirty objects.
     fn new_dirty_tree(
         has_all: bool,
         boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
@@ -85,7 +85,7 @@ compiled! {
         found: &mut DirtyVisitor<'_, N>,
     ) = DirtyTree::by_distance;
 
-    /// A ray against one object.
+    /// Casts a ray against one object; see `WorldBody::cast_ray`.
     fn cast_ray(
         body: &WorldBody<N, D>,
         ray: &Ray<N, D>,
@@ -93,7 +93,7 @@ compiled! {
         solid: bool,
     ) -> Option<RayIntersection<N, D>> = WorldBody::cast_ray;
 
-    /// The point of one object that is nearest to a point.
+    /// Returns the point of one object that is nearest to `point`, and its distance.
     fn project(
         body: &WorldBody<N, D>,
         point: &Point<N, D>,
@@ -101,10 +101,10 @@ compiled! {
         farthest: N,
     ) -> Option<(PointProjection<N, D>, N)> = WorldBody::project;
 
-    /// One object holds a point.
+    /// Returns `true` if the object contains a point.
     fn holds(body: &WorldBody<N, D>, point: &Point<N, D>) -> bool = WorldBody::holds;
 
-    /// All manifolds where they lie; the slots tell the handles of the objects.
+    /// Returns all manifolds, read in place; `slots` gives the handles of the objects.
     fn contact_views<'a>(
         narrow_phase: &'a DefaultNarrowPhase<N, D>,
         table: &'a ObjectTable<N, D>,
@@ -156,35 +156,35 @@ compiled! {
 }
 
 compiled! {
-    /// What queries ask of one object, and is too small to be called in an optimised program.
+    /// Entries for single objects in queries, small enough to be inlined in an optimised program.
     inlined trait SmallWorldEntries;
 
-    /// The box of an object meets another box.
+    /// Returns `true` if the box of an object overlaps another box.
     fn meets(body: &WorldBody<N, D>, aabb: &Aabb<N, D>) -> bool = shape::meets;
 
-    /// A shape where an isometry puts it.
+    /// Returns a shape placed at an isometry.
     fn placed_at<'a>(
         position: &<N as Space<D>>::Isometry,
         shape: Geometry<'a, N, D>,
     ) -> Placed<'a, N, D> = Placed::of_isometry;
 
-    /// The box of a shape that stands at an isometry; `None` if that is not finite.
+    /// Returns the box of a shape at an isometry; `None` if that is not finite.
     fn around(
         position: &<N as Space<D>>::Isometry,
         shape: &dyn Shape<N, D>,
     ) -> Option<Aabb<N, D>> = shape::around;
 
-    /// A shape touches an object.
+    /// Returns `true` if a shape touches an object.
     fn touches(placed: &Placed<'_, N, D>, body: &WorldBody<N, D>) -> bool = shape::touches;
 
-    /// The separation of a shape from an object, up to a limit.
+    /// Returns the separation of a shape from an object; `None` above `limit`.
     fn separation_from(
         placed: &Placed<'_, N, D>,
         body: &WorldBody<N, D>,
         limit: N,
     ) -> Option<Separation<N, D>> = shape::separation_from;
 
-    /// A shape on its way.
+    /// Creates a shape cast.
     fn new_cast<'a>(
         position: &<N as Space<D>>::Isometry,
         velocity: &Vector<N, D>,
@@ -192,7 +192,7 @@ compiled! {
         options: &ImpactOptions<N>,
     ) -> Option<Cast<'a, N, D>> = Cast::new;
 
-    /// When it hits an object.
+    /// Returns when and how the cast shape hits an object.
     fn cast_impact(
         cast: &Cast<'_, N, D>,
         body: &WorldBody<N, D>,

@@ -1,4 +1,4 @@
-//! Why a world refuses an operation.
+//! Errors of a world.
 
 use core::fmt;
 
@@ -63,7 +63,7 @@ pub enum WorldError {
     ShapeType(CollisionObjectHandle),
     /// The world does not keep the mark: it has ended, or belongs to another world.
     MarkGone(WorldMark),
-    /// The world holds as many objects as it can name.
+    /// The number of objects has reached the maximum.
     Full,
 }
 
@@ -115,7 +115,8 @@ impl fmt::Display for WorldError {
 
 impl std::error::Error for WorldError {}
 
-/// The pose of an isometry, if all its numbers are finite and its rotation has the length 1.
+/// Returns the pose of an isometry; an error if a number is not finite or the rotation is not of
+/// length 1.
 #[inline]
 pub(super) fn usable_pose<N: Space<D>, const D: usize>(
     isometry: &N::Isometry,
@@ -146,7 +147,7 @@ fn bad_position<N: Real, const D: usize>(
     WorldError::Position { handle, value }
 }
 
-/// The query type, if its numbers are finite and not negative.
+/// Returns the query type; an error if a number is negative or not finite.
 pub(super) fn usable_query<N: Real>(
     query: GeometricQueryType<N>,
 ) -> Result<GeometricQueryType<N>, WorldError> {
@@ -156,7 +157,7 @@ pub(super) fn usable_query<N: Real>(
     }
 }
 
-/// The value, or a panic with the error's text: the end of every panicking method.
+/// Returns the value, or panics with the text of the error: the end of every panicking method.
 #[track_caller]
 pub(super) fn or_panic<S>(result: Result<S, WorldError>) -> S {
     match result {

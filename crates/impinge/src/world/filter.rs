@@ -1,4 +1,4 @@
-//! Filters of the user's own on the pairs that the broad phase finds.
+//! User-defined filters on the pairs that the broad phase finds.
 
 use core::fmt;
 use std::sync::Arc;
@@ -9,14 +9,14 @@ use crate::math::Space;
 use crate::memory::clone_fields;
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// Says which pairs shall exist at all.
+/// Decides which pairs may exist at all.
 ///
-/// Asked only about pairs that the groups allow, and only when a pair is about to start; all filters
-/// of a world must agree. The answer must not change in time unless the filter is registered anew, or
-/// the pairs are filtered again ([`CollisionWorld::refilter_pairs_of`]).
+/// Called only for pairs that the groups allow, and only when a pair is about to start; all filters
+/// of a world must return `true`. The result for a pair must stay the same until the filter is
+/// registered again or the pairs are filtered again ([`CollisionWorld::refilter_pairs_of`]).
 ///
 /// Implement the trait of the same name in [`crate::dim2::world`] or [`crate::dim3::world`], which
-/// stands for this one in its dimension; closures of two references to objects implement these.
+/// stands for this one in its dimension; closures over two references to objects implement these.
 ///
 /// ```
 /// use impinge::dim2::world::{CollisionObject, CollisionWorld};
@@ -27,7 +27,8 @@ use crate::narrow_phase::CollisionObjectHandle;
 /// world.unregister_broad_phase_pair_filter("teams");
 /// ```
 pub trait BroadPhasePairFilter<N: Space<D>, const D: usize, T>: Send + Sync {
-    /// The two objects may interact. `co1` is the one whose handle comes first.
+    /// Returns `true` if the two objects may interact. The handle of `co1` is smaller than that of
+    /// `co2`.
     fn is_pair_valid(&self, co1: &CollisionObject<N, D, T>, co2: &CollisionObject<N, D, T>)
     -> bool;
 }
@@ -37,7 +38,7 @@ type Named<N, const D: usize, T> = (String, Arc<dyn BroadPhasePairFilter<N, D, T
 /// The filters of a world, sorted by name.
 pub(super) struct Filters<N: Space<D>, const D: usize, T> {
     filters: Vec<Named<N, D, T>>,
-    /// Others than at the last update.
+    /// A filter was registered or unregistered since the last update.
     have_changed: bool,
 }
 
@@ -48,7 +49,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         Self { filters: Vec::new(), have_changed: false }
     }
 
-    /// Puts a filter under a name, in place of the one that has it.
+    /// Registers a filter under a name and replaces the one that has it.
     pub(super) fn register(&mut self, name: &str, filter: Arc<dyn BroadPhasePairFilter<N, D, T>>) {
         self.have_changed = true;
         match self.position(name) {
@@ -57,7 +58,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         }
     }
 
-    /// Forgets the filter under a name; `false` if there is none.
+    /// Removes the filter with a name; returns `false` if there is none.
     pub(super) fn unregister(&mut self, name: &str) -> bool {
         let place = self.position(name);
         if let Ok(place) = place {
@@ -71,7 +72,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         self.filters.binary_search_by(|(other, _)| other.as_str().cmp(name))
     }
 
-    /// All filters agree.
+    /// Returns `true` if all filters allow the pair.
     pub(super) fn allow(
         &self,
         co1: &CollisionObject<N, D, T>,
@@ -80,7 +81,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         self.filters.iter().all(|(_, filter)| filter.is_pair_valid(co1, co2))
     }
 
-    /// The names of those that refuse a pair, sorted.
+    /// Returns the names of the filters that refuse the pair, sorted.
     pub(super) fn refusing(
         &self,
         co1: &CollisionObject<N, D, T>,
@@ -90,12 +91,12 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         refusing.map(|(name, _)| name.as_str()).collect()
     }
 
-    /// The names, sorted.
+    /// Iterates over the names, sorted.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.filters.iter().map(|(name, _)| name.as_str())
     }
 
-    /// An update has asked them.
+    /// Notes that an update has called the filters.
     pub(super) const fn note_update(&mut self) {
         self.have_changed = false;
     }
@@ -115,9 +116,9 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for Filters<N, D, T> {
     }
 }
 
-/// Filters, and when they are asked.
+/// Registering filters, and filtering pairs again.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Adds a filter of pairs, in place of the one of this name if there is one. All pairs are
+    /// Registers a pair filter, in place of the one with this name if there is one. All pairs are
     /// filtered again at the next update.
     pub fn register_broad_phase_pair_filter<F>(&mut self, name: &str, filter: F)
     where
@@ -127,21 +128,21 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.broad_phase.deferred_recompute_all_proximities();
     }
 
-    /// Takes a filter away; nothing happens if there is none of this name. All pairs are filtered
-    /// again at the next update.
+    /// Removes a pair filter; nothing happens if there is none with this name. All pairs are
+    /// filtered again at the next update.
     pub fn unregister_broad_phase_pair_filter(&mut self, name: &str) {
         if self.filters.unregister(name) {
             self.broad_phase.deferred_recompute_all_proximities();
         }
     }
 
-    /// Has all pairs filtered again at the next update: groups and filters are asked about every two objects
-    /// whose boxes overlap. For rules that have changed, and for [`Self::update_with`].
+    /// Makes the next update filter all pairs again: it checks groups and filters for every two
+    /// objects whose boxes overlap. For rules that have changed, and for [`Self::update_with`].
     pub fn refilter_pairs(&mut self) {
         self.broad_phase.deferred_recompute_all_proximities();
     }
 
-    /// Has the pairs of one object filtered again at the next update; see [`Self::refilter_pairs`].
+    /// Makes the next update filter the pairs of one object again; see [`Self::refilter_pairs`].
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -172,7 +173,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         or_panic(self.try_refilter_pairs_of(handle));
     }
 
-    /// Has the pairs of one object filtered again; see [`Self::refilter_pairs_of`].
+    /// Makes the next update filter the pairs of one object again; see [`Self::refilter_pairs_of`].
     ///
     /// # Errors
     /// If the handle is stale. The world is unchanged then.

@@ -1,10 +1,9 @@
-//! Groups made in one expression: from lists, and from masks with a bit for each group.
+//! Groups built in one expression, from lists or from masks with one bit for each group.
 
 use super::groups::{ALL_GROUPS, CollisionGroups, GroupError};
 
-/// The groups whose bits are set, bit 0 for group 0.
-///
-/// A mask of 32 bits can name the groups 30 and 31, which there are not: refused as in a list.
+/// Returns the mask, or an error if it has bit 30 or 31, which are no groups; the error names the
+/// lower one.
 fn checked(mask: u32) -> Result<u32, GroupError> {
     match mask & !ALL_GROUPS {
         0 => Ok(mask),
@@ -12,7 +11,7 @@ fn checked(mask: u32) -> Result<u32, GroupError> {
     }
 }
 
-/// The groups, or a panic with the error's text.
+/// Returns the groups, or panics with the text of the error.
 #[track_caller]
 fn or_panic(result: Result<CollisionGroups, GroupError>) -> CollisionGroups {
     match result {
@@ -21,15 +20,16 @@ fn or_panic(result: Result<CollisionGroups, GroupError>) -> CollisionGroups {
     }
 }
 
-/// Groups from lists, for a chain of calls.
+/// Building groups from lists, in a chain of calls.
 impl CollisionGroups {
-    /// Member of no group, whitelists and blacklists none: interacts with nothing.
+    /// Creates groups without membership, whitelist and blacklist: the object interacts with
+    /// nothing.
     #[must_use]
     pub const fn empty() -> Self {
         Self::of_masks(0, 0, 0)
     }
 
-    /// The same as a member of these groups and no others.
+    /// Returns the groups with this membership in place of the present one.
     ///
     /// ```
     /// use impinge::world::CollisionGroups;
@@ -48,7 +48,7 @@ impl CollisionGroups {
         self
     }
 
-    /// The same with these groups on the whitelist and no others.
+    /// Returns the groups with this whitelist in place of the present one.
     ///
     /// # Panics
     /// On a group above 29; [`Self::try_set_whitelist`] returns it.
@@ -59,7 +59,7 @@ impl CollisionGroups {
         self
     }
 
-    /// The same with these groups on the blacklist and no others.
+    /// Returns the groups with this blacklist in place of the present one.
     ///
     /// # Panics
     /// On a group above 29; [`Self::try_set_blacklist`] returns it.
@@ -71,12 +71,12 @@ impl CollisionGroups {
     }
 }
 
-/// Groups as masks: bit `g` is group `g`, for 0 to 29. The bits 30 and 31 name groups that do not exist.
+/// Building groups from masks: bit `g` is group `g`, for 0 to 29. Bits 30 and 31 are refused.
 impl CollisionGroups {
     /// The mask of all groups, 0 to 29.
     pub const ALL: u32 = ALL_GROUPS;
 
-    /// The same as a member of the groups of a mask and no others.
+    /// Returns the groups with the membership of a mask in place of the present one.
     ///
     /// ```
     /// use impinge::world::{CollisionGroups, GroupError};
@@ -100,10 +100,10 @@ impl CollisionGroups {
         or_panic(self.try_with_membership_by_mask(mask))
     }
 
-    /// The same as a member of the groups of a mask and no others.
+    /// Returns the groups with the membership of a mask in place of the present one.
     ///
     /// # Errors
-    /// On bit 30 or 31, the lower of both.
+    /// On bit 30 or 31; the error names the lower one.
     pub fn try_with_membership_by_mask(self, mask: u32) -> Result<Self, GroupError> {
         let named = Self::of_masks(checked(mask)?, 0, 0);
         let mut groups = self;
@@ -111,7 +111,7 @@ impl CollisionGroups {
         Ok(groups)
     }
 
-    /// The same with the groups of a mask on the whitelist and no others.
+    /// Returns the groups with the whitelist of a mask in place of the present one.
     ///
     /// # Panics
     /// On bit 30 or 31; [`Self::try_with_whitelist_by_mask`] returns it.
@@ -121,10 +121,10 @@ impl CollisionGroups {
         or_panic(self.try_with_whitelist_by_mask(mask))
     }
 
-    /// The same with the groups of a mask on the whitelist and no others.
+    /// Returns the groups with the whitelist of a mask in place of the present one.
     ///
     /// # Errors
-    /// On bit 30 or 31, the lower of both.
+    /// On bit 30 or 31; the error names the lower one.
     pub fn try_with_whitelist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
         let named = Self::of_masks(0, checked(mask)?, 0);
         let mut groups = self;
@@ -132,7 +132,7 @@ impl CollisionGroups {
         Ok(groups)
     }
 
-    /// The same with the groups of a mask on the blacklist and no others.
+    /// Returns the groups with the blacklist of a mask in place of the present one.
     ///
     /// # Panics
     /// On bit 30 or 31; [`Self::try_with_blacklist_by_mask`] returns it.
@@ -142,10 +142,10 @@ impl CollisionGroups {
         or_panic(self.try_with_blacklist_by_mask(mask))
     }
 
-    /// The same with the groups of a mask on the blacklist and no others.
+    /// Returns the groups with the blacklist of a mask in place of the present one.
     ///
     /// # Errors
-    /// On bit 30 or 31, the lower of both.
+    /// On bit 30 or 31; the error names the lower one.
     pub fn try_with_blacklist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
         let named = Self::of_masks(0, 0, checked(mask)?);
         let mut groups = self;

@@ -1,4 +1,4 @@
-//! Who may interact with whom: groups as bit masks.
+//! Groups as bit masks: which objects may interact.
 
 use core::fmt;
 
@@ -28,17 +28,17 @@ pub(super) const ALL_GROUPS: u32 = (1 << (LAST_GROUP + 1)) - 1;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "Spelled", into = "Spelled"))]
 pub struct CollisionGroups {
-    /// The lowest thirty bits, as in all masks; above them [`SELF_COLLISION`].
+    /// Bits 0 to 29 are groups, as in all masks; bit 31 is [`SELF_COLLISION`].
     membership: u32,
     whitelist: u32,
     blacklist: u32,
 }
 
-/// The bit that says that the object is tested against itself: it stands where no group does, since every
-/// object has groups and four bytes more would count.
+/// Bit for self-collision. It shares the membership mask, since every object has groups and a
+/// separate field would cost four bytes each.
 const SELF_COLLISION: u32 = 1 << 31;
 
-/// Groups with every fact in a field of its own: how they are written and shown.
+/// Groups with one field for each setting, for serialization and `Debug`.
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename = "CollisionGroups"))]
 struct Spelled {
@@ -59,7 +59,7 @@ impl From<CollisionGroups> for Spelled {
 #[cfg(feature = "serde")]
 impl From<Spelled> for CollisionGroups {
     fn from(spelled: Spelled) -> Self {
-        // Bits of groups that do not exist mean nothing.
+        // Bits of groups that do not exist are ignored.
         let [membership, whitelist, blacklist] =
             [spelled.membership, spelled.whitelist, spelled.blacklist]
                 .map(|mask| mask & ALL_GROUPS);
@@ -108,28 +108,29 @@ impl Default for CollisionGroups {
     }
 }
 
-/// The mask of one group.
+/// Returns the mask of one group.
 fn bit(group: usize) -> Result<u32, GroupError> {
     if group > LAST_GROUP { Err(GroupError(group)) } else { Ok(1 << group) }
 }
 
-/// The mask of some groups; an error leaves nothing half done because the mask is made first.
+/// Returns the mask of several groups. It is complete before anything changes, so an error has no
+/// side effect.
 fn mask(groups: &[usize]) -> Result<u32, GroupError> {
     groups.iter().try_fold(0, |mask, &group| Ok(mask | bit(group)?))
 }
 
-/// `mask` with one group put in or taken out.
+/// Returns `mask` with one group set or cleared.
 fn with_group(mask: u32, group: usize, present: bool) -> Result<u32, GroupError> {
     let bit = bit(group)?;
     Ok(if present { mask | bit } else { mask & !bit })
 }
 
-/// `mask` has the group; none has a group above the last.
+/// Returns `true` if `mask` contains the group; `false` for a group above the last.
 fn has(mask: u32, group: usize) -> bool {
     bit(group).is_ok_and(|bit| mask & bit != 0)
 }
 
-/// The value, or a panic with the error's text.
+/// Panics with the text of the error, if there is one.
 #[track_caller]
 fn or_panic(result: Result<(), GroupError>) {
     if let Err(error) = result {
@@ -138,30 +139,31 @@ fn or_panic(result: Result<(), GroupError>) {
 }
 
 impl CollisionGroups {
-    /// Member of all groups, whitelists all, blacklists none; no self-collision.
+    /// Creates groups of an object that is a member of all groups, whitelists all and blacklists
+    /// none, without self-collision.
     #[must_use]
     pub const fn new() -> Self {
         Self { membership: ALL_GROUPS, whitelist: ALL_GROUPS, blacklist: 0 }
     }
 
-    /// The groups of these masks, all of whose bits are groups.
+    /// Creates groups from masks without bits of groups that do not exist.
     pub(super) const fn of_masks(membership: u32, whitelist: u32, blacklist: u32) -> Self {
         Self { membership, whitelist, blacklist }
     }
 
-    /// The groups that the object is a member of: bit `g` is group `g`.
+    /// Returns the mask of the object's own groups: bit `g` is group `g`.
     #[must_use]
     pub const fn membership_mask(&self) -> u32 {
         self.membership & ALL_GROUPS
     }
 
-    /// The groups on the whitelist: bit `g` is group `g`.
+    /// Returns the mask of the whitelist: bit `g` is group `g`.
     #[must_use]
     pub const fn whitelist_mask(&self) -> u32 {
         self.whitelist
     }
 
-    /// The groups on the blacklist: bit `g` is group `g`.
+    /// Returns the mask of the blacklist: bit `g` is group `g`.
     #[must_use]
     pub const fn blacklist_mask(&self) -> u32 {
         self.blacklist
@@ -275,54 +277,54 @@ impl CollisionGroups {
         Ok(())
     }
 
-    /// Takes over the membership of other groups.
+    /// Copies the membership of `other`; self-collision stays.
     pub const fn copy_membership(&mut self, other: &Self) {
         let own = self.membership & SELF_COLLISION;
         self.membership = own | other.membership & ALL_GROUPS;
     }
 
-    /// Takes over the whitelist of other groups.
+    /// Copies the whitelist of `other`.
     pub const fn copy_whitelist(&mut self, other: &Self) {
         self.whitelist = other.whitelist;
     }
 
-    /// Takes over the blacklist of other groups.
+    /// Copies the blacklist of `other`.
     pub const fn copy_blacklist(&mut self, other: &Self) {
         self.blacklist = other.blacklist;
     }
 
-    /// The object is a member of the group; `false` for a group above 29.
+    /// Returns `true` if the object is a member of the group; `false` for a group above 29.
     #[must_use]
     pub fn is_member_of(&self, group: usize) -> bool {
         has(self.membership, group)
     }
 
-    /// The group is on the whitelist; `false` for a group above 29.
+    /// Returns `true` if the group is on the whitelist; `false` for a group above 29.
     #[must_use]
     pub fn is_group_whitelisted(&self, group: usize) -> bool {
         has(self.whitelist, group)
     }
 
-    /// The group is on the blacklist; `false` for a group above 29.
+    /// Returns `true` if the group is on the blacklist; `false` for a group above 29.
     #[must_use]
     pub fn is_group_blacklisted(&self, group: usize) -> bool {
         has(self.blacklist, group)
     }
 
-    /// Lets the narrow phase query the object against itself: contacts and events then name it
-    /// twice. Of a composite those parts are tested that do not hang together
-    /// ([`CompositeShape::are_adjacent`](crate::shape::CompositeShape::are_adjacent)); a convex solid
-    /// never touches itself. No filter is asked. Off by default.
+    /// Makes the narrow phase test the object against itself: contacts and events then name it
+    /// twice. Of a composite, the parts that are not adjacent are tested
+    /// ([`CompositeShape::are_adjacent`](crate::shape::CompositeShape::are_adjacent)); a convex
+    /// solid never touches itself. No filter applies. Off by default.
     pub const fn enable_self_collision(&mut self) {
         self.membership |= SELF_COLLISION;
     }
 
-    /// Keeps the narrow phase from querying the object against itself.
+    /// Stops the narrow phase from testing the object against itself.
     pub const fn disable_self_collision(&mut self) {
         self.membership &= !SELF_COLLISION;
     }
 
-    /// Objects with these groups and with `other`'s may interact. Symmetric.
+    /// Returns `true` if objects with these groups and `other` may interact. Symmetric.
     #[must_use]
     #[inline]
     pub const fn can_interact_with_groups(&self, other: &Self) -> bool {
@@ -332,7 +334,7 @@ impl CollisionGroups {
             && other.membership & self.whitelist != 0
     }
 
-    /// The object may be queried against itself.
+    /// Returns `true` if the object is tested against itself.
     #[must_use]
     pub const fn can_interact_with_self(&self) -> bool {
         self.membership & SELF_COLLISION != 0

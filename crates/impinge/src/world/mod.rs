@@ -1,8 +1,16 @@
 //! The world: who touches whom, where, and since when, brought up to date by each update.
 //!
-//! The world is a thin shell around the two phases. Each object is one record: what the user said, as
-//! they left it (`bodies`), and the user's data. The phases have what they need as of the last update: the
-//! broad phase the boxes, the table of the narrow phase the poses and shapes of objects that have pairs.
+//! The world is a thin shell around the two phases. Each object is one record: pose, shape, groups and query type as
+//! the user last set them (`bodies`), and the user's data. The phases hold copies as of the last update:
+//!
+//! ```text
+//! CollisionWorld
+//!   objects ── slots[index] -> records[slot.place]  { body: WorldBody, data: T }
+//!      │          changes: dirty objects, until update()
+//!      ├── boxes ───────────> broad_phase    (as of the last update)
+//!      └── poses, shapes ───> ObjectTable ─> narrow_phase   (rows of objects with pairs only)
+//!   queries read objects and the tree of dirty boxes: they see every change at once
+//! ```
 
 mod bodies;
 mod changes;

@@ -1,5 +1,5 @@
-//! How objects move, as far as it matters for their pairs: fixed ones have none among each other, and the box
-//! of a fast one covers its way.
+//! Facts about motion that matter for pairs: fixed objects have no pairs with each other, and the box of a fast object
+//! covers its path.
 
 use super::entries;
 use super::error::or_panic;
@@ -7,17 +7,16 @@ use super::{CollisionWorld, WorldError};
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// What the world knows about the motion of objects.
+/// Fixed objects and predicted positions.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Marks an object as fixed, or takes the mark away. Two fixed objects have no pair: the walls and
-    /// floors of a level, which overlap each other, cost nothing in the narrow phase and have no events.
+    /// Marks an object as fixed, or clears the mark. Two fixed objects have no pair: the walls and floors of a level,
+    /// which overlap each other, cost nothing in the narrow phase and have no events.
     ///
-    /// A new object is not fixed. Takes effect at the next update: pairs of two objects that are both
-    /// fixed by then stop, with their events, and pairs of two that no longer are both fixed start. A
-    /// fixed object can still be moved, has pairs with all objects that are not fixed, and with itself
-    /// if its groups say so ([`CollisionGroups::enable_self_collision`]); queries see it as any other.
-    /// The mark is tested before groups and filters are asked, once when the boxes of two objects begin
-    /// to overlap.
+    /// A new object is not fixed. Takes effect at the next update: pairs of two objects that are both fixed by then
+    /// stop, with their events, and pairs of two that no longer are both fixed start. A fixed object can still be
+    /// moved. It has pairs with all objects that are not fixed, and with itself if its groups say so
+    /// ([`CollisionGroups::enable_self_collision`]); queries treat it as any other object. The mark is tested before
+    /// groups and filters, once, when the boxes of two objects begin to overlap.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -50,7 +49,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         or_panic(self.try_set_fixed(handle, is_fixed));
     }
 
-    /// Marks an object as fixed, or takes the mark away; see [`Self::set_fixed`].
+    /// Marks an object as fixed, or clears the mark; see [`Self::set_fixed`].
     ///
     /// # Errors
     /// If the handle is stale. The world is unchanged then.
@@ -64,21 +63,20 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Moves an object and predicts where it will be next: the broad phase covers the box of the object
-    /// at both positions, so that it has a pair with all objects whose boxes it may meet on the way, and
-    /// two fast bodies have one although their boxes overlap at no time at which they are looked at.
+    /// Moves an object and predicts its next position. The volume in the broad phase covers the box of the object at
+    /// both positions. So the object has a pair with all objects whose boxes it may meet in between, and two fast
+    /// bodies have a pair although their boxes never overlap at an update.
     ///
-    /// Such pairs are there to be looked at more closely, by
-    /// [`nonlinear_time_of_impact`](crate::query::nonlinear_time_of_impact) and [`Self::update_pair`]; their
-    /// contacts and proximities are those of `position`, and so are the answers of all queries. The prediction holds
-    /// until the object is moved again, by [`Self::set_position`] (also to where it is) or with another
-    /// prediction; other changes leave it. As with any other change, queries see the position at once, pairs
+    /// Such pairs are meant for a closer look by [`nonlinear_time_of_impact`](crate::query::nonlinear_time_of_impact)
+    /// and [`Self::update_pair`]. Their contacts and proximities are those at `position`, and so are the results of all
+    /// queries. The prediction holds until the object is moved again, by [`Self::set_position`] (also to where it is)
+    /// or with another prediction; other changes keep it. As with any change, queries see the position at once, pairs
     /// at the next update.
     ///
-    /// The box covers both ends and everything between them of a motion that does not turn. A body that
-    /// turns on the way can leave it by as much as it does in turning; a larger margin of the world, or
-    /// prediction of its query type, makes room for that. A pair costs memory and time although it does not
-    /// touch: predict for bodies that move by more than about their size in a step.
+    /// The volume covers the whole path of a translation. A body that rotates on the way can leave it by as much as the
+    /// rotation carries its surface outside both boxes; a larger margin of the world, or a larger prediction of its
+    /// query type, allows for that. A pair costs memory and time even if it does not touch: predict for bodies that
+    /// move by more than about their size in a step.
     ///
     /// ```
     /// use impinge::dim3::math::Isometry;
@@ -126,8 +124,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         entries::set_predicted(body, changes, position, predicted)
     }
 
-    /// Where [`Self::set_position_with_prediction`] predicted an object to be next; `None` if the object was
-    /// moved without a prediction since, and for a stale handle.
+    /// Returns the position predicted by [`Self::set_position_with_prediction`]. `None` for a stale handle, and if the
+    /// object was moved without a prediction since.
     #[must_use]
     pub fn predicted_position(&self, handle: CollisionObjectHandle) -> Option<&N::Isometry> {
         let object = self.objects.get(handle)?;

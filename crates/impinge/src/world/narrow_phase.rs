@@ -1,4 +1,4 @@
-//! The narrow phase as a world sees it: given pairs, asked for contacts and proximities.
+//! The interface between a world and its narrow phase: pairs in, contacts and proximities out.
 
 use super::objects::{Slot, handle_at};
 use super::{CollisionObjects, entries};
@@ -24,26 +24,26 @@ pub type ContactManifolds<'a, N, const D: usize> = Box<
         + 'a,
 >;
 
-/// Manifolds that hold a contact, read in place, in no particular order.
+/// Manifolds that hold a contact, read in place, in unspecified order.
 pub type ContactViews<'a, N, const D: usize> = Box<
     dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>)>
         + 'a,
 >;
 
-/// The same for one thread of several.
+/// A part of [`ContactViews`] that one thread reads.
 pub type ContactViewPiece<'a, N, const D: usize> = Box<
     dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>)>
         + Send
         + 'a,
 >;
 
-/// Exact answers for the pairs that the broad phase proposes.
+/// Computes contacts and proximities for the pairs that the broad phase proposes.
 ///
-/// A world calls, in each update: [`Self::handle_change`] for each object with another shape or
-/// query type, [`Self::handle_interactions`] with the pairs that started or stopped, then
-/// [`Self::update`]. In all calls `handle1 < handle2`, except that both are the same for an object that
-/// is tested against itself, and [`CollisionObjects::table`] has the poses,
-/// shapes and query types that the call is about, and those of all objects with pairs.
+/// In each update a world calls [`Self::handle_change`] for each object with another shape or query
+/// type, [`Self::handle_interactions`] with the pairs that started or stopped, then
+/// [`Self::update`]. In all calls `handle1 < handle2`; both are equal for an object that is tested
+/// against itself. During a call [`CollisionObjects::table`] holds the poses, shapes and query
+/// types of the objects that the call is about and of all objects with pairs.
 ///
 /// ```
 /// use impinge::dim2::narrow_phase::{DefaultNarrowPhase, NarrowPhase};
@@ -58,14 +58,14 @@ pub type ContactViewPiece<'a, N, const D: usize> = Box<
 /// world.update();
 /// ```
 pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
-    /// Computes all contacts and proximities, with the events of what changed.
+    /// Computes the contacts and proximities of all pairs and appends the resulting events.
     fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events);
 
-    /// Computes one pair anew between two updates: [`CollisionObjects::table`] has other poses of its two
-    /// objects during this call than at the last update. Puts what changed into `events`, and answers whether
-    /// there is such a pair.
+    /// Computes one pair between two updates. During this call [`CollisionObjects::table`] holds
+    /// the present poses of its two objects instead of those of the last update. Appends the
+    /// resulting events, and returns `true` if there is such a pair.
     ///
-    /// The default cannot do it: it answers that there is no pair.
+    /// The default does not support this and returns `false`.
     fn update_pair(
         &mut self,
         events: &mut Events,
@@ -77,8 +77,9 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         false
     }
 
-    /// A pair started (its algorithm is picked; nothing happens if the pair is known) or stopped (its
-    /// algorithm is freed, with the event that the pair is over if it had begun). No geometric query.
+    /// Starts or stops a pair, without a geometric query. A started pair gets its algorithm; a pair
+    /// that is known already stays as it is. A stopped pair is dropped, with a final event if it
+    /// was touching or near.
     fn handle_interaction(
         &mut self,
         events: &mut Events,
@@ -88,8 +89,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         started: bool,
     );
 
-    /// Several pairs, each of them once, started (`true`) or stopped: as [`Self::handle_interaction`] of
-    /// each, in any order.
+    /// Starts (`true`) or stops several different pairs: as [`Self::handle_interaction`] for each,
+    /// in any order.
     fn handle_interactions(
         &mut self,
         events: &mut Events,
@@ -101,8 +102,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         }
     }
 
-    /// The pair ends because one of its objects is being removed. What it did at the last update is
-    /// over: one event at most.
+    /// Stops a pair because one of its objects is being removed; appends at most one event, which
+    /// ends the status of the last update.
     fn handle_removal(
         &mut self,
         events: &mut Events,
@@ -111,8 +112,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         handle2: CollisionObjectHandle,
     );
 
-    /// The shape or the query type of an object is another one: the algorithms of its pairs are
-    /// picked anew.
+    /// Picks the algorithms of an object's pairs again, because its shape or query type has
+    /// changed.
     fn handle_change(
         &mut self,
         events: &mut Events,
@@ -120,16 +121,18 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         handle: CollisionObjectHandle,
     );
 
-    /// Whether a pair of the object is kept. Once there is none, the world takes back what it lends to the
-    /// narrow phase of the object; one that does not use [`CollisionObjects::table`] need not say.
+    /// Returns `true` if the narrow phase keeps a pair of the object. Once there is none, the world
+    /// releases the object's row in [`CollisionObjects::table`]; a narrow phase that does not read
+    /// the table can keep the default.
     fn has_pairs_of(&self, handle: CollisionObjectHandle) -> bool {
         let _ = handle;
         true
     }
 
-    /// The objects that have a pair with this one, sorted; itself, if it is tested against itself.
+    /// Returns the objects that have a pair with this one, sorted; includes the object itself if it
+    /// is tested against itself.
     ///
-    /// The default looks at all pairs.
+    /// The default searches all pairs.
     fn partners_of(
         &self,
         objects: &CollisionObjects<N, D, T>,
@@ -144,14 +147,14 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         partners
     }
 
-    /// Where the names of contacts come from: handed on when another narrow phase takes over, so that
-    /// no name is given twice.
+    /// Returns the source of contact ids, which moves on to the next narrow phase so that no id is
+    /// given twice. `None` if this narrow phase has no such source.
     fn ids(&mut self) -> Option<&mut IdAllocator> {
         None
     }
 
-    /// The contacts of a pair, as of the last update; `None` if there is no such pair or it is asked
-    /// for proximity only.
+    /// Returns the contacts of a pair as of the last update; `None` if there is no such pair or its
+    /// query type is proximity.
     fn contact_pair<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
@@ -159,8 +162,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         handle2: CollisionObjectHandle,
     ) -> Option<ContactPair<'a, N, D>>;
 
-    /// The proximity of a pair, as of the last update; `None` if there is no such pair or it is asked
-    /// for contacts.
+    /// Returns the proximity of a pair as of the last update; `None` if there is no such pair or
+    /// its query type is contacts.
     fn proximity_pair(
         &self,
         objects: &CollisionObjects<N, D, T>,
@@ -168,13 +171,13 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         handle2: CollisionObjectHandle,
     ) -> Option<ProximityPair>;
 
-    /// All pairs that are asked for contacts.
+    /// Returns all pairs whose query type is contacts.
     fn contact_pairs<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactPairs<'a, N, D>;
 
-    /// All manifolds that hold a contact.
+    /// Returns all manifolds that hold a contact.
     fn contact_manifolds<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
@@ -184,7 +187,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         }))
     }
 
-    /// All manifolds that hold a contact, in whatever order is quickest; the same on every machine.
+    /// Returns all manifolds that hold a contact in the fastest order, which is equal on every
+    /// machine.
     fn contact_views<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
@@ -195,7 +199,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         }))
     }
 
-    /// What [`Self::contact_views`] gives, in its order, cut into at most so many pieces, at least one.
+    /// Splits the sequence of [`Self::contact_views`] into at most `pieces` consecutive parts, at
+    /// least one.
     fn contact_view_pieces<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
@@ -209,7 +214,7 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         vec![Box::new(views.into_iter())]
     }
 
-    /// All pairs that are asked for proximity.
+    /// Returns all pairs whose query type is proximity.
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a>;
 }
 
@@ -368,7 +373,8 @@ pub(super) fn view_pieces_of<'a, N: Space<D>, const D: usize>(
     pieces.map(|views| named_views(views, slots)).collect()
 }
 
-/// Views with the handles of their objects. Each kind by itself: a chain of both is slower to read.
+/// Returns views with the handles of their objects. Plain and particular views get an iterator
+/// each, since a chain of both is slower to read.
 fn named_views<'a, N: Space<D>, const D: usize>(
     views: Views<'a, N, D>,
     slots: &'a [Slot],
@@ -380,7 +386,7 @@ fn named_views<'a, N: Space<D>, const D: usize>(
     }
 }
 
-/// Turns indices of living objects, and what goes with them, into their handles.
+/// Returns a function that replaces the indices of two living objects by their handles.
 fn named<F>(
     slots: &[Slot],
 ) -> impl Fn((u32, u32, F)) -> (CollisionObjectHandle, CollisionObjectHandle, F) + Copy {

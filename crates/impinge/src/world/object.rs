@@ -1,4 +1,4 @@
-//! What a world keeps for the user about one object.
+//! An object of a world, with the user's data.
 
 use super::CollisionGroups;
 use super::bodies::WorldBody;
@@ -10,7 +10,8 @@ use crate::shape::ShapeHandle;
 
 /// An object of a world, as the user described it.
 ///
-/// Only the user's data can be changed through it; the rest is changed through the world, by handle.
+/// It gives mutable access to the user's data alone; everything else is changed through the world,
+/// by handle.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -34,57 +35,57 @@ pub struct CollisionObject<N: Space<D>, const D: usize, T> {
 clone_fields!([N: Space<D>, const D: usize, T: Clone] CollisionObject<N, D, T> { body, data });
 
 impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
-    /// The object's name in its world.
+    /// Returns the object's handle in its world.
     #[must_use]
     pub const fn handle(&self) -> CollisionObjectHandle {
         self.body.handle
     }
 
-    /// The name of the object's volume in the broad phase; another after the broad phase or the
-    /// narrow phase of the world was replaced.
+    /// Returns the handle of the object's volume in the broad phase. It changes when the broad
+    /// phase or the narrow phase of the world is replaced.
     #[must_use]
     pub const fn proxy_handle(&self) -> ProxyHandle {
         self.body.proxy
     }
 
-    /// Where the object is, as it was given.
+    /// Returns the position of the object, as it was given.
     #[must_use]
     pub const fn position(&self) -> &N::Isometry {
         &self.body.isometry
     }
 
-    /// The shape.
+    /// Returns the shape.
     #[must_use]
     pub const fn shape(&self) -> &ShapeHandle<N, D> {
         &self.body.shape
     }
 
-    /// The groups.
+    /// Returns the groups.
     #[must_use]
     pub const fn collision_groups(&self) -> &CollisionGroups {
         &self.body.groups
     }
 
-    /// The object has no pairs with other fixed ones; see
+    /// Returns `true` if the object is fixed and so has no pairs with other fixed ones; see
     /// [`CollisionWorld::set_fixed`](super::CollisionWorld::set_fixed).
     #[must_use]
     pub const fn is_fixed(&self) -> bool {
         self.body.is_fixed()
     }
 
-    /// What is asked of the object's pairs.
+    /// Returns the query type: what is computed for the object's pairs.
     #[must_use]
     pub fn query_type(&self) -> GeometricQueryType<N> {
         self.body.query.get()
     }
 
-    /// The user's data.
+    /// Returns the user's data.
     #[must_use]
     pub const fn data(&self) -> &T {
         &self.data
     }
 
-    /// The user's data.
+    /// Returns the user's data, to change it.
     #[must_use]
     pub const fn data_mut(&mut self) -> &mut T {
         &mut self.data

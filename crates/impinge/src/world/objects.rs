@@ -1,4 +1,5 @@
-//! The objects of a world: the handle table with the records, and what the narrow phase reads of them.
+//! The objects of a world: handle slots, records, changes, and the table that the narrow phase
+//! reads.
 
 use super::bodies::{MAX_CHANGES, WorldBody, WorldBroadPhase};
 use super::changes::{BodyEntry, ChangeList, Readers};
@@ -15,36 +16,37 @@ use crate::memory::{Look, clone_fields};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::ShapeHandle;
 
-/// From one dirty object in so many on, the tree of their boxes holds those of all objects.
+/// If at least one object in `MANY` is dirty, the dirty tree holds the boxes of all objects.
 const MANY: usize = 4;
 
 /// The objects of a world, by handle.
 ///
-/// A freed index is used again, the last freed one first, under the next generation; an index whose
-/// generations are used up is never used again.
+/// A freed index is used again, the last freed one first, under the next generation. An index whose
+/// generations are exhausted is never used again.
 ///
 /// ```
 /// use impinge::dim2::world::{CollisionObject, CollisionObjects};
 ///
-/// // What filters and narrow phases of one's own are given, as here to count names.
+/// // A function for custom filters and narrow phases; this one counts objects with a name.
 /// fn named(objects: &CollisionObjects<f32, String>) -> usize {
 ///     objects.iter().filter(|object: &&CollisionObject<f32, String>| !object.data().is_empty()).count()
 /// }
 /// # let _ = named;
 /// ```
 pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
-    /// That of the first object at an index.
+    /// Generation of the first object at each index.
     pub(super) first: Generation,
     pub(super) slots: Vec<Slot>,
-    /// The objects in no particular order, without gaps: that a handle is fresh shows in its slot,
-    /// so who only hands objects on does not wait for their memory.
+    /// The objects in no particular order, without gaps. Whether a handle is fresh is decided by
+    /// its slot alone, so code that only forwards references does not wait for these records to
+    /// load.
     pub(super) records: Vec<CollisionObject<N, D, T>>,
-    /// Indices without an object, the next one to be used at the end.
+    /// Free indices; the last one is used next.
     pub(super) free: Vec<u32>,
     pub(super) changes: ChangeList<N, D>,
     pub(super) table: ObjectTable<N, D>,
     pub(super) journal: Journal<ObjectNote<N, D, T>, Vec<BodyEntry<N, D>>>,
-    /// How objects are cloned, once there are marks: not all data are.
+    /// Clones an object; set when the first mark is made, since `T` need not be `Clone` before.
     pub(super) cloned: Option<CloneObject<N, D, T>>,
 }
 
@@ -52,28 +54,28 @@ clone_fields!([N: Space<D>, const D: usize, T: Clone] CollisionObjects<N, D, T> 
     first, slots, records, free, changes, table, journal, cloned,
 });
 
-/// How an object is cloned.
+/// A function that clones an object.
 type CloneObject<N, const D: usize, T> = fn(&CollisionObject<N, D, T>) -> CollisionObject<N, D, T>;
 
-/// What an index of a handle stands for.
+/// Handle slot: the generation and the record of one handle index.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slot {
-    /// That of the object here, or of the next one.
+    /// Generation of the object at this index, or of the next one if the slot is free.
     pub(super) generation: Generation,
-    /// Where the object is, or [`NOWHERE`].
+    /// Index in `records`, or [`NOWHERE`].
     pub(super) place: u32,
 }
 
-/// The handle of the object at an index, which there is.
+/// Returns the handle of the object at an index, which must be in use.
 #[inline]
 pub(super) fn handle_at(slots: &[Slot], index: u32) -> CollisionObjectHandle {
     CollisionObjectHandle::new(index, slots[index as usize].generation)
 }
 
-/// The index that stands for no object.
+/// The record index of a free slot.
 const NOWHERE: u32 = u32::MAX;
 
-/// What the user says about a new object.
+/// Arguments of [`CollisionWorld::add`](super::CollisionWorld::add).
 pub(super) struct Description<N: Space<D>, const D: usize, T> {
     pub(super) position: N::Isometry,
     pub(super) shape: ShapeHandle<N, D>,
@@ -96,7 +98,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// The object of a handle; `None` for a stale one and that of another world.
+    /// Returns the object of a handle; `None` for a stale handle or one of another world.
     #[inline]
     #[must_use]
     pub fn get(&self, handle: CollisionObjectHandle) -> Option<&CollisionObject<N, D, T>> {
@@ -112,29 +114,30 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.records.get_mut(place)
     }
 
-    /// Where the object of a handle is, if it is fresh and of this world.
+    /// Returns the record index of a handle, if it is fresh and of this world.
     #[inline]
     fn place(&self, handle: CollisionObjectHandle) -> Option<usize> {
         let slot = self.slots.get(handle.uid())?;
         (slot.generation == handle.generation()).then_some(slot.place as usize)
     }
 
-    /// The object at an index, if there is one.
+    /// Returns the object at an index; `None` if the index is free.
     fn at(&self, index: u32) -> Option<&CollisionObject<N, D, T>> {
         self.records.get(self.slots.get(index as usize)?.place as usize)
     }
 
-    /// What is kept of the object at an index, if there is one.
+    /// Returns the body of the object at an index; `None` if the index is free.
     pub(super) fn body(&self, index: u32) -> Option<&WorldBody<N, D>> {
         self.at(index).map(|object| &object.body)
     }
 
-    /// What is kept of all objects, in order.
+    /// Iterates over the bodies of all objects, in order of their indices.
     pub(super) fn bodies(&self) -> impl Iterator<Item = &WorldBody<N, D>> {
         self.iter().map(|object| &object.body)
     }
 
-    /// The boxes that queries search beside those of the broad phase, or in their place; `None` if nothing changed.
+    /// Returns the tree that queries search beside the broad phase, or instead of it if it holds
+    /// all objects. `None` if nothing changed since the last update.
     pub(super) fn dirty_tree(&self, broad_phase: &WorldBroadPhase<N, D>) -> Option<&DirtyTree<D>> {
         self.changes.dirty_tree(|| {
             let has_all = self.changes.num_dirty() * MANY >= self.records.len();
@@ -143,7 +146,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         })
     }
 
-    /// The boxes of all objects, or of the dirty ones, by the ids that a tree of them has.
+    /// Iterates over the boxes of all objects (`has_all`), by handle index, or of the dirty ones,
+    /// by their place in the list of changes.
     fn boxes<'a>(
         &'a self,
         has_all: bool,
@@ -159,7 +163,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }))
     }
 
-    /// An object that the tree of dirty ones proposes.
+    /// Returns the object that the dirty tree has under `id`.
     #[inline]
     pub(super) fn of_dirty(
         &self,
@@ -169,9 +173,9 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.at(self.changes.dirty_index(tree, id))
     }
 
-    /// The object whose proxy has a number, if it is where it would be expected: objects and proxies are
-    /// numbered alike and lie in that order until some are removed. Then it is found by its index as
-    /// long as the numbers agree.
+    /// Returns the object whose proxy has the number `uid`; `None` if it is not found by a direct
+    /// look-up. As long as no object was removed, records and proxies have the same order;
+    /// afterwards the look-up by handle index still succeeds where both numbers agree.
     #[inline]
     pub(super) fn of_proxy(&self, uid: usize) -> Option<&CollisionObject<N, D, T>> {
         let is_its = |object: &&CollisionObject<N, D, T>| object.body.proxy.uid() == uid;
@@ -179,43 +183,43 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         in_order.or_else(|| self.at(u32::try_from(uid).ok()?).filter(is_its))
     }
 
-    /// Not both objects are fixed, and the groups of both allow the pair.
+    /// Returns `true` unless both objects are fixed or the groups of one refuse the other.
     #[inline]
     pub(super) fn can_interact(&self, index1: u32, index2: u32) -> bool {
         let both = self.body(index1).zip(self.body(index2));
         both.is_some_and(|(one, two)| one.can_interact(two))
     }
 
-    /// What the indices of handles stand for.
     #[inline]
     pub(super) fn slots(&self) -> &[Slot] {
         &self.slots
     }
 
-    /// The objects, in order of their handles.
+    /// Iterates over the objects, in order of their handles.
     pub fn iter(&self) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
         self.slots.iter().filter_map(|slot| self.records.get(slot.place as usize))
     }
 
-    /// How many objects there are.
+    /// Returns the number of objects.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.records.len()
     }
 
-    /// There is no object.
+    /// Returns `true` if there is no object.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.records.is_empty()
     }
 
-    /// The poses, shapes and query types as of the last update (within an update: of this one).
+    /// Returns the table of poses, shapes and query types as of the last update; during an update,
+    /// of this one.
     #[must_use]
     pub const fn table(&self) -> &ObjectTable<N, D> {
         &self.table
     }
 
-    /// The body of a handle, or the error that says that the handle is stale.
+    /// Returns the body of a handle, or [`WorldError::StaleHandle`].
     pub(super) fn known(
         &self,
         handle: CollisionObjectHandle,
@@ -224,7 +228,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(&object.body)
     }
 
-    /// The body of a handle, to be changed, and the list of changes, or the error that says that the handle is stale.
+    /// Returns the body of a handle and the list of changes, to change the object, or
+    /// [`WorldError::StaleHandle`].
     pub(super) fn fresh(
         &mut self,
         handle: CollisionObjectHandle,
@@ -235,7 +240,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok((&mut object.body, &mut self.changes))
     }
 
-    /// [`Self::fresh`], to change nothing but the position.
+    /// As [`Self::fresh`], for a change of position only: a mark then journals less.
     pub(super) fn fresh_to_move(
         &mut self,
         handle: CollisionObjectHandle,
@@ -246,7 +251,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok((&mut object.body, &mut self.changes))
     }
 
-    /// The handle that the next object will have.
+    /// Returns the handle that the next object will have.
     pub(super) fn next_handle(&self) -> Result<CollisionObjectHandle, WorldError> {
         if let Some(&index) = self.free.last() {
             return Ok(CollisionObjectHandle::new(index, self.slots[index as usize].generation));
@@ -276,7 +281,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Takes an object out.
+    /// Removes an object and returns it.
     pub(super) fn remove(&mut self, handle: CollisionObjectHandle) -> CollisionObject<N, D, T> {
         let next = handle.generation().next();
         self.note_removed(handle);
@@ -290,7 +295,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         object
     }
 
-    /// Takes the record of an object out; the last one gets its place.
+    /// Removes the record of an object; the last record moves to its index.
     pub(super) fn take_record(
         &mut self,
         handle: CollisionObjectHandle,
@@ -303,8 +308,9 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         object
     }
 
-    /// Hands the changes since the last update to the table and the broad phase, in order of index,
-    /// and forgets them. Leaves in `algorithms` the objects whose pairs need other algorithms.
+    /// Writes the changes since the last update to the table and the broad phase, in order of
+    /// index, and clears them. Fills `algorithms` with the objects whose shape or query type
+    /// changed.
     pub(super) fn flush(
         &mut self,
         broad_phase: &mut WorldBroadPhase<N, D>,
@@ -324,7 +330,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         changes.clear(order);
     }
 
-    /// Gives the narrow phase what it reads of an object, if it has not got it yet.
+    /// Writes the row of an object to the table, if it has none yet.
     pub(super) fn lend(&mut self, index: u32) {
         let Self { slots, records, table, .. } = self;
         let slot = slots.get(index as usize);
@@ -333,7 +339,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Gives memory back that has not been needed for some time.
+    /// Releases memory that has not been needed for some time.
     pub(super) fn give_back(&mut self, look: Look) {
         look.fit(&mut self.slots);
         look.fit(&mut self.records);
@@ -341,12 +347,12 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.table.give_back(look);
     }
 
-    /// The indices that are free, the one that is taken next last.
+    /// Iterates over the free indices; the last one is used next.
     pub(super) fn vacant(&self) -> impl DoubleEndedIterator<Item = usize> {
         self.free.iter().map(|&index| index as usize)
     }
 
-    /// How many indices have been in use.
+    /// Returns the number of indices that have ever been in use.
     pub(super) const fn reach(&self) -> usize {
         self.slots.len()
     }
@@ -357,7 +363,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// What is wrong with the bookkeeping, if anything.
+    /// Checks slots, records, changes and table; the error says what is wrong.
     pub(super) fn validate(&self, broad_phase: &WorldBroadPhase<N, D>) -> Result<(), String> {
         if self.iter().count() != self.records.len() {
             return Err(format!("{} objects do not all have slots", self.records.len()));
@@ -382,7 +388,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.validate_free()
     }
 
-    /// The table's row, if there is one, is that of an object.
+    /// Returns `true` if the table has no row for the object or the row is up to date.
     fn is_row_of(&self, body: &WorldBody<N, D>) -> bool {
         let index = body.index();
         !self.table.has_row(index)

@@ -1,21 +1,22 @@
-//! Reading the pairs of one object, seen from it.
+//! Reading the pairs of one object, with that object as the first.
 
 use super::{CollisionObject, CollisionWorld};
 use crate::math::Space;
 use crate::narrow_phase::{CollisionObjectHandle, ContactPair};
 use crate::query::{ContactPoint, ManifoldView, Proximity};
 
-/// The pairs of one object as of the last update, in order of the other objects' handles; pairs with objects
-/// that were removed since are gone. An object with many pairs costs as many look-ups as it has pairs,
-/// however many the world has; with a narrow phase of one's own see
+/// The pairs of one object as of the last update, in order of the other objects' handles; pairs
+/// with objects that were removed since are left out. Costs one look-up for each pair of the
+/// object, whatever the size of the world; for a custom narrow phase see
 /// [`NarrowPhase::partners_of`](super::NarrowPhase::partners_of).
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The objects that have a pair with this one, whether they touch or not, in order of their handles; the
-    /// object itself, if it is tested against itself. Nothing for a stale handle.
+    /// Iterates over the objects that have a pair with this one, touching or not, in order of their
+    /// handles; includes the object itself if it is tested against itself. Empty for a stale
+    /// handle.
     ///
-    /// These are the pairs that the broad phase has found and that groups and filters allow: objects whose
-    /// boxes overlap. Which of them do not touch depends on the margin. Read a pair by
-    /// [`Self::contact_pair`] or [`Self::proximity_pair`].
+    /// These are the pairs that the broad phase has found and that groups and filters allow:
+    /// objects whose boxes overlap. Which pairs without contact are among them depends on the
+    /// margin. Read a pair by [`Self::contact_pair`] or [`Self::proximity_pair`].
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -42,11 +43,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         partners.into_iter().flatten().filter_map(|other| self.objects.get(other))
     }
 
-    /// The contact points of an object with all others, and the other object of each.
+    /// Iterates over the contact points of an object with all others, each with the other object.
     ///
-    /// Each contact is seen from the object: it is the first solid, whichever handle comes first, so
-    /// `world1`, `feature1` and `part1` are on it and the normal points away from it, to the other. Of an
-    /// object tested against itself the first solid is the part of lower number. Nothing for a stale handle.
+    /// The object is the first solid of each contact, whatever the order of the handles: `world1`,
+    /// `feature1` and `part1` are on it, and the normal points from it to the other. If an object
+    /// is tested against itself, the first solid is the part with the lower number. Empty for a
+    /// stale handle.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -63,7 +65,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// world.update();
     /// let found = world.contacts_with(ball).map(|(other, point)| (*other.data(), point.contact.normal.y));
     /// assert_eq!(found.collect::<Vec<_>>(), [("floor", -1.0), ("ceiling", 1.0)]);
-    /// // What moves the ball out: against each normal by the depth.
+    /// // The displacement that moves the ball out: against each normal by the depth.
     /// let out = world.contacts_with(ball).map(|(_, point)| *point.contact.normal * -point.contact.depth);
     /// assert_eq!(out.sum::<Vector<f64>>(), Vector::zeros(), "it is stuck");
     /// ```
@@ -80,8 +82,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// How near the objects are that have a pair with this one of which proximity is asked; disjoint ones are
-    /// left out, since which of them have a pair depends on the margin. Nothing for a stale handle.
+    /// Iterates over the objects near this one: the pairs whose query type is proximity. Disjoint
+    /// pairs are left out, since their existence depends on the margin. Empty for a stale handle.
     ///
     /// ```
     /// use impinge::dim3::events::Proximity;

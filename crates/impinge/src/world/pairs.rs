@@ -10,11 +10,12 @@ use crate::query::{ContactManifold, ManifoldView};
 
 type Object<N, const D: usize, T> = CollisionObject<N, D, T>;
 
-/// Two objects and a manifold of theirs.
+/// Two objects and one of their manifolds.
 type PairView<'a, N, const D: usize, T> =
     (&'a Object<N, D, T>, &'a Object<N, D, T>, ManifoldView<'a, N, D>);
 
-/// Manifolds with their objects. Written out, since the closure of an adapter would be a call for each.
+/// Iterator over manifolds with their objects. Written out, since the closure of an adapter is not
+/// inlined and costs a call for each manifold.
 struct PairViews<'a, N: Space<D>, const D: usize, T, I> {
     objects: &'a CollisionObjects<N, D, T>,
     views: I,
@@ -43,12 +44,14 @@ where
     }
 }
 
-/// Pairs, contacts and events of the last update; pairs of objects that were removed since are gone.
+/// Pairs, contacts and events of the last update; pairs of objects that were removed since are left
+/// out.
 ///
-/// Everywhere the object whose handle comes first is the first of its pair: normals point from it.
+/// In every pair the object with the smaller handle is the first; normals point from it to the
+/// second.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The contacts of two objects, whichever is named first; `None` for a stale handle, and for a
-    /// pair that the broad phase does not keep or that is asked for proximity only.
+    /// Returns the contacts of two objects, in either order. `None` for a stale handle, for a pair
+    /// that the broad phase does not keep, and for one whose query type is proximity.
     #[must_use]
     pub fn contact_pair(
         &self,
@@ -59,8 +62,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.narrow_phase.contact_pair(&self.objects, first, second)
     }
 
-    /// The proximity of two objects, whichever is named first; `None` for a stale handle, and for a
-    /// pair that the broad phase does not keep or that is asked for contacts.
+    /// Returns the proximity of two objects, in either order. `None` for a stale handle, for a pair
+    /// that the broad phase does not keep, and for one whose query type is contacts.
     #[must_use]
     pub fn proximity_pair(
         &self,
@@ -71,7 +74,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.narrow_phase.proximity_pair(&self.objects, first, second)
     }
 
-    /// Two living objects in order.
+    /// Returns two handles in canonical order; `None` if one is stale.
     fn pair(
         &self,
         handle1: CollisionObjectHandle,
@@ -81,8 +84,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         alive.then(|| in_order(handle1, handle2))
     }
 
-    /// All pairs that the broad phase keeps and that are asked for contacts, with or without
-    /// contacts; which ones without depends on the margin.
+    /// Iterates over all pairs of the broad phase whose query type is contacts, with or without
+    /// contact points. Which pairs without points are included depends on the margin.
     pub fn contact_pairs(
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ContactPair<'_, N, D>)> {
@@ -92,8 +95,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// All pairs that the broad phase keeps and that are asked for proximity; which of the disjoint
-    /// ones depends on the margin.
+    /// Iterates over all pairs of the broad phase whose query type is proximity. Which disjoint
+    /// pairs are included depends on the margin.
     pub fn proximity_pairs(
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, ProximityPair)> {
@@ -103,8 +106,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// All manifolds that hold a contact, each made when first asked for: the contacts of
-    /// [`Self::contact_views`], in order of the pairs.
+    /// Iterates over all manifolds that hold a contact, in order of their pairs: the contacts of
+    /// [`Self::contact_views`]. Each manifold is built on first access.
     pub fn contact_manifolds(
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, &ContactManifold<N, D>)> {
@@ -114,11 +117,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// All manifolds that hold a contact, read where they are kept: [`ManifoldView`] says what there is to
-    /// read.
+    /// Iterates over all manifolds that hold a contact, read in place; see [`ManifoldView`].
     ///
-    /// The order is that of the library's memory: no particular one, but the same for the same
-    /// history, on every machine and number of threads.
+    /// The order is that of the library's memory: unspecified, but equal for equal histories, on
+    /// every machine and with any number of threads.
     ///
     /// ```
     /// use impinge::math::{Isometry2, Vector};
@@ -148,11 +150,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         PairViews { objects: &self.objects, views }
     }
 
-    /// What [`Self::contact_views`] gives, in its order, cut into at most so many pieces of about as many
-    /// pairs, at least one: for threads of the user's own.
+    /// Splits the sequence of [`Self::contact_views`] into at most `pieces` consecutive iterators
+    /// of about as many pairs each, at least one: for threads of the user's own.
     ///
-    /// Where the cuts are follows from the number of pieces alone. Pairs that touch a mesh cost more than
-    /// others: four pieces for a thread let quick ones help out.
+    /// The cuts depend only on `pieces` and the pairs. Pairs that touch a mesh cost more than
+    /// others; four pieces for each thread let idle threads take over work.
     ///
     /// ```
     /// use impinge::math::{Isometry3, Vector};
@@ -193,13 +195,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         views.collect()
     }
 
-    /// Which pairs came to have contact points at the last update, and which lost their last.
+    /// Returns the contact events of the last update: pairs that got their first contact point or
+    /// lost their last.
     #[must_use]
     pub fn contact_events(&self) -> &[ContactEvent] {
         self.events.contacts()
     }
 
-    /// Which pairs changed their proximity at the last update.
+    /// Returns the proximity events of the last update: pairs whose proximity changed.
     #[must_use]
     pub fn proximity_events(&self) -> &[ProximityEvent] {
         self.events.proximities()

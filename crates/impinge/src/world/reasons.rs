@@ -1,4 +1,4 @@
-//! Why two objects have a pair, or none: what filters and boxes say.
+//! Why two objects have a pair or none: refusing filters and loosened boxes.
 
 use super::CollisionWorld;
 use super::step::in_order;
@@ -7,12 +7,13 @@ use crate::bounding_volume::Aabb;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// Explaining pairs. [`CollisionGroups`](super::CollisionGroups) are asked before the filters, the boxes before both.
+/// Explaining pairs. An update tests boxes first, then [`CollisionGroups`](super::CollisionGroups),
+/// then filters.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The names of the pair filters that refuse two objects, sorted; none for an object and itself, or a
-    /// stale handle. Groups and boxes are not looked at.
+    /// Returns the names of the pair filters that refuse two objects, sorted; empty for an object
+    /// and itself, and for a stale handle. Groups and boxes are ignored.
     ///
-    /// Asks all filters there and then.
+    /// Calls all filters.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -45,9 +46,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// The box of an object in the broad phase, as of the last update: objects whose boxes overlap are
-    /// proposed as a pair. `None` for a stale handle, an object that no update has seen, and a broad phase
-    /// of the user's own that has no boxes to show.
+    /// Returns the loosened box of an object in the broad phase as of the last update; objects
+    /// whose boxes overlap are proposed as a pair. `None` for a stale handle, for an object added
+    /// since the last update, and for a custom broad phase that does not expose boxes.
     ///
     /// ```
     /// use impinge::dim2::bounding_volume::BoundingVolume;

@@ -1,4 +1,4 @@
-//! Objects that were removed, as long as an event names them.
+//! Removed objects, kept as long as an event names them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,14 +7,14 @@ use crate::math::Space;
 use crate::memory::clone_fields;
 use crate::narrow_phase::{CollisionObjectHandle, Events};
 
-/// The removed objects that events name, and which objects these are.
+/// The removed objects that events name, and the set of handles named.
 ///
-/// Nothing is kept, and no event is looked at, before an object is removed.
+/// Until an object is removed, nothing is stored and no event is read.
 pub(super) struct RemovedObjects<N: Space<D>, const D: usize, T> {
     objects: BTreeMap<CollisionObjectHandle, CollisionObject<N, D, T>>,
-    /// The objects that the events name which [`Self::note`] has looked at since the update.
+    /// Handles named by the events that [`Self::note`] has read since the update.
     named: BTreeSet<CollisionObjectHandle>,
-    /// How many events of each kind were looked at: those of the last update, and those queued since.
+    /// Numbers of contact and proximity events already read: of the last update, and queued since.
     noted: [(usize, usize); 2],
 }
 
@@ -25,7 +25,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         Self { objects: BTreeMap::new(), named: BTreeSet::new(), noted: [(0, 0); 2] }
     }
 
-    /// Notes which objects events name that have come since.
+    /// Reads the events that came since the last call, and notes the handles that they name.
     pub(super) fn note(&mut self, events: &Events, queued: &Events) {
         for (noted, events) in self.noted.iter_mut().zip([events, queued]) {
             self.named.extend(events.named_from(*noted));
@@ -33,7 +33,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         }
     }
 
-    /// Keeps an object that is removed if an event names it, else drops it.
+    /// Keeps a removed object if an event names it, else drops it.
     pub(super) fn keep(&mut self, object: CollisionObject<N, D, T>) {
         let handle = object.handle();
         if self.named.contains(&handle) {
@@ -41,7 +41,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         }
     }
 
-    /// Drops the objects that the events of a new batch do not name.
+    /// Drops the objects that no event of the new batch names.
     pub(super) fn keep_named(&mut self, events: &Events) {
         self.named.clear();
         self.noted = [(0, 0); 2];
@@ -55,14 +55,16 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
 
 /// Removed objects that events still name.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// An object that was removed, as it was then, as long as an event names it: one of the last update, or
-    /// one that its removal has queued for the next. So every handle in [`Self::contact_events`] and
-    /// [`Self::proximity_events`] has its object, here or by [`Self::collision_object`].
+    /// Returns a removed object, in its last state, as long as an event names it: one of the last
+    /// update, or one that its removal has queued for the next. So every handle in
+    /// [`Self::contact_events`] and [`Self::proximity_events`] has its object, here or by
+    /// [`Self::collision_object`].
     ///
-    /// `None` for objects that are there, stale handles that no event names, and objects that were taken by
-    /// [`Self::take_removed`]. A removed object that no event names is dropped at once, the others by the
-    /// update that forgets the last event which names them: without [`Self::keep_events`] that is the second
-    /// one after the removal at the latest. Until then their data and shapes take memory.
+    /// `None` for objects that are there, for stale handles that no event names, and for objects
+    /// taken by [`Self::take_removed`]. A removed object that no event names is dropped at once.
+    /// Others are dropped by the update that discards the last event naming them: without
+    /// [`Self::keep_events`] that is the second one after the removal at the latest. Until then
+    /// their data and shapes take memory.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -92,7 +94,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.removed.objects.get(&handle)
     }
 
-    /// The data of an object that [`Self::removed_object`] has, which has it no more hereafter.
+    /// Takes the data of a removed object, which [`Self::removed_object`] no longer returns
+    /// afterwards.
     pub fn take_removed(&mut self, handle: CollisionObjectHandle) -> Option<T> {
         self.removed.objects.remove(&handle).map(|object| object.data)
     }

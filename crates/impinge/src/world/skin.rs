@@ -1,4 +1,4 @@
-//! Contacts with a margin around the shapes.
+//! Contact skins: contacts computed for shapes grown by a distance.
 
 use super::entries;
 use super::error::or_panic;
@@ -6,24 +6,25 @@ use super::{CollisionWorld, WorldError};
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// Skins around shapes.
+/// Contact skins.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Puts a skin of this thickness around an object, for contacts: they are computed as if its shape were
-    /// grown by the skin, with rounded edges, without a shape of its own for that. Zero, the default, takes
-    /// it away.
+    /// Sets the skin of an object: contacts are computed as if its shape were grown by this
+    /// distance, with rounded edges, without building such a shape. Zero, the default, removes the
+    /// skin.
     ///
-    /// Contacts are those of the grown solids: `world1` and `world2` are on the grown surfaces, `depth` is
-    /// larger than that of the shapes by the sum of both skins, normals and features are those of the shapes,
-    /// and kinematics have the skins too. Contact points exist, and the pair is in contact, while the grown
-    /// solids overlap or are no farther apart than the sum of the predictions. So a solver that brings depths
-    /// to zero holds the shapes apart by both skins, where normals are exact and cheap; that is the
-    /// `contact_skin` of rapier, the radius of a polygon in Box2D and the dilation of ncollide. For any
-    /// shape: each part of a composite is grown.
+    /// Contacts are those of the grown solids: `world1` and `world2` are on the grown surfaces,
+    /// `depth` exceeds that of the shapes by the sum of both skins, normals and features are those
+    /// of the shapes, and kinematics include the skins. Contact points exist, and the pair is in
+    /// contact, while the grown solids overlap or are no farther apart than the sum of the
+    /// predictions. So a solver that brings depths to zero keeps the shapes apart by both skins,
+    /// where normals are exact and cheap. This corresponds to the `contact_skin` of rapier, the
+    /// radius of a polygon in Box2D and the dilation of ncollide. Works for any shape: each part of
+    /// a composite is grown.
     ///
-    /// Nothing else sees the skin: neither proximity, whose margin is another way to be early, nor queries,
-    /// nor algorithms of a dispatcher of one's own. Takes effect at the next update; contacts keep their ids.
-    /// Costs nothing in a world without skins. In one with skins boxes are larger by the skin, and the manifolds
-    /// of an object with a skin are made when they are first read.
+    /// Proximities, queries and the algorithms of a custom dispatcher ignore the skin. Takes effect
+    /// at the next update; contacts keep their ids. Costs nothing in a world without skins.
+    /// Otherwise boxes are larger by the skin, and the manifolds of an object with a skin are built
+    /// on first access.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -55,7 +56,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         or_panic(self.try_set_skin(handle, skin));
     }
 
-    /// Puts a skin around an object; see [`Self::set_skin`].
+    /// Sets the skin of an object; see [`Self::set_skin`].
     ///
     /// # Errors
     /// If the handle is stale or the skin is negative or not finite. The world is unchanged then.
@@ -72,7 +73,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// The skin around an object, zero for most; `None` for a stale handle.
+    /// Returns the skin of an object, zero by default; `None` for a stale handle.
     #[must_use]
     pub fn skin(&self, handle: CollisionObjectHandle) -> Option<N> {
         self.objects.get(handle)?;

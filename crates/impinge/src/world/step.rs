@@ -1,4 +1,4 @@
-//! One update of a world, and the exchange of its phases.
+//! One update of a world, and the replacement of its phases.
 
 use super::{CollisionObject, CollisionWorld, WorldBroadPhase, WorldsNarrowPhase};
 use crate::math::Space;
@@ -7,38 +7,41 @@ use crate::narrow_phase::{
 };
 use crate::query::Proximity;
 
-/// Pairs that the narrow phase gets in one go: few enough to be still in the cache when the rows of
-/// their objects are given back.
+/// Number of pairs handed to the narrow phase at once: few enough that the rows of their objects
+/// are still in the cache when released.
 const AT_ONCE: usize = 512;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
 
-/// A pair filter that is lent to one update.
+/// A pair filter that one update borrows from the caller.
 type LentFilter<'a, N, const D: usize, T> =
     &'a mut dyn FnMut(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Finds out what the changes since the last update have led to: pairs, contacts, proximities,
-    /// and the events of this update.
+    /// Applies the changes since the last update: computes pairs, contacts and proximities, and
+    /// collects the events.
     ///
-    /// The events of the last update are forgotten, unless [`Self::keep_events`] was called; those that
-    /// removals and [`Self::update_pair`] have queued since come first.
+    /// The events of the last update are discarded, unless [`Self::keep_events`] was called. Events
+    /// queued since then by removals and [`Self::update_pair`] come first.
     pub fn update(&mut self) {
         self.update_filtered(None);
     }
 
-    /// [`Self::update`] with one more pair filter, which may borrow and change what the caller has: the
-    /// joints of a solver, a table of who ignores whom.
+    /// Updates as [`Self::update`] does, with one more pair filter. It may borrow and change what
+    /// the caller has: the joints of a solver, a table of who ignores whom.
     ///
-    /// It is asked once about each pair that this update would start, in an order that does not depend on the
-    /// number of threads, with the object of the smaller handle first, after groups and all registered filters have
-    /// allowed them; pairs for which it returns `false` do not start. As every pair filter it must be constant in time: a pair is asked about
-    /// once, when the boxes of its objects begin to overlap, and neither a pair that stands nor one that was
-    /// refused is asked about at a later update, with this filter, another or none. To have it decide
-    /// again, call [`Self::refilter_pairs`] or [`Self::refilter_pairs_of`] before the update: pairs that it
-    /// refuses then stop, with their events, and pairs that it allows start. Registered filters, groups and
-    /// marks of fixed objects that change have their pairs asked about again, as does another broad phase.
-    /// Pairs of an object with itself are not asked about. If the filter panics, the next update asks again.
+    /// The filter is called once for each pair that this update would start, after groups and all
+    /// registered filters have allowed it; if it returns `false`, the pair does not start. The
+    /// object with the smaller handle is the first argument, and the order of calls does not depend
+    /// on the number of threads. As every pair filter it must be constant in time: it is called
+    /// when the boxes of two objects begin to overlap, and later updates call no filter again,
+    /// neither for a pair that stands nor for one that was refused.
+    ///
+    /// To have the filter decide again, call [`Self::refilter_pairs`] or
+    /// [`Self::refilter_pairs_of`] before the update: pairs that it refuses then stop, with their
+    /// events, and pairs that it allows start. A change of registered filters, groups or fixed
+    /// marks also has the affected pairs filtered again, as does another broad phase. Pairs of an
+    /// object with itself are not filtered. If the filter panics, the next update calls it again.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -55,7 +58,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// world.update_with(&mut |a, b| !joints.contains(&(*a.data(), *b.data())));
     /// assert_eq!(world.contact_pairs().count(), 1, "the first and the last");
     ///
-    /// // A joint breaks: the pairs of what it held are asked about again.
+    /// // A joint breaks: the pairs of the object that it held are filtered again.
     /// joints.pop();
     /// world.refilter_pairs_of(links[2]);
     /// world.update_with(&mut |a, b| !joints.contains(&(*a.data(), *b.data())));
@@ -90,8 +93,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Starts the batch of events of an update, behind that of the last one if it is to be kept, and forgets
-    /// the removed objects that no event names any more.
+    /// Starts the batch of events of an update, behind the last one's if these are kept, and drops
+    /// removed objects that no event names any more.
     fn begin_events(&mut self) {
         if !core::mem::take(&mut self.keeps_events) {
             self.events.clear();
@@ -100,12 +103,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.removed.keep_named(&self.events);
     }
 
-    /// Has the next update keep the events of the last one, and add its own behind them: a program that
-    /// updates twice in a step reads the events of both together.
+    /// Makes the next update keep the events of the last one and append its own. A program that
+    /// updates twice in a step then reads the events of both together.
     ///
-    /// Each update's events are a batch of their own in canonical order, so of one pair a `Started` in the
-    /// first batch can be followed by a `Stopped` in the second. Holds for one update; to collect more,
-    /// call it before each of them but the first.
+    /// The events of each update form a batch in canonical order; a `Started` in the first batch
+    /// can be followed by a `Stopped` of the same pair in the second. Holds for one update; to
+    /// collect more, call it before each update but the first.
     ///
     /// ```
     /// use impinge::dim2::events::ContactEvent;
@@ -129,7 +132,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.keeps_events = true;
     }
 
-    /// Brings what the phases read of the objects up to date.
+    /// Writes the changes since the last update to the object table and the broad phase, and starts
+    /// or stops pairs of objects with themselves.
     fn write_changes(&mut self) {
         self.objects.flush(&mut *self.broad_phase, &mut self.algorithms);
         for index in self.objects.changes.take_self_changed() {
@@ -143,7 +147,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Lets the broad phase find what started and stopped, in `interactions`, and tells the narrow phase.
+    /// Updates the broad phase, collects the pairs that started and stopped in `interactions`, and
+    /// passes them to the narrow phase.
     fn update_broad_phase(&mut self, mut lent: Option<LentFilter<'_, N, D, T>>) {
         let Self { objects, filters, broad_phase, interactions, .. } = self;
         let mut filter = |handle1: &CollisionObjectHandle, handle2: &CollisionObjectHandle| {
@@ -169,13 +174,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects.table.tidy();
     }
 
-    /// Tells the narrow phase that a pair started or stopped.
+    /// Passes one started or stopped pair to the narrow phase.
     fn tell(&mut self, pair: HandlePair, has_started: bool) {
         self.tell_all(&[(pair, has_started)]);
     }
 
-    /// Tells the narrow phase which pairs started or stopped. It has the rows of its pairs' objects and no
-    /// others.
+    /// Passes started and stopped pairs to the narrow phase, in chunks of [`AT_ONCE`]. The object
+    /// table has rows for the objects of its pairs only.
     fn tell_all(&mut self, interactions: &[Interaction]) {
         interactions.chunks(AT_ONCE).for_each(|some| self.tell_some(some));
     }
@@ -192,8 +197,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Takes back what the narrow phase read of the objects of a pair that stopped, if it has no other
-    /// pair of theirs.
+    /// Releases the rows of a stopped pair's objects in the table, unless the narrow phase has
+    /// other pairs of them.
     pub(super) fn give_back(&mut self, pair: HandlePair) {
         for handle in [pair.0, pair.1] {
             if !self.narrow_phase.has_pairs_of(handle) {
@@ -203,7 +208,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Two handles in canonical order.
+/// Returns two handles in canonical order, the smaller first.
 pub(super) fn in_order(
     handle1: CollisionObjectHandle,
     handle2: CollisionObjectHandle,
@@ -211,19 +216,19 @@ pub(super) fn in_order(
     if handle2 < handle1 { (handle2, handle1) } else { (handle1, handle2) }
 }
 
-/// What a pair was at the last update, if anything.
+/// Status of a pair with events: touching, or a proximity other than disjoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum StepStatus {
     Touching,
     Near(Proximity),
 }
 
-/// Exchanging the phases. The old ones serve until the next update, which makes all proxies anew.
+/// Replacing the phases. The old ones serve until the next update, which creates all proxies anew.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Gives the world another broad phase, to which nothing has been added yet: any that is `Clone`, `Send` and
-    /// `Sync`.
+    /// Replaces the broad phase by an empty one: any type that is `Clone`, `Send` and `Sync`.
     ///
-    /// It takes over at the next update, which reports what changed, as any other does, and ends all marks.
+    /// It takes over at the next update, which reports changes as any other does and ends all
+    /// marks.
     pub fn set_broad_phase(&mut self, broad_phase: Box<WorldBroadPhase<N, D>>) {
         self.next_broad_phase = Some(broad_phase);
     }
@@ -234,18 +239,18 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &*self.broad_phase
     }
 
-    /// Gives the world another narrow phase, which knows no pair yet: any that is `Clone`.
+    /// Replaces the narrow phase by one without pairs: any type that is `Clone`.
     ///
-    /// It takes over at the next update, which reports what changed, as any other does, and ends all marks;
-    /// contacts get new names.
+    /// It takes over at the next update, which reports changes as any other does and ends all
+    /// marks; contacts get new ids.
     pub fn set_narrow_phase(&mut self, narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>) {
         self.next_narrow_phase = Some(narrow_phase);
     }
 
-    /// An update in which a phase is replaced. With all proxies new, every pair is reported as
-    /// started: a narrow phase that stays knows most of these already, and is notified which of its
-    /// pairs are not among them; a new one starts from nothing, and what it finds is compared with
-    /// what was before.
+    /// Updates with a new broad phase or narrow phase. Since all proxies are new, the broad phase
+    /// reports every pair as started. A narrow phase that stays knows most of these already; the
+    /// pairs that it has and the broad phase did not report are stopped. A new narrow phase starts
+    /// without pairs; its events are the differences of its statuses from the old one's.
     fn update_with_other_phases(&mut self, filter: Option<LentFilter<'_, N, D, T>>) {
         self.end_marks();
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
@@ -264,7 +269,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.write_changes();
         let alone = self.objects.bodies().filter(|body| body.has_self_pair());
         for handle in alone.map(|body| body.handle).collect::<Vec<_>>() {
-            // Known already, if it only now began.
+            // Has no effect for a self-pair that began in this update.
             self.tell((handle, handle), true);
         }
         self.started_pairs(filter);
@@ -273,8 +278,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         push_differences(&before, &self.statuses(), &mut self.events);
     }
 
-    /// Makes a proxy for every object, in the next broad phase if there is one. Answers which pairs
-    /// there were.
+    /// Creates a proxy for every object, in the next broad phase if there is one. Returns the pairs
+    /// that the old proxies had.
     fn renew_proxies(&mut self) -> Vec<HandlePair> {
         let known = self.objects.bodies().map(|body| (body.handle, body.proxy));
         let (handles, proxies): (Vec<_>, Vec<_>) = known.unzip();
@@ -294,7 +299,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         pairs
     }
 
-    /// Updates the broad phase and answers which pairs started, sorted.
+    /// Updates the broad phase and returns the pairs that started, sorted.
     fn started_pairs(&mut self, filter: Option<LentFilter<'_, N, D, T>>) -> Vec<HandlePair> {
         self.update_broad_phase(filter);
         let started = self.interactions.iter().filter(|(_, has_started)| *has_started);
@@ -312,7 +317,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// The pairs with events, sorted.
+    /// Returns the pairs that touch or are near, sorted, with their statuses.
     fn statuses(&self) -> Vec<(HandlePair, StepStatus)> {
         let contacts = self.narrow_phase.contact_pairs(&self.objects);
         let touching = contacts.filter(|(_, _, pair)| pair.num_contacts() > 0);
@@ -326,7 +331,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// The events that lead from one sorted list of statuses to another.
+/// Pushes the events that lead from one sorted list of statuses to another.
 fn push_differences(
     before: &[(HandlePair, StepStatus)],
     after: &[(HandlePair, StepStatus)],
@@ -346,7 +351,7 @@ fn push_differences(
     }
 }
 
-/// The events that lead from one status of a pair to another.
+/// Pushes the events that lead from one status of a pair to another.
 fn push_change(
     pair: HandlePair,
     before: Option<StepStatus>,

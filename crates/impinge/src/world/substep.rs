@@ -8,23 +8,23 @@ use crate::narrow_phase::CollisionObjectHandle;
 
 /// Continuous collision: single pairs at new positions.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Computes the contacts or the proximity of two objects, whichever is named first, at their present
-    /// positions, without an update: for the substeps of a solver that moves a fast body to where it
-    /// hits.
+    /// Computes the contacts or the proximity of two objects at their present positions, without an
+    /// update. The order of the handles does not matter. For the substeps of a solver that moves a
+    /// fast body to where it hits.
     ///
-    /// Answers whether the last update kept a pair of the two; if not, nothing happens: the broad phase is not
-    /// asked, so where two bodies may come to meet within a step, have their boxes cover it
-    /// ([`Self::set_position_with_prediction`]). A pair that is kept is computed as an update would: contacts
-    /// that moved keep their ids. From now on to the next update it is read at these positions,
-    /// wherever pairs are read, and all other pairs as of the last update. Shapes, query types and groups
-    /// are those of the last update.
+    /// Returns `true` if the last update kept a pair of the two; if not, nothing happens. The broad
+    /// phase is not searched: where two bodies may meet within a step, their boxes must cover it
+    /// ([`Self::set_position_with_prediction`]). The pair is computed as an update would: contacts
+    /// that moved keep their ids. Until the next update all readers see this pair at the new
+    /// positions, and every other pair as of the last update. Shapes, query types and groups are
+    /// those of the last update.
     ///
-    /// If the pair came to touch or parted, the event of that is queued: the next update delivers it first,
-    /// with those of removals, in the order in which things happened to the pair. It goes on from there, so
-    /// each `Started` still has one `Stopped`: of a pair that touches in a substep and has parted by the
+    /// If the pair began or ceased to touch, the event is queued: the next update delivers it
+    /// first, with those of removals, in the order in which they happened to the pair. Each
+    /// `Started` still has one `Stopped`: if a pair touches in a substep and has parted by the
     /// update, both are delivered.
     ///
-    /// Costs one query and two look-ups. A narrow phase of one's own has to implement
+    /// Costs one query and two look-ups. A custom narrow phase must implement
     /// [`NarrowPhase::update_pair`](super::NarrowPhase::update_pair).
     ///
     /// ```

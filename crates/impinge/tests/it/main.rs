@@ -1,6 +1,6 @@
-//! The tests of the public interface, in one program: it is linked once, and what the tests share is compiled
-//! once. `cargo test -p impinge --test it NAME` runs those whose path has a name. Only `determinism` is a program of
-//! its own, which is also run optimised.
+//! Tests of the public interface in a single program, so that it is linked once and shared code is compiled once.
+//! `cargo test -p impinge --test it NAME` runs those whose path contains a name. Only `determinism` is a separate
+//! program, because it also runs optimised.
 
 #[macro_use]
 mod support;

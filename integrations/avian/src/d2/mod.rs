@@ -10,5 +10,5 @@ pub use queries::{PointHit, ShapeCastConfig, ShapeHit, SpatialQuery};
 
 /// The shape of an entity; see [`crate::Collider`].
 pub type Collider = crate::Collider<2>;
-/// What is kept of each pair, a resource; see [`crate::PairContacts`].
+/// The state of pairs with a composite, a resource; see [`crate::PairContacts`].
 pub type PairContacts = crate::PairContacts<2>;

@@ -97,7 +97,7 @@ impl Collider {
     }
 }
 
-/// That of Avian's own collider: a square with sides of 0.5.
+/// Avian's default: a square with sides of 0.5.
 impl Default for Collider {
     fn default() -> Self {
         Self::rectangle(0.5, 0.5)

@@ -20,7 +20,7 @@ pub(super) fn isometry(position: Vec3, rotation: Rotation) -> Isometry<f32> {
     <f32 as Glam<3>>::isometry_of(&Isometry3d::new(position, rotation.0))
 }
 
-/// Two poses in a frame with the world's axes whose origin is the first position.
+/// Two poses in a frame with the world's axes and its origin at the first position.
 fn beside(positions: [Vec3; 2], rotations: [Rotation; 2]) -> [Isometry<f32>; 2] {
     let [from, to] = positions;
     [isometry(Vec3::ZERO, rotations[0]), isometry(to - from, rotations[1])]
@@ -92,13 +92,14 @@ impl AnyCollider for Collider {
     }
 }
 
-/// Avian itself carries impulses over from one step to the next for pairs of so many manifolds.
+/// Avian itself matches the points of pairs with at most this number of manifolds.
 const MATCHED: usize = 4;
 
-/// The name of a point, and the impulses that the solver starts from.
+/// The feature ids of a point, and its normal and tangential impulse for warm starting.
 type Warmth = ([PackedFeatureId; 2], f32, Vec2);
 
-/// Of the points of a pair, if they may be needed: it has as many manifolds, and may have more in a moment.
+/// The ids and impulses of the points of a pair with at least [`MATCHED`] manifolds, which may exceed that number after
+/// the update; empty otherwise.
 fn warmth(manifolds: &[ContactManifold]) -> Vec<Warmth> {
     let many = if manifolds.len() >= MATCHED { manifolds } else { &[] };
     let points = many.iter().flat_map(|manifold| &manifold.points);
@@ -109,7 +110,7 @@ fn warmth(manifolds: &[ContactManifold]) -> Vec<Warmth> {
     points.map(of).collect()
 }
 
-/// Gives points the impulses that they had by the same names.
+/// Copies the impulses of old points to new points with equal feature ids.
 fn warm(manifolds: &mut [ContactManifold], old: &[Warmth]) {
     for point in manifolds.iter_mut().flat_map(|manifold| &mut manifold.points) {
         let name = [point.feature_id1, point.feature_id2];

@@ -23,7 +23,7 @@ pub struct SpatialQuery<'w, 's> {
     trees: Res<'w, ColliderTrees>,
 }
 
-/// How a shape is cast.
+/// Options of a shape cast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeCastConfig {
     /// The longest way; infinite by default.
@@ -41,7 +41,7 @@ impl Default for ShapeCastConfig {
     }
 }
 
-/// What a cast shape met.
+/// The first hit of a shape cast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHit {
     /// The collider that was hit.
@@ -54,7 +54,7 @@ pub struct ShapeHit {
     pub point2: Vec3,
     /// The normal of the collider that was hit, out of it.
     pub normal1: Vec3,
-    /// The opposite.
+    /// The normal of the cast shape: `-normal1`.
     pub normal2: Vec3,
 }
 

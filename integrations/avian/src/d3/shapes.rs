@@ -102,7 +102,7 @@ impl Collider {
     }
 }
 
-/// That of Avian's own collider: a box with sides of 0.5.
+/// Avian's default: a box with sides of 0.5.
 impl Default for Collider {
     fn default() -> Self {
         Self::cuboid(0.5, 0.5, 0.5)

@@ -45,7 +45,7 @@ impl Glam<2> for f32 {
         if rotation.x != 0.0 || rotation.y != 0.0 {
             return Self::place_child(&GlobalTransform::from(*transform));
         }
-        // The quaternion (0, 0, z, w) turns by twice its angle.
+        // The quaternion (0, 0, z, w) rotates by twice its angle.
         let (cos, sin) =
             (rotation.w * rotation.w - rotation.z * rotation.z, 2.0 * rotation.w * rotation.z);
         let isometry = isometry(transform.translation.truncate(), cos, sin);
@@ -63,14 +63,15 @@ impl Glam<2> for f32 {
         if x.dot(y).abs() > MAX_SHEAR * x_length * y_length {
             return Err(ColliderError::Sheared);
         }
-        // A mirror goes into the scale along y: the rotation takes the x axis to its image.
+        // A reflection becomes part of the scale along y: the rotation maps the x axis to its
+        // image.
         let (along, mirror) = (x / x_length, x.perp_dot(y).signum());
         let isometry = isometry(affine.translation.truncate(), along.x, along.y);
         Ok(Placement { isometry, scale: settled(Vector::new(x_length, y_length * mirror)) })
     }
 }
 
-/// The library's pose; the world checks that the complex number is a rotation.
+/// Returns the library's pose; the world checks that the complex number is a rotation.
 fn isometry(translation: Vec2, cos: f32, sin: f32) -> Isometry<f32> {
     let rotation: Rotation<f32> = Unit::new_unchecked(Complex::new(cos, sin));
     Isometry::from_parts(Translation::new(translation.x, translation.y), rotation)

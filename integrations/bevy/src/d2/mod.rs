@@ -1,4 +1,4 @@
-//! 2D: every name with its dimension filled in, and the shapes that 2D alone has.
+//! 2D: every name with its dimension filled in, and the shapes that exist in 2D only.
 
 mod math;
 mod shapes;
@@ -14,13 +14,13 @@ pub type Collider<W = DefaultWorld> = crate::Collider<2, W>;
 pub type Collisions<W = DefaultWorld> = crate::Collisions<2, W>;
 /// The plugin; see [`crate::ImpingePlugin`].
 pub type ImpingePlugin<W = DefaultWorld, F = ()> = crate::ImpingePlugin<2, W, F>;
-/// Two entities began to touch; see [`crate::CollisionStarted`].
+/// Two entities started touching; see [`crate::CollisionStarted`].
 pub type CollisionStarted<W = DefaultWorld> = crate::CollisionStarted<2, W>;
-/// Two entities ceased to touch; see [`crate::CollisionEnded`].
+/// Two entities stopped touching; see [`crate::CollisionEnded`].
 pub type CollisionEnded<W = DefaultWorld> = crate::CollisionEnded<2, W>;
-/// What an entity touches; see [`crate::CollidingEntities`].
+/// The entities that an entity touches; see [`crate::CollidingEntities`].
 pub type CollidingEntities<W = DefaultWorld> = crate::CollidingEntities<2, W>;
-/// Why an entity is not followed; see [`crate::ColliderProblem`].
+/// The reason why an entity is not followed; see [`crate::ColliderProblem`].
 pub type ColliderProblem<W = DefaultWorld> = crate::ColliderProblem<2, W>;
 /// An entity could not be followed; see [`crate::ColliderFailed`].
 pub type ColliderFailed<W = DefaultWorld> = crate::ColliderFailed<2, W>;
@@ -28,24 +28,24 @@ pub type ColliderFailed<W = DefaultWorld> = crate::ColliderFailed<2, W>;
 pub type ContactPair = crate::ContactPair<2>;
 /// A point of contact; see [`crate::ContactPoint`].
 pub type ContactPoint = crate::ContactPoint<2>;
-/// What a ray met; see [`crate::RayHit`].
+/// The hit of a ray; see [`crate::RayHit`].
 pub type RayHit = crate::RayHit<2>;
-/// What a moving shape met; see [`crate::ShapeHit`].
+/// The hit of a moving shape; see [`crate::ShapeHit`].
 pub type ShapeHit = crate::ShapeHit<2>;
 /// The nearest point of an entity; see [`crate::PointHit`].
 pub type PointHit = crate::PointHit<2>;
 /// A near entity; see [`crate::NearestEntity`].
 pub type NearestEntity = crate::NearestEntity<2>;
-/// Where a character got to; see [`crate::Slide`].
+/// The result of a character motion; see [`crate::Slide`].
 pub type Slide = crate::Slide<2>;
 /// Drawing with gizmos, a plugin; see [`crate::DebugGizmosPlugin`].
 #[cfg(feature = "gizmos")]
 pub type DebugGizmosPlugin<W = DefaultWorld> = crate::DebugGizmosPlugin<2, W>;
-/// What is drawn, a resource; see [`crate::DebugGizmos`].
+/// The drawing options, a resource; see [`crate::DebugGizmos`].
 #[cfg(feature = "gizmos")]
 pub type DebugGizmos<W = DefaultWorld> = crate::DebugGizmos<2, W>;
 
-/// What the usual program needs in 2D.
+/// The names of common programs in 2D.
 pub mod prelude {
     pub use super::{
         Collider, ColliderFailed, ColliderProblem, CollidingEntities, CollisionEnded,

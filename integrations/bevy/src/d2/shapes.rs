@@ -1,4 +1,4 @@
-//! Colliders that 2D alone has, and those of Bevy's primitives.
+//! Colliders that exist in 2D only, and those of Bevy's primitives.
 
 use bevy_math::Vec2;
 use bevy_math::primitives::{
@@ -13,38 +13,38 @@ use super::Collider;
 use crate::collider::points;
 
 impl Collider {
-    /// A disk around the origin.
+    /// Creates a disk around the origin.
     #[must_use]
     pub fn circle(radius: f32) -> Self {
         Self::ball(radius)
     }
 
-    /// A rectangle with its middle at the origin, given its full lengths.
+    /// Creates a rectangle centred at the origin, with its full lengths.
     #[must_use]
     pub fn rectangle(x_length: f32, y_length: f32) -> Self {
         Self::made(Cuboid::try_new(Vector::new(x_length, y_length) / 2.0))
     }
 
-    /// An ellipse with its middle at the origin, given half of its lengths, as Bevy's `Ellipse`.
+    /// Creates an ellipse centred at the origin, with its half lengths, as Bevy's `Ellipse`.
     #[must_use]
     pub fn ellipse(half_width: f32, half_height: f32) -> Self {
         Self::made(Ellipse::try_new(Vector::new(half_width, half_height)))
     }
 
-    /// All that is behind a line through the origin; `normal`, which has length 1, points out of it.
+    /// Creates the half-plane behind a line through the origin; `normal`, which has length 1, points outwards.
     #[must_use]
     pub fn half_plane(normal: Vec2) -> Self {
         Self::made(HalfSpace::try_new(Unit::new_unchecked(Vector::new(normal.x, normal.y))))
     }
 
-    /// The convex hull of points; a segment or a point, if they span no more.
+    /// Creates the convex hull of points; a segment or a point, if they span no area.
     #[must_use]
     pub fn convex_hull(vertices: impl IntoIterator<Item = Vec2>) -> Self {
         Self::from_shape(convex_shape(&points::<2>(vertices)).map_err(Into::into))
     }
 
-    /// A line over heights at equal distances, centred on the origin: `scale.x` wide, and `scale.y` times the heights
-    /// high. Both of its sides can be touched.
+    /// Creates a polyline over heights at equal distances, centred at the origin: `scale.x` wide, with the heights
+    /// times `scale.y`. It is two-sided.
     #[must_use]
     pub fn heightfield(heights: Vec<f32>, scale: Vec2) -> Self {
         Self::made(HeightField::<f32>::try_new(heights, Vector::new(scale.x, scale.y)))

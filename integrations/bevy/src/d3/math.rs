@@ -55,7 +55,8 @@ impl Glam<3> for f32 {
                 return Err(ColliderError::Sheared);
             }
         }
-        // A mirror goes into the scale along x, as in `Affine3A::to_scale_rotation_translation`.
+        // A reflection becomes part of the scale along x, as in
+        // `Affine3A::to_scale_rotation_translation`.
         let mirror = affine.matrix3.determinant().signum();
         let [x, y, z] = lengths;
         let scale = Vector::new(x * mirror, y, z);
@@ -65,7 +66,7 @@ impl Glam<3> for f32 {
     }
 }
 
-/// The library's pose; the world checks that the quaternion is a rotation.
+/// Returns the library's pose; the world checks that the quaternion is a rotation.
 fn isometry(translation: Vec3, rotation: Quat) -> Isometry<f32> {
     let quaternion = Quaternion::new(rotation.w, rotation.x, rotation.y, rotation.z);
     let translation = Translation::new(translation.x, translation.y, translation.z);

@@ -1,4 +1,4 @@
-//! Colliders that 3D alone has, and those of Bevy's primitives.
+//! Colliders that exist in 3D only, and those of Bevy's primitives.
 
 use bevy_math::Vec3;
 use bevy_math::primitives::{
@@ -15,58 +15,58 @@ use super::Collider;
 use crate::collider::{point, points};
 
 impl Collider {
-    /// A ball around the origin.
+    /// Creates a ball around the origin.
     #[must_use]
     pub fn sphere(radius: f32) -> Self {
         Self::ball(radius)
     }
 
-    /// A box with its middle at the origin, given its full lengths.
+    /// Creates a box centred at the origin, with its full lengths.
     #[must_use]
     pub fn cuboid(x_length: f32, y_length: f32, z_length: f32) -> Self {
         Self::made(Cuboid::try_new(Vector::new(x_length, y_length, z_length) / 2.0))
     }
 
-    /// A cylinder along the y axis, with its middle at the origin.
+    /// Creates a cylinder along the y axis, centred at the origin.
     #[must_use]
     pub fn cylinder(radius: f32, height: f32) -> Self {
         Self::made(Cylinder::try_new(height / 2.0, radius))
     }
 
-    /// A cone along the y axis: its apex is half of `height` above the origin, its base as much below.
+    /// Creates a cone along the y axis: its apex is half of `height` above the origin, its base as much below.
     #[must_use]
     pub fn cone(radius: f32, height: f32) -> Self {
         Self::made(Cone::try_new(height / 2.0, radius))
     }
 
-    /// An ellipsoid with its middle at the origin, given half of its lengths.
+    /// Creates an ellipsoid centred at the origin, with its half lengths.
     #[must_use]
     pub fn ellipsoid(half_axes: Vec3) -> Self {
         Self::made(Ellipsoid::try_new(Vector::new(half_axes.x, half_axes.y, half_axes.z)))
     }
 
-    /// A tetrahedron with these corners.
+    /// Creates a tetrahedron with these corners.
     #[must_use]
     pub fn tetrahedron(corners: [Vec3; 4]) -> Self {
         Self::made(Tetrahedron::try_new(corners.map(point::<3>)))
     }
 
-    /// All that is behind a plane through the origin; `normal`, which has length 1, points out of it.
+    /// Creates the half-space behind a plane through the origin; `normal`, which has length 1, points outwards.
     #[must_use]
     pub fn half_space(normal: Vec3) -> Self {
         let normal = Vector::new(normal.x, normal.y, normal.z);
         Self::made(HalfSpace::try_new(Unit::new_unchecked(normal)))
     }
 
-    /// The convex hull of points; a polygon, a segment or a point, if they span no more.
+    /// Creates the convex hull of points; a polygon, a segment or a point, if they span no volume.
     #[must_use]
     pub fn convex_hull(vertices: impl IntoIterator<Item = Vec3>) -> Self {
         Self::from_shape(convex_shape(&points::<3>(vertices)).map_err(Into::into))
     }
 
-    /// A surface over `rows` times `columns` heights, given row by row, centred on the origin: rows follow one another
-    /// along z, columns along x. It is `scale.x` by `scale.z` wide, and `scale.y` times the heights high. Both of
-    /// its sides can be touched.
+    /// Creates a surface over `rows` times `columns` heights, given row by row, centred at the origin: rows follow one
+    /// another along z, columns along x. It is `scale.x` by `scale.z` wide, with the heights times `scale.y`. It is
+    /// two-sided.
     #[must_use]
     pub fn heightfield(rows: usize, columns: usize, heights: Vec<f32>, scale: Vec3) -> Self {
         let scale = Vector::new(scale.x, scale.y, scale.z);

@@ -1,4 +1,4 @@
-//! Entities come, change and go.
+//! Entities that are added, changed and removed.
 
 use bevy_app::{App, Update};
 use bevy_ecs::entity_disabling::Disabled;
@@ -103,7 +103,7 @@ fn layers_change_at_run_time() {
     app.world_mut().entity_mut(b).insert(CollisionLayers::NONE);
     app.update();
     assert_eq!(told::<3>(&mut app), [(false, a, b)]);
-    // Without steps in between messages of removal would be forgotten.
+    // Without steps in between messages of removal would be dropped.
     app.world_mut().entity_mut(b).remove::<CollisionLayers>();
     for _ in 0..4 {
         app.world_mut().clear_trackers();

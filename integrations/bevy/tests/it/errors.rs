@@ -1,4 +1,4 @@
-//! Bad input: nothing panics, nothing is lost, and the user sees why.
+//! Invalid input: no panic, no loss, and an error for the user.
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;

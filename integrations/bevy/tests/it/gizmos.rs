@@ -7,7 +7,7 @@ use bevy_impinge::{DebugGizmos, DebugGizmosPlugin, Glam};
 
 use crate::support::{app, spawn};
 
-/// An app with gizmos, without anything to render them.
+/// Returns the number of gizmo assets that an app draws, without a renderer.
 fn drawn<const D: usize>(is_enabled: bool) -> usize
 where
     f32: Glam<D>,

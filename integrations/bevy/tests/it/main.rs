@@ -1,4 +1,4 @@
-//! The plugin from outside: apps of Bevy without windows.
+//! Tests of the public interface of the plugin: apps of Bevy without windows.
 
 mod bodies;
 mod errors;

@@ -10,7 +10,7 @@ use bevy_transform::prelude::*;
 #[derive(Component)]
 struct Other;
 
-/// The messages of a cloud of moving sensors and circles.
+/// Returns the messages of a cloud of moving sensors and circles.
 fn run(mixes_archetypes: bool) -> Vec<(u32, usize, usize)> {
     let mut app = crate::support::app::<2>();
     let mut entities = Vec::new();
@@ -66,7 +66,7 @@ fn the_fixed_schedule_is_the_default() {
         positions.0.push(pose.translation.x);
     };
     app.add_systems(FixedPostUpdate, note.after(ImpingeSystems::Step));
-    // The first frame has no time behind it.
+    // The first frame has no elapsed time.
     for _ in 0..3 {
         app.update();
     }

@@ -1,4 +1,4 @@
-//! Questions, in both dimensions.
+//! Queries, in both dimensions.
 
 use bevy_ecs::prelude::*;
 use bevy_impinge::{Collider, CollisionLayers, Sensor, SpatialFilter, d2, d3};

@@ -82,12 +82,12 @@ fn two_walls_leave_their_edge_and_three_nothing() {
 
 #[test]
 fn a_wedge_of_walls_stops_it() {
-    // Walls at 60° to each other: along either leads into the other.
+    // Walls at 60° to each other: a motion along either leads into the other.
     let walls =
         [(Vec3::new(-0.5, 0.0, 0.866), Vec3::ZERO), (Vec3::new(-0.5, 0.0, -0.866), Vec3::ZERO)];
     let app = with_walls(&walls);
     let found = slide(&app, Vec3::new(-5.0, 0.0, 0.1), Vec3::X * 50.0);
-    // The middle stays 0.51 from both planes.
+    // The centre stays 0.51 from both planes.
     let end = Vec3::new(-5.0, 0.0, 0.1) + found.motion;
     assert!((end.x + 0.51 / 0.5).abs() < 1e-2 && end.z.abs() < 1e-2, "{end}");
     let up = slide(&app, Vec3::new(-5.0, 0.0, 0.1), Vec3::new(50.0, 1.0, 0.0));

@@ -49,7 +49,7 @@ pub(crate) fn place(app: &mut App, entity: Entity, transform: Transform) {
     *app.world_mut().get_mut::<Transform>(entity).expect("it has one") = transform;
 }
 
-/// The messages since the last call, in order: whether the pair started, and its entities.
+/// Returns the messages since the last call, in order: whether the pair started, and its entities.
 pub(crate) fn told<const D: usize>(app: &mut App) -> Vec<(bool, Entity, Entity)>
 where
     f32: Glam<D>,

@@ -1,4 +1,4 @@
-//! A robot arm that watches for collisions with itself and with obstacles.
+//! A robot arm that checks for collisions with itself and with obstacles.
 
 use impinge::math::Real;
 use impinge::world::{BroadPhasePairFilter, CollisionObject};
@@ -6,29 +6,29 @@ use impinge_record::Registry;
 
 use crate::prelude::*;
 
-/// Each link is a capsule, whose axis has length 1 from joint to joint.
+/// The number of links. Each is a capsule, whose axis has length 1 from joint to joint.
 const LINKS: usize = 5;
 const RADIUS: f32 = 0.15;
 
-/// The arm, and what its links hit.
+/// The arm, and its current collisions.
 #[derive(Debug, Default)]
 pub(crate) struct Arm<const D: usize> {
     /// The links, from the base.
     links: Vec<CollisionObjectHandle>,
-    /// The angles of all joints follow from this number.
+    /// The parameter of the motion, from which the angles of all joints follow.
     phase: f32,
-    /// The phase decreases.
+    /// Whether the phase decreases.
     is_back: bool,
-    /// The labels of pairs that touch.
+    /// The labels of touching pairs.
     hits: Vec<[String; 2]>,
 }
 
-/// The number of a link, by its label; `None` for an obstacle.
+/// Returns the number of a link from its label; `None` for an obstacle.
 fn link(label: &str) -> Option<usize> {
     label.strip_prefix("link ")?.parse().ok()
 }
 
-/// A pair filter: all pairs but those of links that share a joint, which always touch there.
+/// A pair filter: accepts all pairs except links that share a joint, which always touch there.
 #[derive(Clone, Copy, Debug)]
 struct Joints;
 
@@ -48,9 +48,9 @@ where
     }
 }
 
-/// Where the links are at a phase: each joint swings at a pace of its own.
+/// Returns the poses of the links at a phase: each joint swings at its own rate.
 fn poses<const D: usize>(phase: f32) -> [Pose<f32, D>; LINKS] {
-    // Each joint is placed in the frame of the one before.
+    // Each joint is in the frame of the previous one.
     let mut joint = Pose::<f32, D>::identity();
     std::array::from_fn(|n| {
         let angle = 1.4 * Real::sine_cosine(phase * (1.0 + 0.37 * number(n)) + number(n)).0;
@@ -66,14 +66,15 @@ impl<const D: usize> Arm<D>
 where
     f32: Dimension<D>,
 {
-    /// Whether the arm would hit something at a phase: an obstacle, by a query to the world, or itself.
+    /// Whether the arm would collide at a phase: with an obstacle, by a query of the world, or with
+    /// itself.
     fn would_hit(&self, world: &World<D>, phase: f32) -> bool {
         let (capsule, poses) = (Capsule::new(0.5, RADIUS), poses::<D>(phase));
         let is_obstacle = |object: &CollisionObject<f32, D, String>| link(object.data()).is_none();
         let obstacles = QueryFilter::new().predicate(&is_obstacle);
         let hits_obstacle =
             poses.iter().any(|pose| world.overlaps_any(&f32::isometry(pose), &capsule, &obstacles));
-        // Links that share a joint are left out, as the filter does for the world.
+        // Links that share a joint are excluded, as in the filter of the world.
         let touch = |a: usize, b: usize| {
             distance(&isometry(&poses[a]), &capsule, &isometry(&poses[b]), &capsule) <= 0.0
         };
@@ -97,7 +98,7 @@ where
 
     fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
-        // The registry has the filter under this name, for the recording's replay too.
+        // The registry has the filter under this name, also for the replay of the recording.
         world.register_broad_phase_pair_filter("joints")?;
         let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
         for (n, place) in
@@ -114,7 +115,7 @@ where
         Ok(())
     }
 
-    /// Queries are asked before the move; the contacts of the update confirm it afterwards.
+    /// Queries before the move; the contacts of the update confirm them.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let pace = panel.value("speed") * TIME_STEP;
         let next = self.phase + if self.is_back { -pace } else { pace };
@@ -128,7 +129,7 @@ where
         Ok(world.set_positions(&moved)?)
     }
 
-    /// All contacts but those between obstacles. A pair may have several manifolds.
+    /// Collects all contacts except those between obstacles. A pair may have several manifolds.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let hits = world.contact_views().map(|(one, two, _)| [one, two].map(|o| o.data().clone()));
         self.hits =
@@ -137,7 +138,7 @@ where
         Ok(())
     }
 
-    /// The axis of each link, red where the link takes part in a collision.
+    /// Draws the axis of each link, red if the link collides.
     fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         for handle in &self.links {
             let found = world.collision_object(*handle);

@@ -1,28 +1,28 @@
-//! Bullets between walls that are thinner than a step is long.
+//! Bullets between walls that are thinner than the distance of a step.
 
 use crate::prelude::*;
 
-/// Of a bullet.
+/// The radius of a bullet.
 const RADIUS: f32 = 0.05;
 /// Half the thickness of a wall.
 const HALF: f32 = 0.01;
 /// Half the width of the room.
 const ROOM: f32 = 5.0;
-/// A bullet is reflected so often within a step; then it waits for the next.
+/// The largest number of reflections of a bullet in a step; then it waits for the next step.
 const MAX_BOUNCES: usize = 64;
 
 /// A bullet and its velocity.
 #[derive(Debug)]
 struct Bullet<const D: usize> {
-    /// The ball in the world, at the end of its way.
+    /// The ball in the world, at the end of its path.
     object: CollisionObjectHandle,
     /// A unit vector.
     direction: Vector<f32, D>,
-    /// The corners of the way of the last step.
+    /// The corners of the path of the last step.
     path: Vec<Point<f32, D>>,
 }
 
-/// Bullets in a room that a wall divides. Each step casts them from wall to wall.
+/// Bullets in a room with a dividing wall. Each step casts them from wall to wall.
 #[derive(Debug, Default)]
 pub(crate) struct Bullets<const D: usize> {
     bullets: Vec<Bullet<D>>,
@@ -33,7 +33,7 @@ impl<const D: usize> Bullet<D>
 where
     f32: Dimension<D>,
 {
-    /// Flies a length, reflected where it hits; how often that was.
+    /// Moves along `length` with reflections at hits; returns their number.
     fn fly(&mut self, world: &World<D>, mut length: f32) -> usize {
         let mut pose = pose_of(world, self.object);
         let (ball, walls) = (Ball::new(RADIUS), wall_groups());
@@ -42,14 +42,14 @@ where
         for bounces in 0..MAX_BOUNCES {
             let options = ImpactOptions::new().with_max_time(length);
             let from = f32::isometry(&pose);
-            // The direction is a unit vector, so that the time of an impact is a length.
+            // The direction is a unit vector, so that the time of impact is a length.
             let hit = world.cast_shape(&from, &self.direction, &ball, &options, &filter);
             let way = hit.as_ref().map_or(length, |(_, hit)| hit.toi);
             pose.translation += self.direction * way;
             self.path.push(Point::from(pose.translation));
             let Some((_, hit)) = hit else { return bounces };
             let normal = hit.normal.into_inner();
-            // A ball that just touches and flies away is no impact: the next cast starts here.
+            // A ball that only touches and flies away has no impact: the next cast starts here.
             let direction = self.direction - normal * (2.0 * self.direction.dot(&normal));
             self.direction = unit_or(&direction, direction);
             length -= way;
@@ -69,14 +69,14 @@ impl<const D: usize> Bullets<D>
 where
     f32: Dimension<D>,
 {
-    /// Two walls for each axis, and one across the first axis in the middle.
+    /// Adds two walls for each axis, and one across the first axis in the middle.
     fn add_walls(world: &mut World<D>) -> Result<(), SampleError> {
         let mut groups = CollisionGroups::new();
         groups.set_membership(&[1]);
         let sides = (0..D).flat_map(|axis| [(axis, -ROOM), (axis, ROOM)]);
         for (axis, place) in sides.chain([(0, 0.0)]) {
             let (mut half, mut at) = (Vector::<f32, D>::repeat(ROOM + HALF), vector([0.0; 3]));
-            // As wide as the room, and as thin as paper.
+            // As wide as the room, and very thin.
             (half[axis], at[axis]) = (HALF, place);
             let position = f32::isometry(&Pose::from_translation(at));
             let wall = ShapeHandle::new(Cuboid::new(half));
@@ -105,7 +105,7 @@ where
             let position = at([side * ROOM, 4.0 * scattered(n, 1) - 2.0, 0.0]);
             let query = ContactQuery::default();
             let object = world.add(position, ball.clone(), groups, query, format!("bullet {n}"))?;
-            // Any direction: a turn in the xy plane, and one towards the last axis.
+            // Any direction: a rotation in the xy plane, and one towards the last axis.
             let direction = turn::<D>([0, 1], TAU * scattered(n, 2))
                 * turn::<D>([0, D - 1], TAU * scattered(n, 3))
                 * vector::<D>([1.0, 0.0, 0.0]);
@@ -124,7 +124,7 @@ where
         Ok(())
     }
 
-    /// The ways of the last step, with all their corners.
+    /// Draws the paths of the last step, with all their corners.
     fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         self.bullets.iter().for_each(|bullet| canvas.path(&bullet.path, RED));
     }

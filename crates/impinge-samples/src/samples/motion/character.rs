@@ -2,24 +2,24 @@
 
 use crate::prelude::*;
 
-/// The distance kept from everything: casts that stop short of contact never start in contact.
+/// The distance kept from obstacles: casts that stop before contact never start in contact.
 const SKIN: f32 = 0.02;
-/// Of the capsule.
+/// The radius of the capsule.
 const RADIUS: f32 = 0.3;
 
-/// How many places of the trail are kept.
+/// The number of stored positions of the trail.
 const TRAIL: usize = 300;
 
-/// A capsule in a yard with posts. Its heading turns slowly; casts limit how far it may go.
+/// A capsule in a yard with posts. Its heading rotates slowly; casts limit its motion.
 #[derive(Debug, Default)]
 pub(crate) struct Character<const D: usize> {
     /// The capsule.
     body: Option<CollisionObjectHandle>,
     /// The angle of the heading from x to y, in radians.
     heading: f32,
-    /// Where it was after each step.
+    /// Its positions after each step.
     trail: Vec<Point<f32, D>>,
-    /// How often a cast was blocked.
+    /// The number of blocked casts.
     slides: usize,
 }
 
@@ -27,7 +27,8 @@ impl<const D: usize> Character<D>
 where
     f32: Dimension<D>,
 {
-    /// Moves the capsule until it is `SKIN` away from an obstacle; slides on along it, at most along three.
+    /// Moves the capsule until its distance from an obstacle is `SKIN`, then along the obstacle; at most
+    /// along three.
     fn slide(
         &mut self,
         world: &World<D>,
@@ -35,14 +36,14 @@ where
         mut motion: Vector<f32, D>,
     ) -> Pose<f32, D> {
         let capsule = Capsule::new(0.3, RADIUS);
-        // The capsule is in the world as well: it is not in its own way.
+        // The capsule is in the world as well, and is excluded.
         let mut others = QueryFilter::new();
         if let Some(body) = self.body {
             others = others.exclude(body);
         }
         let options = ImpactOptions::new().with_max_time(1.0).with_target_distance(SKIN);
         for _ in 0..4 {
-            // An impact before the end of the motion, at a distance of the skin, ends a part of it.
+            // An impact before the end of the motion, at the distance of the skin, ends a part of it.
             let from = f32::isometry(&pose);
             let Some((_, hit)) = world.cast_shape(&from, &motion, &capsule, &options, &others)
             else {
@@ -51,7 +52,7 @@ where
             };
             self.slides += 1;
             pose.translation += motion * hit.toi;
-            // The normal points from the obstacle or to it: what goes against the character is taken away.
+            // The normal may point from the obstacle or to it: the motion against the character is removed.
             motion *= 1.0 - hit.toi;
             let normal = hit.normal.into_inner();
             motion -= normal * motion.dot(&normal);
@@ -76,7 +77,7 @@ where
     fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
-        // Four walls that meet at corners, and posts of all kinds.
+        // Four walls with common corners, and posts of all kinds.
         for n in 0..4_u8 {
             let rotation = turn::<D>([0, 1], TAU / 4.0 * f32::from(n));
             let translation = rotation * vector::<D>([5.0, 0.0, 0.0]);
@@ -100,7 +101,7 @@ where
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let Some(body) = self.body else { return Ok(()) };
         self.heading += panel.value("turn") * TIME_STEP;
-        // As far as it would go without obstacles.
+        // The motion without obstacles.
         let ahead = vector([panel.value("speed") * TIME_STEP, 0.0, 0.0]);
         let pose = pose_of(world, body);
         let pose = self.slide(world, pose, turn::<D>([0, 1], self.heading) * ahead);
@@ -110,7 +111,7 @@ where
         Ok(world.set_position(body, f32::isometry(&pose))?)
     }
 
-    /// The trail of the last five seconds, and the heading.
+    /// Draws the trail of the last five seconds, and the heading.
     fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         canvas.path(&self.trail, BLUE);
         if let Some(here) = self.trail.last() {
@@ -119,7 +120,7 @@ where
         }
     }
 
-    /// The distance from the nearest object, the character itself left out by a predicate.
+    /// Returns the distance from the nearest object; a predicate excludes the character itself.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let pose = self.body.map(|body| f32::isometry(&pose_of(world, body)));
         let capsule = Capsule::new(0.3, RADIUS);

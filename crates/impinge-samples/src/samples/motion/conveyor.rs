@@ -1,4 +1,4 @@
-//! Light barriers over a conveyor, which count what passes.
+//! Light barriers over a conveyor, which count passing goods.
 
 use impinge::narrow_phase::ProximityEvent;
 
@@ -16,16 +16,16 @@ pub(crate) struct Conveyor {
     goods: Vec<CollisionObjectHandle>,
     /// A sensor for each kind, in the order of the kinds.
     sensors: Vec<CollisionObjectHandle>,
-    /// How many of each kind have entered their sensor.
+    /// The number of each kind that has entered its sensor.
     entered: [usize; KINDS.len()],
-    /// How many are within a sensor.
+    /// The number within a sensor.
     within: usize,
-    /// How far the belt has moved.
+    /// The distance that the belt has moved.
     way: f32,
 }
 
 impl Conveyor {
-    /// Where a piece is on the belt, which takes it back to the start at the end.
+    /// Returns the position of a piece on the belt, which wraps around at the end.
     fn position<const D: usize>(&self, index: usize) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -40,7 +40,7 @@ impl Conveyor {
     {
         for index in 0..10 {
             let kind = index * 7 % KINDS.len();
-            // Membership says what an object is; it may touch every group.
+            // Membership is the kind of an object; it may touch every group.
             let mut groups = CollisionGroups::new();
             groups.set_membership(&[kind]);
             let (position, query) = (self.position(index), ContactQuery::default());
@@ -50,7 +50,7 @@ impl Conveyor {
         Ok(())
     }
 
-    /// A sensor reports whom it touches, without contact points. It is interested in one kind of goods.
+    /// Adds a sensor for each kind. Sensors report proximity, without contact points.
     fn add_sensors<const D: usize>(&mut self, world: &mut World<D>) -> Result<(), SampleError>
     where
         f32: Dimension<D>,
@@ -58,7 +58,7 @@ impl Conveyor {
         for (kind, name) in KINDS.iter().enumerate() {
             let mut groups = CollisionGroups::new();
             groups.set_membership(&[KINDS.len()]);
-            // The whitelist of either object is enough to refuse a pair.
+            // The whitelist of either object suffices to exclude a pair.
             groups.set_whitelist(&[kind]);
             let gate = ShapeHandle::new(Cuboid::new(vector([0.1, 1.0, 1.0])));
             let (position, query) =
@@ -69,7 +69,7 @@ impl Conveyor {
         Ok(())
     }
 
-    /// The sensor of an event, if it is one of ours.
+    /// Returns the sensor of an event, if it has one.
     fn sensor(&self, event: &ProximityEvent) -> Option<usize> {
         let objects = [event.collider1, event.collider2];
         self.sensors.iter().position(|sensor| objects.contains(sensor))
@@ -98,7 +98,7 @@ where
         Ok(())
     }
 
-    /// Events say what has changed since the last update, so that each entry is counted once.
+    /// Events are changes since the last update, so that each entry is counted once.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         for event in world.proximity_events() {
             if let Some(sensor) = self.sensor(event)

@@ -1,12 +1,12 @@
-//! Capsules that find their way past each other.
+//! Capsules that avoid each other.
 
 use crate::prelude::*;
 
-/// Each looks so far, and gives way to so many.
+/// The distance at which a person sees others, and the number of others that it avoids.
 const SIGHT: f32 = 1.2;
 const NEIGHBORS: usize = 4;
 
-/// A person, who goes to the other side of a circle and back.
+/// A person, who walks to the other side of a circle and back.
 #[derive(Debug)]
 struct Person<const D: usize> {
     object: CollisionObjectHandle,
@@ -24,25 +24,26 @@ impl<const D: usize> Person<D>
 where
     f32: Dimension<D>,
 {
-    /// Towards the goal, and away from the nearest others, the more the nearer they are.
+    /// Returns the velocity: towards the goal, and away from the nearest others, more strongly the nearer they are.
     fn velocity(&self, world: &World<D>) -> Vector<f32, D> {
         let none = Vector::<f32, D>::zeros();
         let Some(own) = world.collision_object(self.object) else { return none };
         let here = f32::pose(own.position()).translation;
         let others = QueryFilter::new().exclude(self.object);
-        // Distances are between the capsules, not between their middles.
+        // Distances are between the capsules, not between their centres.
         let near = world.nearest_objects(own.position(), &**own.shape(), NEIGHBORS, SIGHT, &others);
         let ahead = unit_or(&(self.goal - here), none);
         let steered = near.iter().fold(ahead, |velocity, near| {
             let place = f32::pose(near.object.position()).translation;
             let away = unit_or(&(here - place), none);
-            // Aside as well as away, so that two who meet head on pass each other.
+            // Aside as well as away, so that two who meet frontally pass each other.
             let side = turn::<D>([0, 1], TAU / 4.0) * away;
-            // From 0 at the greatest distance to 1 in contact; squared below, so that the nearest outweighs the rest.
+            // From 0 at the greatest distance to 1 in contact; squared below, so that the nearest has the largest
+            // weight.
             let weight = 1.0 - near.distance / SIGHT;
             velocity + (away * 1.5 + side * 0.5) * (weight * weight)
         });
-        // Nobody runs: the sum is shortened to length 1, and never made longer.
+        // The sum is shortened to length 1, and never lengthened.
         let speed = max(steered.norm(), 1.0);
         steered / speed
     }
@@ -68,7 +69,7 @@ where
             (CollisionGroups::new(), ContactQuery::default(), panel.count("count"));
         for n in 0..count {
             let angle = TAU * number(n) / number(count);
-            // Evenly on the circle; the goal is the opposite place.
+            // Evenly on the circle; the goal is the opposite position.
             let place = turn::<D>([0, 1], angle) * vector::<D>([6.0, 0.0, 0.0]);
             let position = f32::isometry(&Pose::from_translation(place));
             let label = format!("person {n}");
@@ -87,12 +88,12 @@ where
 
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let length = panel.value("speed") * TIME_STEP;
-        // All decide by where the others were, then all move at once.
+        // All decide by the previous positions of the others, then all move at once.
         let mut moved = Vec::with_capacity(self.people.len());
         for person in &mut self.people {
             let mut pose = pose_of(world, person.object);
             pose.translation += person.velocity(world) * length;
-            // Who has arrived turns back.
+            // A person at its goal turns back.
             if (person.goal - pose.translation).norm() < 0.5 {
                 person.goal = -person.goal;
             }
@@ -106,7 +107,7 @@ where
         Ok(())
     }
 
-    /// The velocities, for one second.
+    /// Draws the velocities, for one second.
     fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         for person in &self.people {
             let here = Point::from(pose_of(world, person.object).translation);

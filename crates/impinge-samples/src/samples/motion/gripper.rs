@@ -1,8 +1,8 @@
-//! A gripper that closes on an object and stops at the first touch.
+//! A gripper that closes on an object and stops at the first contact.
 
 use crate::prelude::*;
 
-/// The way of a finger from open to closed, and how fast it goes per step.
+/// The distance of a finger from open to closed, and its speed per step.
 const OPEN: f32 = 2.0;
 const SPEED: f32 = 0.02;
 /// A cycle of closing, holding and opening.
@@ -11,7 +11,7 @@ const STEPS: usize = 320;
 /// Two fingers that close along x, each as far as a cast allows.
 #[derive(Debug, Default)]
 pub(crate) struct Gripper<const D: usize> {
-    /// What is gripped.
+    /// The gripped object.
     object: Option<CollisionObjectHandle>,
     /// The left and the right finger.
     fingers: Vec<CollisionObjectHandle>,
@@ -20,7 +20,7 @@ pub(crate) struct Gripper<const D: usize> {
     step: usize,
 }
 
-/// Both fingers are this box.
+/// Returns the shape of both fingers.
 fn finger<const D: usize>() -> Cuboid<f32, D> {
     Cuboid::new(vector([0.15, 0.8, 0.4]))
 }
@@ -29,7 +29,7 @@ impl<const D: usize> Gripper<D>
 where
     f32: Dimension<D>,
 {
-    /// Closes a finger by a step, or by less where it would go into the object.
+    /// Closes a finger by a step, or less if it would penetrate the object.
     fn close(&mut self, world: &World<D>, mut pose: Pose<f32, D>) -> Pose<f32, D> {
         let inward = vector([-SPEED.copysign(pose.translation[0]), 0.0, 0.0]);
         // Only the object can stop a finger.
@@ -37,7 +37,7 @@ where
         for finger in &self.fingers {
             others = others.exclude(*finger);
         }
-        // The velocity is the way of a step, so that a time of 1 is a step.
+        // The velocity is the motion of a step, so that a time of 1 is a step.
         let options = ImpactOptions::new().with_max_time(1.0);
         let hit = world.cast_shape(&f32::isometry(&pose), &inward, &finger(), &options, &others);
         let hit = hit.map(|(_, hit)| hit);
@@ -94,7 +94,7 @@ where
         self.hits.clear();
         let is_opening = self.step % STEPS > STEPS * 2 / 3;
         for finger in self.fingers.clone() {
-            // A finger that touches is cast again each step, and stays at a time of zero.
+            // A touching finger is cast again in each step, with an impact at time zero.
             let mut pose = pose_of(world, finger);
             if is_opening {
                 let out = pose.translation[0];
@@ -114,7 +114,7 @@ where
         }
     }
 
-    /// The inner sides are half a finger nearer than the middles.
+    /// The inner sides are half a finger nearer than the centres.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let xs = self.fingers.iter().map(|finger| pose_of(world, *finger).translation[0].abs());
         vec![

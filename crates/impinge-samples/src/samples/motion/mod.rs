@@ -1,4 +1,4 @@
-//! Objects that move by contacts, impacts and events.
+//! Samples of motion by contacts, impacts and events.
 
 pub(crate) mod arm;
 pub(crate) mod bullets;

@@ -1,4 +1,4 @@
-//! Solids that drop and come to rest.
+//! Solids that fall and come to rest.
 
 use crate::bodies::Bodies;
 use crate::prelude::*;
@@ -6,13 +6,13 @@ use crate::prelude::*;
 /// Solids above a floor between walls.
 #[derive(Debug, Default)]
 pub(crate) struct Pile<const D: usize> {
-    /// All but the floor and the walls.
+    /// All objects but the floor and the walls.
     bodies: Bodies<D>,
-    /// How many were dropped: the number of the next.
+    /// The number of dropped solids, which is the number of the next.
     dropped: usize,
 }
 
-/// The kinds that fall.
+/// The kinds of falling solids.
 const KINDS: [&str; 4] = ["box", "ball", "capsule", "rounded box"];
 /// Half the width of the room.
 const WALL: f32 = 3.0;
@@ -21,14 +21,14 @@ impl<const D: usize> Pile<D>
 where
     f32: Dimension<D>,
 {
-    /// Adds a solid somewhere above the floor. Its place and size follow from its number.
+    /// Adds a solid above the floor. Its position and size follow from its number.
     fn drop_one(&mut self, world: &mut World<D>, height: f32) -> Result<(), SampleError> {
         let n = self.dropped;
         self.dropped += 1;
         let spread = |stream| (WALL - 1.0) * (2.0 * scattered(n, stream) - 1.0);
         let position = turned([spread(0), height, spread(1)], TAU * scattered(n, 2));
         let (kind, size) = (KINDS[n % KINDS.len()], 0.4 + 0.2 * scattered(n, 3));
-        // Contacts exist from a gap of 0.02 on, the sum of both predictions, so that the solver sees them in time.
+        // Contacts exist from a gap of 0.02 on, the sum of both predictions, so that the solver gets them in time.
         let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
         let body = world.add(position, solid(kind, size), groups, query, format!("{kind} {n}"))?;
         self.bodies.add(body, size);
@@ -80,7 +80,7 @@ where
         self.bodies.advance(world)
     }
 
-    /// At rest the deepest contact is about as deep as the solver leaves alone.
+    /// At rest the deepest contact is about as deep as the slop of the solver.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
         let depth = deepest.map(|point| point.contact.depth).reduce(max);

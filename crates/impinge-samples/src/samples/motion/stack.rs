@@ -26,10 +26,10 @@ where
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
-        // A half-space has no end, so that nothing falls off its edge.
+        // A half-space is unbounded, so that nothing falls off its edge.
         let floor = ShapeHandle::new(Plane::new(up()));
         world.add(at([0.0; 3]), floor, groups, query, "floor".to_owned())?;
-        // One shape for all boxes: a handle is a counted reference.
+        // One shape for all boxes: a handle is reference-counted.
         let cube = ShapeHandle::new(Cuboid::new(vector([0.5; 3])));
         for n in 0..panel.count("count") {
             // Every other box is shifted to the other side.
@@ -42,12 +42,12 @@ where
         Ok(())
     }
 
-    /// The world is emptied and built again: handles of removed objects are stale from then on.
+    /// The world is cleared and built again: handles of removed objects are then stale.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
     }
 
-    /// A push is a velocity; what follows from it is up to contacts and friction.
+    /// A push sets a velocity; contacts and friction do the rest.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         if panel.take_press("push")
             && let Some(top) = self.top
@@ -57,7 +57,7 @@ where
         self.bodies.advance(world)
     }
 
-    /// Views read the manifolds where the world keeps them, without a copy.
+    /// Views read the manifolds in place, without a copy.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         vec![

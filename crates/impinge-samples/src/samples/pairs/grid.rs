@@ -1,22 +1,22 @@
-//! Every two solids, touching.
+//! Every pair of solids, touching.
 
 use crate::prelude::*;
 
 /// The distance of two cells of the grid.
 const CELL: f32 = 3.0;
 
-/// A grid with a cell for each pair of kinds: one solid stands, the other turns and is brought to touch it.
+/// A grid with a cell for each pair of kinds: one solid rests, the other rotates and is moved into contact.
 #[derive(Debug, Default)]
 pub(crate) struct Grid {
-    /// The standing and the turning solid of each cell.
+    /// The resting and the rotating solid of each cell.
     pairs: Vec<[CollisionObjectHandle; 2]>,
-    /// The turn of all second solids, in radians.
+    /// The rotation of all second solids, in radians.
     angle: f32,
 }
 
 impl Grid {
-    /// Where the second solid of a pair is: from the upper right towards the first until they touch, and on by the
-    /// depth. Parallel segments have no depth, so that they stay where they touch.
+    /// Returns the pose of the second solid of a pair: moved from the upper right towards the first until they
+    /// touch, and further by the depth. Parallel segments have no depth, and stay where they touch.
     fn touching<const D: usize>(
         &self,
         world: &World<D>,
@@ -38,7 +38,7 @@ impl Grid {
         let still = Moving::still(&isometry(&pose1), shape1);
         let moving = Moving::new(&isometry(&pose2), &velocity, shape2);
         let hit = impact(&still, &moving, &ImpactOptions::new())?;
-        // There they touch; the normal points from the first to the second.
+        // The solids touch there; the normal points from the first to the second.
         pose2.translation += velocity * hit.toi;
         let deeper = Pose { translation: pose2.translation - *hit.normal * depth, ..pose2 };
         let gap = distance(&isometry(&pose1), shape1, &isometry(&deeper), shape2);
@@ -51,7 +51,7 @@ impl Grid {
     where
         f32: Dimension<D>,
     {
-        // A solid without an impact stays where it is.
+        // A solid without an impact stays at its position.
         let moved = self
             .pairs
             .iter()
@@ -103,7 +103,7 @@ where
         self.place(world, panel.value("depth"))
     }
 
-    /// A pair may be asked for by its handles, in either order.
+    /// A pair can be looked up by its handles, in either order.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let touching = self.pairs.iter().filter(|[a, b]| {
             world.contact_pair(*a, *b).is_some_and(|pair| pair.num_contacts() > 0)

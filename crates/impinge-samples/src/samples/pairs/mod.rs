@@ -1,4 +1,4 @@
-//! Two shapes at a time.
+//! Samples of two shapes.
 
 pub(crate) mod grid;
 pub(crate) mod own;

@@ -1,4 +1,4 @@
-//! Shapes of one's own: a convex one by its support map, and a composite.
+//! Shapes of your own: a convex one by its support map, and a composite.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::Real;
@@ -11,14 +11,14 @@ use crate::prelude::*;
 /// The points common to two balls of one radius around `(0, −offset)` and `(0, offset)`.
 #[derive(Debug)]
 struct Lens {
-    /// Of both balls.
+    /// The radius of both balls.
     radius: f32,
-    /// Of their middles from that of the lens.
+    /// The distance of their centres from the centre of the lens.
     offset: f32,
 }
 
 impl Lens {
-    /// The radius of the rim.
+    /// Returns the radius of the rim.
     fn rim(&self) -> f32 {
         (self.radius * self.radius - self.offset * self.offset).sqrt()
     }
@@ -28,10 +28,10 @@ impl<const D: usize> SupportMap<f32, D> for Lens
 where
     f32: Space<D>,
 {
-    /// On one of the two curved sides, or on the rim where these meet.
+    /// Returns a point on one of the two curved sides, or on the rim.
     fn core_support(&self, direction: &Vector<f32, D>) -> Point<f32, D> {
         let Some((toward, _)) = unit(direction) else { return Point::origin() };
-        // The side that faces upwards is part of the lower ball, and the other way around.
+        // The upper side is part of the lower ball, and the lower side of the upper ball.
         let center: Vector<f32, D> = vector([0.0, -self.offset.copysign(toward[1]), 0.0]);
         if toward[1].abs() * self.radius > self.offset {
             return Point::from(center + toward * self.radius);
@@ -46,26 +46,26 @@ impl<const D: usize> Shape<f32, D> for Lens
 where
     f32: Space<D>,
 {
-    /// Queries reach the shape by its support map.
+    /// Queries use the shape through its support map.
     fn geometry(&self) -> Geometry<'_, f32, D> {
         Geometry::support_map(self)
     }
 
-    /// The box of the shape where it is not moved or turned.
+    /// Returns the bounding box in the local frame.
     fn local_aabb(&self) -> Aabb<f32, D> {
         let (rim, half) = (self.rim(), self.radius - self.offset);
         Aabb::from_half_extents(Point::origin(), vector([rim, half, rim]))
     }
 }
 
-/// Balls of one radius, side by side.
+/// Balls of one radius in a row.
 #[derive(Debug)]
 struct Beads<const D: usize> {
-    /// All beads are this ball.
+    /// The shape of all beads.
     bead: Ball<f32>,
-    /// Where they are.
+    /// The centres of the beads.
     centers: Vec<Point<f32, D>>,
-    /// Their boxes.
+    /// The search tree over their boxes.
     tree: BoxTree<f32, D>,
 }
 
@@ -95,7 +95,7 @@ where
         Part { pose, solid: PartSolid::Shape(&self.bead) }
     }
 
-    /// How parts near something are found: by the tree, or by a formula of one's own.
+    /// Returns the search among the parts: the tree, or a formula of your own.
     fn search(&self) -> &dyn PartSearch<f32, D> {
         &self.tree
     }
@@ -159,7 +159,7 @@ where
         )
     }
 
-    /// A recording holds names for shapes that are code.
+    /// A recording contains names for shapes that are code.
     fn registry(&self) -> Registry<f32, D, String> {
         Registry::new()
             .with_shape("lens", self.lens.clone())
@@ -177,7 +177,7 @@ where
         Ok(())
     }
 
-    /// The lens rolls to and fro over the beads.
+    /// The lens rolls back and forth over the beads.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         self.phase += panel.value("speed") / 480.0;
         let x = 6.0 * to_and_fro(self.phase + 0.25) - 3.0;
@@ -186,7 +186,7 @@ where
         Ok(world.set_position(lens, position)?)
     }
 
-    /// Contacts say which part of a composite they are of.
+    /// Contacts have the index of their part of a composite.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let &[beads, _] = self.objects.as_slice() else { return Vec::new() };
         let touched: Vec<_> =

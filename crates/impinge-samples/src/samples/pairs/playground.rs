@@ -1,31 +1,31 @@
-//! Two shapes of any kind, and all that can be asked about two shapes.
+//! Two shapes of any kind, and all queries about two shapes.
 
 use impinge::query::{closest_points, proximity};
 
 use crate::prelude::*;
 
-/// Contacts are kept, and closest points shown, up to this distance.
+/// The prediction of contacts, and the largest distance of drawn closest points.
 const MARGIN: f32 = 10.0;
 
-/// The second shape moves along the first until a person drags it.
+/// The second shape moves along the first until the user drags it.
 #[derive(Debug, Default)]
 pub(crate) struct Playground {
     /// The first and the second shape.
     objects: Vec<CollisionObjectHandle>,
-    /// Where the second is on its path: 1 is once to and fro.
+    /// The position of the second shape on its path: 1 is once back and forth.
     phase: f32,
-    /// A person has taken over.
+    /// Whether the user has dragged the shape.
     is_held: bool,
 }
 
-/// A shape and where it is.
+/// A shape and its pose.
 struct Placed<const D: usize> {
     shape: ShapeHandle<f32, D>,
     pose: Pose<f32, D>,
 }
 
 impl Playground {
-    /// Both shapes with their poses; handles of shapes are cheap to clone.
+    /// Returns both shapes with their poses; handles of shapes are cheap to clone.
     fn placed<const D: usize>(&self, world: &World<D>) -> Option<[Placed<D>; 2]>
     where
         f32: Dimension<D>,
@@ -38,7 +38,7 @@ impl Playground {
         Some([placed(first)?, placed(second)?])
     }
 
-    /// A line above the first shape, low enough to touch it.
+    /// Returns the position on a line above the first shape, low enough to touch it.
     fn path<const D: usize>(&self, panel: &Panel) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -48,7 +48,7 @@ impl Playground {
     }
 }
 
-/// How the second shape is cast towards.
+/// Returns the velocity of the cast of the second shape.
 fn velocity<const D: usize>(panel: &Panel) -> Vector<f32, D>
 where
     f32: Dimension<D>,
@@ -56,7 +56,7 @@ where
     turn::<D>([0, 1], panel.value("direction")) * vector::<D>([1.0, 0.0, 0.0])
 }
 
-/// When the second shape hits the first on its way, if it does.
+/// Returns the time of impact of the second shape with the first, if there is one.
 fn time_of_impact<const D: usize>(
     [first, second]: &[Placed<D>; 2],
     panel: &Panel,
@@ -69,8 +69,7 @@ where
     impact(&still, &moving, &ImpactOptions::new().with_max_time(MARGIN))
 }
 
-/// The contact of both shapes, which within the margin exists for shapes that are apart too: its depth is negative
-/// then.
+/// Returns the contact of both shapes. Within the margin it exists for separate shapes too, with a negative depth.
 fn nearest_contact<const D: usize>([first, second]: &[Placed<D>; 2]) -> Option<Contact<f32, D>>
 where
     f32: Dimension<D>,
@@ -95,7 +94,7 @@ where
             .number("prediction", "Contacts up to", 0.1, [0.0, 1.0, 0.01])
     }
 
-    /// The objects are in a world for the manifold; all other questions need no world.
+    /// The objects are in a world for the manifold; all other queries need no world.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) =
@@ -109,10 +108,10 @@ where
         Ok(())
     }
 
-    /// Shapes and query types of objects can be exchanged; the handles stay.
+    /// Shapes and query types of objects can be replaced; the handles stay valid.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let &[first, second] = self.objects.as_slice() else { return Ok(()) };
-        // Both shapes are set whichever control was: a shape of equal size gives the same contacts.
+        // Both shapes are set whichever control changed: a shape of equal size gives the same contacts.
         world.set_shape(first, solid(panel.chosen("first"), panel.value("size")))?;
         world.set_shape(second, solid(panel.chosen("second"), panel.value("size2")))?;
         let pose = Pose {
@@ -135,7 +134,7 @@ where
         Ok(())
     }
 
-    /// The second shape stays where the person leaves it.
+    /// The second shape stays where the user leaves it.
     fn dragged(
         &mut self,
         world: &mut World<D>,
@@ -147,7 +146,7 @@ where
         Ok(())
     }
 
-    /// Closest points, contact, and the way of the cast with its impact.
+    /// Draws closest points, contact, and the path of the cast with its impact.
     fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let Some(pair) = self.placed(world) else { return };
         let [first, second] = &pair;
@@ -155,7 +154,7 @@ where
         let nearest = closest_points(&poses[0], &*first.shape, &poses[1], &*second.shape, MARGIN);
         canvas.drawing.closest_points(&nearest, canvas.renderer);
         canvas.drawing.contacts(nearest_contact(&pair), canvas.renderer);
-        // In 3D and in 2D alike: drawn are the start, the impact and the end.
+        // In 3D and in 2D the start, the impact and the end are drawn.
         let sweep = SweptShape {
             shape: &second.shape,
             position: f32::isometry(&second.pose),
@@ -165,7 +164,7 @@ where
         canvas.drawing.cast(&sweep, time_of_impact(&pair, panel).as_ref(), canvas.renderer);
     }
 
-    /// Every answer about the two shapes, computed here and now, and the manifold that the world keeps.
+    /// Returns all results about the two shapes, computed here, and the manifold of the world.
     fn readouts(&self, world: &World<D>, panel: &Panel) -> Vec<Readout> {
         let Some(pair) = self.placed(world) else { return Vec::new() };
         let [first, second] = &pair;
@@ -186,7 +185,7 @@ where
             readouts.push(Readout::new("Point 1", format!("{:.3?}", points[0].as_slice())));
             readouts.push(Readout::new("Point 2", format!("{:.3?}", points[1].as_slice())));
         }
-        // The world's points: a flat side has several, a round one has one.
+        // The points of the world: a flat side has several, a round one has one.
         let contacts = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         readouts.push(Readout::new("Contact points", contacts));
         let time = time_of_impact(&pair, panel).map(|hit| hit.toi);

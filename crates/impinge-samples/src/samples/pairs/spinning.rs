@@ -1,19 +1,20 @@
-//! When two spinning solids hit each other.
+//! The time of impact of two rotating solids.
 
 use impinge::query::{RigidMotion, nonlinear_time_of_impact};
 
 use crate::prelude::*;
 
-/// The longest time looked ahead, and how long the picture stands still after an impact.
+/// The maximum time of the impact, and the pause after it.
 const SECONDS: f32 = 4.0;
 const PAUSE: f32 = 1.0;
 
-/// Two bars that fly towards each other and turn. Their first touch is known from the start; they stop there.
+/// Two rotating bars that fly towards each other. Their first contact is known from the start; they stop
+/// there.
 #[derive(Debug, Default)]
 pub(crate) struct Spinning<const D: usize> {
     /// The left and the right bar.
     bars: Vec<CollisionObjectHandle>,
-    /// Their first touch, if they touch within the longest time.
+    /// Their first contact, if there is one within the maximum time.
     hit: Option<Impact<f32, D>>,
     /// The time since the start, in seconds.
     time: f32,
@@ -23,7 +24,7 @@ impl<const D: usize> Spinning<D>
 where
     f32: Dimension<D>,
 {
-    /// Both motions as functions of the time, from which positions and the impact are computed alike.
+    /// Returns both motions as functions of time, from which both positions and the impact are computed.
     fn motions(panel: &Panel) -> [Box<dyn RigidMotion<f32, D>>; 2] {
         let linear = vector([0.6, 0.0, 0.0]);
         let offset = panel.value("offset");
@@ -35,7 +36,7 @@ where
         ]
     }
 
-    /// The longest time without a touch: that of the impact, if there is one.
+    /// Returns the time of the impact, or else the maximum time.
     fn end(&self) -> f32 {
         self.hit.map_or(SECONDS, |hit| hit.toi)
     }
@@ -68,7 +69,7 @@ where
         self.changed(world, panel)
     }
 
-    /// The impact is found without a step of the motion: nothing is missed, however thin or fast the bars are.
+    /// The impact is found without stepping: no contact is missed, however thin or fast the bars are.
     fn changed(&mut self, _: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let (bar, [left, right]) = (bar(), Self::motions(panel));
         let options = ImpactOptions::new().with_max_time(SECONDS);
@@ -90,7 +91,7 @@ where
         Ok(())
     }
 
-    /// Where they will touch, known before they do.
+    /// Draws the point of the future contact.
     fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         if let Some(hit) = &self.hit {
             canvas.point(&hit.world1, 0.15, RED);

@@ -1,23 +1,23 @@
-//! A solid on its way through another.
+//! A solid that moves through another.
 
 use crate::prelude::*;
 
-/// The way takes four seconds.
+/// The number of steps of the path: four seconds.
 const STEPS: usize = 240;
 
-/// The depth at each step of the way, as a graph above the picture.
+/// The depth at each step of the path, as a graph above the picture.
 #[derive(Debug, Default)]
 pub(crate) struct Through {
-    /// The standing solid and the moving one.
+    /// The resting solid and the moving one.
     objects: Vec<CollisionObjectHandle>,
-    /// How many steps of the way were made.
+    /// The number of steps made.
     step: usize,
     /// Negative while the solids are apart.
     depths: Vec<f32>,
 }
 
 impl Through {
-    /// The contact of the two solids at any distance.
+    /// Returns the contact of the two solids at any distance.
     fn contact<const D: usize>(&self, world: &World<D>) -> Option<Contact<f32, D>>
     where
         f32: Dimension<D>,
@@ -29,7 +29,7 @@ impl Through {
         contact(&poses[0], &**shape1, &poses[1], &**shape2, 100.0)
     }
 
-    /// From −3 to 3, again and again.
+    /// Returns the position from −3 to 3, repeated.
     fn x(&self) -> f32 {
         6.0 * number(self.step % STEPS) / number(STEPS) - 3.0
     }
@@ -69,7 +69,7 @@ where
 
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
-        // The way begins again, and so does the graph.
+        // The path begins again, and so does the graph.
         if self.step.is_multiple_of(STEPS) {
             self.depths.clear();
         }
@@ -77,7 +77,7 @@ where
         Ok(world.set_position(second, at([self.x(), panel.value("height"), 0.0]))?)
     }
 
-    /// One value for each step of the way.
+    /// One value for each step of the path.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         self.depths.extend(self.contact(world).map(|contact| contact.depth));
         self.depths.truncate(STEPS);
@@ -87,7 +87,7 @@ where
     fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         let found = self.contact(world);
         canvas.drawing.contacts(found, canvas.renderer);
-        // Time to the right, depth upwards; the line at depth zero is where they touch.
+        // Time to the right, depth upwards; the line at depth zero is touching.
         let width = 6.0 / number(STEPS);
         let spot = |(n, depth): (usize, &f32)| point([width * number(n) - 3.0, 3.0 + depth, 0.0]);
         let graph: Vec<_> = self.depths.iter().enumerate().map(spot).collect();

@@ -1,13 +1,13 @@
-//! A solid on its way, and what it hits first.
+//! A shape cast, and its first impact.
 
 use impinge_record::{CastQuestion, Detail, PlacedShape, Query, Question};
 
 use crate::prelude::*;
 
-/// How far the solid would fly.
+/// The length of the cast.
 const LENGTH: f32 = 9.0;
 
-/// Posts around the origin, and a solid that is cast from there in a direction that turns.
+/// Posts around the origin, and a solid that is cast from there in a rotating direction.
 #[derive(Debug, Default)]
 pub(crate) struct Casts<const D: usize> {
     /// The direction of the cast.
@@ -20,14 +20,14 @@ impl<const D: usize> Casts<D>
 where
     f32: Dimension<D>,
 {
-    /// The solid at the origin, turned, with the whole way as its velocity.
+    /// Returns the cast of the solid at the origin, rotated, with the whole path as its velocity.
     fn question(&self, panel: &Panel) -> CastQuestion<f32, D> {
         let velocity = turn::<D>([0, 1], self.angle) * vector::<D>([LENGTH, 0.0, 0.0]);
         let shape = solid(panel.chosen("solid"), panel.value("size"));
         CastQuestion {
             start: PlacedShape { position: turned([0.0; 3], 3.0 * self.angle), shape },
             velocity,
-            // At time 1 the whole way is made.
+            // At time 1 the solid is at the end of the path.
             options: ImpactOptions::new()
                 .with_max_time(1.0)
                 .with_target_distance(panel.value("gap")),
@@ -47,7 +47,7 @@ where
             .flag("all", "All it would hit", false)
     }
 
-    /// Solids of all kinds around the origin, at different distances.
+    /// Adds solids of all kinds around the origin, at different distances.
     fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
@@ -62,13 +62,13 @@ where
         Ok(())
     }
 
-    /// Nothing moves but the direction: a cast is a question, and changes no object.
+    /// Only the direction changes: a cast is a query, and changes no object.
     fn advance(&mut self, _: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.angle += TAU / 720.0;
         Ok(())
     }
 
-    /// The first impact alone is found faster than all of them.
+    /// Finding the first impact alone is faster than finding all.
     fn updated(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let cast = self.question(panel);
         let question = if panel.is_set("all") {
@@ -85,7 +85,7 @@ where
         Ok(())
     }
 
-    /// Start, impact and end of the way.
+    /// Draws the start, the impact and the end of the path.
     fn draw(&self, _: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let CastQuestion { start, velocity, .. } = self.question(panel);
         let (shape, position) = (&start.shape, start.position);

@@ -1,37 +1,37 @@
-//! How much space there is along a path.
+//! The clearance along a path.
 
 use crate::prelude::*;
 
-/// The path is measured at so many places.
+/// The number of points of the path at which the clearance is computed.
 const PLACES: usize = 120;
 
-/// A place of the path with its distance from the obstacles.
+/// A point of the path with its distance from the obstacles.
 #[derive(Clone, Copy, Debug)]
 struct Place<const D: usize> {
-    /// Where it is.
+    /// The point.
     at: Point<f32, D>,
-    /// Zero where the body would touch something.
+    /// Zero where the body would touch an obstacle.
     distance: f32,
 }
 
 /// A body on a wavy path between obstacles, which can be dragged.
 #[derive(Debug, Default)]
 pub(crate) struct Clearance<const D: usize> {
-    /// What follows the path.
+    /// The body that follows the path.
     body: Option<CollisionObjectHandle>,
     /// The path with its distances.
     places: Vec<Place<D>>,
     step: usize,
 }
 
-/// A place of the path from 0 to `PLACES`.
+/// Returns a point of the path; `place` is from 0 to `PLACES`.
 fn path<const D: usize>(place: usize) -> Point<f32, D> {
     let share = number(place) / number(PLACES);
     let sine = impinge::math::Real::sine_cosine(2.0 * TAU * share).0;
     point([12.0 * share - 6.0, 1.5 * sine, 0.0])
 }
 
-/// Red where there is no space, green from `wanted` on.
+/// Returns red at distance zero, green from `wanted` on.
 fn color(distance: f32, wanted: f32) -> Color {
     let share = min(distance / wanted, 1.0);
     let shade = |from: f32, to: f32| {
@@ -54,7 +54,7 @@ where
         )
     }
 
-    /// Obstacles of several kinds, left and right of the path.
+    /// Adds obstacles of several kinds, left and right of the path.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
@@ -70,13 +70,13 @@ where
         Ok(())
     }
 
-    /// A larger body has less space: the distances follow at once.
+    /// A larger body has less clearance: the distances change at once.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let Some(body) = self.body else { return Ok(()) };
         Ok(world.set_shape(body, ShapeHandle::new(Ball::new(panel.value("radius"))))?)
     }
 
-    /// A place of the path every three steps.
+    /// Moves on by a point of the path every three steps.
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
         let Some(body) = self.body else { return Ok(()) };
@@ -84,7 +84,7 @@ where
         Ok(world.set_position(body, f32::isometry(&Pose::from_translation(place.coords)))?)
     }
 
-    /// The distance of the body from everything else, were it at each place.
+    /// Computes the distance of the body from everything else, at each point.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let found = self.body.and_then(|body| world.collision_object(body));
         let Some(body) = found else { return Ok(()) };
@@ -92,7 +92,7 @@ where
         let measured = (0..=PLACES).map(|place| {
             let at = path(place);
             let position = f32::isometry(&Pose::from_translation(at.coords));
-            // The limit is farther than anything here is; a small one is faster.
+            // The limit exceeds all distances here; a small limit is faster.
             let near = world.closest_object(&position, &**body.shape(), 100.0, &others);
             Place { at, distance: near.map_or(100.0, |near| near.distance) }
         });

@@ -1,4 +1,4 @@
-//! Questions to a world.
+//! Samples of queries of a world.
 
 pub(crate) mod casts;
 pub(crate) mod clearance;

@@ -1,4 +1,4 @@
-//! The nearest objects of a probe.
+//! The objects nearest to a probe.
 
 use impinge_record::{Detail, PlacedShape, Query, Question};
 use impinge_scenes::asteroids;
@@ -9,9 +9,9 @@ use crate::scene::Play;
 /// An object that was found, with its distance.
 #[derive(Debug)]
 struct Near<const D: usize> {
-    /// The nearest points: of the probe, and of the object.
+    /// The closest points: on the probe, and on the object.
     ends: [Point<f32, D>; 2],
-    /// Between these points.
+    /// The distance of these points.
     distance: f32,
 }
 
@@ -20,12 +20,12 @@ struct Near<const D: usize> {
 pub(crate) struct Nearest<const D: usize> {
     /// The asteroids.
     play: Play<D>,
-    /// The ball that is measured from.
+    /// The ball from which distances are measured.
     probe: Option<CollisionObjectHandle>,
     /// The nearest first.
     near: Vec<Near<D>>,
     step: usize,
-    /// A person has taken over the probe.
+    /// Whether the user has dragged the probe.
     is_held: bool,
 }
 
@@ -52,7 +52,7 @@ where
         Ok(())
     }
 
-    /// The probe goes to and fro until it is dragged.
+    /// The probe moves back and forth until it is dragged.
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
         if let Some(probe) = self.probe.filter(|_| !self.is_held) {
@@ -92,7 +92,7 @@ where
         Ok(())
     }
 
-    /// A line to each, red to the nearest.
+    /// Draws a line to each, red to the nearest.
     fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         for (rank, near) in self.near.iter().enumerate() {
             canvas.line(near.ends, if rank == 0 { RED } else { BLUE });

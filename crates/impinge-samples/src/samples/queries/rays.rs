@@ -8,7 +8,7 @@ use impinge_scenes::asteroids;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// A ray and what it hit first.
+/// A ray and its first hit.
 #[derive(Debug)]
 struct Shot<const D: usize>
 where
@@ -18,7 +18,7 @@ where
     hit: Option<RayIntersection<f32, D>>,
 }
 
-/// Rays from the middle of a field of asteroids in all directions of the xy plane, as a scanner sends them.
+/// Rays from the centre of a field of asteroids in all directions of the xy plane, like those of a scanner.
 #[derive(Debug, Default)]
 pub(crate) struct Rays<const D: usize>
 where
@@ -26,7 +26,7 @@ where
 {
     /// The asteroids.
     play: Play<D>,
-    /// Where all rays begin.
+    /// The origin of all rays.
     eye: Point<f32, D>,
     /// The rays of the last update.
     shots: Vec<Shot<D>>,
@@ -38,7 +38,7 @@ impl<const D: usize> Rays<D>
 where
     f32: Dimension<D>,
 {
-    /// The question goes through the recorder, so that the recording has it with its answer.
+    /// The query goes through the recorder, so that the recording has it with its result.
     fn shoot(
         &self,
         world: &mut World<D>,
@@ -47,7 +47,8 @@ where
     ) -> Result<Shot<D>, SampleError> {
         let direction = turn::<D>([0, 1], direction) * vector::<D>([1.0, 0.0, 0.0]);
         let ray = Ray::new(self.eye, direction);
-        // The direction has length 1, so that times are lengths. A ray that begins inside a solid hits it at once.
+        // The direction has length 1, so that times are lengths. A ray that begins inside a solid hits it at time
+        // zero.
         let asked = RayQuestion { ray, max_time: reach, solid: true };
         let answer = world.ask(&Query::new(Question::FirstRayHit(asked)))?;
         let hit = answer.first().and_then(|found| match found.detail {
@@ -71,7 +72,7 @@ where
         )
     }
 
-    /// The eye is where the asteroids are on average.
+    /// The eye is at the average position of the asteroids.
     fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let play = Play::start(asteroids(60), world)?;
         let places = play.handles().iter().map(|object| pose_of(world, *object).translation);
@@ -86,7 +87,7 @@ where
         self.play.advance(world)
     }
 
-    /// Asked after the update, about where the asteroids are now.
+    /// Casts the rays after the update, at the new positions of the asteroids.
     fn updated(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let (count, reach) = (panel.count("count"), panel.value("reach"));
         let directions = (0..count).map(|n| self.angle + TAU * number(n) / number(count));
@@ -95,7 +96,7 @@ where
         Ok(())
     }
 
-    /// Each ray up to its hit, or as far as it reaches.
+    /// Draws each ray up to its hit, or to its length.
     fn draw(&self, _: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         for Shot { ray, hit } in &self.shots {
             let end = hit.map_or(panel.value("reach"), |hit| hit.toi);

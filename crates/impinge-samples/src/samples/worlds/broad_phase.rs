@@ -1,4 +1,4 @@
-//! What the broad phase sees: boxes and a tree of boxes.
+//! The boxes and the tree of the broad phase.
 
 use impinge::debug_render::{DebugDrawing, DebugOptions};
 use impinge_scenes::few_moving;
@@ -24,7 +24,7 @@ where
             .flag("loosened", "Loosened boxes", true)
     }
 
-    /// Large enough to be seen: boxes stay as they are while objects move by so much.
+    /// Large enough to be visible: fat AABBs do not change while objects move less than this.
     fn margin(&self) -> f32 {
         0.15
     }
@@ -46,7 +46,7 @@ where
         self.play.advance(world)
     }
 
-    /// The boxes of objects and nodes are among what a drawing of a world can have.
+    /// A drawing of a world can include the boxes of objects and of nodes.
     fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
         let DebugOptions { tree_node, loosened_box, .. } = DebugOptions::all();
         let options = DebugOptions {
@@ -57,7 +57,7 @@ where
         DebugDrawing::new(options).world(world, canvas.renderer);
     }
 
-    /// What all pairs would be, and what is left of them.
+    /// Returns the number of all possible pairs, and of the remaining pairs.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let all = world.len() * world.len().saturating_sub(1) / 2;
         vec![

@@ -1,4 +1,4 @@
-//! Groups and pair filters: who may touch whom.
+//! Groups and pair filters.
 
 use impinge::world::{BroadPhasePairFilter, CollisionObject};
 use impinge_record::Registry;
@@ -7,10 +7,10 @@ use impinge_scenes::sparse_drift;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// Three teams of drifting boxes, by the number of the object.
+/// The number of teams; the team follows from the number of the object.
 const TEAMS: usize = 3;
 
-/// Drifting boxes that are members of one group of three.
+/// Drifting boxes, each a member of one of three groups.
 #[derive(Debug, Default)]
 pub(crate) struct Groups<const D: usize> {
     /// The boxes in the world.
@@ -21,11 +21,12 @@ impl<const D: usize> Groups<D>
 where
     f32: Dimension<D>,
 {
-    /// Each object is a member of its team's group, and whitelists what the rule says.
+    /// Each object is a member of the group of its team; the rule sets its whitelist.
     fn assign(&self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let handles = self.play.handles().iter();
         for (index, object) in handles.enumerate() {
-            // Two objects may touch if each is in a group that the other lists, and none that it forbids.
+            // Two objects may touch if each is in a group that the other whitelists, and in none that it
+            // blacklists.
             let team = index % TEAMS;
             let mut groups = CollisionGroups::new();
             groups.set_membership(&[team]);
@@ -47,13 +48,13 @@ where
     }
 }
 
-/// The team of an object, by its label.
+/// Returns the team of an object from its label.
 fn team(label: &str) -> Option<usize> {
     let index: usize = label.strip_prefix("object ")?.parse().ok()?;
     Some(index % TEAMS)
 }
 
-/// A pair filter: only pairs whose numbers begin with the same digit.
+/// A pair filter: accepts only pairs whose numbers begin with the same digit.
 #[derive(Clone, Copy, Debug)]
 struct SameFirstDigit;
 
@@ -88,13 +89,13 @@ where
         Registry::new().with_filter("same first digit", SameFirstDigit)
     }
 
-    /// The scene lets all touch each other; the groups are given afterwards.
+    /// In the scene all pairs may touch; the groups are set afterwards.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.play = Play::start(sparse_drift(90), world)?;
         self.assign(world, panel)
     }
 
-    /// Groups can change at any time; pairs begin and end at the next update.
+    /// Groups can change at any time; pairs start and stop at the next update.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.assign(world, panel)
     }
@@ -103,9 +104,10 @@ where
         self.play.advance(world)
     }
 
-    /// Counted by the labels of both objects, not by their groups: so the numbers test the rule.
+    /// Pairs are counted by the labels of both objects, not by their groups, so that the numbers test the
+    /// rule.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
-        // Each manifold counts once, of whichever pair it is.
+        // Each manifold counts once.
         let is_within: Vec<_> = world
             .contact_views()
             .map(|(one, two, _)| team(one.data()) == team(two.data()))

@@ -1,4 +1,4 @@
-//! Worlds of many objects, and surfaces.
+//! Samples of worlds with many objects, and of surfaces.
 
 pub(crate) mod broad_phase;
 pub(crate) mod groups;

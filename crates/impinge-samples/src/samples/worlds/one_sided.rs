@@ -1,17 +1,17 @@
-//! A surface that is solid from above and open from below.
+//! A one-sided surface: contacts from above, none from below.
 
 use crate::prelude::*;
 
-/// A ball that goes up through a hill and comes down on it.
+/// A ball that rises through a hill and falls on it.
 #[derive(Debug, Default)]
 pub(crate) struct OneSided {
     /// The hill and the ball.
     objects: Vec<CollisionObjectHandle>,
-    /// Where the ball is in its motion.
+    /// The step of the motion of the ball.
     step: usize,
 }
 
-/// The same triangles with one side or with two.
+/// Returns the same triangles, one-sided or two-sided.
 fn hill<const D: usize>(panel: &Panel) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -22,7 +22,7 @@ where
 }
 
 impl OneSided {
-    /// Up through the hill, and down again.
+    /// Moves up through the hill, and down again.
     fn position<const D: usize>(&self) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -51,7 +51,7 @@ where
         Ok(())
     }
 
-    /// The shape is exchanged while the ball goes on.
+    /// The shape is replaced while the ball moves on.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let &[surface, _] = self.objects.as_slice() else { return Ok(()) };
         Ok(world.set_shape(surface, hill(panel))?)

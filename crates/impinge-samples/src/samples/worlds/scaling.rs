@@ -5,12 +5,13 @@ use crate::prelude::*;
 /// The number of solids in the row.
 const COUNT: usize = 6;
 
-/// Solids that bob on a slab. All lengths are multiplied by a power of two, so that the answers scale exactly.
+/// Solids that move up and down on a slab. All lengths are multiplied by a power of two, so that the results
+/// scale exactly.
 #[derive(Debug, Default)]
 pub(crate) struct Scaling {
     /// The solids on the slab.
     solids: Vec<CollisionObjectHandle>,
-    /// Where they are in their motion.
+    /// The step of their motion.
     step: usize,
 }
 
@@ -23,7 +24,7 @@ fn scale(panel: &Panel) -> f32 {
 }
 
 impl Scaling {
-    /// Where a solid is: over the slab, in it, and over it again.
+    /// Returns the position of a solid: above the slab, in it, and above it again.
     fn position<const D: usize>(&self, index: usize, panel: &Panel) -> Isometry<D>
     where
         f32: Dimension<D>,
@@ -58,7 +59,7 @@ where
         )
     }
 
-    /// Shapes and positions are scaled; margins and predictions of zero need not be.
+    /// Shapes and positions are scaled; margins and predictions of zero need no scaling.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let (scale, groups, query) =
             (scale(panel), CollisionGroups::new(), ContactQuery::default());
@@ -74,7 +75,7 @@ where
         Ok(())
     }
 
-    /// The motion goes on from where it was, at another size.
+    /// The motion continues at another size.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let step = self.step;
         self.rebuild(world, panel)?;

@@ -6,26 +6,26 @@ use impinge_scenes::Scene;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// Makes a scene of a number of objects.
+/// A constructor of a scene with a number of objects.
 type MakeScene<const D: usize> = fn(usize) -> Scene<D>;
 
 /// A scene whose motions are functions of the step.
 #[derive(Debug)]
 pub(crate) struct Scenery<const D: usize> {
-    /// Makes the scene of a count.
+    /// Makes the scene for a number of objects.
     make: MakeScene<D>,
-    /// How many objects there are at first, and at most.
+    /// The initial and the largest number of objects.
     counts: [u32; 2],
     /// The scene in the world.
     play: Play<D>,
-    /// Pairs that came to touch since the start.
+    /// The number of pairs that started touching since the start.
     started: usize,
-    /// Pairs that parted since the start.
+    /// The number of pairs that stopped touching since the start.
     stopped: usize,
 }
 
 impl<const D: usize> Scenery<D> {
-    /// With the number of objects at first, and the most.
+    /// Creates a sample with the initial and the largest number of objects.
     pub(crate) fn new(make: MakeScene<D>, counts: [u32; 2]) -> Self {
         Self { make, counts, play: Play::default(), started: 0, stopped: 0 }
     }
@@ -60,7 +60,7 @@ where
         self.play.advance(world)
     }
 
-    /// Events of contacts and of proximities are counted alike: something came to touch, or parted.
+    /// Events of contacts and of proximities are both counted: a pair started or stopped touching.
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let contacts =
             world.contact_events().iter().map(|event| matches!(event, ContactEvent::Started(..)));
@@ -75,7 +75,7 @@ where
         Ok(())
     }
 
-    /// Pairs are kept while the loosened boxes overlap, with contacts or without.
+    /// Pairs exist while the fat AABBs overlap, with contacts or without.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         vec![
             Readout::new("Pairs with contacts kept", world.contact_pairs().count()),

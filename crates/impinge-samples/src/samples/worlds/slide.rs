@@ -2,10 +2,10 @@
 
 use crate::prelude::*;
 
-/// So many normals that lean are kept for the picture.
+/// The number of tilted normals that are kept for the picture.
 const SHOWN: usize = 100;
 
-/// The box goes to and fro over the floor, a bit sunk in, as a body under gravity is.
+/// The box moves back and forth over the floor with a small penetration, like a body under gravity.
 #[derive(Debug, Default)]
 pub(crate) struct Slide<const D: usize> {
     /// The box.
@@ -13,14 +13,14 @@ pub(crate) struct Slide<const D: usize> {
     /// The surface.
     floor: Option<CollisionObjectHandle>,
     step: usize,
-    /// How many normals were not vertical since the start.
+    /// The number of normals that were not vertical since the start.
     count: usize,
-    /// The last of them: from the contact point on by the normal.
+    /// The last of them: from the contact point along the normal.
     bumps: Vec<[Point<f32, D>; 2]>,
 }
 
-/// The flat floor, and what its contacts are like.
-/// Both kinds have the same triangles; they differ in what their contacts take for granted.
+/// Returns the flat floor with its kind of contacts.
+/// Both kinds have the same triangles; they differ in the treatment of internal edges.
 fn floor<const D: usize>(panel: &Panel) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -36,7 +36,7 @@ impl<const D: usize> Slide<D>
 where
     f32: Dimension<D>,
 {
-    /// Across the edges at an angle that is none of theirs.
+    /// Moves across the edges at an angle of none of them.
     fn position(&self, panel: &Panel) -> Isometry<D> {
         let way = 8.0 * to_and_fro(number(self.step) / 600.0) - 4.0;
         turned([way, 0.4 - panel.value("sunk"), 0.37 * way], 0.0)
@@ -68,7 +68,7 @@ where
         Ok(())
     }
 
-    /// The surface is exchanged under the box, and the count begins anew.
+    /// The surface is replaced below the box, and the count starts again.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.bumps.clear();
         self.count = 0;
@@ -82,7 +82,7 @@ where
         Ok(world.set_position(slider, self.position(panel))?)
     }
 
-    /// A normal that leans would stop a body, as if it had hit a bump that is not there.
+    /// A tilted normal would stop a body as if it had hit a bump (a ghost collision).
     fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         let points = world.contact_views().flat_map(|(_, _, manifold)| manifold.contacts());
         let leaning =
@@ -97,7 +97,7 @@ where
         Ok(())
     }
 
-    /// The contacts of now, and in red the last normals that leaned.
+    /// Draws the current contacts, and in red the last tilted normals.
     fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
         let points = world.contact_views().flat_map(|(_, _, manifold)| manifold.contacts());
         let contacts: Vec<_> = points.map(|point| point.contact).collect();
@@ -107,7 +107,7 @@ where
         }
     }
 
-    /// Zero for a surface, many for triangles by themselves.
+    /// Zero for a surface, many for separate triangles.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         vec![

@@ -1,20 +1,20 @@
-//! A surface that changes its shape at each step, and balls that ride on it.
+//! A surface that deforms at each step, and balls on it.
 
 use impinge::math::Real;
 
 use crate::prelude::*;
 
-/// The wave repeats after so many steps: its shapes are made once.
+/// The period of the wave in steps: its shapes are made once.
 const PERIOD: usize = 60;
-/// The surface has so many cells along each axis.
+/// The number of cells of the surface along each axis.
 const CELLS: usize = 16;
 
-/// The shapes of one period, and where the balls are.
+/// The shapes of one period, and the balls.
 #[derive(Debug, Default)]
 pub(crate) struct Waves<const D: usize> {
     /// The shapes of a period.
     surfaces: Vec<ShapeHandle<f32, D>>,
-    /// The object whose shape is exchanged.
+    /// The object whose shape is replaced.
     surface: Option<CollisionObjectHandle>,
     /// The balls, from left to right.
     balls: Vec<CollisionObjectHandle>,
@@ -31,7 +31,7 @@ impl<const D: usize> Waves<D>
 where
     f32: Dimension<D>,
 {
-    /// A height field for each step of a period.
+    /// Makes a height field for each step of a period.
     fn make_surfaces(&mut self, panel: &Panel) {
         let amplitude = panel.value("amplitude");
         let surface = |n: usize| {
@@ -41,17 +41,18 @@ where
         self.surfaces = (0..PERIOD).map(surface).collect();
     }
 
-    /// Where a ball of radius 0.4 comes to lie that falls straight down: a cast against the surface alone.
+    /// Returns the position where a ball of radius 0.4 lands if it falls vertically: a cast against the
+    /// surface alone.
     fn fallen(&self, ball: usize) -> Isometry<D> {
         let above = [2.0 * number(ball) - 6.0, 10.0, scattered(ball, 0) * 8.0 - 4.0];
         let (shape, here) = (Ball::new(0.4), isometry(&Pose::identity()));
         let surface = &self.surfaces[self.step % PERIOD];
-        // No world is asked: it has still the surface of the step before.
+        // The world is not used: it still has the surface of the previous step.
         let still = Moving::still(&here, &**surface);
         let start = isometry(&Pose::from_translation(vector::<D>(above)));
         let falling = Moving::new(&start, &vector([0.0, -1.0, 0.0]), &shape);
         let hit = impact(&still, &falling, &ImpactOptions::new());
-        // As deep as a body would sink in.
+        // The depth to which a body would penetrate.
         let fall = hit.map_or(0.0, |hit| hit.toi + 0.005);
         at([above[0], above[1] - fall, above[2]])
     }
@@ -79,13 +80,13 @@ where
         Ok(())
     }
 
-    /// New heights are seen from the next step on.
+    /// New heights take effect at the next step.
     fn changed(&mut self, _: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.make_surfaces(panel);
         Ok(())
     }
 
-    /// The surface first, then the balls; the update sees both.
+    /// Moves the surface, then the balls; the update handles both.
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.step += 1;
         if let Some(surface) = self.surface {
@@ -97,7 +98,7 @@ where
         Ok(())
     }
 
-    /// A normal of a flat place has a y of 1.
+    /// The normal of a flat position has a y of 1.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
         let steepest = deepest.map(|point| 1.0 - point.contact.normal[1].abs()).reduce(max);

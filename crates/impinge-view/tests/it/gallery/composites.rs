@@ -7,7 +7,8 @@ use impinge_view::SvgPicture;
 
 type FloorWorld = CollisionWorld<f64, ()>;
 
-/// A box that slides over a floor, sunk in by 0.06, where a contact first pushes it sideways, or where `stop` says.
+/// A box that slides over a floor with a penetration of 0.06, up to the first contact that pushes it sideways, or
+/// up to `stop`.
 fn slide(floor: Polyline<f64>, height: f64, stop: Option<f64>) -> (FloorWorld, Option<f64>) {
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
     let mut world = FloorWorld::new(0.02);
@@ -55,7 +56,7 @@ fn internal_edges() {
 fn two_sides_or_one() {
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
     let mut world = FloorWorld::new(0.02);
-    // From right to left: the front, on the right of each segment, is up.
+    // From right to left: the front, the right side of each segment, is up.
     let hills = [[2.4, 0.0], [1.2, 0.3], [0.0, -0.1], [-1.2, 0.2], [-2.4, 0.0]].map(Point::from);
     let both = Polyline::open(hills.to_vec());
     let ball = ShapeHandle::new(Ball::new(0.5));

@@ -5,7 +5,7 @@ use impinge::debug_render::{Color, DebugDrawing, DebugRender, Drawn, Style};
 use impinge::dim2::prelude::*;
 use impinge_view::SvgPicture;
 
-/// The world of the guide's program: a ball on its way through a zone to a wall.
+/// The world of the guide's program: a ball that moves through a zone to a wall.
 struct Course {
     world: CollisionWorld<f64, Color>,
     ball: CollisionObjectHandle,
@@ -24,7 +24,7 @@ impl Course {
         Self { world, ball }
     }
 
-    /// Moves the ball and returns what the events of the update say.
+    /// Moves the ball and returns texts about the events of the update.
     fn step(&mut self, x: f64) -> Vec<(String, Color)> {
         self.world.set_position(self.ball, Isometry::translation(x, 0.0));
         self.world.update();

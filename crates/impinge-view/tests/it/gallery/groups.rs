@@ -5,7 +5,7 @@ use impinge::debug_render::{Color, DebugDrawing, Style};
 use impinge::dim2::prelude::*;
 use impinge_view::SvgPicture;
 
-/// What an object is, and so its groups, its shape and its colour.
+/// The role of an object, which determines its groups, its shape and its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Role {
     Player,

@@ -7,7 +7,8 @@ use impinge_view::{Camera, PngPicture};
 
 const COLORS: [Color; 4] = [SLATE, SAGE, GOLD, MAUVE];
 
-/// Layers of boxes, sunk into each other by 0.01, each smaller by one row and column, on a floor, and a ball on top.
+/// Layers of boxes, each with a penetration of 0.01 and one row and column less than the one below, on a floor, and
+/// a ball on top.
 fn pyramid() -> CollisionWorld<f64, Color> {
     let mut world = CollisionWorld::new(0.02);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());

@@ -1,4 +1,4 @@
-//! The pictures of README and guide: worlds as users make them, drawn with what the library answers.
+//! The pictures of README and guide: worlds as users make them, drawn from results of the library.
 
 mod composites;
 mod contacts;
@@ -70,7 +70,8 @@ fn draw_grid<N: Space<D>, const D: usize>(
     }
 }
 
-/// A pose in 2D, turned by an angle in radians with the library's own sine: the same on every machine.
+/// Returns a pose in 2D, rotated by an angle in radians with the library's own sine: the same on every
+/// machine.
 fn turned2(x: f64, y: f64, angle: f64) -> dim2::math::Isometry<f64> {
     let (sine, cosine) = angle.sine_cosine();
     let rotation = dim2::math::Rotation::new_unchecked(dim2::na::Complex::new(cosine, sine));
@@ -83,7 +84,7 @@ fn note(picture: &mut SvgPicture, at: [f64; 2], text: &str) {
     DebugRender::<f64, 2>::text(picture, &at, text, INK, Drawn::Object);
 }
 
-/// The most bytes of a picture: pages of the guide load at once.
+/// The largest number of bytes of a picture, since pages of the guide load at once.
 const MAX_BYTES: usize = 60_000;
 
 fn golden() -> Golden {
@@ -101,8 +102,8 @@ fn check_svg(name: &str, picture: &SvgPicture) {
     }
 }
 
-/// The picture as the destination of a Markdown link, between angle brackets: pages of `rustdoc` have no files
-/// beside them.
+/// Returns the picture as the destination of a Markdown link, between angle brackets: pages of `rustdoc` have
+/// no files beside them.
 fn data_uri(svg: &str) -> String {
     let mut uri = "data:image/svg+xml,".to_owned();
     for character in svg.chars() {

@@ -1,4 +1,4 @@
-//! A shape of a user's own: the lens of the guide.
+//! A shape of a user: the lens of the guide.
 
 use super::{AMBER, CLAY, RED, SAND, WIDTH, check_svg, options, turned2};
 use impinge::debug_render::{DebugDrawing, DebugRender, Drawn, Style};

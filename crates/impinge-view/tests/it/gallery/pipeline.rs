@@ -1,17 +1,18 @@
-//! What the broad phase sees.
+//! The boxes and trees of the broad phase.
 
 use super::{CLAY, GREEN, SLATE, VIOLET, WIDTH, check_svg, options, turned2};
 use impinge::debug_render::{Color, DebugDrawing, DebugOptions, DebugRender, Drawn, Style};
 use impinge::dim2::prelude::*;
 use impinge_view::SvgPicture;
 
-/// Points that fill a rectangle evenly: the sequence R2 (M. Roberts, 2018).
+/// Returns points that fill a rectangle evenly: the sequence R2 (M. Roberts, 2018).
 fn spread(number: u32, size: [f64; 2]) -> [f64; 2] {
     let n = f64::from(number) + 0.5;
     [(n * 0.569_840_3).fract() * size[0], (n * 0.754_877_7).fract() * size[1]]
 }
 
-/// Shapes of four kinds; those with even numbers have moved since the first update, within their boxes.
+/// Returns shapes of four kinds; those with even numbers have moved since the first update, within
+/// their fat AABBs.
 fn moving_world() -> CollisionWorld<f64, ()> {
     let mut world = CollisionWorld::new(0.14);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());

@@ -1,4 +1,4 @@
-//! Rays, casts, and what is nearest.
+//! Rays, casts, and nearest objects.
 
 use super::{BLUE, INK, VIOLET, WIDTH, check_svg, options, turned2};
 use impinge::debug_render::{DebugDrawing, DebugRender, Drawn, Style, SweptShape};

@@ -1,14 +1,14 @@
-//! The table of casts that begin apart, touching, or in penetration.
+//! The table of casts that begin apart, touching, or penetrating.
 
 use super::{BLUE, INK, RED, WIDTH, check_svg, note, options};
 use impinge::debug_render::{DebugDrawing, DebugRender, Drawn};
 use impinge::dim2::prelude::*;
 use impinge_view::SvgPicture;
 
-/// From one cell of the table to the next, to the right and down.
+/// The distance from one cell of the table to the next, to the right and down.
 const CELL: [f64; 2] = [4.6, 3.1];
 
-/// Draws a box over a floor with its velocity and the impact, and returns the time of that.
+/// Draws a box over a floor with its velocity and the impact, and returns the time of impact.
 fn draw_start(
     corner: Vector<f64>,
     height: f64,

@@ -26,7 +26,7 @@ fn hills() -> HeightField<f64> {
     HeightField::new(25, 37, heights.collect(), Vector::new(12.0, 1.0, 8.0))
 }
 
-/// Like a sine with period 4, of parabolas: the same on every machine.
+/// A wave of period 4 made of parabolas: the same on every machine.
 fn wave(x: f64) -> f64 {
     let phase = x - 4.0 * (x / 4.0).floor();
     let half = if phase < 2.0 { phase } else { phase - 2.0 };
@@ -34,8 +34,8 @@ fn wave(x: f64) -> f64 {
     if phase < 2.0 { arch } else { -arch }
 }
 
-/// Lets a shape fall until it touches something, and sinks it in by a little; `turned` is the vector part of
-/// its rotation, relative to the real one.
+/// Drops a shape until it touches something, then lets it penetrate slightly; `turned` is the vector part of
+/// its rotation, relative to the real part.
 fn drop_shape(world: &mut World, shape: &ShapeHandle<f64>, at: [f64; 2], turned: Vector<f64>) {
     // No sines of the platform: the picture is the same on every machine.
     let rotation = Rotation::from_quaternion(Quaternion::new(1.0, turned.x, turned.y, turned.z));
@@ -49,7 +49,7 @@ fn drop_shape(world: &mut World, shape: &ShapeHandle<f64>, at: [f64; 2], turned:
     world.add(place, shape.clone(), CollisionGroups::new(), ContactQuery::default(), color);
 }
 
-/// Hills with solids of all kinds that fell on them, one after the other.
+/// Returns hills with solids of all kinds that fell on them, one after the other.
 fn terrain() -> World {
     let mut world = World::new(0.02);
     let (everybody, contacts) = (CollisionGroups::new(), ContactQuery::default());
@@ -64,7 +64,7 @@ fn terrain() -> World {
     ];
     for number in 0..34_u32 {
         let n = f64::from(number);
-        // Evenly spread: the sequence R2 (M. Roberts, 2018).
+        // Evenly distributed: the sequence R2 (M. Roberts, 2018).
         let at = [(n * 0.754_877_7).fract() * 10.0 - 5.0, (n * 0.569_840_3).fract() * 6.4 - 3.2];
         let turned = Vector::new(0.2 * wave(n), wave(0.7 * n), 0.2 * wave(1.3 * n));
         drop_shape(&mut world, &solids[number as usize % solids.len()], at, turned);

@@ -1,29 +1,30 @@
-//! Which of the pairs of blocks that are put off comes next.
+//! Queues of pairs of blocks waiting to be opened: a stack, and a heap by distance.
 
 use core::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
 use smallvec::SmallVec;
 
-/// So many pairs of blocks are put off without memory of their own.
+/// Pairs of blocks that a stack holds without an allocation.
 pub(super) const STACK: usize = 48;
 
-/// A block of each tree.
+/// A pair of blocks, one of each tree.
 #[derive(Clone, Copy)]
 pub(super) struct OpenPair {
     pub(super) layers: [u8; 2],
     pub(super) blocks: [u32; 2],
-    /// No two objects in them are nearer, but for rounding; NaN where the reach has no limit.
+    /// Lower bound, but for rounding, of the distance of two objects in them; NaN where the reach
+    /// has no limit.
     pub(super) gap: f32,
 }
 
-/// The pairs of blocks that are put off.
+/// A queue of pairs of blocks.
 pub(super) trait Agenda {
     fn put(&mut self, pair: OpenPair);
     fn take(&mut self) -> Option<OpenPair>;
 }
 
-/// The last that was put off.
+/// Takes the pair that was put last.
 impl Agenda for SmallVec<[OpenPair; STACK]> {
     fn put(&mut self, pair: OpenPair) {
         self.push(pair);
@@ -34,10 +35,10 @@ impl Agenda for SmallVec<[OpenPair; STACK]> {
     }
 }
 
-/// The least gap, and of several the lowest blocks.
+/// Takes the pair with the least gap; in a tie the lowest layers, then the lowest blocks.
 impl Agenda for BinaryHeap<Reverse<RankedPair>> {
     fn put(&mut self, pair: OpenPair) {
-        // The bits of numbers that are not negative have the order of the numbers.
+        // The bits of non-negative floats are ordered as the floats.
         let gap = if pair.gap > 0.0 { pair.gap.to_bits() } else { 0 };
         let layers = pair.layers.map(u32::from);
         let rank = (gap, layers[0] + layers[1], pair.blocks);
@@ -49,7 +50,7 @@ impl Agenda for BinaryHeap<Reverse<RankedPair>> {
     }
 }
 
-/// A pair of blocks by its gap, the layers of both and their numbers.
+/// A pair of blocks, ordered by its gap, the sum of its layers and its block indices.
 #[derive(Clone, Copy)]
 pub(super) struct RankedPair {
     rank: (u32, u32, [u32; 2]),

@@ -1,14 +1,17 @@
-//! Pairs of objects of two trees that may touch, each tree in a frame of its own.
+//! Pairs of objects of two trees that may touch, each tree in its own frame.
 //!
-//! Depth first over pairs of blocks. The box around one block is turned into the frame of the other tree, once, and is
-//! held against the boxes in the other block, all at a time: along the axes of both frames, which part most boxes that
-//! are apart (Gottschalk, Lin and Manocha, "`OBBTree`", 1996, have the directions across two edges as well), and across
-//! its slab. Of two blocks the larger is opened. No queue: what is deepest in the box comes next. Only where the nearest are
-//! asked for, best first (Hjaltason and Samet, "Incremental distance join algorithms for spatial databases", 1998), after a
-//! descent straight to two objects: their direction, and that between the middles of two blocks, part most that are beside
-//! each other.
+//! The search is depth first over pairs of blocks. The box around one block is transformed into the
+//! frame of the other tree, once, and compared with all boxes in the other block at a time: along
+//! the axes of both frames, which separate most boxes that are apart (Gottschalk, Lin and Manocha,
+//! "`OBBTree`", 1996, also have the directions across two edges), and across its slab. The larger
+//! of two blocks is opened, and the child with the deepest overlap comes next, without a queue. A
+//! search for the nearest pair is best first (Hjaltason and Samet, "Incremental distance join
+//! algorithms for spatial databases", 1998), after a descent straight to two objects: the direction
+//! between these, and between the centres of two blocks, separates most blocks that lie beside each
+//! other.
 //!
-//! Boxes are held in `f32`, with room for its rounding: what is left out is certainly beyond the reach.
+//! Boxes are compared in `f32` with a margin for its rounding: rejected pairs are certainly beyond
+//! the reach.
 
 use std::collections::BinaryHeap;
 
@@ -16,86 +19,73 @@ use smallvec::SmallVec;
 
 use super::agenda::{Agenda, OpenPair, STACK};
 use super::near_pairs::Toward;
+use super::regions::{Held, Turn, TurnedBox};
 use crate::bounding_volume::Aabb;
-use crate::bvh::block_slabs::BlockSlab;
 use crate::bvh::tree::small;
-use crate::bvh::{Block, Bounds, LANES, NONE, Tree};
-use crate::math::lanes::{bits, with_lanes};
+use crate::bvh::{Bounds, LANES, NONE, Tree};
 use crate::math::ones::Ones;
 use crate::math::order::sort_few;
-use crate::math::simd::{Level, Simd};
-use crate::math::{Mapped, Pose, Real, Wide, filled, max_component, unit};
+use crate::math::simd::Level;
+use crate::math::{Mapped, Pose, Real, Vector, filled, max_component, unit};
 
-/// Lanes that are treated at once.
-const HALF: usize = LANES / 2;
-/// Heights lose this to rounding, in units of `f32` of all lengths: 3 for a turn, as many for a sum of products, 2 for
-/// directions that are not quite unit, in up to three axes. The rest is reserve.
+/// Rounding error of heights, in units of `f32` epsilon times all lengths: 3 for a rotation, 3 for
+/// a scalar product, 2 for directions that are not quite unit, in up to three axes. The rest is
+/// reserve.
 const ROUNDING: f32 = 64.0;
-/// How two trees lie to each other, and what is done with pairs of their objects.
+
+/// The relative pose of two trees, and the receiver of pairs of their objects.
 pub(crate) trait TreeMeeting<N: Real, const D: usize> {
-    /// The frame of the first (0) or the second (1) tree in that of the other.
+    /// The pose of the first (0) or the second (1) tree in the frame of the other.
     fn pose(&self, which: usize) -> &Pose<N, D>;
 
-    /// Objects that are farther apart are of no interest; it never grows, and `None` ends the search.
+    /// The largest distance of pairs to visit; it never grows, and `None` ends the search.
     fn reach(&self) -> Option<N>;
 
-    /// The reach shrinks to what is found: pairs of blocks come by how far they are apart, and not the deepest first.
+    /// Whether the reach shrinks to the best distance. If so, pairs of blocks come by their gaps,
+    /// not the deepest first.
     fn is_for_nearest(&self) -> bool {
         false
     }
 
-    /// Gets two objects first that are likely to be near; they are visited again.
+    /// Receives two objects that are likely to be near, before the search; they are visited again.
     fn guess(&mut self, _objects: [u32; 2]) {}
 
-    /// Unit vectors toward the other tree, in the frame of each, that part the nearest objects so far.
+    /// Unit vectors toward the other tree, in the frame of each, along which the nearest objects so
+    /// far are separated.
     fn best(&self) -> Option<Toward<N, D>> {
         None
     }
 
-    /// A box around an object of the first (0) or the second (1) tree, in the frame of the other, but for rounding; if
-    /// there are any near it, it is visited next.
+    /// Returns a box around an object of the first (0) or the second (1) tree, in the frame of the
+    /// other, but for rounding. If any objects are near it, it is visited next.
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D>;
 
-    /// Gets an object of the first (0) or the second (1) tree and all of one block of the other whose boxes are within
-    /// its reach.
+    /// The corners of the object of the last call of [`Self::object_in_other`], in the frame of the
+    /// other tree; `None` for an object without corners.
+    fn corners(&self) -> Option<[Vector<N, D>; 3]> {
+        None
+    }
+
+    /// Receives an object of the first (0) or the second (1) tree and all objects of one block of
+    /// the other with boxes within its reach.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]);
 }
 
-/// How the frame of one tree lies in that of the other.
-#[derive(Clone, Copy)]
-struct Turn<const D: usize> {
-    /// Its axes.
-    axes: [[f32; D]; D],
-    shift: [f32; D],
-}
-
-/// A convex region as the blocks of a tree see it: a box and slabs, all wider by the reach and what rounding does.
-struct TurnedBox<const D: usize> {
-    bounds: Bounds<D>,
-    /// Along the axes of the other frame, and across a slab.
-    slabs: SmallVec<[BlockSlab<D>; 4]>,
-}
-
-/// The boxes of a block that a region may touch.
-struct Held {
-    mask: u32,
-    /// How far each box is from the region along the direction that parts them best, or less.
-    gaps: [f32; LANES],
-}
-
+/// A depth-first search of two trees, best first if it is for the nearest pair.
 struct MeetingSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
     turns: [Turn<D>; 2],
     level: Level,
-    /// Rounding moves a gap by no more than this.
+    /// Bound of the rounding error of a gap in `f32`.
     room: f32,
-    /// The same in the scalar.
+    /// Bound of the rounding error of a gap in the scalar type.
     slack: N,
     is_for_nearest: bool,
     question: &'q mut dyn TreeMeeting<N, D>,
 }
 
-/// Visits the pairs of objects of two trees whose boxes are within the reach of the question, and some others.
+/// Visits all pairs of objects of two trees with boxes within the reach of the question; pairs
+/// somewhat farther may be among them.
 pub(crate) fn visit_meetings<N: Real, const D: usize>(
     trees: [&Tree<D>; 2],
     question: &mut dyn TreeMeeting<N, D>,
@@ -122,92 +112,9 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
     }
 }
 
-impl<const D: usize> Turn<D> {
-    fn of<N: Real>(pose: &Pose<N, D>) -> Self {
-        let axes = filled(|axis| filled(|row| pose.rotation[(row, axis)].as_f32()));
-        Self { axes, shift: filled(|row| pose.translation[row].as_f32()) }
-    }
-
-    fn vector(&self, local: &[f32; D]) -> [f32; D] {
-        filled(|row| (0..D).map(|axis| self.axes[axis][row] * local[axis]).sum())
-    }
-
-    /// A box of one tree, and a slab around the same, as the other tree sees them, wider by `room`.
-    fn turned(&self, bounds: &Bounds<D>, slab: Option<&BlockSlab<D>>, room: f32) -> TurnedBox<D> {
-        let half: [f32; D] = filled(|axis| bounds.hi[axis] * 0.5 - bounds.lo[axis] * 0.5);
-        let turned: [f32; D] = self.vector(&bounds.center());
-        let center: [f32; D] = filled(|row| turned[row] + self.shift[row]);
-        let extents: [f32; D] = filled(|row| {
-            room + (0..D).map(|axis| self.axes[axis][row].abs() * half[axis]).sum::<f32>()
-        });
-        let mut slabs = SmallVec::new();
-        for (across, half) in self.axes.iter().zip(half) {
-            let height = dot(across, &center);
-            let (low, high) = (height - half - room, height + half + room);
-            slabs.push(BlockSlab { across: *across, low, high });
-        }
-        if let Some(slab) = slab {
-            let across = self.vector(&slab.across);
-            let height = dot(&across, &self.shift);
-            let (low, high) = (height + slab.low - room, height + slab.high + room);
-            slabs.push(BlockSlab { across, low, high });
-        }
-        let bounds = Bounds {
-            lo: filled(|row| center[row] - extents[row]),
-            hi: filled(|row| center[row] + extents[row]),
-        };
-        TurnedBox { bounds, slabs }
-    }
-}
-
-fn dot<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-impl<const D: usize> TurnedBox<D> {
-    /// Which of the boxes of a block it may touch.
-    fn held(&self, level: Level, block: &Block<D>) -> Held {
-        let mut held = Held { mask: 0, gaps: [0.0; LANES] };
-        for first in [0, HALF] {
-            let gaps = &mut held.gaps[first..first + HALF];
-            let mask = with_lanes!(level, simd => self.held_half(simd, block, first, gaps));
-            held.mask |= u32::from(mask) << first;
-        }
-        held
-    }
-
-    /// Eight of the boxes of a block. Empty ones are infinitely far.
-    #[inline(always)]
-    fn held_half<S: Simd>(&self, simd: S, block: &Block<D>, first: usize, gaps: &mut [f32]) -> u8 {
-        let (lanes, zero) = (first..first + HALF, S::F32x8::all(simd, 0.0));
-        let (mut lo, mut hi) = ([zero; D], [zero; D]);
-        let mut gap = S::F32x8::all(simd, f32::NEG_INFINITY);
-        for axis in 0..D {
-            lo[axis] = S::F32x8::load(simd, &block.lo[axis][lanes.clone()]);
-            hi[axis] = S::F32x8::load(simd, &block.hi[axis][lanes.clone()]);
-            gap = (lo[axis] - S::F32x8::all(simd, self.bounds.hi[axis])).larger(gap);
-            gap = (S::F32x8::all(simd, self.bounds.lo[axis]) - hi[axis]).larger(gap);
-        }
-        if bits(gap.simd_gt(zero)) != u8::MAX {
-            for BlockSlab { across, low, high } in &self.slabs {
-                let (mut lowest, mut highest) = (zero, zero);
-                for axis in 0..D {
-                    let along = S::F32x8::all(simd, across[axis]);
-                    let ends = [along * lo[axis], along * hi[axis]];
-                    let far = usize::from(across[axis] >= 0.0);
-                    (lowest, highest) = (lowest + ends[1 - far], highest + ends[far]);
-                }
-                // What is no number is not larger.
-                gap = (lowest - S::F32x8::all(simd, *high)).larger(gap);
-                gap = (S::F32x8::all(simd, *low) - highest).larger(gap);
-            }
-        }
-        gap.store(gaps);
-        !bits(gap.simd_gt(zero))
-    }
-}
-
 impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
+    /// Opens pairs of blocks until the queue is empty or the question ends the search. Of two inner
+    /// blocks the one with the larger surface is opened.
     fn run(&mut self, whole: OpenPair, mut agenda: impl Agenda) {
         agenda.put(whole);
         while let Some(pair) = agenda.take() {
@@ -228,8 +135,9 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         }
     }
 
-    /// What is in two blocks is beyond the reach along the direction that parts the nearest objects so far, or along that
-    /// between the middles of their boxes. In the scalar, which tells more than `f32` about what is far away.
+    /// Whether the contents of two blocks are beyond the reach along the direction of the nearest
+    /// objects so far, or along that between the centres of their boxes. Computed in the scalar
+    /// type, which resolves more than `f32` between distant blocks.
     fn is_beyond(&self, pair: &OpenPair) -> bool {
         let Some((best, reach)) = self.question.best().zip(self.question.reach()) else {
             return false;
@@ -245,7 +153,8 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         })
     }
 
-    /// The gap along a unit vector of the frame of each tree toward the other.
+    /// Returns the gap along a direction, given as a unit vector toward the other tree in the frame
+    /// of each.
     fn gap_along(&self, toward: &Toward<N, D>, pair: &OpenPair) -> N {
         let reaches = [0, 1].mapped(|which| {
             let block = self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which]);
@@ -254,13 +163,13 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         toward[0].dot(&self.question.pose(1).translation) - reaches[0] - reaches[1]
     }
 
-    /// The reach and what rounding does; `None` to end the search.
+    /// The reach plus the rounding error; `None` to end the search.
     fn room(&self) -> Option<f32> {
         self.question.reach().map(|reach| self.room + reach.as_f32_above())
     }
 
-    /// Hands out an object of each tree: where a descent ends toward the middle of the other's leaf block, the first toward
-    /// all of the other tree.
+    /// Hands out one object of each tree. Each is the end of a descent towards the centre of the
+    /// other's leaf block; the first descent goes towards the centre of the other tree.
     fn guess(&mut self, whole: OpenPair) {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
@@ -276,28 +185,30 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         }
     }
 
+    /// The box around block `which` of a pair, in the frame of its tree.
     fn bounds(&self, which: usize, pair: &OpenPair) -> &Bounds<D> {
         &self.trees[which].layers[usize::from(pair.layers[which])].bounds
             [pair.blocks[which] as usize]
     }
 
-    /// The boxes in one of two blocks that what is in the other may touch.
+    /// Returns the boxes in block `which` that the contents of the other block may touch.
     fn held(&self, which: usize, pair: &OpenPair, room: f32) -> Held {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
-        let seen = self.turns[1 - which].turned(own.bounds, own.slab, room);
+        let seen = self.turns[1 - which].turned(own.bounds, own.slab, room, self.is_for_nearest);
         let (layer, block) = (usize::from(pair.layers[which]), pair.blocks[which] as usize);
         seen.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }
 
-    /// Puts off the blocks below one of two, each with the other, so that the deepest comes next.
+    /// Queues the children of one block, each paired with the other block, so that the deepest
+    /// overlap comes next.
     fn open(&self, which: usize, pair: &OpenPair, room: f32, agenda: &mut impl Agenda) {
         let Held { mask, gaps } = self.held(which, pair, room);
         let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));
         let mut near = SmallVec::<[(f32, u32); LANES]>::new();
         for lane in Ones::<LANES>(mask) {
             let block = first + small(lane);
-            // Nothing is beyond an infinite reach, not even an empty lane.
+            // An infinite reach rejects nothing, not even an empty lane.
             if self.trees[which].is_block(layer, block) {
                 near.push((gaps[lane], block));
             }
@@ -306,13 +217,14 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         for (gap, block) in near {
             let mut below = *pair;
             (below.layers[which], below.blocks[which]) = (layer, block);
-            // Less by what the sum loses.
+            // Minus the rounding error of the sum.
             below.gap = gap + room - room.abs() * ROUNDING * f32::EPSILON;
             agenda.put(below);
         }
     }
 
-    /// Visits the objects of two leaf blocks: each of that with fewer near ones with those of the other.
+    /// Visits the objects of two leaf blocks: each of the block with fewer near ones, with those of
+    /// the other.
     fn meet(&mut self, pair: &OpenPair, mut room: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {
@@ -328,9 +240,10 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         for lane in Ones::<LANES>(masks[which]) {
             let Some(id) = tree.id_in(own * small(LANES) + small(lane)) else { continue };
             let aabb = self.question.object_in_other(which, id);
-            let bounds = loosened(&Bounds::enclosing(&aabb), room);
-            let near = TurnedBox { bounds, slabs: SmallVec::new() }.held(self.level, block).mask;
-            let ids = Ones::<LANES>(near & masks[1 - which])
+            let corners = self.question.corners().filter(|_| self.is_for_nearest);
+            let region = TurnedBox::of_object(&Bounds::enclosing(&aabb), corners, room);
+            let near = region.held(self.level, block);
+            let ids = Ones::<LANES>(near.mask & masks[1 - which])
                 .filter_map(|lane| other.id_in(others * small(LANES) + small(lane)));
             let ids = ids.collect::<SmallVec<[u32; LANES]>>();
             if !ids.is_empty() {
@@ -342,10 +255,6 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     }
 }
 
-fn loosened<const D: usize>(bounds: &Bounds<D>, room: f32) -> Bounds<D> {
-    Bounds { lo: filled(|axis| bounds.lo[axis] - room), hi: filled(|axis| bounds.hi[axis] + room) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -353,7 +262,7 @@ mod tests {
     use crate::math::noise::Noise;
     use crate::math::{Isometry3, Point, Vector};
 
-    /// Segments, each given by its ends in the frame of its tree.
+    /// Segments by their ends, in the frame of their tree.
     type Segments = Vec<[Point<f64, 3>; 2]>;
 
     struct Turned<'a> {
@@ -362,6 +271,9 @@ mod tests {
         reach: f64,
         found: Vec<[u32; 2]>,
         is_first_enough: bool,
+        is_for_nearest: bool,
+        /// The object of the last call, as a triangle without area.
+        own: Option<[Vector<f64, 3>; 3]>,
     }
 
     impl TreeMeeting<f64, 3> for Turned<'_> {
@@ -373,8 +285,18 @@ mod tests {
             (self.found.is_empty() || !self.is_first_enough).then_some(self.reach)
         }
 
+        fn is_for_nearest(&self) -> bool {
+            self.is_for_nearest
+        }
+
         fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<f64, 3> {
-            around(&self.segments[which][id as usize].map(|end| self.poses[which].point(&end)))
+            let ends = self.segments[which][id as usize].map(|end| self.poses[which].point(&end));
+            self.own = Some([0, 1, 0].map(|end: usize| ends[end].coords));
+            around(&ends)
+        }
+
+        fn corners(&self) -> Option<[Vector<f64, 3>; 3]> {
+            self.own
         }
 
         fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
@@ -395,7 +317,7 @@ mod tests {
         (0..count).map(each).collect()
     }
 
-    /// The least distance of places along two segments.
+    /// The least distance of samples along two segments.
     fn distance(one: &[Point<f64, 3>; 2], other: &[Point<f64, 3>; 2]) -> f64 {
         let place = |[a, b]: &[Point<f64, 3>; 2], at: i32| a + (b - a) * (f64::from(at) / 8.0);
         let ways = (0..=8).flat_map(|at1| (0..=8).map(move |at2| (at1, at2)));
@@ -418,22 +340,35 @@ mod tests {
             let turn = noise.vector::<f64>(3.0);
             let pose = Pose::from(Isometry3::new(Vector::<f64, 3>::new(9.0, -4.0, 2.0), turn));
             let poses = [pose.inverse(), pose];
-            let mut pairs =
-                Turned { segments: &all, poses, reach, found: Vec::new(), is_first_enough: false };
-            visit_meetings(trees.each_ref(), &mut pairs);
-            let mut found = core::mem::take(&mut pairs.found);
-            found.sort_unstable();
-            assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
+            let mut pairs = Turned {
+                segments: &all,
+                poses,
+                reach,
+                found: Vec::new(),
+                is_first_enough: false,
+                is_for_nearest: false,
+                own: None,
+            };
+            let ways = [false, true].map(|is_for_nearest| {
+                pairs.is_for_nearest = is_for_nearest;
+                visit_meetings(trees.each_ref(), &mut pairs);
+                let mut found = core::mem::take(&mut pairs.found);
+                found.sort_unstable();
+                assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
+                found
+            });
+            let [found, nearest] = &ways;
+            assert!(nearest.len() * 2 < found.len() || found.len() < 100, "{}", nearest.len());
             for (id1, one) in (0..).zip(&all[0]) {
                 for (id2, other) in (0..).zip(&all[1]) {
                     let distance = distance(one, &other.map(|end| pose.point(&end)));
-                    let is_found = found.binary_search(&[id1, id2]).is_ok();
+                    let is_found = ways.iter().all(|way| way.binary_search(&[id1, id2]).is_ok());
                     assert!(is_found || distance > reach, "{id1} and {id2}: {distance}");
                 }
             }
             let most = count1 * count2;
             assert!(most < 1000 || found.len() * 20 < most, "{} of {most} pairs", found.len());
-            pairs.is_first_enough = true;
+            (pairs.is_first_enough, pairs.is_for_nearest) = (true, false);
             visit_meetings(trees.each_ref(), &mut pairs);
             assert!(pairs.found.len() <= LANES, "the search ends");
         }

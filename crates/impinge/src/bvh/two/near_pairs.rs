@@ -1,10 +1,20 @@
-//! Pairs of objects of two trees, each in a frame of its own, near ones first.
+//! Pairs of objects of two trees, each in its own frame, near ones first.
 //!
-//! Best first over pairs of blocks, one of each tree (Hjaltason and Samet, "Incremental distance join algorithms
-//! for spatial databases", 1998), after a descent straight to two objects, so that there is a nearest pair to hold
-//! others against. The lanes of both blocks are held against each other, or those of the wider block alone if that is
-//! much wider. A box of the one is compared in the frame of the other, so the axes of both frames part blocks in turn,
-//! and so do directions between them, along which what is in a block reaches as far as its box and its slab.
+//! The search is best first over pairs of blocks, one of each tree (Hjaltason and Samet,
+//! "Incremental distance join algorithms for spatial databases", 1998), after a descent straight to
+//! two objects, so that a distance is known to reject others. The lanes of both blocks are compared
+//! with each other, or those of the wider block alone if it is much wider. A box of one tree is
+//! compared in the frame of the other, so that the axes of both frames separate blocks in turn, and
+//! so do directions between them, along which the extent of a block is bounded by its box and its
+//! slab.
+//!
+//! ```text
+//!  queue: pairs (block1, block2) by distance
+//!    pop ──> beyond the limit along a direction?  drop
+//!        ──> another pair is nearer by now?       push again
+//!        ──> two leaf blocks?                     visit near objects
+//!        ──> else                                 push near pairs of children
+//! ```
 
 use crate::math::order::sort_few;
 use core::cmp::Reverse;
@@ -20,80 +30,88 @@ use crate::bvh::tree::small;
 use crate::bvh::{Bounds, LANES, NONE, Tree};
 use crate::math::{Mapped, Point, Real, Vector, filled, max, unit};
 
-/// Entries made room for at the start: enough for most searches.
+/// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 64;
-/// Of two blocks only the one is opened whose surface is so many times that of the other, about a layer's worth.
+/// If the surface of one block is larger by this factor, about a layer's worth, only that block is
+/// opened.
 const MUCH_WIDER: f64 = 8.0;
 
-/// A unit vector toward the other tree in the frame of each: opposites of each other.
+/// A direction toward the other tree: a unit vector in the frame of each, opposites of each other.
 pub(crate) type Toward<N, const D: usize> = [Vector<N, D>; 2];
 
-/// How the trees lie to each other, and what is asked about pairs of their objects.
+/// The relative pose of two trees, and the receiver of pairs of their objects.
 pub(crate) trait TreePair<N: Real, const D: usize> {
-    /// A box in the frame of the first (0) or the second (1) tree as one in the frame of the other, around all that
-    /// it holds.
+    /// Transforms a box from the frame of the first (0) or the second (1) tree into the frame of
+    /// the other; the result encloses it.
     fn in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D>;
 
-    /// A box around an object of the first (0) or the second (1) tree, in the frame of the other.
+    /// Returns a box around an object of the first (0) or the second (1) tree, in the frame of the
+    /// other.
     fn object_in_other(&self, which: usize, id: u32) -> Aabb<N, D>;
 
-    /// The largest distance at which boxes still matter, negative to end the search; never grows.
+    /// The largest distance at which boxes matter, negative to end the search; never grows.
     fn bound(&self) -> N;
 
-    /// The largest signed distance at which objects still matter; never grows.
+    /// The largest signed distance at which objects matter; never grows.
     fn limit(&self) -> N;
 
-    /// How deep along every axis the boxes around objects within the limit overlap, or less; zero or more.
+    /// Lower bound, zero or more, of the overlap along every axis of the boxes of objects within
+    /// the limit.
     fn depth(&self) -> N;
 
-    /// The direction that parts the nearest objects so far; `None` as long as there are none.
+    /// The direction along which the nearest objects so far are separated; `None` before there are
+    /// any.
     fn best(&self) -> Option<Toward<N, D>>;
 
-    /// A unit vector of the frame of the first (0) or the second (1) tree as a direction toward the other; `None` if
-    /// gaps along it tell nothing, since objects move.
+    /// Converts a unit vector in the frame of the first (0) or the second (1) tree into a
+    /// direction; `None` if gaps along it are meaningless, since objects move.
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>>;
 
     /// The direction from a point of the first tree to one of the second.
     fn between(&self, points: [Point<N, D>; 2]) -> Option<Toward<N, D>>;
 
-    /// How far an object of the first (0) or the second (1) tree reaches along a unit vector, or more.
+    /// Upper bound of the extent of an object of the first (0) or the second (1) tree along a unit
+    /// vector.
     fn reach(&self, which: usize, id: u32, along: &Vector<N, D>) -> N;
 
-    /// The signed distance of objects that reach so far toward each other, or less.
+    /// Lower bound of the signed distance of objects with these extents toward each other.
     fn gap(&self, toward: &Toward<N, D>, reaches: [N; 2]) -> N;
 
-    /// Gets two objects first that are likely to be near, [`NONE`] where nothing is known; they are visited again.
+    /// Receives two objects that are likely to be near, before the search; [`NONE`] where a descent
+    /// failed. They are visited again.
     fn guess(&mut self, objects: [u32; 2]);
 
-    /// Gets the pairs whose boxes are within the bound: an object of the first (0) or the second (1) tree and at most
-    /// [`LANES`] of the other.
+    /// Receives the pairs with boxes within the bound: an object of the first (0) or the second (1)
+    /// tree and at most [`LANES`] of the other.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]);
 }
 
-/// A block of each tree. Of pairs at one distance those in low layers come first.
+/// A pair of blocks, one of each tree. In a tie of distances those in low layers come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct BlockPair {
-    /// The bits of a distance that the objects have at least: zero or more, so that they order as it does.
+    /// The bits of a lower bound of the distance of objects, zero or more, so that the bits are
+    /// ordered as it is.
     distance: u64,
     layers: [u8; 2],
     blocks: [u32; 2],
-    /// The boxes of the blocks are apart.
+    /// Whether the boxes of the blocks are apart.
     are_apart: bool,
-    /// The distance is that of the boxes, or of a pair above: more can be known.
+    /// Whether the distance is that of the boxes, or of the parent pair, and can still be raised.
     is_rough: bool,
 }
 
+/// A best-first search of two trees.
 struct PairSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
     queue: BinaryHeap<Reverse<BlockPair>>,
     question: &'q mut dyn TreePair<N, D>,
 }
 
-/// Lanes by their distances, as slots or numbers of blocks below.
+/// Distances of lanes, with their slots or the indices of child blocks.
 type NearLanes<N> = SmallVec<[(N, u32); LANES]>;
 
-/// Visits the pairs of objects of two trees that are within the bound of the question, near ones first but in no
-/// exact order.
+/// Visits the pairs of objects of two trees within the bound of the question, near ones first but
+/// in no exact order.
 pub(crate) fn visit_pairs<N: Real, const D: usize>(
     trees: [&Tree<D>; 2],
     question: &mut dyn TreePair<N, D>,
@@ -109,6 +127,8 @@ pub(crate) fn visit_pairs<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
+    /// Guesses two objects if the limit is positive and the trees are near each other. Then opens
+    /// pairs of blocks, nearest first, until the next is beyond the bound.
     fn run(&mut self, whole: BlockPair) {
         self.queue.push(Reverse(whole));
         let near = || self.near(0, whole.layers[0], 0, &self.other_box(0, &whole));
@@ -118,7 +138,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
         while let Some(Reverse(pair)) = self.queue.pop() {
             let bound = self.question.bound();
-            // Also false for NaN, which ends the search.
+            // False for NaN, which ends the search.
             let is_within = bound >= N::ZERO && pair.distance <= (bound + N::ZERO).bits();
             if !is_within {
                 return;
@@ -129,8 +149,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Two objects that are likely to be near: each is where a descent ends toward the middle of the other's leaf block,
-    /// the first toward all of the other tree.
+    /// Returns one object of each tree, likely to be near each other. Each is the end of a descent
+    /// towards the centre of the other's leaf block; the first descent goes towards the centre of
+    /// the other tree.
     fn descend(&self, whole: BlockPair) -> [u32; 2] {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
@@ -143,8 +164,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         found
     }
 
-    /// The pair, if it is within the limit and others do not come before it by what is known now; it goes back into
-    /// the queue if they do.
+    /// Returns the pair if it is within the limit and still comes first once its lower bound is
+    /// raised. If another pair comes before it now, it is queued again.
     fn first(&mut self, mut pair: BlockPair) -> Option<BlockPair> {
         let gap = if pair.is_rough { self.gap(&pair) } else { self.best_gap(&pair) };
         let is_beyond = gap > self.question.limit();
@@ -160,6 +181,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         Some(pair)
     }
 
+    /// Block `which` of a pair: its box and slab, in the frame of its tree.
     fn slab_box(&self, which: usize, pair: &BlockPair) -> SlabBox<'_, D> {
         self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which])
     }
@@ -168,19 +190,23 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         *self.slab_box(which, pair).bounds
     }
 
+    /// Lower bound of the signed distance of the contents of two blocks, by the gap along a
+    /// direction.
     fn gap_along(&self, toward: &Toward<N, D>, pair: &BlockPair) -> N {
         let reaches = [0, 1].mapped(|which| self.slab_box(which, pair).reach(&toward[which]));
         self.question.gap(toward, reaches)
     }
 
-    /// The gap along the direction between the nearest objects so far, if the boxes of two blocks are apart.
+    /// The gap along the direction of the nearest objects so far, if the boxes of two blocks are
+    /// apart; else minus infinity.
     fn best_gap(&self, pair: &BlockPair) -> N {
         let best = self.question.best().filter(|_| pair.are_apart);
         best.map_or(-N::INFINITY, |toward| self.gap_along(&toward, pair))
     }
 
-    /// The largest gap of the directions that are likely to part what is in two blocks: along that between their middles
-    /// and between the nearest objects so far if their boxes are apart, else across their slabs.
+    /// The largest gap along directions likely to separate the contents of two blocks: between
+    /// their centres and between the nearest objects so far if their boxes are apart, else across
+    /// their slabs.
     fn gap(&self, pair: &BlockPair) -> N {
         let gap = self.best_gap(pair);
         if gap > self.question.limit() {
@@ -201,8 +227,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         gaps.fold(gap, max)
     }
 
-    /// Holds what is in two blocks, or in one of them, against each other: visits objects, and puts pairs of blocks
-    /// into the queue.
+    /// Compares the contents of two blocks, or of one with the other block: visits objects, and
+    /// queues pairs of blocks.
     fn open(&mut self, pair: &BlockPair) {
         let widths = [0, 1].mapped(|which| self.bounds(which, pair).half_surface());
         let wider = usize::from(widths[1] >= widths[0]);
@@ -215,7 +241,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Puts the blocks below one of two into the queue, each with the other.
+    /// Queues the children of one block, each paired with the other block.
     fn open_one(&mut self, which: usize, pair: &BlockPair) {
         for below in self.near_below(which, pair) {
             let is_beyond = self.best_gap(&below) > self.question.limit();
@@ -225,7 +251,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Puts the blocks below two blocks into the queue, each of the narrower one with those of the other that are near.
+    /// Queues pairs of children of two blocks: each child of the narrower block with the near
+    /// children of the other.
     fn open_both(&mut self, which: usize, pair: &BlockPair) {
         for below in self.near_below(which, pair) {
             let is_beyond = self.gap(&below) > self.question.limit();
@@ -235,7 +262,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits the near pairs of objects of two leaf blocks: each object of one block with those of the other.
+    /// Visits the near pairs of objects of two leaf blocks: each object of block `which` with those
+    /// of the other.
     fn meet(&mut self, which: usize, pair: &BlockPair) {
         let [own, other] = [pair.blocks[which], pair.blocks[1 - which]];
         let sides = self.sides(1 - which, pair);
@@ -262,8 +290,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Directions that may part single objects from all of a leaf block, and how far that reaches along them: by its
-    /// objects along that between the nearest objects so far, if they are apart, else by its slab.
+    /// Directions that may separate single objects from a whole leaf block, and the extent of the
+    /// block along them: of its objects along the direction of the nearest objects so far, if these
+    /// are apart, and of its slab across itself.
     fn sides(&self, which: usize, pair: &BlockPair) -> SmallVec<[(Toward<N, D>, N); 3]> {
         let block = self.slab_box(which, pair);
         let across = block.slab.and_then(|slab| Some(unit(&slab.across::<N>())?.0));
@@ -279,12 +308,13 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         sides
     }
 
-    /// A box around the other block of a pair, in the frame of one of the trees.
+    /// Returns a box around the other block of a pair, in the frame of tree `which`.
     fn other_box(&self, which: usize, pair: &BlockPair) -> Aabb<N, D> {
         self.question.in_other(1 - which, &self.bounds(1 - which, pair).as_aabb())
     }
 
-    /// The blocks below one of two that are near the other, each with that; near ones first.
+    /// Returns the children of block `which` that are near the other block, each as a pair with it;
+    /// near ones first.
     fn near_below(
         &self,
         which: usize,
@@ -296,9 +326,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         near.into_iter().map(move |(distance, block)| below(&pair, which, block, distance))
     }
 
-    /// The lanes of a block of one tree that are within the bound of a box in its frame and overlap it as deep as the
-    /// limit asks, near ones first, of several at one distance the first. A distance is a little less than the exact
-    /// one.
+    /// Returns the lanes of a block that are within the bound of `aabb`, a box in the frame of the
+    /// block's tree, and overlap it by at least `depth`: near ones first, in a tie the lowest lane.
+    /// A distance is slightly below the exact one.
     fn near(&self, which: usize, layer: u8, block: u32, aabb: &Aabb<N, D>) -> NearLanes<N> {
         let (tree, layer) = (self.trees[which], usize::from(layer));
         let gaps = Gaps::new(aabb, tree.size()).within(self.question.depth());
@@ -316,7 +346,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 }
 
-/// A block of one tree below that of a pair, with the other block, and at which distance their boxes are.
+/// Returns the pair of a child of block `which` with the other block; `distance` is that of their
+/// boxes.
 fn below<N: Real>(pair: &BlockPair, which: usize, block: u32, distance: N) -> BlockPair {
     let (mut layers, mut blocks) = (pair.layers, pair.blocks);
     (layers[which], blocks[which]) = (layers[which] - 1, block);
@@ -333,7 +364,7 @@ mod tests {
     use crate::math::noise::Noise;
     use crate::math::{Point, Vector};
 
-    /// The second tree lies farther along the first axis.
+    /// The second tree is translated by `shift` along the first axis.
     struct Shifted<'a> {
         boxes: &'a [Vec<Aabb<f64, 3>>; 2],
         shift: f64,

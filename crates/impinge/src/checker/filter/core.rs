@@ -1,18 +1,18 @@
-//! How far points are from an obstacle, eight points at a time.
+//! Distances of points from an obstacle, eight points at a time.
 
 use crate::math::lanes::{dot, lit, minus, norm, seen_from, times};
 use crate::math::simd::Simd;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, Wide, filled};
 use crate::shape::{Kind, Shape};
 
-/// What is left of an obstacle without the radius that rounds it, in `f32`.
+/// The core of an obstacle, without its rounding radius, in `f32`.
 #[derive(Clone, Debug)]
 pub(super) enum Core<const D: usize> {
     Point([f32; D]),
     Segment {
         start: [f32; D],
         way: [f32; D],
-        /// One over the square of its length; zero without one.
+        /// One over its squared length; zero without length.
         inverse_squared: f32,
     },
     Cuboid {
@@ -31,7 +31,7 @@ pub(super) enum Core<const D: usize> {
         normal: [f32; D],
         origin: [f32; D],
     },
-    /// Nothing is known: everything is near.
+    /// No bound: every point counts as near.
     Unknown,
 }
 
@@ -40,12 +40,12 @@ pub(super) enum Core<const D: usize> {
 pub(super) struct RoundedCore<const D: usize> {
     pub(super) core: Core<D>,
     pub(super) radius: f32,
-    /// The solid is all that is within the radius of the core, and not only inside of that.
+    /// Whether the solid equals the rounded core; else it is only contained in it.
     pub(super) is_exact: bool,
 }
 
 impl<const D: usize> RoundedCore<D> {
-    /// That of a shape at a pose; the box of the shape, where there is no closed form.
+    /// The rounded core of a shape at a pose; the box of the shape if there is no closed form.
     pub(super) fn new<N: Real>(shape: &dyn Shape<N, D>, pose: &Pose<N, D>) -> Self {
         let exact = |core, radius: N| Self { core, radius: radius.as_f32(), is_exact: true };
         match shape.geometry().0 {
@@ -75,7 +75,7 @@ impl<const D: usize> RoundedCore<D> {
         }
     }
 
-    /// Nothing is known.
+    /// A core without a bound.
     pub(super) const fn unknown() -> Self {
         Self { core: Core::Unknown, radius: 0.0, is_exact: false }
     }
@@ -98,6 +98,7 @@ fn cuboid_at<N: Real, const D: usize>(
     Core::Cuboid { axes: columns(&pose.rotation), center: numbers(center), half: numbers(half) }
 }
 
+/// A segment in the outer frame.
 fn between<N: Real, const D: usize>(pose: &Pose<N, D>, ends: [&Point<N, D>; 2]) -> Core<D> {
     let [start, end] = ends.mapped(|end| pose.point(end).coords);
     let way = (end - start).map(N::as_f32);
@@ -115,7 +116,8 @@ fn columns<N: Real, const D: usize>(matrix: &Matrix<N, D>) -> [[f32; D]; D] {
 }
 
 impl<const D: usize> Core<D> {
-    /// The squares of the distances of eight points from the core, zero inside; all numbers are below 10¹⁵.
+    /// The squared distances of eight points from the core, zero inside; all numbers must be below
+    /// 10¹⁵.
     #[inline(always)]
     pub(super) fn squared<S: Simd, V: Wide<S, Scalar = f32>>(&self, simd: S, points: &[V; D]) -> V {
         let zero = V::all(simd, 0.0);
@@ -165,7 +167,7 @@ fn all<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, numbers: &[f3
     )
 }
 
-/// Points in a frame with these axes.
+/// Converts points to a frame with these axes.
 #[inline(always)]
 fn local<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
     simd: S,

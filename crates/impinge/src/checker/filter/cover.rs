@@ -1,12 +1,12 @@
-//! Balls that hold a body, and a ball around several.
+//! Covers of bodies by balls, and bounding balls of several balls.
 
 use crate::math::{Point, Pose, Real, Vector, max};
 use crate::shape::{Kind, Shape};
 
-/// How many balls hold a body at most.
+/// The maximum number of balls that cover a body.
 const MAX_BALLS: usize = 8;
 
-/// Steps towards the smallest ball: the k-th leaves an error of about 1 / √k.
+/// Steps towards the smallest ball: after k steps the error is about 1 / √k.
 const STEPS: usize = 256;
 
 /// A ball in the frame of a node.
@@ -16,9 +16,10 @@ pub(super) struct CoverBall<N: Real, const D: usize> {
     pub(super) radius: N,
 }
 
-/// The balls around a shape at a pose, and whether it is that ball.
+/// Returns balls that cover a shape at a pose, and whether the shape is that one ball.
 ///
-/// A box is held by balls in a row along its longest side; what has no end by one without end.
+/// The box of the shape is covered by balls in a row along its longest side; an unbounded shape by
+/// an infinite ball.
 pub(super) fn cover<N: Real, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
@@ -47,14 +48,15 @@ pub(super) fn cover<N: Real, const D: usize>(
     ((0..count).map(ball).collect(), false)
 }
 
-/// A whole number that is small.
+/// Converts a small count.
 fn small(count: usize) -> f64 {
     f64::from(u32::try_from(count).expect("a small number"))
 }
 
-/// A ball around balls, of which there are some, close to the smallest.
+/// Returns a bounding ball of at least one ball, close to the smallest.
 ///
-/// M. Bădoiu and K. L. Clarkson, "Smaller core-sets for balls" (2003): each step goes towards the farthest.
+/// M. Bădoiu and K. L. Clarkson, "Smaller core-sets for balls" (2003): each step goes towards the
+/// farthest.
 pub(super) fn around<N: Real, const D: usize>(balls: &[CoverBall<N, D>]) -> CoverBall<N, D> {
     let reach =
         |center: &Vector<N, D>, ball: &CoverBall<N, D>| (ball.center - center).norm() + ball.radius;

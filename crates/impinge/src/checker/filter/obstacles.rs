@@ -1,4 +1,4 @@
-//! What the bodies of a robot may meet.
+//! The obstacles that the bodies of a robot may touch.
 
 use super::core::RoundedCore;
 use super::robot::{BallGroup, RobotFilter, shift_of, way_to};
@@ -11,32 +11,32 @@ use crate::math::{Pose, Real, Space, Vector};
 use crate::query::distance_between;
 use crate::shape::{Ball, Shape};
 
-/// Obstacles as the scan sees them.
+/// Obstacles in the form of the scan.
 #[derive(Clone, Debug)]
 pub(in crate::checker) struct Surroundings<const D: usize> {
     pub(super) obstacles: Vec<LaneObstacle<D>>,
-    /// For each group the obstacles, nearest first.
+    /// For each group its obstacles, nearest first.
     pub(super) within: Vec<Vec<InReach>>,
-    /// Bodies and obstacles that may touch, ascending.
+    /// Pairs of a body and an obstacle that may touch, ascending.
     ignored: Vec<[u32; 2]>,
 }
 
-/// An obstacle.
+/// An obstacle in `f32`, with its rounding error.
 #[derive(Clone, Debug)]
 pub(super) struct LaneObstacle<const D: usize> {
     pub(super) outline: RoundedCore<D>,
     pub(super) margin: f32,
 }
 
-/// An obstacle that a group can reach.
+/// An obstacle in the reach of a group.
 #[derive(Clone, Debug)]
 pub(super) struct InReach {
-    /// How far apart they are at least, if nothing slides.
+    /// A lower bound of their distance, if nothing slides.
     pub(super) gap: f32,
     pub(super) obstacle: usize,
-    /// The user's number of it.
+    /// Its number in the user's order.
     pub(super) number: u32,
-    /// The balls of the group whose bodies must not touch it.
+    /// The balls of the group whose bodies must not touch it, as bits.
     pub(super) wanted: u8,
     /// The sum of the radii of the group and of the obstacle, and of the margins.
     pub(super) radius: f32,
@@ -59,7 +59,7 @@ impl<const D: usize> Surroundings<D> {
         all
     }
 
-    /// The obstacles by how far they are from what a group can reach.
+    /// The obstacles of a group, sorted by their distance from all points that it can reach.
     fn in_reach<N: Space<D>>(
         &self,
         tree: &FrameTree<N, D>,
@@ -82,7 +82,7 @@ impl<const D: usize> Surroundings<D> {
             let gap =
                 distance_from(&way.anchor, obstacle).as_f64() - way.length - f64::from(margin);
             let gap = N::lit(gap).as_f32_below();
-            // What has no end is everywhere.
+            // NaN, from unbounded obstacles, counts as near everything.
             let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
             all.push(InReach { gap, obstacle: index, number, wanted, radius });
         }
@@ -91,7 +91,7 @@ impl<const D: usize> Surroundings<D> {
         all
     }
 
-    /// The balls of a group whose bodies must not touch an obstacle.
+    /// The balls of a group whose bodies must not touch an obstacle, as bits.
     fn wanted(&self, group: &BallGroup<D>, obstacle: u32) -> u8 {
         let may_touch = |body| self.ignored.binary_search(&[body, obstacle]).is_ok();
         let wanted = (0..group.count).filter(|&ball| !may_touch(group.bodies[ball]));
@@ -99,7 +99,7 @@ impl<const D: usize> Surroundings<D> {
     }
 }
 
-/// How far an obstacle is from a point.
+/// The distance of an obstacle from a point.
 fn distance_from<N: Space<D>, const D: usize>(
     point: &Vector<N, D>,
     obstacle: &Obstacle<N, D>,
@@ -110,7 +110,7 @@ fn distance_from<N: Space<D>, const D: usize>(
     distance_between(&at, &there)
 }
 
-/// An obstacle in `f32`, as seen from the first joint.
+/// Converts an obstacle to `f32`, relative to the first joint.
 fn in_f32<N: Space<D>, const D: usize>(
     tree: &FrameTree<N, D>,
     obstacle: &Obstacle<N, D>,
@@ -131,7 +131,7 @@ fn in_f32<N: Space<D>, const D: usize>(
     }
 }
 
-/// How far the box of a shape reaches; nothing where it has no end, as that of a half-space.
+/// The extent of the box of a shape from its origin; zero if unbounded, as for a half-space.
 fn size_of_box<N: Real, const D: usize>(obstacle: &Obstacle<N, D>) -> f64 {
     let aabb = obstacle.shape.local_aabb();
     if !aabb.is_bounded() {

@@ -11,29 +11,29 @@ use crate::math::order::{order_of, sort_few};
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Space, Vector};
 use crate::shape::Shape;
 
-/// A robot as the scan sees it.
+/// A robot in the form of the scan.
 #[derive(Clone, Debug)]
 pub(in crate::checker) struct RobotFilter<const D: usize> {
     pub(super) nodes: Vec<Node<f32, D>>,
     pub(super) groups: Vec<BallGroup<D>>,
     pub(super) crossings: Vec<GroupPair>,
-    /// The margin for a unit of length of all that slides.
+    /// The margin per unit of length of all slides.
     slide_margin: f32,
 }
 
-/// Up to eight balls on one node that are near each other: one body, or several.
+/// Up to eight neighbouring balls on one node: one body, or several.
 #[derive(Clone, Debug)]
 pub(super) struct BallGroup<const D: usize> {
     pub(super) node: usize,
-    /// Around all its balls.
+    /// The ball around all its balls.
     pub(super) center: [f32; D],
     pub(super) radius: f32,
-    /// The balls in lanes: those that there are not are never asked for.
+    /// The balls in lanes; lanes without a ball are masked out.
     pub(super) centers: [LaneRow<f32>; D],
     pub(super) radii: LaneRow<f32>,
-    /// The user's numbers of the bodies that the balls hold.
+    /// The numbers, in the user's order, of the bodies that the balls cover.
     pub(super) bodies: [u32; LANES],
-    /// How many balls there are, and a bit for each that is its body.
+    /// The number of balls, and a bit for each ball that equals its body.
     pub(super) count: usize,
     pub(super) exact: u8,
     pub(super) margin: f32,
@@ -43,17 +43,17 @@ pub(super) struct BallGroup<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct GroupPair {
     pub(super) groups: [usize; 2],
-    /// How far apart all pairs are at least at all times, if nothing slides.
+    /// A lower bound of the distance of all pairs at all times, if nothing slides.
     pub(super) gap: f32,
-    /// How many of the two may slide away from where they were.
+    /// How many of the two groups may be moved by slides.
     pub(super) sliding: f32,
     /// The sum of the radii of their balls and of the margins.
     pub(super) radius: f32,
-    /// For each ball of the first group the balls of the second that must not touch it.
+    /// For each ball of the first group the balls of the second that must not touch it, as bits.
     pub(super) wanted: [u8; LANES],
 }
 
-/// A body with its balls before it has a group.
+/// A body with its cover, before it has a group.
 struct Covered<N: Real, const D: usize> {
     number: usize,
     node: usize,
@@ -61,31 +61,34 @@ struct Covered<N: Real, const D: usize> {
     is_ball: bool,
 }
 
-/// Where a group can be.
+/// The region that a group can reach.
 pub(super) struct Way<N: Real, const D: usize> {
-    /// The first joint that turns, or the center of what none turns, where nothing slides.
+    /// The position of the first joint that rotates, or the center if none does, with all slides at
+    /// zero.
     pub(super) anchor: Vector<N, D>,
-    /// Of the group's ball from there, but for what slides: its center and its radius.
+    /// An upper bound of the distance of the group's ball from there, without slides: to its center
+    /// plus its radius.
     pub(super) length: f64,
-    /// The first joint, or the center of what does not move, and the length from there: margins are made of them.
+    /// The position of the first joint, or the center if nothing moves, and the length from there:
+    /// both enter the margins.
     first: Vector<N, D>,
     from_first: f64,
     joints: usize,
 }
 
-/// What builds a filter.
+/// The state of building a filter.
 struct Builder<'a, N: Real, const D: usize> {
     tree: &'a FrameTree<N, D>,
     shift: Vector<N, D>,
     filter: RobotFilter<D>,
-    /// Where each group can be: all of it is within the length of the anchor.
+    /// The reach of each group: all of it is within the length of the anchor.
     ways: Vec<Way<N, D>>,
-    /// The group and the balls, by bits, of each body of the user's.
+    /// The group and the balls, as bits, of each body, in the user's order.
     places: Vec<(usize, u8)>,
 }
 
 impl<const D: usize> RobotFilter<D> {
-    /// That of bodies, each at a place on its node, of which pairs must not touch.
+    /// Builds the filter for bodies at places on their nodes, and the pairs that must not touch.
     pub(in crate::checker) fn new<'s, N: Space<D>>(
         tree: &FrameTree<N, D>,
         bodies: impl Iterator<Item = (&'s dyn Shape<N, D>, OnNode<N, D>)>,
@@ -113,13 +116,13 @@ impl<const D: usize> RobotFilter<D> {
     }
 }
 
-/// Where lengths are counted from: the first joint on the world.
+/// The origin of `f32` coordinates: the first joint on the world.
 pub(super) fn shift_of<N: Real, const D: usize>(tree: &FrameTree<N, D>) -> Vector<N, D> {
     let first = tree.nodes.iter().find(|node| node.parent == 0);
     first.map_or_else(Vector::<N, D>::zeros, |node| node.origin)
 }
 
-/// The way to a ball on a node, whose center is counted from [`shift_of`] on the world.
+/// The chain of joints to a ball on a node; the center is relative to [`shift_of`] on the world.
 pub(super) fn way_to<N: Real, const D: usize>(
     tree: &FrameTree<N, D>,
     node: usize,
@@ -137,7 +140,7 @@ pub(super) fn way_to<N: Real, const D: usize>(
     let own = f64::from(radius) + if node == 0 { 0.0 } else { center.norm().as_f64() };
     let lengths = chain.iter().rev().skip(1).map(|node| node.origin.norm().as_f64());
     let from_first = own + lengths.sum::<f64>();
-    // What slides only has no rotation but a constant one.
+    // Up to the first joint that rotates, all rotations are constant.
     let mut pose = Pose::identity();
     let mut turning = chain.iter().rev().skip_while(|node| {
         let rotation = node.constant_rotation();
@@ -169,7 +172,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         Self { tree, shift, filter, ways: Vec::new(), places: vec![(0, 0); bodies] }
     }
 
-    /// Makes groups of bodies of one node: one, or those of its halves along the longest side.
+    /// Groups the bodies of one node: one group, or those of the two halves along the longest axis.
     fn divide(&mut self, mut bodies: Vec<&Covered<N, D>>) {
         let count: usize = bodies.iter().map(|body| body.balls.len()).sum();
         if bodies.len() < 2 || count <= LANES {
@@ -178,7 +181,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         let axis = longest_axis(&bodies);
         let key = |body: &Covered<N, D>| (order_of(body.balls[0].center[axis]), body.number);
         sort_few(&mut bodies, |one, other| key(one) < key(other));
-        // Full groups are fewer.
+        // Full groups make the number of groups smaller.
         let half = bodies.len().div_ceil(2);
         let full = half.next_multiple_of(LANES);
         let back = bodies.split_off(if full < bodies.len() { full } else { half });
@@ -186,6 +189,8 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         self.divide(back);
     }
 
+    /// Appends a group of the balls of some bodies on one node, with its bounding ball, reach and
+    /// margin.
     fn add_group(&mut self, bodies: &[&Covered<N, D>]) {
         let node = bodies[0].node;
         let shift = if node == 0 { self.shift } else { Vector::<N, D>::zeros() };
@@ -210,7 +215,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         self.ways.push(way);
     }
 
-    /// Puts pairs of bodies in order of their groups.
+    /// Collects the pairs of bodies by their groups.
     fn cross(&mut self, pairs: &[[u32; 2]]) {
         let mut by_groups = BTreeMap::<[usize; 2], [u8; LANES]>::new();
         for pair in pairs {
@@ -235,7 +240,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         }
     }
 
-    /// How far apart what two groups can reach is at least.
+    /// A lower bound of the distance between the regions that two groups can reach.
     fn gap_between(&self, groups: [usize; 2]) -> f32 {
         let [one, other] = groups.mapped(|group| &self.ways[group]);
         let apart = (one.anchor - other.anchor).norm().as_f64();
@@ -243,7 +248,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
     }
 }
 
-/// How far apart the balls of two groups of one node are at least.
+/// A lower bound of the distance between the balls of two groups on one node.
 fn gap_on_node<const D: usize>([one, other]: [&BallGroup<D>; 2], wanted: &[u8; LANES]) -> f32 {
     let mut least = f32::INFINITY;
     for (ball1, others) in wanted.iter().enumerate() {
@@ -270,6 +275,7 @@ impl<const D: usize> BallGroup<D> {
         }
     }
 
+    /// Appends a ball of a body; the group must not be full.
     fn push<N: Real>(&mut self, body: &Covered<N, D>, (center, radius): ([f32; D], f32)) {
         let lane = self.count;
         for (row, x) in self.centers.iter_mut().zip(center) {
@@ -292,7 +298,7 @@ impl<const D: usize> BallGroup<D> {
     }
 }
 
-/// Along which the centers are spread farthest.
+/// The axis along which the centers are spread farthest.
 fn longest_axis<N: Real, const D: usize>(bodies: &[&Covered<N, D>]) -> usize {
     let spread = |axis: usize| {
         let places = bodies.iter().map(|body| body.balls[0].center[axis].as_f64());
@@ -303,7 +309,7 @@ fn longest_axis<N: Real, const D: usize>(bodies: &[&Covered<N, D>]) -> usize {
     (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best })
 }
 
-/// Center and radius; without an end, where these have no squares.
+/// The center and the radius in `f32`; an infinite radius if their squares may overflow.
 fn in_f32<N: Real, const D: usize>(ball: &CoverBall<N, D>) -> ([f32; D], f32) {
     let (center, radius) = (numbers(&ball.center), ball.radius.as_f32_above());
     let is_usable = radius <= MAX_LENGTH && center.iter().all(|x: &f32| x.abs() <= MAX_LENGTH);

@@ -1,7 +1,9 @@
 //! The scan: eight configurations against all pairs.
 //!
-//! Groups are looked at in eight configurations at once; where one is near, its eight balls at once in each configuration
-//! in which it is.
+//! ```text
+//! group     [ c0 c1 c2 c3 c4 c5 c6 c7 ]   lane = configuration; a bit for each where it is near
+//! its balls [ b0 b1 b2 b3 b4 b5 b6 b7 ]   lane = ball, once for each of these configurations
+//! ```
 
 use super::MAX_LENGTH;
 use super::obstacles::{InReach, LaneObstacle, Surroundings};
@@ -12,17 +14,18 @@ use crate::math::lanes::{dot, load, minus, with_lanes};
 use crate::math::simd::{Eight, Level, Simd};
 use crate::math::{Wide, filled};
 
-/// Where everything is in eight configurations.
+/// The positions of all groups in eight configurations.
 #[derive(Debug)]
 pub(in crate::checker) struct ScanScratch<const D: usize> {
     /// The number of each node.
     pub(in crate::checker) numbers: Vec<LaneRow<f32>>,
     rows: Vec<PoseRows<f32, D>>,
-    /// The centers of the groups, by configurations.
+    /// The center of each group; lane = configuration.
     centers: Vec<[LaneRow<f32>; D]>,
-    /// For each group and configuration the centers of the balls, when they are needed.
+    /// For each group and configuration the centers of its balls, computed on first use; lane =
+    /// ball.
     balls: Vec<[[LaneRow<f32>; D]; LANES]>,
-    /// The configurations in which they are there.
+    /// The configurations, as bits, in which the balls of a group are computed.
     placed: Vec<u8>,
 }
 
@@ -39,14 +42,14 @@ impl<const D: usize> ScanScratch<D> {
     }
 }
 
-/// What is scanned.
+/// The input of a scan.
 #[derive(Clone, Copy)]
 struct Scan<'a, const D: usize> {
     robot: &'a RobotFilter<D>,
     around: &'a Surroundings<D>,
 }
 
-/// Finds the pairs of eight configurations, of which `scratch` has the numbers.
+/// Finds the candidate pairs of eight configurations from the numbers in `scratch`.
 pub(in crate::checker) fn scan_at<const D: usize>(
     level: Level,
     robot: &RobotFilter<D>,
@@ -59,7 +62,7 @@ pub(in crate::checker) fn scan_at<const D: usize>(
     search.tidy();
 }
 
-/// [`Scan::run`] with vectors of eight.
+/// Runs [`Scan::run`] with vectors of eight.
 #[inline(always)]
 fn run<S: Simd, const D: usize>(
     simd: S,
@@ -71,6 +74,7 @@ fn run<S: Simd, const D: usize>(
 }
 
 impl<const D: usize> Scan<'_, D> {
+    /// Places all groups by forward kinematics, then tests them against obstacles and each other.
     #[inline(always)]
     fn run<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -114,6 +118,7 @@ impl<const D: usize> Scan<'_, D> {
         centers
     }
 
+    /// Tests each group against its obstacles, nearest first, until their gap exceeds all limits.
     #[inline(always)]
     fn meet_obstacles<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -121,7 +126,7 @@ impl<const D: usize> Scan<'_, D> {
         scratch: &mut ScanScratch<D>,
         search: &mut CollisionSearch,
     ) {
-        // What moves farthest hits most often.
+        // Groups at the ends of chains move farthest and hit most often.
         for (index, group) in self.robot.groups.iter().enumerate().rev() {
             let center: [V; D] = load(simd, &scratch.centers[index]);
             for within in &self.around.within[index] {
@@ -141,7 +146,7 @@ impl<const D: usize> Scan<'_, D> {
         }
     }
 
-    /// The balls of a group against an obstacle in a configuration.
+    /// Tests the balls of a group against an obstacle in a configuration.
     #[inline(always)]
     fn meet_obstacle<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -167,6 +172,7 @@ impl<const D: usize> Scan<'_, D> {
         );
     }
 
+    /// Tests the pairs of groups against each other, by their bounding balls first.
     #[inline(always)]
     fn meet_itself<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -193,7 +199,7 @@ impl<const D: usize> Scan<'_, D> {
         }
     }
 
-    /// The balls of two groups against each other in a configuration.
+    /// Tests the balls of two groups against each other in a configuration.
     #[inline(always)]
     fn cross<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -256,7 +262,7 @@ fn spread<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, v: &[f32; 
     )
 }
 
-/// What is in one lane in all lanes.
+/// Copies one lane to all lanes.
 #[inline(always)]
 fn spread_lane<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
     simd: S,

@@ -1,4 +1,4 @@
-//! What a scan looks for, and what it found.
+//! The state of a scan: its mode, its limits, and the candidate pairs.
 
 use crate::checker::chain::{LANES, LaneRow};
 use crate::math::lanes::bits;
@@ -6,10 +6,10 @@ use crate::math::order::sort_few;
 use crate::math::simd::Simd;
 use crate::math::{Wide, max, min};
 
-/// What is asked of eight configurations.
+/// The query of eight configurations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::checker) enum SearchMode {
-    /// Whether there is any pair: what is decided needs no more.
+    /// Whether there is any pair: a lane ends at its first certain pair.
     Any,
     /// All pairs.
     All,
@@ -17,19 +17,19 @@ pub(in crate::checker) enum SearchMode {
     Nearest,
 }
 
-/// A pair that in a configuration is not certainly farther apart than the limit.
+/// A pair that is not certainly farther apart than the limit in a configuration.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::checker) struct NearPair {
     pub(in crate::checker) lane: usize,
     pub(in crate::checker) pair: (u32, Other),
-    /// It certainly is not farther apart.
+    /// Whether it certainly is within the limit.
     pub(in crate::checker) is_certain: bool,
-    /// How far apart it is at least, in the mode [`SearchMode::Nearest`].
+    /// A lower bound of its distance, in the mode [`SearchMode::Nearest`].
     pub(in crate::checker) lower: f32,
 }
 
 impl NearPair {
-    /// Lanes and pairs in their order.
+    /// The sort key: by lane, then by pair.
     #[inline]
     fn key(&self) -> u128 {
         let (body, other) = self.pair;
@@ -40,7 +40,7 @@ impl NearPair {
         (self.lane as u128) << 96 | u128::from(body) << 64 | is_obstacle << 32 | u128::from(number)
     }
 
-    /// Takes in what other balls say of the same pair.
+    /// Merges the result of other balls of the same pair.
     #[inline]
     fn merge(&mut self, other: &Self) {
         self.is_certain |= other.is_certain;
@@ -59,33 +59,34 @@ pub(in crate::checker) enum Other {
 #[derive(Debug)]
 pub(in crate::checker) struct CollisionSearch {
     mode: SearchMode,
-    /// The lanes that are looked at.
+    /// The lanes that are not decided yet, as bits.
     live: u8,
-    /// The lanes in which numbers are too large for `f32`.
+    /// The lanes in which numbers are too large for `f32`, as bits.
     pub(in crate::checker) blind: u8,
-    /// The lanes in which a pair is certainly not farther apart than the limit, in the mode [`SearchMode::Any`].
+    /// The lanes in which a pair is certainly within the limit, in the mode [`SearchMode::Any`].
     pub(in crate::checker) hits: u8,
-    /// Farther apart than this with all margins is farther than the limit; nearer than the other is not.
+    /// Beyond `outer`, with all margins, a pair is farther apart than the limit; below `inner` it
+    /// is within it.
     outer: LaneRow<f32>,
     inner: LaneRow<f32>,
-    /// The margin for what slides.
+    /// The margin for slides.
     slack: LaneRow<f32>,
-    /// The highest number of `outer`, and how far anything slides.
+    /// The maximum of `outer`, and the largest slide.
     pub(super) farthest: f32,
     pub(super) slide: f32,
-    /// In order of the lanes and pairs after [`Self::tidy`].
+    /// Sorted by lane and pair after [`Self::tidy`].
     pub(in crate::checker) near: Vec<NearPair>,
 }
 
-/// What is known of the distances of up to eight balls of a group from one thing.
+/// The distances of up to eight balls of a group from one ball or obstacle.
 #[derive(Clone, Copy)]
 pub(super) struct Distances<V> {
-    /// The squares of the distances of the centers from its center, or from its core.
+    /// The squared distances of the centers from its center, or from its core.
     pub(super) squared: V,
     /// The sums of the radii, and the margin.
     pub(super) radius: V,
     pub(super) margin: f32,
-    /// The balls that are asked about, and those of which radius and distance are all.
+    /// The balls to be tested, and those whose distance is exact, as bits.
     pub(super) wanted: u8,
     pub(super) exact: u8,
 }
@@ -107,8 +108,8 @@ impl CollisionSearch {
         }
     }
 
-    /// Begins with new configurations: those of the lanes, and how far things slide in each, with the margin for a unit
-    /// of that.
+    /// Starts on new configurations: `lanes` as bits, and the total slide of each lane, with the
+    /// margin per unit of slide.
     pub(in crate::checker) fn begin(
         &mut self,
         lanes: u8,
@@ -117,7 +118,7 @@ impl CollisionSearch {
     ) {
         (self.live, self.blind, self.hits) = (lanes, 0, 0);
         self.slide = 0.0;
-        // The limit itself was rounded. Without one the first is infinite, and the other NaN.
+        // The limit itself was rounded. If it is infinite, `outer` is infinite and `inner` NaN.
         let rounding = limit * (2.0 * f32::EPSILON);
         for (lane, &slide) in slides.iter().enumerate() {
             self.slack[lane] = slide * margin;
@@ -128,7 +129,7 @@ impl CollisionSearch {
         self.near.clear();
     }
 
-    /// Leaves out the lanes in which numbers are too large; no limit of a lane that is left out counts.
+    /// Excludes lanes whose numbers are too large, together with their limits.
     pub(super) fn leave_out(&mut self, usable: u8) {
         self.blind = self.live & !usable;
         self.live &= usable;
@@ -139,20 +140,20 @@ impl CollisionSearch {
         }
     }
 
-    /// A lane is looked at.
+    /// Whether a lane is not decided yet.
     #[inline(always)]
     pub(super) const fn is_live(&self, lane: usize) -> bool {
         self.live >> lane & 1 == 1
     }
 
-    /// All lanes are decided.
+    /// Whether all lanes are decided.
     #[inline(always)]
     pub(super) const fn is_done(&self) -> bool {
         self.live == 0
     }
 
-    /// The live lanes in which two things with these radii and distances are not certainly farther apart than the limit:
-    /// NaN is not.
+    /// The live lanes in which two balls or cores with these radii and distances are not certainly
+    /// farther apart than the limit, as for NaN.
     #[inline(always)]
     pub(super) fn near_lanes<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
@@ -164,7 +165,8 @@ impl CollisionSearch {
         !bits(squared.simd_gt(reach * reach)) & self.live
     }
 
-    /// The balls that are near a ball of this radius in a configuration, with the margin in the radius.
+    /// The balls that are near a ball of this radius in a configuration; the radius includes the
+    /// margin.
     #[inline(always)]
     pub(super) fn near_balls<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
@@ -177,7 +179,7 @@ impl CollisionSearch {
         !bits(squared.simd_gt(reach * reach))
     }
 
-    /// Keeps the balls that are near in a configuration; `pair_of` has the pair of a ball.
+    /// Records the balls that are near in a configuration; `pair_of` returns the pair of a ball.
     #[inline(always)]
     pub(super) fn settle<S: Simd, V: Wide<S, Scalar = f32>>(
         &mut self,
@@ -206,7 +208,7 @@ impl CollisionSearch {
             balls &= balls - 1;
             let (is_certain, lower) = (certain >> ball & 1 == 1, lower[ball]);
             let found = NearPair { lane, pair: pair_of(ball), is_certain, lower };
-            // The balls of one body mostly follow each other.
+            // Balls of one body mostly follow each other.
             match self.near.last_mut() {
                 Some(last) if last.key() == found.key() => last.merge(&found),
                 _ => self.near.push(found),
@@ -214,7 +216,8 @@ impl CollisionSearch {
         }
     }
 
-    /// How far apart the balls are at least. No pair is wanted that is farther apart than the upper bound of one.
+    /// Returns lower bounds of the distances, and lowers `outer` to the smallest upper bound: no
+    /// pair beyond it can be the nearest.
     #[inline(always)]
     fn bounds<S: Simd, V: Wide<S, Scalar = f32>>(
         &mut self,
@@ -233,14 +236,14 @@ impl CollisionSearch {
         lower.store(&mut bounds);
         let exact = (0..LANES).filter(|ball| (near & distances.exact) >> ball & 1 == 1);
         let upper = exact.fold(f32::INFINITY, |upper, ball| min(bounds[ball], upper));
-        // Twice the margin above the lower bound, and once for what slides; no distance is negative.
+        // Twice the margin above the lower bound, and once for slides; no distance is negative.
         let upper = max(upper + 2.0 * (distances.margin + slack), 0.0) + slack;
         self.outer[lane] = min(upper, self.outer[lane]);
         self.farthest = self.outer.iter().fold(0.0, |most, &outer| max(outer, most));
         bounds
     }
 
-    /// Puts what was kept in order, each pair once, without what turned out to be farther than others.
+    /// Sorts the candidates, merges duplicates, and drops those beyond the final limit.
     pub(in crate::checker) fn tidy(&mut self) {
         if self.mode == SearchMode::Nearest {
             let outer = self.outer;

@@ -1,4 +1,6 @@
-//! Two balls: `collide/separation/balls/ball_ball.rs` in lanes.
+//! Ball against ball: `collide/separation/balls/ball_ball.rs` in lanes.
+//!
+//! Reads of [`Inputs`]: both `translations` and both `radii`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -8,7 +10,7 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Balls whose centres are some way apart.
+/// Balls whose centres do not coincide. Coinciding centres have no direction: they fall back.
 pub(super) struct BallBall;
 
 impl<N: Real, const D: usize> Form<N, D> for BallBall {

@@ -1,4 +1,7 @@
-//! A ball and a box: `collide/separation/balls/ball_cuboid.rs` in lanes.
+//! Ball against box: `collide/separation/balls/ball_cuboid.rs` in lanes.
+//!
+//! Reads of [`Inputs`]: both `translations` and the box's rotation, `radii[0]` of the ball, and the
+//! half extents in `ends[1][0]`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -8,7 +11,7 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
 use crate::shape::{Cuboid, FeatureId};
 
-/// Balls with their centre outside of the box.
+/// Balls with their centre outside the box.
 pub(super) struct BallCuboid;
 
 impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
@@ -34,6 +37,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, 1, 0));
         let radius = inputs.radius(simd, 0);
         let center = pose12.inverse_origin(simd);
+        // Nearest point of the box to the centre. A centre inside has no offset from it, and falls
+        // back.
         let clamped = filled(
             #[inline(always)]
             |axis| center[axis].smaller(half[axis]).larger(-half[axis]),
@@ -43,6 +48,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let point1 = times(&normal, radius);
         let (reach, is_box) = length_of(simd, &half);
         let noise = rounding_of::<S, N, V>(simd, radius + reach + pose12.apart());
+        // To the frame of the ball and back, with the rounding that the builder for one pair has.
         let touched = pose12.inverse_point(&pose12.point(&clamped));
         radius.smaller(reach).store(&mut found.size);
         let is_thick = found.put_part(simd, [&touched, &half], noise);
@@ -57,8 +63,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
 }
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
-    /// `Cuboid::part_at` for a point of each box: masks of the axes that are free, then of the signs.
-    /// Answers the lanes where there is such a part.
+    /// Computes the part of each box that a point lies on, as `Cuboid::part_at` does: masks of the
+    /// free axes, then of the signs. Returns the lanes that have such a part.
     #[inline(always)]
     fn put_part<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

@@ -1,4 +1,7 @@
-//! A ball and a segment or capsule: `collide/separation/balls/ball_segment.rs` in lanes.
+//! Ball against segment or capsule: `collide/separation/balls/ball_segment.rs` in lanes.
+//!
+//! Reads of [`Inputs`]: both `translations` and the segment's rotation, both `radii`, and the ends
+//! of the core in `ends[1]`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -10,7 +13,7 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Balls with their centre some way off a segment that has a length.
+/// Balls with their centre off a segment that has a length.
 pub(super) struct BallSegment;
 
 impl<N: Real, const D: usize> Form<N, D> for BallSegment {
@@ -40,6 +43,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
         let offset = minus(&center, &near.point);
         let (direct, away, is_off) = unit(simd, &offset);
         let (axis, length, is_long) = unit(simd, &near.along);
+        // Beside the segment the offset may be mostly rounding: the normal is made perpendicular.
         let (sideways, is_beside) = made_perpendicular(simd, (&direct, is_off), &axis);
         let outward = either(near.is_inside, &sideways, &direct);
         let normal = negated(&pose12.vector(&outward));
@@ -48,6 +52,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
         let size = radius + (reach + rounding) + pose12.apart();
         radius.smaller(lit::<S, N, V>(simd, 0.5) * length + rounding).store(&mut found.size);
         let noise = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
+        // A segment no longer than the noise has no ends, only its edge.
         let (slack, is_edge) = (noise * length, length.simd_le(noise));
         let is_first = near.from_first.simd_le(slack) & !is_edge;
         let is_last = near.to_last.simd_le(slack) & !is_edge;
@@ -64,7 +69,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
     }
 }
 
-/// `made_perpendicular` of a vector whose direction is given, and where that is certain.
+/// Computes `made_perpendicular` of a vector with known direction; the mask has the lanes where it
+/// is certain.
 #[inline(always)]
 fn made_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

@@ -1,5 +1,16 @@
-//! Pairs whose separation is one closed form: a ball against a ball, a box, a segment or a capsule, and segments
-//! and capsules. Their manifold is one point, of segments of the plane perhaps two.
+//! Pairs whose separation is one closed form: a ball against a ball, a box, a segment or a capsule,
+//! and segments and capsules against each other. The manifold is one point, for segments in 2D up
+//! to two.
+//!
+//! ```text
+//!   row of `LaneContacts::parts`    ball, box     ball, segment   segments
+//!     0, 1                          D free axes   at first end,   1: at first end, at last end
+//!                                                 at last end
+//!     2, 3                          then D signs                  2: likewise
+//!     4 .. 8                                                      second contact: likewise
+//!
+//!   `turned`: row r, bit lane  -->  byte lane, bit r, which `Form::features` decodes
+//! ```
 
 use core::marker::PhantomData;
 
@@ -16,25 +27,25 @@ use crate::shape::FeatureId;
 
 /// A closed form in lanes.
 pub(super) trait Form<N: Real, const D: usize> {
-    /// As [`Batch::gather`].
+    /// Puts a pair into a lane, as [`Batch::gather`].
     fn gather<const L: usize>(
         inputs: &mut Inputs<N, D, L>,
         lane: usize,
         pair: &PairQuestion<'_, N, D>,
     ) -> bool;
 
-    /// The contacts of the pairs.
+    /// Computes the contacts of all lanes.
     fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
         inputs: &Inputs<N, D, L>,
         found: &mut LaneContacts<N, D, L>,
     );
 
-    /// The features of the two solids that a pair's byte of [`LaneContacts::parts`] stands for.
+    /// Decodes a pair's byte of [`LaneContacts::parts`] into the features of both solids.
     fn features(parts: u8) -> [FeatureId; 2];
 }
 
-/// A batch of pairs with such a form.
+/// Adapts a [`Form`] to a [`Batch`].
 pub(super) struct ClosedForm<F>(PhantomData<F>);
 
 impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
@@ -76,29 +87,32 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
     }
 }
 
-/// The contacts of `L` pairs.
+/// Contacts of `L` pairs.
 pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
+    /// Unit normals from the first solid to the second, in the frame of the first.
     pub(super) normal: [[N; L]; D],
+    /// Signed distances of the pairs.
     pub(super) gap: [N; L],
-    /// The size of each pair, for what is in proportion to it.
+    /// Size of each pair, as `collide::size` defines it.
     pub(super) size: [N; L],
-    /// The first and the second contact: the points on the first solid, and the distances, of which that of a
-    /// lone contact is the gap.
+    /// First and second contact: points on the first solid, and distances. The distance of a lone
+    /// contact is `gap`.
     pub(super) points1: [[[N; L]; D]; 2],
     pub(super) distances: [[N; L]; 2],
-    /// Lengths up to this are rounding errors, where there are two contacts.
+    /// Lengths up to this are rounding errors; used for two contacts.
     pub(super) tolerance: [N; L],
-    /// Eight masks that encode what the points lie on, then a byte for each pair; what the bits mean is up to the
-    /// form. Where there are two contacts, four are of the first.
+    /// Masks of the parts that the points lie on, then a byte for each pair; the form defines the
+    /// bits. With two contacts, the low four are those of the first.
     pub(super) parts: [u8; 8],
-    /// The lanes that are too far apart, those that have a contact, and those that have two. The others are
-    /// declined.
+    /// Bits of the lanes beyond the prediction, with a contact, and with two contacts. Lanes with
+    /// none of these fall back.
     pub(super) is_apart: u8,
     pub(super) is_found: u8,
     pub(super) is_two: u8,
 }
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
+    /// Contacts before the first kernel runs: no lane is found or apart.
     const fn new() -> Self {
         let row = [N::ZERO; L];
         Self {
@@ -115,8 +129,8 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// What is known of the pairs, where that is usual: the distance, the normal and the point on the
-    /// first solid.
+    /// Stores the distances, normals and points on the first solid, and sets the masks. `is_usual`
+    /// are the lanes where they hold.
     #[inline(always)]
     pub(super) fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -136,7 +150,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Replaces the manifold of one pair; answers whether that was possible.
+    /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
     fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =
@@ -148,6 +162,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
             return is_apart;
         }
         let (features, point1) = (F::features(self.parts[lane]), vector(&self.points1[0], lane));
+        // A single point on the same features keeps its id, and is moved in place.
         let is_same = |old: &RawPoint<N, D>| {
             [old.feature1, old.feature2] == features
                 && is_same_point(features, &(point1 - old.point1.coords), || self.size[lane])
@@ -170,7 +185,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         true
     }
 
-    /// Replaces the points of one pair by so many others.
+    /// Replaces the points of one pair by `count` contacts, keeping ids as `choose` does.
     #[inline(never)]
     fn choose<F: Form<N, D>>(&self, lane: usize, count: usize, raw: &mut RawManifold<N, D>) {
         let mut candidates = [0, 1].mapped(|which| Candidate {
@@ -191,7 +206,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
     }
 }
 
-/// The vector of one lane.
+/// Returns the vector of one lane.
 #[inline(always)]
 fn vector<N: Real, const D: usize, const L: usize>(
     rows: &[[N; L]; D],

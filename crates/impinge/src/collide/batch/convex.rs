@@ -1,4 +1,14 @@
-//! The distances and separations of many pairs of convex solids, eight at a time where their kinds have lanes.
+//! Distances and separations of many pairs of convex solids, eight at a time for kinds with a
+//! kernel.
+//!
+//! ```text
+//!   pairs in 3D, sorted by kinds   [bb bb bb | cc cc ... cc cc | ss ...]
+//!   packets of 8, of the same kinds           [0 .. 7] [8 .. ]
+//!   out[slot]                                 `slot` is kept with each pair, so order is free
+//! ```
+//!
+//! At least half a packet goes to a kernel: segments here, faceted solids in
+//! `collide/separation/apart/`. The rest is computed pair by pair, with the same bits.
 
 use super::LANES;
 use super::gather::put;
@@ -17,10 +27,11 @@ use crate::math::simd::{Level, Simd, Vectors};
 use crate::math::{Point, Real, Wide};
 use crate::shape::{Geometry, Kind, ShapeKind};
 
-/// A pair of convex solids in canonical order and the slot of its answer.
+/// A pair of convex solids in canonical order, and the index of its answer in the output.
 pub(crate) struct ConvexPair<'a, N: Real, const D: usize> {
+    /// Index of the answer in the output.
     pub(crate) slot: usize,
-    /// The canonical order is the opposite of the given one.
+    /// The canonical order is the reverse of the given one.
     pub(crate) swapped: bool,
     pub(crate) pair: Pair<'a, N, D>,
 }
@@ -31,8 +42,8 @@ impl<N: Real, const D: usize> ConvexPair<'_, N, D> {
     }
 }
 
-/// Fills the slots of all pairs of the plane with their distances, each with the bits of a lone pair; negative or zero
-/// where they overlap, `None` beyond a limit of zero or more.
+/// Writes the distances of all pairs in 2D, each with the bits of a lone pair: zero or negative for
+/// overlaps, `None` beyond a `limit` of zero or more.
 pub(crate) fn distances2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
     limit: N,
@@ -43,7 +54,7 @@ pub(crate) fn distances2<N: Real>(
     }
 }
 
-/// Fills the slots of all pairs of the plane with their separations, each with the bits of a lone pair.
+/// Writes the separations of all pairs in 2D, each with the bits of a lone pair.
 pub(crate) fn separations2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
     limit: N,
@@ -54,7 +65,7 @@ pub(crate) fn separations2<N: Real>(
     }
 }
 
-/// [`distances2`] of pairs in 3D, which are brought in the order of their kinds.
+/// Writes distances like [`distances2`], in 3D; sorts the pairs by kinds.
 pub(crate) fn distances3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,
@@ -72,7 +83,7 @@ pub(crate) fn distances3<N: Real>(
     });
 }
 
-/// [`separations2`] of pairs in 3D, which are brought in the order of their kinds.
+/// Writes separations like [`separations2`], in 3D; sorts the pairs by kinds.
 pub(crate) fn separations3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,
@@ -90,7 +101,7 @@ pub(crate) fn separations3<N: Real>(
     });
 }
 
-/// Calls with up to eight pairs of the same kinds at a time.
+/// Calls `work` with up to eight pairs of the same kinds at a time.
 fn each_packet<'a, N: Real>(
     pairs: &mut [ConvexPair<'a, N, 3>],
     mut work: impl FnMut(&[ConvexPair<'a, N, 3>]),
@@ -103,14 +114,14 @@ fn each_packet<'a, N: Real>(
     }
 }
 
-/// The vectors for these pairs of the same kinds, if both solids are of some and there are enough for lanes: a packet
-/// costs as much as three or four lone pairs.
+/// Returns the vectors for pairs of the same kinds, if both solids are of the wanted kinds and the
+/// packet is at least half full: it costs as much as three or four lone pairs.
 fn lanes_for<N: Real>(
     packet: &[ConvexPair<'_, N, 3>],
     is_one: fn(&Kind<'_, N, 3>) -> bool,
 ) -> Option<Vectors> {
     let Pair { first, second, .. } = &packet[0].pair;
-    let Level::Wide(vectors) = Level::new() else { return None };
+    let vectors = Level::new().vectors()?;
     (packet.len() >= LANES / 2 && is_one(first) && is_one(second)).then_some(vectors)
 }
 
@@ -118,7 +129,7 @@ const fn is_segment<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
     matches!(kind, Kind::Segment(_) | Kind::Capsule(_))
 }
 
-/// Fills the slots of some pairs with what lanes have found, or with what is found of a lone pair.
+/// Writes the answers of a packet; lanes without one are computed alone.
 #[inline]
 fn fill<'a, N: Real, T>(
     packet: &[ConvexPair<'a, N, 3>],
@@ -133,16 +144,20 @@ fn fill<'a, N: Real, T>(
 
 /// Up to eight pairs of segments or capsules.
 struct SegmentPacket<N: Real> {
+    /// Ends of the cores of each lane, in the frame of its first solid.
     ends: [[[Point<N, 3>; 2]; 2]; LANES],
+    /// Radii around both cores of each lane.
     radii: [[N; 2]; LANES],
-    /// The nearest points of the segments in the middle, by coordinates.
+    /// Nearest points of the cores, by coordinates.
     points: [[[N; LANES]; 3]; 2],
+    /// Distances of the cores, without the radii.
     distances: [N; LANES],
-    /// The lanes in which these are known; others have to be asked alone.
+    /// Bit of each lane with known nearest points; other lanes are computed alone.
     is_known: u8,
 }
 
 impl<N: Real> SegmentPacket<N> {
+    /// Gathers a packet and searches all lanes.
     fn new(vectors: Vectors, packet: &[ConvexPair<'_, N, 3>]) -> Self {
         let row = [N::ZERO; LANES];
         let mut found = Self {
@@ -168,6 +183,7 @@ impl<N: Real> SegmentPacket<N> {
         found
     }
 
+    /// Computes nearest points and distances of the cores in all lanes.
     #[inline(always)]
     fn search<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -185,10 +201,11 @@ impl<N: Real> SegmentPacket<N> {
                 coordinate.store(row);
             }
         }
+        // Squared distances close to underflow or overflow are computed alone.
         self.is_known = bits(is_moderate & is_usual(simd, squared));
     }
 
-    /// What `answer` has of each lane in which the nearest points are known.
+    /// Applies `answer` to each lane with known nearest points.
     #[inline]
     fn each<T: Copy>(
         &self,
@@ -201,7 +218,7 @@ impl<N: Real> SegmentPacket<N> {
         answers
     }
 
-    /// The distances as `segment_segment::distance` has them, without those beyond the limit.
+    /// Returns the distances as `segment_segment::distance` does, without those beyond `limit`.
     fn distances(&self, limit: N) -> [Option<Option<N>>; LANES] {
         self.each(|packet, lane| {
             let [radius1, radius2] = packet.radii[lane];
@@ -209,7 +226,7 @@ impl<N: Real> SegmentPacket<N> {
         })
     }
 
-    /// The separations as `segment_segment::separation` has them.
+    /// Returns the separations as `segment_segment::separation` does.
     fn separations(&self, limit: N) -> [Option<Option<Separation<N, 3>>>; LANES] {
         self.each(|packet, lane| {
             let point = |[x, y, z]: &[[N; LANES]; 3]| Point::<N, 3>::new(x[lane], y[lane], z[lane]);

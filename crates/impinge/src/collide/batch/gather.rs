@@ -1,4 +1,12 @@
-//! Pairs of solids side by side: eight, or one.
+//! Inputs of the kernels: eight pairs side by side, or one.
+//!
+//! ```text
+//!                  lane 0   lane 1   ...        a row for each number, a column for each pair
+//!   translation x  pair i   pair i+1 ...        i = `first`; `count` lanes are filled
+//!   translation y  pair i   pair i+1 ...
+//!   ...                                         lanes beyond `count` keep old numbers, and
+//!   radius         pair i   pair i+1 ...        `is_usable` has no bit of theirs
+//! ```
 
 use super::vectors::{minus, seen_from};
 use super::{Batch, KeptPairs, PairQuestion};
@@ -6,28 +14,34 @@ use crate::math::lanes::{LanePose, load};
 use crate::math::simd::Simd;
 use crate::math::{Matrix, Real, Vector, Wide, filled};
 
-/// A vector in each lane, by rows.
+/// One vector per lane, stored by coordinate.
 type LaneRows<N, const D: usize, const L: usize> = [[N; L]; D];
 
-/// What `L` pairs are asked about: a row for each number, a column for each pair.
+/// Inputs of `L` pairs: a row for each number, a column for each pair.
 pub(super) struct Inputs<N: Real, const D: usize, const L: usize> {
-    /// By columns.
+    /// Columns of the rotation matrices.
     rotations: [[LaneRows<N, D, L>; D]; 2],
+    /// Translations of both poses, in world coordinates.
     translations: [LaneRows<N, D, L>; 2],
-    /// The ends of a segment; the first is the half extents of a box.
+    /// Ends of a segment; for a box the first is its half extents.
     ends: [[LaneRows<N, D, L>; 2]; 2],
+    /// Radii of balls or capsules; unused by boxes.
     radii: [[N; L]; 2],
+    /// Largest distance of a contact point; the request's.
     prediction: [N; L],
+    /// Sine of the angle by which the solids may turn; the request's.
     sine: [N; L],
+    /// Largest number of points; the request's.
     pub(super) max_points: [usize; L],
-    /// The first of the pairs, and how many lanes are taken.
+    /// Index of the first pair, and the number of filled lanes.
     pub(super) first: usize,
     pub(super) count: usize,
-    /// The lanes that hold a pair for the algorithm.
+    /// Bit of each lane whose pair the algorithm supports.
     pub(super) is_usable: u8,
 }
 
 impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
+    /// Rows of zeros, without a pair.
     pub(super) const fn new() -> Self {
         let row = [N::ZERO; L];
         Self {
@@ -44,7 +58,7 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         }
     }
 
-    /// Takes up to `L` pairs, beginning with one of a number. Lanes beyond those taken keep what they had.
+    /// Gathers up to `L` pairs from index `first`. Lanes beyond them keep their old numbers.
     #[inline(always)]
     pub(super) fn gather<B: Batch<N, D>, P: KeptPairs<N, D>>(
         &mut self,
@@ -66,40 +80,40 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         self.max_points[lane & (L - 1)] = pair.request.max_points;
     }
 
-    /// Where two balls are.
+    /// Positions of two solids, for pairs of balls.
     #[inline(always)]
     pub(super) fn put_centers(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
         put(&mut self.translations[0], lane, &pair.poses[0].translation);
         put(&mut self.translations[1], lane, &pair.poses[1].translation);
     }
 
-    /// Where a ball and another solid are.
+    /// Position of a ball and pose of the other solid.
     #[inline(always)]
     pub(super) fn put_beside_ball(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
         self.put_centers(lane, pair);
         put_all(&mut self.rotations[1], lane, &pair.poses[1].rotation);
     }
 
-    /// Where both solids are.
+    /// Poses of both solids.
     #[inline(always)]
     pub(super) fn put_poses(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
         self.put_beside_ball(lane, pair);
         put_all(&mut self.rotations[0], lane, &pair.poses[0].rotation);
     }
 
-    /// The radius of one of the solids.
+    /// Radius of one solid.
     #[inline(always)]
     pub(super) const fn put_radius(&mut self, lane: usize, which: usize, radius: N) {
         self.radii[which][lane & (L - 1)] = radius;
     }
 
-    /// By how much solids may turn.
+    /// Sine of the angle by which the solids may turn.
     #[inline(always)]
     pub(super) const fn put_sine(&mut self, lane: usize, sine: N) {
         self.sine[lane & (L - 1)] = sine;
     }
 
-    /// An end of the segment in the middle of one of the solids, or the half extents of a box.
+    /// End of the core segment of a solid, or the half extents of a box.
     #[inline(always)]
     pub(super) fn put_end(&mut self, lane: usize, solid: usize, number: usize, end: &Vector<N, D>) {
         put(&mut self.ends[solid][number], lane, end);
@@ -120,6 +134,7 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         V::load(simd, &self.sine)
     }
 
+    /// Loads an end of the core of a solid (`number` 0 or 1), or the half extents of a box (0).
     #[inline(always)]
     pub(super) fn end<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -130,19 +145,19 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         load(simd, &self.ends[solid][number])
     }
 
-    /// The second solid's place seen from the first, which is its place in the frame of a ball.
+    /// Translation from the first solid to the second, in world axes: the frame of a ball.
     #[inline(always)]
     pub(super) fn away<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [V; D] {
         minus(&load(simd, &self.translations[1]), &load(simd, &self.translations[0]))
     }
 
-    /// The second solid's pose in the frame of a ball, as `Pair::new` has it.
+    /// Pose of the second solid in the frame of a ball, as `Pair::new` has it.
     #[inline(always)]
     pub(super) fn beside_ball<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
         LanePose { rotation: load_all(simd, &self.rotations[1]), translation: self.away(simd) }
     }
 
-    /// The second solid's pose in the frame of the first, as `Pose::relative` has it.
+    /// Pose of the second solid in the frame of the first, as `Pose::relative` computes it.
     #[inline(always)]
     pub(super) fn pose12<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
         let axes = load_all::<S, N, V, D, L>(simd, &self.rotations[0]);
@@ -167,6 +182,7 @@ pub(super) fn put<N: Real, const D: usize, const L: usize>(
     }
 }
 
+/// Puts a matrix into a lane, by columns.
 #[inline(always)]
 fn put_all<N: Real, const D: usize, const L: usize>(
     columns: &mut [LaneRows<N, D, L>; D],
@@ -180,6 +196,7 @@ fn put_all<N: Real, const D: usize, const L: usize>(
     }
 }
 
+/// Loads the columns of a matrix.
 #[inline(always)]
 fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, const L: usize>(
     simd: S,

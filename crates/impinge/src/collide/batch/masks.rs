@@ -1,13 +1,17 @@
 //! Bits of eight pairs side by side.
+//!
+//! ```text
+//!   row r, bit lane   ---turned--->   byte lane, bit r
+//! ```
 
-/// Eight masks of eight pairs, as a byte for each pair.
+/// Transposes eight masks, a bit for each pair, into a byte for each pair.
 #[inline(always)]
 pub(super) const fn turned(rows: [u8; 8]) -> [u8; 8] {
     transposed(u64::from_le_bytes(rows)).to_le_bytes()
 }
 
-/// A matrix of eight by eight bits with rows and columns exchanged (H. S. Warren, "Hacker's
-/// Delight", 7-3).
+/// Transposes a matrix of eight by eight bits (H. S. Warren, "Hacker's Delight", 7-3): swaps bits
+/// in blocks of 2 by 2, then these blocks in 4 by 4, then those in 8 by 8.
 #[inline(always)]
 const fn transposed(mut x: u64) -> u64 {
     let swapped = (x ^ x >> 7) & 0x00aa_00aa_00aa_00aa;

@@ -1,10 +1,29 @@
 //! Pairs of boxes, balls, segments and capsules, eight at a time; a lone pair is a batch of one.
 //!
-//! Each lane of a vector is another pair, and never looks at its neighbours: the bits of a pair do not depend on
-//! the batch. The numbers of some pairs are gathered ([`gather`]), a kernel finds what it can of all of them
-//! ([`Batch`]), then manifold by manifold is replaced. A batch has `L` lanes: eight where the machine has vectors that
-//! pay, else one, computed by [`OneLane`]. A pair that is asked about alone is a batch of one lane on every machine. Degenerate pairs (a centre in a box, cores that cross, solids
-//! too small or too large to be squared, NaN) fall back to the builder for one pair.
+//! ```text
+//!   kept pairs i .. i + L      gather      find (kernel)      settle, lane by lane
+//!    [q][q][q][q]...  ------>  Inputs  ------->  Found  ---+--> raw manifold of pair i + lane
+//!                             rows of L         rows,   |
+//!                                               masks   +--> unsupported: `fall_back`, one pair
+//!
+//!   kinds, in canonical order            2D             3D
+//!   ball, ball                           `BallBall`     `BallBall`
+//!   ball, segment or capsule             `BallSegment`  `BallSegment`
+//!   ball, box                            `BallCuboid`   `BallCuboid`
+//!   two of segment or capsule            `Segments2`    `Segments3`
+//!   box, box                             `Boxes2`       `Boxes3`
+//! ```
+//!
+//! Each lane of a vector is another pair and never depends on its neighbours, so the bits of a pair
+//! do not depend on the batch. The numbers of `L` pairs are gathered ([`gather`]), a kernel
+//! computes all that needs no branches ([`Batch`]), then manifold after manifold is replaced. `L`
+//! is eight where the machine has vectors that pay, else one, computed by [`OneLane`]. A pair asked
+//! about alone is a batch of one lane on every machine. Degenerate pairs fall back to the builder
+//! for one pair: a centre in a box, cores that cross, sizes whose squares underflow or overflow,
+//! NaN.
+//!
+//! Masks are bytes: bit `lane` of each. [`masks`] transposes eight of them into a byte for each
+//! pair. The slots of box pairs and the codes that name them are in `boxes/`.
 //!
 //! The idea of lanes across pairs is that of bepuphysics (R. Nordby).
 
@@ -43,18 +62,20 @@ use crate::math::{Mapped, Pose, Real, Space, Wide};
 use crate::shape::Geometry;
 use crate::tables::ByDimension;
 
-/// How many pairs are treated at once where there are vectors.
+/// Pairs computed at once where there are vectors; the bits of a mask.
 const LANES: usize = 8;
 
-/// A pair of solids in canonical order and what is asked of it.
+/// A pair of solids in canonical order and the request for its manifold.
 pub(crate) struct PairQuestion<'a, N: Real, const D: usize> {
+    /// Poses of both solids in the world.
     pub(crate) poses: [&'a Pose<N, D>; 2],
+    /// Both solids, copied when the pair began.
     pub(crate) solids: [&'a Solid<N, D>; 2],
     pub(crate) request: &'a ManifoldRequest<N>,
 }
 
 impl<N: Space<D>, const D: usize> PairQuestion<'_, N, D> {
-    /// The manifold of a pair that is declined.
+    /// Builds the manifold of an unsupported pair by the builder for one pair.
     #[inline(never)]
     fn fall_back(&self, raw: &mut RawManifold<N, D>) {
         let pair = Pair::new(self.solids.mapped(|solid| Geometry(solid.kind())), self.poses);
@@ -62,47 +83,52 @@ impl<N: Space<D>, const D: usize> PairQuestion<'_, N, D> {
     }
 }
 
-/// Pairs of the same kinds whose manifolds are kept somewhere.
+/// Pairs of the same kinds whose manifolds the caller keeps.
+///
+/// For each index in order, [`update`] calls `begin` while it gathers, then `raw`, then `parts` if
+/// the pair falls back, and last `end`. The pairs of the next batch begin before those of this one
+/// end.
 pub(crate) trait KeptPairs<N: Real, const D: usize> {
-    /// How many there are.
+    /// The number of pairs.
     fn len(&self) -> usize;
 
-    /// Begins the update of a pair.
+    /// Begins the update of a pair and returns its question.
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D>;
 
-    /// What [`Self::begin`] answered, and the manifold of the last update, which is to be replaced.
+    /// Returns the question again, with the manifold of the last update, which is to be replaced.
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>);
 
-    /// The manifold alone.
+    /// Returns the manifold alone.
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D>;
 
-    /// The manifold of a pair is as it will be.
+    /// Ends the update of a pair: its manifold is complete.
     fn end(&mut self, index: usize);
 }
 
-/// An algorithm for pairs of two kinds, `L` at a time.
+/// Algorithm for pairs of two kinds, `L` at a time.
 trait Batch<N: Real, const D: usize> {
-    /// What is known of the pairs before their manifolds are replaced.
+    /// Results of the kernel, from which manifolds are replaced.
     type Found<const L: usize>;
 
-    /// Nothing yet.
+    /// Results before the first kernel runs.
     fn blank<const L: usize>() -> Self::Found<L>;
 
-    /// Puts the numbers of a pair into a lane; answers whether the pair is one for this algorithm.
+    /// Puts the numbers of a pair into a lane; returns whether this algorithm supports the pair.
     fn gather<const L: usize>(
         inputs: &mut Inputs<N, D, L>,
         lane: usize,
         pair: &PairQuestion<'_, N, D>,
     ) -> bool;
 
-    /// Everything that goes for all pairs at once.
+    /// Computes everything that is done for all pairs at once.
     fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
         inputs: &Inputs<N, D, L>,
         found: &mut Self::Found<L>,
     );
 
-    /// Replaces the manifold of one pair by at most `max_points` points; answers whether the pair is not declined.
+    /// Replaces the manifold of one pair by at most `max_points` points; returns `false` if the
+    /// pair has to fall back.
     fn settle<const L: usize>(
         found: &Self::Found<L>,
         lane: usize,
@@ -111,13 +137,15 @@ trait Batch<N: Real, const D: usize> {
     ) -> bool;
 }
 
-/// What is done with the algorithm for two kinds, once it is known; answers whether it is done.
+/// An operation that is run once the algorithm for two kinds is known; returns whether it
+/// succeeded.
 trait Task<N: Space<D>, const D: usize> {
+    /// Runs the operation with the algorithm `B`.
     fn run<B: Batch<N, D>>(self) -> bool;
 }
 
-/// Brings pairs of the plane up to date, of which these are the solids of the first; `false` if there
-/// are no lanes for pairs of their kinds.
+/// Updates pairs in 2D, of which `solids` are those of the first. Returns `false` if their kinds
+/// have no kernel.
 pub(crate) fn update_pairs2<N: Space<2>>(
     solids: [&Solid<N, 2>; 2],
     pairs: &mut impl KeptPairs<N, 2>,
@@ -125,7 +153,7 @@ pub(crate) fn update_pairs2<N: Space<2>>(
     run2(solids, Many { level: Level::new(), pairs })
 }
 
-/// Brings pairs of space up to date, as [`update_pairs2`].
+/// Updates pairs in 3D, like [`update_pairs2`].
 pub(crate) fn update_pairs3<N: Space<3>>(
     solids: [&Solid<N, 3>; 2],
     pairs: &mut impl KeptPairs<N, 3>,
@@ -133,7 +161,7 @@ pub(crate) fn update_pairs3<N: Space<3>>(
     run3(solids, Many { level: Level::new(), pairs })
 }
 
-/// Brings one pair of the plane up to date; `false` if there are no lanes for its kinds or the pair is declined.
+/// Updates one pair in 2D; returns `false` if its kinds have no kernel or the pair is unsupported.
 pub(crate) fn update_pair2<N: Space<2>>(
     question: &PairQuestion<'_, N, 2>,
     raw: &mut RawManifold<N, 2>,
@@ -141,7 +169,7 @@ pub(crate) fn update_pair2<N: Space<2>>(
     run2(question.solids, One { question, raw })
 }
 
-/// Brings one pair of space up to date, as [`update_pair2`].
+/// Updates one pair in 3D, like [`update_pair2`].
 pub(crate) fn update_pair3<N: Space<3>>(
     question: &PairQuestion<'_, N, 3>,
     raw: &mut RawManifold<N, 3>,
@@ -149,7 +177,8 @@ pub(crate) fn update_pair3<N: Space<3>>(
     run3(question.solids, One { question, raw })
 }
 
-/// The contact points of a pair in canonical order as a batch of one; `false` as in [`update_pair2`].
+/// Computes the contact points of a pair in canonical order, as a batch of one; returns `false` as
+/// [`update_pair2`] does.
 pub(crate) fn contacts_in_lanes<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -162,7 +191,7 @@ pub(crate) fn contacts_in_lanes<N: Space<D>, const D: usize>(
     <N::Algorithms>::update_pair(&question, raw)
 }
 
-/// Runs a task with the algorithm for two solids of the plane; `false` also if there is none.
+/// Runs a task with the algorithm for two solids in 2D; `false` also if there is none.
 fn run2<N: Space<2>>([one, other]: [&Solid<N, 2>; 2], task: impl Task<N, 2>) -> bool {
     match (one, other) {
         (Solid::Cuboid(_), Solid::Cuboid(_)) => task.run::<Boxes2>(),
@@ -171,7 +200,7 @@ fn run2<N: Space<2>>([one, other]: [&Solid<N, 2>; 2], task: impl Task<N, 2>) -> 
     }
 }
 
-/// Runs a task with the algorithm for two solids of space; `false` also if there is none.
+/// Runs a task with the algorithm for two solids in 3D; `false` also if there is none.
 fn run3<N: Space<3>>([one, other]: [&Solid<N, 3>; 2], task: impl Task<N, 3>) -> bool {
     match (one, other) {
         (Solid::Cuboid(_), Solid::Cuboid(_)) => task.run::<Boxes3>(),
@@ -195,7 +224,7 @@ fn run_with_ball<N: Space<D>, const D: usize>(
     }
 }
 
-/// One pair is brought up to date.
+/// Task: updates one pair.
 struct One<'a, 'q, N: Real, const D: usize> {
     question: &'a PairQuestion<'q, N, D>,
     raw: &'a mut RawManifold<N, D>,
@@ -212,7 +241,7 @@ impl<N: Space<D>, const D: usize> Task<N, D> for One<'_, '_, N, D> {
     }
 }
 
-/// Many pairs are brought up to date.
+/// Task: updates many pairs.
 struct Many<'a, P> {
     level: Level,
     pairs: &'a mut P,
@@ -220,17 +249,17 @@ struct Many<'a, P> {
 
 impl<N: Space<D>, P: KeptPairs<N, D>, const D: usize> Task<N, D> for Many<'_, P> {
     fn run<B: Batch<N, D>>(self) -> bool {
-        match self.level {
-            Level::Wide(vectors) => update::<B, _, _, D, LANES>(VectorLanes(vectors), self.pairs),
-            _ => update::<B, _, _, D, 1>(LonePair, self.pairs),
+        match self.level.vectors() {
+            Some(vectors) => update::<B, _, _, D, LANES>(VectorLanes(vectors), self.pairs),
+            None => update::<B, _, _, D, 1>(LonePair, self.pairs),
         }
         true
     }
 }
 
-/// What computes `L` lanes.
+/// A machine that computes `L` lanes.
 trait BatchLanes<const L: usize>: Copy {
-    /// Runs [`Batch::find`], which is compiled once for all that keep pairs.
+    /// Runs [`Batch::find`]; compiled once for all keepers of pairs.
     fn find<B: Batch<N, D>, N: Real, const D: usize>(
         self,
         inputs: &Inputs<N, D, L>,
@@ -269,14 +298,15 @@ impl BatchLanes<1> for LonePair {
     }
 }
 
-/// [`Batch`] for all pairs, `L` by `L`. The numbers of the next pairs are gathered before those gathered last
-/// are used, which gives the memory time to put them together.
+/// Runs [`Batch`] for all pairs, `L` at a time. The numbers of the next pairs are gathered before
+/// those gathered last are used, which hides the latency of memory.
 fn update<B: Batch<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize, const L: usize>(
     lanes: impl BatchLanes<L>,
     pairs: &mut P,
 ) {
     let (mut now, mut next) = (&mut Inputs::<N, D, L>::new(), &mut Inputs::new());
     let mut found = B::blank::<L>();
+    // Two buffers: one is computed while the other is already gathered.
     now.gather::<B, P>(pairs, 0);
     while now.count > 0 {
         next.gather::<B, P>(pairs, now.first + now.count);

@@ -1,4 +1,4 @@
-//! Segments in lanes: how they are gathered, and the names of their parts.
+//! Segments in lanes: gathering, and the ids of their parts.
 
 use super::gather::Inputs;
 use super::vectors::{length_of, lit, minus, norm};
@@ -7,12 +7,12 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
 use crate::shape::FeatureId;
 
-/// The part of a segment by whether a point is at the first and at the last end.
+/// Part of a segment, indexed by two bits: the point is at the first end, at the last end.
 pub(super) const END_OR_SIDE: [FeatureId; 4] =
     [FeatureId::Edge(0), FeatureId::Vertex(0), FeatureId::Vertex(1), FeatureId::Edge(0)];
 
 impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
-    /// Two segments or capsules and where they are; answers whether both are.
+    /// Puts two segments or capsules and their poses into a lane; `false` for other kinds.
     #[inline(always)]
     pub(super) fn put_cores(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
         self.put_poses(lane, pair);
@@ -20,7 +20,7 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         self.put_core(lane, 0, pair.solids[0]) && self.put_core(lane, 1, pair.solids[1])
     }
 
-    /// A segment or capsule; answers whether it is one.
+    /// Puts a segment or capsule into a lane; `false` for other kinds.
     #[inline(always)]
     pub(super) fn put_core(&mut self, lane: usize, which: usize, solid: &Solid<N, D>) -> bool {
         let (segment, radius) = match solid {
@@ -36,7 +36,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
     }
 }
 
-/// The larger of the distances of two points from the origin, where both are usual.
+/// Returns the larger distance of two points from the origin; the mask has the lanes where both are
+/// zero or of usual size.
 #[inline(always)]
 pub(super) fn farther<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -47,7 +48,7 @@ pub(super) fn farther<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     (length1.larger(length2), is_usual1 & is_usual2)
 }
 
-/// Half of the distance between two points.
+/// Returns half the distance between two points.
 #[inline(always)]
 pub(super) fn half_length<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

@@ -1,5 +1,18 @@
-//! Segments and capsules in 2D: the interval in which their cores face each other, as `stretch.rs` has
-//! it for all flat-sided solids, in lanes.
+//! Segments and capsules in 2D: the overlap interval of their cores along the tangent, as
+//! `stretch.rs` computes it for all flat-sided solids, in lanes.
+//!
+//! ```text
+//!      normal
+//!         ^        a-----*=======*        second: ends in the order of their places
+//!         |              :       :
+//!    ---- o ------------ from -- to --->  tangent; origin: `point1`, nearest point of the first
+//!                        :       :
+//!               *========*-------b        first
+//! ```
+//!
+//! `from` is the larger of the low places, `to` the smaller of the high ones. Each gives a contact.
+//! Reads of [`Inputs`]: both poses, both `radii`, the ends of both cores, `prediction` and `sine`.
+//! Lanes whose contacts rounding would decide, and requests for a single point, fall back.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
@@ -11,7 +24,7 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 use crate::shape::FeatureId;
 
-/// Segments and capsules whose cores are apart and are seen as more than points.
+/// Segments and capsules whose cores are apart and project to more than points along the normal.
 pub(super) struct Segments2;
 
 impl<N: Real> Form<N, 2> for Segments2 {
@@ -74,23 +87,28 @@ impl<N: Real> Form<N, 2> for Segments2 {
     }
 }
 
-/// A point or vector of the plane in each lane.
+/// A point or vector in 2D, in each lane.
 type PlaneLanes<V> = [V; 2];
 
-/// The line perpendicular to the normal through the nearest point of the first solid, and what is asked for: a
+/// The tangent line through the nearest point of the first solid, and the request: a
 /// [`ContactFrame`](crate::collide::manifold::frame::ContactFrame) in lanes.
 struct ContactLine<V> {
+    /// Unit, from the first core to the second.
     normal: PlaneLanes<V>,
+    /// `normal` turned by a quarter, clockwise.
     tangent: PlaneLanes<V>,
+    /// Nearest point of the first solid, on its rounded surface: the origin of the tangent.
     point1: PlaneLanes<V>,
+    /// Signed distance of the solids along the normal.
     distance: V,
+    /// Lengths up to this are rounding errors.
     tolerance: V,
     prediction: V,
     sine: V,
 }
 
 impl<V> ContactLine<V> {
-    /// The place on the line where a point is seen.
+    /// Returns the coordinate of a point along the tangent.
     #[inline(always)]
     fn flat<S: Simd>(&self, point: &PlaneLanes<V>) -> V
     where
@@ -99,7 +117,8 @@ impl<V> ContactLine<V> {
         dot(&self.tangent, &minus(point, &self.point1))
     }
 
-    /// The distance to give to a pair of points seen at a place, and where it is admitted.
+    /// Returns the distance of a pair of points at the coordinate `flat`, and the lanes where it is
+    /// within the prediction or turning brings it within.
     #[inline(always)]
     fn admit<S: Simd>(&self, distance: V, flat: V) -> (V, V::Mask)
     where
@@ -114,28 +133,31 @@ impl<V> ContactLine<V> {
     }
 }
 
-/// A segment as seen along the normal, perhaps with a radius around it.
+/// A segment or capsule, projected onto the tangent.
 struct LaneSide<V, M> {
+    /// This is the first solid of the pair, which lies below along the normal.
     is_first: bool,
-    /// The ends in the order of their places, and these.
+    /// Ends in the order of their coordinates along the tangent, and these coordinates.
     ends: [PlaneLanes<V>; 2],
     places: [V; 2],
-    /// They are in the opposite order of the segment's.
+    /// Lanes where that order is the opposite of the segment's.
     is_turned: M,
+    /// Radius around the segment.
     radius: V,
-    /// Between the segment and the line of contact.
+    /// Cosine of the angle between the segment and the tangent.
     cosine: V,
-    /// How far the end nearest to the other solid is below the supporting line, and where it is seen.
+    /// Depth of the end nearest to the other solid below the supporting line, and its coordinate.
     top: (V, V),
-    /// It leans so much that it counts as its nearest end.
+    /// Lanes where the segment is tilted so far that it counts as its nearest end.
     is_point: M,
-    /// Its ends are seen apart from each other.
+    /// Lanes where the coordinates of both ends differ by more than rounding.
     is_wide: M,
-    /// The nearest point lies at the segment's first end; at its last.
+    /// Lanes where the nearest point lies at the segment's first end, and at its last.
     at_witness: [M; 2],
 }
 
 impl<V, M> LaneSide<V, M> {
+    /// Projects a segment onto the tangent; `is_first` if it belongs to the first solid.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
@@ -158,6 +180,7 @@ impl<V, M> LaneSide<V, M> {
         let heights = [dot(&line.normal, first), dot(&line.normal, last)];
         let is_higher = heights[1].simd_gt(heights[0]);
         let is_last_near = if is_first { is_higher } else { heights[1].simd_lt(heights[0]) };
+        // An end is at the witness within twice the tolerance; of both the first counts.
         let near = lit::<S, N, V>(simd, 2.0) * line.tolerance;
         let is_at = [flats[0].abs().simd_le(near), flats[1].abs().simd_le(near)];
         let mut side = Self {
@@ -179,7 +202,7 @@ impl<V, M> LaneSide<V, M> {
         side
     }
 
-    /// How far a point of the core is below the nearest point of the surface.
+    /// Returns the depth of a point of the core below the nearest point of the surface.
     #[inline(always)]
     fn below_witness<S: Simd>(&self, point: &PlaneLanes<V>, line: &ContactLine<V>) -> V
     where
@@ -189,7 +212,7 @@ impl<V, M> LaneSide<V, M> {
         if self.is_first { -height } else { height - line.distance }
     }
 
-    /// The point of the core that is seen at a place.
+    /// Returns the point of the core at a coordinate along the tangent.
     #[inline(always)]
     fn under<S: Simd, N: Real>(&self, simd: S, place: V) -> PlaneLanes<V>
     where
@@ -200,7 +223,7 @@ impl<V, M> LaneSide<V, M> {
         plus(&self.ends[0], &times(&minus(&self.ends[1], &self.ends[0]), share))
     }
 
-    /// How far the rounded surface is above a point of the core, along the normal.
+    /// Returns the height of the rounded surface above a point of the core, along the normal.
     #[inline(always)]
     fn lift<S: Simd, N: Real>(&self, simd: S, core: &PlaneLanes<V>, line: &ContactLine<V>) -> V
     where
@@ -210,6 +233,7 @@ impl<V, M> LaneSide<V, M> {
         let room = self.below_witness(core, line);
         let away = line.flat(core) - self.top.1;
         let (away_squared, radius) = (away * away, self.radius);
+        // Up to this squared distance across the normal, the ball around the nearest end is higher.
         let turns_squared = radius * radius * (one - self.cosine * self.cosine);
         let round = room - self.top.0 + (radius * radius - away_squared).sqrt();
         let is_round = away_squared.simd_lt(turns_squared);
@@ -218,7 +242,8 @@ impl<V, M> LaneSide<V, M> {
         radius.simd_le(zero).select(zero, lift)
     }
 
-    /// Where one of the ends, by the order of places, is the first of the segment, and where the last.
+    /// Returns the lanes where the end `end`, in tangent order, is the segment's first, and its
+    /// last.
     #[inline(always)]
     fn names<S: Simd>(&self, end: usize) -> [M; 2]
     where
@@ -229,17 +254,20 @@ impl<V, M> LaneSide<V, M> {
     }
 }
 
-/// A pair of points that face each other.
+/// A pair of points across from each other.
 struct LaneContact<V, M> {
+    /// Point on the surface of the first solid.
     point1: PlaneLanes<V>,
+    /// Signed distance along the normal, not less than the pair's.
     distance: V,
+    /// Lanes where the request admits the contact.
     is_admitted: M,
-    /// At the first end of the first segment; at the last; the same of the second segment.
+    /// Masks: at the first and the last end of the first segment, then of the second.
     parts: [M; 4],
 }
 
 impl<V, M> LaneContact<V, M> {
-    /// One of the ends of the interval in which two sides face each other, by the order of places.
+    /// Computes the contact at one end of the overlap interval; `end` is 0 for the low end.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
@@ -254,10 +282,11 @@ impl<V, M> LaneContact<V, M> {
     {
         let [first, second] = sides;
         let is_at = [first, second].map(|side| {
-            // The segment ends here, or but for rounding.
+            // The segment ends here, up to rounding.
             (side.places[end] - place).abs().simd_le(line.tolerance)
         });
         let cores = [first.under(simd, place), second.under(simd, place)];
+        // Both points are moved halfway, so that they lie across from each other along the normal.
         let gap = minus(&cores[1], &cores[0]);
         let across = minus(&gap, &times(&line.normal, dot(&line.normal, &gap)));
         let half = times(&across, V::all(simd, N::HALF));
@@ -276,7 +305,7 @@ impl<V, M> LaneContact<V, M> {
         Self { point1, distance, is_admitted, parts }
     }
 
-    /// The other one where a mask says so.
+    /// Selects `other` in the lanes of `is_other`.
     #[inline(always)]
     fn or<S: Simd>(&self, other: &Self, is_other: M) -> Self
     where
@@ -300,15 +329,18 @@ impl<V, M> LaneContact<V, M> {
 struct SegmentContacts<V, M> {
     first: LaneContact<V, M>,
     second: LaneContact<V, M>,
+    /// Lanes with a second contact; elsewhere `second` is unused.
     is_two: M,
-    /// There are no others.
+    /// Lanes where these are all contacts.
     is_known: M,
 }
 
 impl<V, M> SegmentContacts<V, M> {
-    /// The ends of the interval that are admitted, the nearest points if there are none.
+    /// Computes the contacts: the admitted ends of the interval, or the nearest points if there are
+    /// none.
     ///
-    /// Not known is what rounding would decide, and what takes the nearest points besides an end.
+    /// Not known are lanes that rounding would decide, and lanes that need the nearest points
+    /// besides an end.
     #[inline(always)]
     fn of<S: Simd, N: Real>(simd: S, line: &ContactLine<V>, sides: &[LaneSide<V, M>; 2]) -> Self
     where
@@ -318,6 +350,7 @@ impl<V, M> SegmentContacts<V, M> {
         let [first, second] = sides;
         let from = first.places[0].larger(second.places[0]);
         let to = first.places[1].smaller(second.places[1]);
+        // Overlaps and gaps of a few tolerances are decided by rounding: such lanes are not known.
         let few = lit::<S, N, V>(simd, 4.0) * line.tolerance;
         let is_side = !first.is_point & !second.is_point;
         let is_shared = (to - from).simd_gt(few) & is_side;
@@ -328,6 +361,7 @@ impl<V, M> SegmentContacts<V, M> {
         high.is_admitted &= is_shared;
         let is_two = low.is_admitted & high.is_admitted;
         let is_any = low.is_admitted | high.is_admitted;
+        // If neither end is as near as the pair, the nearest points are needed besides: not known.
         let level = line.distance + line.tolerance;
         let is_level = (low.is_admitted & low.distance.simd_le(level))
             | (high.is_admitted & high.distance.simd_le(level));
@@ -347,6 +381,7 @@ impl<V, M> SegmentContacts<V, M> {
         }
     }
 
+    /// Stores the contacts and their parts; see the figure of [`closed_form`](super::closed_form).
     #[inline(always)]
     fn store<S: Simd, N: Real, const L: usize>(&self, found: &mut LaneContacts<N, 2, L>)
     where

@@ -1,4 +1,8 @@
 //! Segments and capsules in 3D: `collide/separation/segments/segment_segment.rs` in lanes.
+//!
+//! Reads of [`Inputs`]: both poses, both `radii`, the ends of both cores, and `sine`. Lanes whose
+//! answer that file would find by another branch fall back: a normal that is not the direction
+//! between the nearest points, nearly parallel cores, lengths outside 2⁻¹⁶ to 2¹⁶.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
@@ -10,7 +14,7 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Segments and capsules whose cores are some way apart and cross when seen along the normal.
+/// Segments and capsules whose cores are apart and cross when projected along the normal.
 pub(super) struct Segments3;
 
 /// The ends of a segment in each lane.
@@ -49,8 +53,10 @@ impl<N: Real> Form<N, 3> for Segments3 {
         let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
         sizes[0].smaller(sizes[1]).store(&mut found.size);
         let noise = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
+        // From the surface back to the core, with the rounding that the builder for one pair has.
         let core1 = minus(&rounded[0], &times(&normal, radii[0]));
         let core2 = plus(&rounded[1], &times(&normal, radii[1]));
+        // Nearly parallel segments may touch in two points: they fall back.
         let is_crossing = is_crossing(simd, [&ends1, &ends2], &normal, inputs.sine(simd));
         let has_part1 = found.put_end_or_side(0, &core1, &ends1, noise);
         let has_part2 = found.put_end_or_side(2, &core2, &ends2, noise);
@@ -67,8 +73,9 @@ impl<N: Real> Form<N, 3> for Segments3 {
     }
 }
 
-/// Two points and the square of their distance.
+/// Two points and their squared distance.
 struct SegmentPoints<V> {
+    /// On the first and on the second segment, in the frame of the first solid.
     points: SegmentEnds<V>,
     squared: V,
 }
@@ -83,7 +90,7 @@ impl<V> SegmentPoints<V> {
         Self { points, squared: dot(&between, &between) }
     }
 
-    /// The other points, where they are among the admitted lanes and nearer.
+    /// Selects `other` where it is nearer and admitted.
     #[inline(always)]
     fn or_nearer<S: Simd>(&self, other: &Self, is_admitted: Option<V::Mask>) -> Self
     where
@@ -102,7 +109,7 @@ impl<V> SegmentPoints<V> {
     }
 }
 
-/// `nearest_of_segments`; the mask says where lengths are such that it is.
+/// Computes `nearest_of_segments`; the mask has the lanes whose lengths allow it.
 #[inline(always)]
 pub(super) fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -125,7 +132,8 @@ pub(super) fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (best.or_nearer(&SegmentPoints::new(common), Some(is_common)).points, is_moderate)
 }
 
-/// The power of two at or below a number from 2⁻¹⁶ to 2¹⁶, and where it is one.
+/// Returns the power of two at or below a number from 2⁻¹⁶ to 2¹⁶; the mask has the lanes in that
+/// range.
 #[inline(always)]
 fn power_of_two_below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -140,8 +148,8 @@ fn power_of_two_below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (power, number.simd_ge(least) & number.simd_lt(most))
 }
 
-/// A vector divided by the power of two below its `max_component`, and what to multiply by to divide
-/// another number so: powers of two have exact reciprocals.
+/// Divides a vector by the power of two below its `max_component`. Also returns the reciprocal of
+/// that power, which is exact.
 #[inline(always)]
 fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V; 3], V, V::Mask) {
     let largest = v[2].abs().larger(v[1].abs().larger(v[0].abs()));
@@ -150,7 +158,8 @@ fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V;
     (times(v, inverse), inverse, is_moderate)
 }
 
-/// `common_perpendicular`: its ends, where it is one, and where lengths are such that it is known.
+/// Computes `common_perpendicular`: its ends, the lanes where it meets both segments, and the lanes
+/// whose lengths allow it.
 #[inline(always)]
 fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -177,7 +186,7 @@ fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (points, is_inside & squared.simd_gt(least), is_moderate1 & is_moderate2)
 }
 
-/// `best_normal` where that is the direction between the points, and their distance.
+/// Computes `best_normal` where it is the direction between the points; also their distance.
 #[inline(always)]
 fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -196,7 +205,7 @@ fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (normal, distance, is_best & is_usual)
 }
 
-/// The lanes whose segments are not nearly parallel when seen along the normal.
+/// Returns the lanes whose segments, projected along the normal, are not nearly parallel.
 #[inline(always)]
 fn is_crossing<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -212,7 +221,7 @@ fn is_crossing<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (turn * turn).simd_gt(least * least * flat1 * flat2)
 }
 
-/// The square of the length of a vector seen along a normal.
+/// Squared length of a vector projected along a normal.
 #[inline(always)]
 fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
     let high = dot(normal, along);
@@ -220,8 +229,8 @@ fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
 }
 
 impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
-    /// `part_at`: whether a point of a segment is at the first end and at the last, in two masks.
-    /// Answers the lanes where it is not at both.
+    /// Stores the part of a segment that a point lies on, as `part_at` does: two masks, at the
+    /// first end and at the last. Returns the lanes where it is not at both.
     #[inline(always)]
     fn put_end_or_side<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

@@ -1,12 +1,12 @@
-//! Copies of the solids that a few numbers describe.
+//! Copies of solids that are described by a few numbers.
 //!
-//! A copy is made when a pair begins or a shape is exchanged, and kept with the pair.
+//! A copy is made when a pair begins or a shape is replaced, and is kept with the pair.
 
 use crate::math::Real;
 use crate::shape::{Ball, Capsule, Cuboid, Geometry, Kind, Segment};
 
-/// A solid that closed forms treat, by value: what is kept with a pair so that its update need not
-/// look for the shapes.
+/// A solid with a closed form, by value. It is kept with a pair, so that its update does not read
+/// the shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Solid<N: Real, const D: usize> {
     Ball(Ball<N>),
@@ -16,7 +16,7 @@ pub(crate) enum Solid<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Solid<N, D> {
-    /// The same solid; `None` for other kinds.
+    /// Copies a solid; `None` for other kinds.
     pub(crate) fn of(geometry: Geometry<'_, N, D>) -> Option<Self> {
         Some(match geometry.0 {
             Kind::Ball(ball) => Self::Ball(*ball),
@@ -27,7 +27,7 @@ impl<N: Real, const D: usize> Solid<N, D> {
         })
     }
 
-    /// It has the kind and the numbers of a shape.
+    /// Returns whether a shape has this kind and these numbers.
     #[inline]
     pub(crate) fn is(&self, geometry: Geometry<'_, N, D>) -> bool {
         match (self, geometry.0) {
@@ -39,12 +39,12 @@ impl<N: Real, const D: usize> Solid<N, D> {
         }
     }
 
-    /// It is a segment, perhaps inflated.
+    /// Returns whether this is a segment or a capsule.
     pub(super) const fn is_segment(&self) -> bool {
         matches!(self, Self::Segment(_) | Self::Capsule(_))
     }
 
-    /// As queries see it.
+    /// Returns the solid in the form that queries take.
     #[inline]
     pub(crate) const fn kind(&self) -> Kind<'_, N, D> {
         match self {

@@ -1,4 +1,4 @@
-//! Eight at a time against one by one, on every instruction set: bit for bit.
+//! Compares eight pairs at a time with one by one, on every instruction set: bit for bit.
 
 use super::{
     BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, Many,
@@ -11,12 +11,13 @@ use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Geometry, Segment};
 use crate::tables::ByDimension;
 
-/// A pair and what is asked of it; not all need an update.
+/// A pair and its request; not all need an update.
 #[derive(Clone)]
 struct Case<N: Real, const D: usize> {
     poses: [Pose<N, D>; 2],
     solids: [Solid<N, D>; 2],
     request: ManifoldRequest<N>,
+    /// The pair is to be updated.
     is_due: bool,
 }
 
@@ -27,16 +28,20 @@ impl<N: Real, const D: usize> Case<N, D> {
     }
 }
 
-/// Pairs with their manifolds, those that are due, and how many were begun, declined and ended. Of pairs that had
-/// points, which may be asked for again to match these, nobody knows which were declined.
+/// Pairs with their manifolds, those to be updated, and counts of begun, unsupported and ended
+/// ones. A pair that had points may be asked for again to match these, so its count says nothing.
 struct Kept<'a, N: Real, const D: usize> {
     cases: &'a [Case<N, D>],
+    /// Indices of the cases to update.
     due: Vec<usize>,
+    /// Manifolds of all cases.
     raws: &'a mut [RawManifold<N, D>],
+    /// Pairs without points that began and that fell back, and all that ended.
     counts: [usize; 3],
 }
 
 impl<N: Real, const D: usize> Kept<'_, N, D> {
+    /// Returns whether the pair had no points.
     fn is_new(&self, index: usize) -> bool {
         self.raws[self.due[index]].points.is_empty()
     }
@@ -68,12 +73,12 @@ impl<N: Real, const D: usize> KeptPairs<N, D> for Kept<'_, N, D> {
     }
 }
 
-/// Numbers as bits, but for NaN, which has many.
+/// Bits of a number; NaN, which has many, as one value.
 fn bits<N: Real>(value: N) -> u64 {
     if value.partial_cmp(&value).is_some() { value.bits() } else { u64::MAX }
 }
 
-/// All that a manifold says.
+/// All numbers of a manifold.
 fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
     let mut facts: Vec<u64> = Vec::new();
     for point in &raw.points {
@@ -89,13 +94,14 @@ fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
     facts
 }
 
-/// Number by number, so that zeros have no sign, or bit by bit, as NaN is.
+/// Equal number by number, so that zeros have no sign, or bit by bit, for NaN.
 fn are_same<N: Real, const D: usize>(one: &RawManifold<N, D>, other: &RawManifold<N, D>) -> bool {
     one.normal == other.normal && one.points == other.points || facts(one) == facts(other)
 }
 
-/// Computes the manifold of a case as a batch of one, and another: by the general algorithm where that has the bits of
-/// the kernel, as for all pairs but boxes and segments in 2D, else as a batch of one from the pair in its own frame.
+/// Computes the manifold of a case as a batch of one, and a second one: by the general builder
+/// where it has the bits of the kernel, which is so for all pairs but boxes and segments in 2D;
+/// else as a batch of one from the pair in its own frame.
 fn compute_alone<N: Space<D>, const D: usize>(
     case: &Case<N, D>,
     [lone, other]: [&mut RawManifold<N, D>; 2],
@@ -114,8 +120,8 @@ fn compute_alone<N: Space<D>, const D: usize>(
     }
 }
 
-/// Some steps of the same pairs, so that names are inherited; answers how many points there were and
-/// how many pairs were declined, of how many.
+/// Runs some steps of the same pairs, so that ids are inherited. Returns the number of points, of
+/// unsupported pairs, and of pairs.
 fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     steps: &[Vec<Case<N, D>>],
     what: &str,
@@ -146,6 +152,7 @@ fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     sums
 }
 
+/// Updates the cases that are due; returns how many new pairs began, and how many fell back.
 fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     level: Level,
     cases: &[Case<N, D>],
@@ -159,6 +166,7 @@ fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     [begun, declined]
 }
 
+/// Kinds of solids to draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sort {
     Ball,
@@ -167,19 +175,19 @@ enum Sort {
     Cuboid,
 }
 
-/// A draw of two solids near each other, in 64 bits.
+/// Two random solids near each other, in 64 bits.
 #[derive(Clone)]
 struct Draw<const D: usize> {
     sorts: [Sort; 2],
     radii: [f64; 2],
-    /// The ends of a segment; the half extents of a box are the magnitudes of the last.
+    /// Ends of a segment; for a box, the magnitudes of the last are the half extents.
     ends: [[Vector<f64, D>; 2]; 2],
     places: [Vector<f64, D>; 2],
     turns: [[f64; 3]; 2],
 }
 
 impl<const D: usize> Draw<D> {
-    /// `snapped` solids have sizes and places on a grid and no turn.
+    /// Solids; if `snapped`, with sizes and positions on a grid and no rotation.
     fn new(random: &mut Random, sorts: [Sort; 2], snapped: bool) -> Self {
         let snap = |x: f64| if snapped { (x * 2.0).round() / 2.0 } else { x };
         let mut vector = |by: f64| Vector::<f64, D>::from_fn(|_, _| snap(random.between(-by, by)));
@@ -191,7 +199,7 @@ impl<const D: usize> Draw<D> {
         Self { sorts, radii, ends, places: [place, place + aside], turns }
     }
 
-    /// The same, moved a little.
+    /// Moves the solids a little.
     fn shaken(&self, random: &mut Random, by: f64) -> Self {
         let mut shaken = self.clone();
         for which in 0..2 {
@@ -201,7 +209,7 @@ impl<const D: usize> Draw<D> {
         shaken
     }
 
-    /// In another unit of length.
+    /// Converts to a case with another unit of length.
     fn case<N: Scene<D>>(&self, unit: f64, request: ManifoldRequest<N>) -> Case<N, D> {
         let vector = |v: &Vector<f64, D>| v.map(|x| N::lit(x * unit));
         let poses = [0, 1].map(|at| N::pose(vector(&self.places[at]), self.turns[at]));
@@ -221,7 +229,7 @@ impl<const D: usize> Draw<D> {
     }
 }
 
-/// 203 pairs of a kind, in four steps of which the last is far from the others.
+/// Draws 203 pairs of a kind, in four steps of which the last is far from the others.
 fn drawn<N: Scene<D>, const D: usize>(
     (seed, unit): (u64, f64),
     sorts: [Sort; 2],
@@ -246,14 +254,14 @@ fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N> {
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Poses that are no numbers, equal or far away; solids without any size; any prediction.
+/// Sets poses that are not finite, equal or far away, solids without size, and any prediction.
 fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
     let value = strange[number / 7 % strange.len()];
     let (which, axis) = (number % 2, number / 2 % D);
     match number % 7 {
         0 => case.poses[which].translation[axis] = value,
-        // What is a number, but no rotation, may be named by another feature.
+        // A finite matrix that is no rotation may give another feature.
         1 | 2 => {
             let strange = if value.is_finite_number() { N::lit(f64::NAN) } else { value };
             case.poses[which].rotation[(axis, number / 6 % D)] = strange;
@@ -268,7 +276,7 @@ fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     }
 }
 
-/// A solid of the same kind of which one length is another, or zero if that is none.
+/// Replaces one length of a solid, by zero if it is not a valid length.
 fn with_length<N: Real, const D: usize>(solid: &Solid<N, D>, length: N) -> Solid<N, D> {
     let is_length = length.is_finite_number() && length >= N::ZERO;
     let length = if is_length { length } else { N::ZERO };
@@ -286,7 +294,7 @@ fn with_length<N: Real, const D: usize>(solid: &Solid<N, D>, length: N) -> Solid
     }
 }
 
-/// All of the above for one form.
+/// Runs all of the above for one form.
 fn check<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>(sorts: [Sort; 2]) {
     for (seed, sine) in [(1, 0.0), (2, 0.0), (3, 0.01), (4, 0.3)] {
         let steps = drawn::<N, D>((seed, 1.0), sorts, &request(0.3, sine));
@@ -358,7 +366,7 @@ fn boxes<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
     check::<F, N, D>([Sort::Cuboid, Sort::Cuboid]);
 }
 
-/// Boxes of which faces are close together, in three steps.
+/// Boxes with faces close together, in three steps.
 fn faced<N: Scene<D>, const D: usize>(
     seed: u64,
     lean: f64,

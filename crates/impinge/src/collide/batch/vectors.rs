@@ -1,4 +1,4 @@
-//! Vectors in lanes: the operations of `math`, each in the order of its scalar twin.
+//! Vectors in lanes: operations of `math`, each in the order of its scalar twin.
 
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
 use crate::collide::separation::is_usual;
@@ -8,13 +8,15 @@ pub(super) use crate::math::lanes::{
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
-/// The length below which all is rounding errors of that size: `rounding` of `frame.rs`.
+/// Returns the length up to which differences are rounding for a pair of this size: `rounding` of
+/// `frame.rs`.
 #[inline(always)]
 pub(super) fn rounding_of<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, size: V) -> V {
     V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON) * size
 }
 
-/// `unit` of vectors of usual length, which the mask says: direction and length.
+/// Returns direction and length of a vector, as `unit` does; the mask has the lanes whose squared
+/// length is far from underflow and overflow.
 #[inline(always)]
 pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -25,7 +27,8 @@ pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     (over(v, length), length, is_usual(simd, squared))
 }
 
-/// The length of a vector that is zero or of usual length, which the mask says.
+/// Returns the length of a vector; the mask has the lanes where it is zero, or its square far from
+/// underflow and overflow.
 #[inline(always)]
 pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -36,11 +39,12 @@ pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
     for coordinate in &v[1..] {
         sum += coordinate.abs();
     }
+    // Unlike the square, the sum does not underflow.
     let is_zero = sum.simd_le(V::all(simd, N::ZERO));
     (squared.sqrt(), is_usual(simd, squared) | is_zero)
 }
 
-/// The lanes whose number is neither infinite nor NaN.
+/// Returns the lanes whose number is neither infinite nor NaN.
 #[inline(always)]
 pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V) -> V::Mask {
     number.abs().simd_lt(V::all(simd, N::INFINITY))

@@ -1,8 +1,8 @@
-//! The manifold of two solids along a normal that is given, not found: contacts with a face of a
-//! surface, whose own edges say nothing.
+//! Manifold of two solids along a normal that is given, not computed: contacts with a face of a
+//! surface, whose own edges do not count.
 //!
-//! The supporting features along the normal are clipped as ever, but there is no witness that must be among the
-//! points: where the features do not lie above each other, there is no point at all.
+//! The supporting features along the normal are clipped as usual, but no witness has to be among
+//! the points. If the features do not overlap in projection, there is no point at all.
 
 use super::clip;
 use super::frame::{Candidates, ContactFrame};
@@ -13,37 +13,38 @@ use crate::math::{Real, Space, Vector, max, min};
 use crate::shape::{Geometry, Kind};
 use crate::tables::ByDimension;
 
-/// What a manifold along a given normal is asked for.
+/// Request for a manifold along a given normal.
 #[derive(Clone, Copy)]
 pub(crate) struct Along<N, const D: usize>
 where
     N: Space<D>,
 {
-    /// Unit, from the first solid to the second.
+    /// Unit vector from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
-    /// No two points of the solids are nearer than this: what seems to be by more than rounding is
-    /// below the surface of the face and beside it.
+    /// No two points of the solids are nearer than this. A candidate that is nearer by more than
+    /// rounding is below the surface of the face and beside it.
     pub(crate) least: N,
     /// Lengths below this are rounding errors of the pair.
     pub(crate) tolerance: N,
 }
 
-/// What is asked of two solids, one of which is a face of a surface.
+/// Request for the contacts of two solids, one of which is a face of a surface.
 pub(crate) struct OnFace<N: Real, const D: usize> {
-    /// That of the face, unit, from the first solid to the second.
+    /// Normal of the face: unit, from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
-    /// Points nearer than this by more than rounding are left out, others are as near as this.
+    /// Points nearer than this by more than rounding are dropped; others are at least as far as
+    /// this.
     pub(crate) least: N,
-    /// How near the nearest is, if that is known.
+    /// The least distance, if it is known.
     pub(crate) nearest: Option<N>,
-    /// Points farther than this are left out.
+    /// Points farther than this are dropped.
     pub(crate) prediction: N,
     /// Lengths below this are rounding errors of the pair.
     pub(crate) tolerance: N,
 }
 
-/// Builds the manifold of two convex solids along a normal; empty if no points face each other along
-/// it, or if one of the solids is a half-space.
+/// Builds the manifold of two convex solids along a normal; empty if no points lie across from each
+/// other along it, or if one of the solids is a half-space.
 pub(crate) fn build_along<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     along: &Along<N, D>,
@@ -55,8 +56,8 @@ pub(crate) fn build_along<N: Space<D>, const D: usize>(
     <N::Algorithms>::on_face(pair, &on_face, out);
 }
 
-/// Builds the manifold of a pair that is a distance apart along the normal of a face of a surface that is one
-/// of the solids, or nearly so; returns false where that is left to [`build_between`].
+/// Builds the manifold of a pair that is at `distance` along the normal of a face of a surface, up
+/// to rounding; returns `false` if [`build_between`] has to build it.
 pub(crate) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,
@@ -70,7 +71,7 @@ pub(crate) fn build_on_face<N: Space<D>, const D: usize>(
     distance <= prediction && <N::Algorithms>::on_face(pair, &on_face, out)
 }
 
-/// The manifold of a pair whose separation is known, with as many points as are asked for.
+/// Builds the manifold of a pair with a known separation, with up to `request.max_points` points.
 pub(crate) fn build_between<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -80,8 +81,8 @@ pub(crate) fn build_between<N: Space<D>, const D: usize>(
     <N::Algorithms>::between(pair, separation, request, out);
 }
 
-/// The contacts of two solids of the plane along a normal. Where the distance is known the nearest points are,
-/// too, and this returns false.
+/// Computes the contacts of two solids in 2D along a normal. Returns `false` if the distance is
+/// known: then the nearest points are known, too.
 pub(crate) fn on_face2<N: Real>(
     pair: &Pair<'_, N, 2>,
     asked: &OnFace<N, 2>,
@@ -98,8 +99,9 @@ pub(crate) fn on_face2<N: Real>(
     sides.along(&along, |point| out.points.push(point)).is_some()
 }
 
-/// The contacts of two solids along the normal of a face of one of them. Where the distance is known one has to
-/// be that near, else this returns false, as it does of solids whose nearest points are known besides.
+/// Computes the contacts of two solids along the normal of a face of one of them. If the distance
+/// is known, a contact must have it; else this returns `false`, as for solids with known nearest
+/// points.
 pub(crate) fn on_face3<N: Real>(
     pair: &Pair<'_, N, 3>,
     asked: &OnFace<N, 3>,
@@ -120,13 +122,14 @@ pub(crate) fn on_face3<N: Real>(
     let frame = ContactFrame::known(&planes, tangents3(&normal), tolerance, prediction);
     let (mut candidates, mut lowest) = (Candidates::new(), N::INFINITY);
     clip::candidates(pair, &frame, &mut candidates);
+    // Below the surface of the face and beside it.
     candidates.retain(|candidate| candidate.distance >= least - tolerance);
     for candidate in &mut candidates {
         candidate.distance = max(candidate.distance, least);
         lowest = min(candidate.distance, lowest);
     }
     if let Some(nearest) = nearest {
-        // Infinite where there is none; NaN is not near.
+        // Infinite if there is none; NaN is not near.
         let is_reached = lowest <= nearest + tolerance;
         if !is_reached {
             return false;
@@ -139,8 +142,8 @@ pub(crate) fn on_face3<N: Real>(
     true
 }
 
-/// The supporting planes of the two solids along a normal, as a witness: its points are the farthest
-/// of each solid, and need not face each other. `None` if there is a half-space.
+/// Returns the supporting planes of both solids along a normal, as a witness: its points are the
+/// farthest of each solid and need not lie across from each other. `None` with a half-space.
 pub(in crate::collide) fn extremes<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,

@@ -1,7 +1,8 @@
-//! The contacts of a segment of a chain and a 2D solid, without intermediate lists.
+//! Contacts of a segment of a chain and a 2D solid, without intermediate lists.
 //!
-//! The bits are those of [`build_between`](super::build_between) and [`build_along`](super::build_along), which
-//! define them.
+//! The bits are those of [`build_between`](super::build_between) and
+//! [`build_along`](super::build_along), which define them. The separations come from
+//! `collide/separation/chain/`.
 
 use super::along::extremes;
 use super::frame::{Candidate, Candidates, ContactFrame, Which};
@@ -13,8 +14,10 @@ use crate::convex::Separation;
 use crate::math::{Real, Space, max};
 use crate::shape::{FeatureId, Kind};
 
-/// A segment of a chain and a solid that is no half-space, in the order of kinds: behind another segment.
+/// A segment of a chain and a solid that is no half-space, in the order of kinds: another segment
+/// or a ball comes first.
 pub(crate) struct SegmentPair<'a, N: Real> {
+    /// The solids in canonical order, in the frame of the first.
     pub(crate) pair: Pair<'a, N, 2>,
     /// Lengths below this are rounding errors.
     pub(crate) tolerance: N,
@@ -23,7 +26,7 @@ pub(crate) struct SegmentPair<'a, N: Real> {
 }
 
 impl<N: Real> SegmentPair<'_, N> {
-    /// The part of the chain's segment that a separation's point lies on.
+    /// Returns the part of the chain's segment that a separation's point lies on.
     pub(crate) fn touched(&self, found: &Separation<N, 2>) -> Option<FeatureId> {
         if let Kind::Ball(_) = self.pair.first {
             return beside_ball(&self.pair, found);
@@ -36,7 +39,7 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(own.at_witness(&frame))
     }
 
-    /// The contacts that belong to a separation; `None` of solids that show more than a side.
+    /// Visits the contacts of a separation; `None` for solids whose feature is no point or side.
     pub(crate) fn between(
         &self,
         witness: &Separation<N, 2>,
@@ -61,13 +64,14 @@ impl<N: Real> SegmentPair<'_, N> {
             let parts = [first.at_witness(&frame), second.at_witness(&frame)];
             add_witness(&frame.witness, parts, &mut candidates);
         }
+        // The smallest distance is that of the separation exactly.
         let nearest = deepest(&candidates, level);
         candidates[nearest].distance = witness.distance;
         candidates.iter().for_each(|candidate| visit(candidate.named(0)));
         Some(())
     }
 
-    /// The contacts along a normal; `None` of solids that show more than a side.
+    /// Visits the contacts along a normal; `None` for solids whose feature is no point or side.
     pub(crate) fn along(
         &self,
         along: &Along<N, 2>,
@@ -102,6 +106,7 @@ impl<N: Real> SegmentPair<'_, N> {
                 }
             }
         }
+        // Nearer than `least` by more than rounding: beside the face and below it.
         let kept = candidates.iter().filter(|found| found.distance >= along.least - tolerance);
         for candidate in kept {
             let point = candidate.named(0);
@@ -114,6 +119,7 @@ impl<N: Real> SegmentPair<'_, N> {
         ContactFrame::known(witness, tangents2(&witness.normal), self.tolerance, self.prediction)
     }
 
+    /// Returns the supporting feature of the first solid.
     #[inline]
     fn first(&self, frame: &ContactFrame<N, 2>) -> Option<Stretch<N>> {
         match self.pair.first {

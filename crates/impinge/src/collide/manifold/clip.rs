@@ -1,18 +1,28 @@
-//! The corners of the common area of two supporting features in 3D: points, segments or faces.
+//! Corners of the common area of two supporting features in 3D: points, segments or faces.
 //!
-//! Both are [rings](super::ring) seen along the normal, and how far inside of the sides of one the corners of
-//! the other are is computed in lanes. A corner of the common area is a corner of one inside the other, or a
-//! crossing of two sides: both solids are treated alike, no reference face can flip, and every point has the
-//! same ids whichever solid is first. A place within the tolerance of a side lies on it, which keeps the ids
-//! still when sides or corners coincide. A segment has one side, whose line a corner must lie on. A point, and
-//! two segments that are not parallel, meet at the nearest points alone.
+//! ```text
+//!      .-----------.             corner of one ring against each side of the other, in lanes:
+//!      |  1        |               inside > tolerance    within
+//!      |     c-----x---.           inside < -tolerance   beyond
+//!      |     |     | 2 |           otherwise             touched
+//!      '-----x-----c   |
+//!            |         |         c: corner inside the other ring (no side beyond)
+//!            '---------'         x: side of 1 with one end within and one beyond a side of 2, and
+//!                                   that side of 2 likewise against it
+//! ```
 //!
-//! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides of the other,
-//! which makes one solid the reference.
+//! Both features are [rings](super::ring) projected along the normal. Both solids are treated
+//! alike: no reference face can flip, and every point has the same ids whichever solid is first. A
+//! point within the tolerance of a side lies on it, which keeps ids stable where sides or corners
+//! coincide. A segment has one side, whose line a corner must lie on. A point, and two segments
+//! that are not parallel, meet at the nearest points alone.
 //!
-//! Every pair in 3D with flat features is clipped here, lone or part of a composite, along its own normal or that
-//! of a face; only boxes, and segments and capsules, have lanes of their own. The angle by which solids may turn
-//! is a number in the admission test.
+//! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides
+//! of the other, which makes one solid the reference.
+//!
+//! Every pair in 3D with flat features is clipped here, alone or as parts of a composite, along its
+//! own normal or that of a face. Only boxes, and segments and capsules, have kernels of their own
+//! (`collide/batch/`). The angle by which solids may turn is a number in the admission test.
 
 use smallvec::SmallVec;
 
@@ -45,7 +55,7 @@ pub(super) fn build<N: Real>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// The part of one of two solids that the nearest point lies on, of those that face the other.
+/// Returns the part of one solid that the nearest point lies on, among those facing the other.
 pub(super) fn part_at_witness<N: Real>(
     kind: Kind<'_, N, 3>,
     which: Which,
@@ -59,8 +69,8 @@ pub(super) fn part_at_witness<N: Real>(
     ring_part(ring, insides.row(0), &Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(ring.id)
 }
 
-/// Adds the corners of the common area of two solids along the normal of a frame, whose witness need not be
-/// the nearest points: none where the supporting features do not lie above each other.
+/// Adds the corners of the common area along the normal of a frame whose witness need not be the
+/// nearest points; none if the supporting features do not overlap in projection.
 pub(super) fn candidates<N: Real>(
     pair: &Pair<'_, N, 3>,
     frame: &ContactFrame<N, 3>,
@@ -71,7 +81,8 @@ pub(super) fn candidates<N: Real>(
     clip.candidates(out);
 }
 
-/// [`project_in_lanes`] with the vectors of an instruction set; the numbers do not depend on it.
+/// Runs [`project_in_lanes`] with the vectors of an instruction set; the numbers do not depend on
+/// it.
 fn project_rings<N: Real>(
     level: Level,
     rings: &mut [SupportRing<'_, N>],
@@ -82,7 +93,7 @@ fn project_rings<N: Real>(
         project_in_lanes::<_, N, N::Lanes<_>>(simd, rings, frame, insides));
 }
 
-/// Projects one ring or two, and measures how far inside of the sides of each the corners of the other are.
+/// Projects one ring or two, and measures the corners of each against the sides of the other.
 #[inline(always)]
 fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -99,20 +110,23 @@ fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     }
 }
 
-/// How far a place is inside of up to eight sides of a ring, and what the numbers say as bits.
+/// A point measured against up to eight sides of a ring: signed distances, positive inside, and
+/// masks.
 #[derive(Clone, Copy)]
 struct SideRow<N: Real> {
+    /// Signed distance from each side, positive inside.
     inside: [N; LANES],
-    /// By more than the tolerance; outside by more; neither.
+    /// Bits of the sides that it is inside of by more than the tolerance, outside of, and neither.
     within: u8,
     beyond: u8,
     touched: u8,
 }
 
-/// How far inside of the sides of a ring the corners of another one are, and at last the nearest point.
+/// Each corner of the other ring measured against the sides of this one; last, the nearest point.
 struct Insides<N: Real> {
-    /// Each place has so many rows.
+    /// Rows for each point: the number of blocks.
     width: usize,
+    /// Point by point, block by block.
     rows: SmallVec<[SideRow<N>; 2 * LANES + 4]>,
 }
 
@@ -121,11 +135,12 @@ impl<N: Real> Insides<N> {
         Self { width: 1, rows: SmallVec::new() }
     }
 
-    /// Of a corner, or of the nearest point after the last corner.
+    /// Returns the rows of a corner, or of the nearest point at the index after the last corner.
     fn row(&self, place: usize) -> &[SideRow<N>] {
         &self.rows[place * self.width..][..self.width]
     }
 
+    /// Measures the corners of `other` against the sides of `own`, and last the nearest point.
     #[inline(always)]
     fn measure<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -140,6 +155,7 @@ impl<N: Real> Insides<N> {
         for place in 0..=count {
             let flat = match other {
                 Some(other) if place < count => other.flat(place),
+                // The nearest point is the origin of the tangents.
                 _ => Vector::<N, 2>::zeros(),
             };
             let [x, y] = [V::all(simd, flat.x), V::all(simd, flat.y)];
@@ -149,6 +165,7 @@ impl<N: Real> Insides<N> {
                 let inside = inward[0] * (x - from[0]) + inward[1] * (y - from[1]);
                 let within = bits(inside.simd_gt(most));
                 let beyond = bits(inside.simd_lt(least));
+                // Lanes after the last side are no sides.
                 let all = first_bits(sides - at * LANES);
                 let mut row = SideRow {
                     inside: [N::ZERO; LANES],
@@ -163,12 +180,12 @@ impl<N: Real> Insides<N> {
     }
 }
 
-/// So many bits, eight at most.
+/// Returns a mask of the lowest `count` bits, eight at most.
 const fn first_bits(count: usize) -> u8 {
     if count < LANES { (1 << count) - 1 } else { u8::MAX }
 }
 
-/// The smallest part of a ring that has a place, of which it is known how far inside it is; `None` of a place
+/// Returns the smallest part of a ring that contains a point, given its rows; `None` for a point
 /// outside. A segment has no inside.
 fn ring_part<N: Real>(
     ring: &SupportRing<'_, N>,
@@ -182,7 +199,7 @@ fn ring_part<N: Real>(
         if row.beyond != 0 || is_segment && row.within != 0 {
             return None;
         }
-        // Of two touched sides either will do: where they meet, both answer with the corner.
+        // Where two touched sides meet, both give the corner, so either will do.
         let mut touched = row.touched;
         while touched != 0 {
             let side = block * LANES + touched.trailing_zeros() as usize;
@@ -193,12 +210,12 @@ fn ring_part<N: Real>(
     if is_segment { found } else { Some(found.unwrap_or(ring.id)) }
 }
 
-/// The sides between whose lines and a third the two places lie, neither on it.
+/// Returns the sides whose lines separate two points, neither of them on the line.
 const fn parted<N: Real>(from: &SideRow<N>, to: &SideRow<N>) -> u8 {
     from.within & to.beyond | from.beyond & to.within
 }
 
-/// Where on the way from one place to another a line is crossed, both heights over which are given.
+/// Returns the parameter at which a line is crossed, from the heights of both ends above it.
 fn share<N: Real>(from: N, to: N) -> N {
     from / (from - to)
 }
@@ -207,11 +224,12 @@ fn share<N: Real>(from: N, to: N) -> N {
 struct RingClip<'a, N: Real> {
     frame: &'a ContactFrame<N, 3>,
     rings: [SupportRing<'a, N>; 2],
-    /// For each ring where the corners of the other are in it.
+    /// For each ring the measures of the other's corners.
     insides: [Insides<N>; 2],
 }
 
 impl<'a, N: Real> RingClip<'a, N> {
+    /// Creates a clip with blank rings; [`Self::project`] fills them.
     #[inline(always)]
     fn blank(pair: &'a Pair<'_, N, 3>, frame: &'a ContactFrame<N, 3>) -> Self {
         let rings = [
@@ -221,22 +239,22 @@ impl<'a, N: Real> RingClip<'a, N> {
         Self { frame, rings, insides: [Insides::new(), Insides::new()] }
     }
 
-    /// Fills the rings with the supporting features of a pair, and measures where the corners of each are in the
-    /// other.
+    /// Fills the rings with the supporting features of a pair, and measures their corners.
     fn project(&mut self, pair: &Pair<'_, N, 3>) {
         self.rings[0].fill(pair.first, self.frame);
         self.rings[1].fill(pair.second, self.frame);
         project_rings(Level::new(), &mut self.rings, self.frame, &mut self.insides);
     }
 
-    /// False of features that meet in a point, of which the nearest points say all.
+    /// Returns `false` for features that meet in a point, for which the nearest points suffice.
     fn has_area_or_length(&self) -> bool {
         let [first, second] = &self.rings;
         let are_segments = first.is_segment() && second.is_segment();
         !(first.is_point() || second.is_point() || are_segments && !self.are_parallel())
     }
 
-    /// Adds the corners of the common area that the request admits; of a point in the other feature the point.
+    /// Adds the corners of the common area that the request admits; for a point inside the other
+    /// feature, the point.
     fn candidates(&self, out: &mut Candidates<N, 3>) {
         let [first, second] = &self.rings;
         if first.is_segment() && second.is_segment() && self.are_parallel() {
@@ -253,17 +271,18 @@ impl<'a, N: Real> RingClip<'a, N> {
         self.crossings(out);
     }
 
-    /// The id of the part of a ring that the nearest point lies on.
+    /// Returns the id of the part of a ring that the nearest point lies on.
     fn part_at_witness(&self, which: usize) -> FeatureId {
         let (ring, other) = (&self.rings[which], &self.rings[1 - which]);
         let rows = self.insides[which].row(other.count);
         ring_part(ring, rows, &Vector::<N, 2>::zeros(), self.frame.tolerance).unwrap_or(ring.id)
     }
 
-    /// Corners of either ring within the other.
+    /// Adds the corners of either ring inside the other.
     fn corners(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
+            // Nothing lies inside a point; its own corner is found when the rings are exchanged.
             let count = if other.is_point() { 0 } else { ring.count };
             for at in 0..count {
                 let flat = ring.flat(at);
@@ -277,7 +296,7 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds a corner of one ring and the point of the other that faces it.
+    /// Adds a corner of one ring and the point of the other across from it.
     fn push_corner(
         &self,
         which: usize,
@@ -293,8 +312,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Sides that cross well inside both: a side that ends on a line crosses nothing, its corner lies on the
-    /// other ring or outside.
+    /// Adds the crossings of sides well inside both. A side that ends on a line does not cross it:
+    /// its corner lies on the other ring or outside.
     fn crossings(&self, out: &mut Candidates<N, 3>) {
         let (one, in_other) = (&self.rings[0], &self.insides[1]);
         for side1 in 0..one.side_count() {
@@ -312,8 +331,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds where two sides cross, of which the first crosses the line of the second at a share of its length, if
-    /// the second crosses the first's.
+    /// Adds the crossing of two sides. `side1` crosses the line of `side2` at the parameter
+    /// `share1`; it counts if `side2` crosses the line of `side1`.
     fn push_crossing(&self, side1: usize, side2: usize, share1: N, out: &mut Candidates<N, 3>) {
         let ([one, other], in_one) = (&self.rings, &self.insides[0]);
         let (block1, lane1) = (side1 / LANES, side1 % LANES);
@@ -325,16 +344,16 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Two segments that a turn by the predicted angle would make parallel.
+    /// Returns whether turning by the predicted angle would make two segments parallel.
     fn are_parallel(&self) -> bool {
         let [a, b] = [self.rings[0].side(0), self.rings[1].side(0)];
         let least = N::lit(16.0) * N::EPSILON;
         cross2(&a, &b).abs() <= max(self.frame.sine, least) * a.norm() * b.norm()
     }
 
-    /// The ends of the interval that two nearly parallel segments share: each is an end of one of them and the
-    /// place beside it on the other. Half-way between the two is where they meet once turned: the points are
-    /// off their segments by half the lever arm times the sine at most.
+    /// Adds the ends of the overlap interval of two nearly parallel segments: each is an end of one
+    /// of them and the point beside it on the other, both moved halfway, where they meet after the
+    /// turn. The points are off their segments by at most half the lever arm times the sine.
     fn common_stretch(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
@@ -349,7 +368,7 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// The part of a segment beside a place; `None` beyond the ends.
+    /// Returns the part of a segment beside a point; `None` beyond the ends.
     fn beside(&self, flat: &Vector<N, 2>, segment: &SupportRing<'_, N>) -> Option<FeatureId> {
         let (side, tolerance) = (segment.side(0), N::TWO * self.frame.tolerance);
         let length = side.norm();
@@ -358,8 +377,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         part_beside(along, length, tolerance, ends, segment.id)
     }
 
-    /// Adds the points of the surfaces over two points of the cores, once: corners that coincide in both rings
-    /// are found from both. Different points may share their ids, on round rims.
+    /// Adds the surface points over two points of the cores, once: corners that coincide in both
+    /// rings are found from both. Different points on round rims may share their ids.
     fn push(
         &self,
         [core1, core2]: [Point<N, 3>; 2],

@@ -1,4 +1,12 @@
-//! The plane of contact: what all points of one manifold are measured against.
+//! The plane of contact: the frame in which all points of one manifold are measured.
+//!
+//! ```text
+//!          second solid
+//!         ______o______         ^ normal: unit, from the first solid to the second
+//!               : distance      |
+//!         ------o------------>  tangents: coordinates `flat`, zero at the witness' `point1`
+//!          first solid          height of a point: normal · (point - witness.point1)
+//! ```
 
 use smallvec::SmallVec;
 
@@ -8,16 +16,17 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, SupportMap};
 
-/// Lengths up to so many rounding errors of the pair's size count as zero.
+/// Lengths up to this many epsilon of the pair's size count as rounding.
 pub(in crate::collide) const ROUNDING_ERRORS: f64 = 16.0;
 
-/// Supporting features that tilt more than 60° out of the plane of contact count as their nearest point.
+/// Cosine of 60°: features tilted by more than that against the contact plane become their nearest
+/// point.
 pub(in crate::collide) const MIN_COSINE: f64 = 0.5;
 
-/// What a manifold is chosen from.
+/// Candidates of a manifold.
 pub(in crate::collide) type Candidates<N, const D: usize> = SmallVec<[Candidate<N, D>; 8]>;
 
-/// Which of the two solids of a pair.
+/// One of the two solids of a pair.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::collide) enum Which {
     First,
@@ -25,7 +34,7 @@ pub(in crate::collide) enum Which {
 }
 
 impl Which {
-    /// The direction in which this solid faces the other.
+    /// Returns the direction in which this solid faces the other.
     #[inline(always)]
     pub(in crate::collide) fn outward<N: Real, const D: usize>(
         self,
@@ -37,7 +46,7 @@ impl Which {
         }
     }
 
-    /// How far a point is below the supporting plane of the whole solid, seen from the other one.
+    /// Returns the depth of a point below the solid's supporting plane, which touches the witness.
     #[inline]
     pub(in crate::collide) fn below_witness<N: Real, const D: usize>(
         self,
@@ -52,13 +61,14 @@ impl Which {
     }
 }
 
-/// How far the surface at a radius around a flat feature is above a point of the feature, along the normal.
+/// Returns the height of the surface at a radius around a flat feature, above a point of the
+/// feature, along the normal.
 ///
-/// `cosine` is that of the angle by which the feature tilts, `room` and `top` how far the point and the
-/// feature's corner nearest to the other solid are below the supporting plane, `away_squared` the square of
-/// the way from that corner to the point across the normal. Above the flat part that is `radius / cosine`,
-/// above the corner the ball around it; nothing rises above the supporting plane. Exact for capsules, and
-/// where the surface is parallel to the feature; between the two a rounded polygon may lie a little lower.
+/// `cosine` is that of the feature's tilt. `room` and `top` are the depths of the point and of the
+/// feature's nearest corner below the supporting plane, `away_squared` their squared distance
+/// across the normal. Above the flat part the height is `radius / cosine`, above the corner that of
+/// the ball around it; nothing rises above the supporting plane. Exact for capsules, and where the
+/// surface is parallel to the feature; in between a rounded polygon may be a little lower.
 #[inline]
 pub(in crate::collide) fn lifted<N: Real>(
     radius: N,
@@ -67,6 +77,7 @@ pub(in crate::collide) fn lifted<N: Real>(
     top: N,
     away_squared: N,
 ) -> N {
+    // Where the ball around the corner meets the flat part of the surface.
     let turns_squared = radius * radius * (N::ONE - cosine * cosine);
     let lift = if away_squared < turns_squared {
         room - top + (radius * radius - away_squared).sqrt()
@@ -76,39 +87,45 @@ pub(in crate::collide) fn lifted<N: Real>(
     max(min(lift, room), N::ZERO)
 }
 
-/// The plane through the witness perpendicular to the normal, and what the request admits.
+/// The plane through the witness perpendicular to the normal, with the limits of the request.
 ///
-/// In the frame of the first solid. `flat` coordinates are those in the plane, with the witness at
-/// zero; in two dimensions the second of them is always zero.
+/// In the frame of the first solid. `flat` coordinates are along the tangents, zero at the witness;
+/// in 2D the second is always zero.
 pub(in crate::collide) struct ContactFrame<N: Real, const D: usize> {
+    /// Nearest points, normal and signed distance of the pair.
     pub(in crate::collide) witness: Separation<N, D>,
     tangents: [Vector<N, D>; 2],
-    /// Lengths below this are rounding errors of the pair's size.
+    /// Lengths below this are rounding errors for the size of the pair.
     pub(in crate::collide) tolerance: N,
+    /// Largest distance of a contact point.
     prediction: N,
+    /// Sine of the angle by which the solids may turn.
     pub(in crate::collide) sine: N,
 }
 
 /// A point that may enter the manifold.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Candidate<N: Real, const D: usize> {
+    /// Point on the surface of the first solid, in its frame.
     pub(in crate::collide) point1: Point<N, D>,
+    /// Signed distance along the normal to the second solid.
     pub(in crate::collide) distance: N,
+    /// Coordinates along the tangents of the frame.
     pub(in crate::collide) flat: Vector<N, 2>,
     /// The part of each solid that it lies on.
     pub(in crate::collide) features: [FeatureId; 2],
-    /// The id it has from the previous manifold.
+    /// The id inherited from the previous manifold.
     pub(in crate::collide) kept: Option<Inherited>,
 }
 
 impl<N: Real, const D: usize> Candidate<N, D> {
-    /// The nearest pair of points, which lie on the given parts.
+    /// Creates the candidate of the nearest pair of points, which lie on the given parts.
     pub(in crate::collide) fn alone(witness: &Separation<N, D>, features: [FeatureId; 2]) -> Self {
         let (point1, distance) = (witness.point1, witness.distance);
         Self { point1, distance, flat: Vector::<N, 2>::zeros(), features, kept: None }
     }
 
-    /// The previous manifold held it, at this place.
+    /// Returns whether the previous manifold had this point, at this position.
     pub(in crate::collide) fn is_old(&self) -> bool {
         self.kept.is_some_and(|kept| kept.is_old)
     }
@@ -120,7 +137,8 @@ impl<N: Real, const D: usize> Candidate<N, D> {
 }
 
 impl<N: Real, const D: usize> ContactFrame<N, D> {
-    /// `tangents` complete the witness' normal to a right-handed basis; the second is zero in 2D.
+    /// Creates a frame; `tangents` complete the witness' normal to a right-handed basis, the second
+    /// is zero in 2D.
     pub(in crate::collide) fn new(
         pair: &Pair<'_, N, D>,
         witness: &Separation<N, D>,
@@ -136,7 +154,7 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         }
     }
 
-    /// The frame of a request without turning, where the tolerance is known.
+    /// Creates a frame for a request without turning, with a known tolerance.
     #[inline]
     pub(in crate::collide) fn known(
         witness: &Separation<N, D>,
@@ -152,31 +170,31 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         self.witness.normal
     }
 
-    /// The axes of what is seen along the normal.
+    /// Axes of the `flat` coordinates.
     #[inline(always)]
     pub(in crate::collide) const fn tangents(&self) -> &[Vector<N, D>; 2] {
         &self.tangents
     }
 
-    /// Where a point lies when seen along the normal.
+    /// Returns the tangent coordinates of a point.
     #[inline]
     pub(in crate::collide) fn flat(&self, point: &Point<N, D>) -> Vector<N, 2> {
         let arm = point - self.witness.point1;
         Vector::<N, 2>::new(self.tangents[0].dot(&arm), self.tangents[1].dot(&arm))
     }
 
-    /// How far along the normal a point lies, from the surface of the first solid at the witness.
+    /// Returns the height of a point along the normal, above the witness on the first solid.
     #[inline]
     pub(in crate::collide) fn height(&self, point: &Point<N, D>) -> N {
         self.normal().dot(&(point - self.witness.point1))
     }
 
-    /// The distance to give to a pair of points that far apart and seen at `flat`; `None` if the
-    /// request does not ask for them.
+    /// Returns the distance to store for a pair of points with the tangent coordinates `flat`;
+    /// `None` if the request excludes them.
     ///
-    /// The witness is the nearest pair of points, so a smaller distance is a rounding error, and so
-    /// is one that exceeds the prediction by no more than the tolerance. A point beyond the
-    /// prediction stays if turning about the witness brings it nearer by enough.
+    /// The witness is the nearest pair of points, so a smaller distance is a rounding error, as is
+    /// one that exceeds the prediction by no more than the tolerance. A point beyond the prediction
+    /// stays if turning about the witness brings it within.
     #[inline]
     pub(in crate::collide) fn admit(&self, distance: N, flat: &Vector<N, 2>) -> Option<N> {
         let distance = max(distance, self.witness.distance);
@@ -189,13 +207,13 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         (distance <= self.prediction + self.sine * flat.norm()).then_some(distance)
     }
 
-    /// The largest distance that [`Self::admit`] admits anywhere.
+    /// Upper bound of the distances that [`Self::admit`] admits.
     #[inline]
     pub(in crate::collide) fn most(&self) -> N {
         if self.sine > N::ZERO { N::INFINITY } else { self.prediction + self.tolerance }
     }
 
-    /// The candidate at a pair of surface points of which the first is given.
+    /// Returns the candidate at a surface point of the first solid; `None` if it is not admitted.
     #[inline]
     pub(in crate::collide) fn candidate(
         &self,
@@ -208,8 +226,8 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         Some(Candidate { point1, distance, flat, features, kept: None })
     }
 
-    /// Adds the candidate of [`Self::candidate`] unless one of the same features is at its position: what
-    /// coincides is found from both solids.
+    /// Adds the candidate of [`Self::candidate`] unless one with the same features has its
+    /// position: corners that coincide are found from both solids.
     #[inline]
     pub(in crate::collide) fn push_new(
         &self,
@@ -230,8 +248,8 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
     }
 }
 
-/// The feature of a segment that a position along it belongs to, measured from its first end: an end where it is
-/// within the tolerance of one, of both the last; `None` beyond the ends.
+/// Returns the part of a segment at the coordinate `along` from its first end: an end within
+/// `tolerance`, the last if within that of both, or the segment; `None` beyond the ends.
 #[inline]
 pub(in crate::collide) fn part_beside<N: Real>(
     along: N,
@@ -247,14 +265,14 @@ pub(in crate::collide) fn part_beside<N: Real>(
     Some(if along >= length - tolerance { ends[1] } else { nearest })
 }
 
-/// The length below which all is rounding errors of the pair's size.
+/// Returns the length below which differences are rounding for the size of a pair.
 #[inline]
 pub(in crate::collide) fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let size = size(pair.first) + size(pair.second) + pair.pose12.translation.norm();
     N::lit(ROUNDING_ERRORS) * N::EPSILON * size
 }
 
-/// The reach of a solid with its rounding; half-spaces have none.
+/// Reach of a solid including its radius; zero for half-spaces.
 #[inline]
 fn size<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> N {
     match kind {

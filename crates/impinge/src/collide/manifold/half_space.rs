@@ -1,8 +1,8 @@
 //! A solid against a half-space: the corners of the solid above the boundary, which has no end.
 //!
-//! Of what has flat faces every vertex counts, not only those of the supporting feature: where no face is
-//! parallel to the boundary, the near vertices need not belong to one face. Of other solids the corners of the
-//! supporting feature count, on the rounded surface.
+//! Flat-faced solids count with every vertex, not only those of the supporting feature: if no face
+//! is parallel to the boundary, the near vertices need not belong to one face. Other solids count
+//! with the corners of the supporting feature, on the rounded surface.
 
 use super::frame::{Candidate, Candidates, ContactFrame, MIN_COSINE, Which, lifted};
 use super::supporting::contact_feature;
@@ -15,10 +15,10 @@ use crate::shape::{Cuboid, Feature, FeatureId, Geometry, Kind, Polytope, Support
 /// The only feature of a half-space.
 const BOUNDARY: FeatureId = FeatureId::Face(0);
 
-/// How many vertices of a hull are side by side.
+/// Vertices of a hull in one block.
 const LANES: usize = 8;
 
-/// Builds the manifold of a solid and a half-space, the second, within the prediction.
+/// Builds the manifold of a solid and a half-space, the second solid, within the prediction.
 pub(super) fn build<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     frame: &ContactFrame<N, D>,
@@ -33,13 +33,14 @@ pub(super) fn build<N: Real, const D: usize>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// The half-space as the solid sees it.
+/// The half-space in the frame of the solid.
 struct Above<'a, N: Real, const D: usize> {
     frame: &'a ContactFrame<N, D>,
 }
 
 impl<N: Real, const D: usize> Above<'_, N, D> {
-    /// Adds the corners that the request admits; returns what the nearest point lies on where there are none.
+    /// Adds the corners that the request admits; returns the feature of the nearest point if there
+    /// are none.
     fn corners(&self, kind: Kind<'_, N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         match kind {
             Kind::Cuboid(cuboid) => self.vertices_of_box(cuboid, out),
@@ -50,6 +51,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
             Kind::Triangle(triangle) => {
                 let corners = triangle.corners();
                 for (at, id) in (0_u32..3).enumerate() {
+                    // Corners that coincide count once.
                     if !corners[..at].contains(&corners[at]) {
                         self.push(FeatureId::Vertex(id), corners[at], out);
                     }
@@ -64,14 +66,17 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         BOUNDARY
     }
 
+    /// Adds a corner, if the request admits it.
     fn push(&self, id: FeatureId, point: Point<N, D>, out: &mut Candidates<N, D>) {
+        // The boundary is perpendicular to the normal: heights give distances.
         let distance = self.frame.witness.distance - self.frame.height(&point);
         if distance <= self.frame.most() {
             out.extend(self.frame.candidate(point, distance, [id, BOUNDARY]));
         }
     }
 
-    /// Of vertices that coincide, for the box is flat, the one with the least number.
+    /// Adds the vertices of a box; of vertices that coincide on a flat box, the one with the lowest
+    /// index.
     fn vertices_of_box(&self, cuboid: &Cuboid<N, D>, out: &mut Candidates<N, D>) {
         let half = cuboid.half_extents();
         let has = |vertex: u32, axis: usize| vertex >> axis & 1 == 1;
@@ -84,6 +89,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         }
     }
 
+    /// Adds the vertices of a hull: eight at a time, those that may be near are tested again.
     #[inline(always)]
     fn vertices_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -93,7 +99,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
     ) {
         let frame = self.frame;
         let along: [V; D] = spread(simd, &frame.normal());
-        // Loosened by the tolerance: the distance of each vertex near enough is computed again.
+        // Loosened by the tolerance: the distance of each near vertex is computed again.
         let top = frame.normal().dot(&frame.witness.point1.coords) - frame.tolerance;
         let least = V::all(simd, top + frame.witness.distance - frame.most());
         for (first, block) in (0_u32..).step_by(LANES).zip(hull.blocks()) {
@@ -102,7 +108,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
             while near != 0 {
                 let vertex = first + near.trailing_zeros();
                 near &= near - 1;
-                // What lies beyond the last vertex is that vertex again.
+                // Copies of the last vertex fill its block.
                 if let Some(point) = hull.vertices().get(vertex as usize) {
                     self.push(FeatureId::Vertex(vertex), *point, out);
                 }
@@ -110,8 +116,8 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         }
     }
 
-    /// The corners of the part of a core that faces the half-space, on the rounded surface; none of a point, and
-    /// of what tilts too much.
+    /// Adds the corners of the core's part that faces the half-space, on the rounded surface; none
+    /// for a point, and for a feature tilted too far.
     fn feature_corners(&self, map: &dyn SupportMap<N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         let (frame, radius, mut feature) = (self.frame, map.rounding(), Feature::default());
         let extra = contact_feature(map, &frame.normal(), &mut feature);
@@ -123,7 +129,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         let lower = |best: (_, _), at: (_, _)| if below(at.0) < below(best.0) { at } else { best };
         let Some((top, id)) = corners.clone().reduce(lower) else { return feature.id };
         let Some(cosine) = self.cosine(&feature) else { return feature.id };
-        // Written so that NaN tilts.
+        // Written so that NaN counts as tilted.
         let is_flat = cosine >= N::lit(MIN_COSINE);
         if !is_flat {
             return id;
@@ -140,8 +146,8 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         feature.id
     }
 
-    /// Between the normals of the boundary and of a face, or between a segment and the boundary; `None` of a
-    /// point, and of a segment that is seen as one.
+    /// Returns the cosine of the angle between the normals of boundary and face, or between a
+    /// segment and the boundary; `None` for a point, and for a segment that projects to one.
     fn cosine(&self, feature: &Feature<N, D>) -> Option<N> {
         let normal = self.frame.normal();
         match feature.vertices.as_slice() {

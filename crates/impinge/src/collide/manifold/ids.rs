@@ -1,19 +1,20 @@
-//! The ids of contact points: a contact that moved keeps its id.
+//! Ids of contact points: a contact that moved keeps its id.
 //!
 //! Old points are matched to new ones in three classes, the nearest first within a class:
 //!
-//! 1. points on the same pair of features, no farther from where the old one was than [`SHARE`] of the pair's size;
-//! 2. points on other features within that length: features flicker where edges coincide, and a corner that slides
-//!    over the triangles of a mesh meets another one at each step;
-//! 3. points on the same pair of features at any distance, but for the crossing of two edges, which is the same one
-//!    within [`REACH`] of the size.
+//! 1. points on the same pair of features, within [`SHARE`] of the pair's size;
+//! 2. points on other features within that length: features flicker where edges coincide, and a
+//!    corner that slides over the triangles of a mesh meets another triangle in each step;
+//! 3. points on the same pair of features at any distance; a crossing of two edges only within
+//!    [`REACH`] of the size.
 //!
-//! The distance is the smaller of two: how far the point has moved on the first solid, in the frame of that solid,
-//! and on the second in its own frame; zero on a vertex of either. It is infinite if the normal turned by more than 45°,
-//! since a solid that fell on another side begins new contacts there, but for the same features with a vertex among
-//! them, which are one point for ever. Lanes keep no old pose, so they compare places on the
-//! first solid alone. So a corner that slides over a floor has not moved, nor has a point of the
-//! floor that a solid slides over.
+//! The distance of a match is the smaller of two: how far the point moved on the first solid, in
+//! that solid's frame, and on the second in its frame. It is zero on a vertex of either. If the
+//! normal turned by more than 45°, it is infinite, since a solid that fell on another side begins
+//! new contacts; except for the same features with a vertex among them, which always are one point.
+//! The kernels of `batch` keep no old pose, so they compare positions on the first solid alone. So
+//! neither a corner that slides over a floor has moved, nor a point of the floor that a solid
+//! slides over.
 //!
 //! ```text
 //!           ┌─────────┐            ┌─────────┐
@@ -22,10 +23,10 @@
 //!     ───────1───────2─────────────────────────    1 and 2: where they were on the second
 //! ```
 //!
-//! Each id goes to one point. Ties go to the older id, then to the candidate that comes first: the order does not
-//! depend on the order of the two solids, and scaling by a power of two changes no choice. Where each pair of features
-//! names one point, as of two boxes, the same features are the same point, and places are compared for two edges alone
-//! ([`is_same_point`]).
+//! Each id goes to one point. Ties go to the older id, then to the candidate that comes first. The
+//! order does not depend on the order of the two solids, and scaling by a power of two changes no
+//! choice. If each pair of features has one point, as for two boxes, the same features are the same
+//! point, and positions are compared for two edges alone ([`is_same_point`]).
 
 use smallvec::SmallVec;
 
@@ -36,20 +37,21 @@ use crate::math::order::askew;
 use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
-/// A contact is the same one as long as it moves by no more than this part of the size of the smaller solid in a
-/// step: half the diagonal of its box.
+/// A contact is the same if it moves by at most this share of the pair's size in a step: half the
+/// diagonal of the smaller box.
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
-/// The crossings of the same two edges are one point up to this part of the size along each axis: edges that nearly coincide cross
-/// anywhere, at one end now and at the other then.
+/// Crossings of the same two edges are one point if they move by at most this share of the size
+/// along each axis: edges that nearly coincide cross anywhere, at either end in turn.
 pub(super) const REACH: f64 = 1.0 / 2.0;
 
-/// Both features are edges.
+/// Returns whether both features are edges.
 pub(super) fn are_edges(features: [FeatureId; 2]) -> bool {
     features.iter().all(|id| matches!(id, FeatureId::Edge(_)))
 }
 
-/// A point with these features, which has moved so on the first solid, is the same one; `size` is that of the pair.
+/// Returns whether a point with these features that moved by `way` on the first solid is the same;
+/// `size` is that of the pair.
 #[inline(always)]
 pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     features: [FeatureId; 2],
@@ -59,34 +61,35 @@ pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     !are_edges(features) || max_component(way) <= N::lit(REACH) * size()
 }
 
-/// One over the length that a contact of a pair of this size moves by in a step at most.
+/// Reciprocal of the largest length by which a contact of a pair of this size moves in a step.
 #[inline(always)]
 pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
     N::ONE / (N::lit(SHARE) * size)
 }
 
-/// A contact point as it is matched: where it is anchored on either solid.
+/// A contact point as it is matched: its position on either solid.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
-    /// The parts of either composite, zero of a convex solid, and the features of the parts.
+    /// Parts of composites, zero for a convex solid, and the features of the parts.
     pub(super) names: ([u32; 2], [FeatureId; 2]),
-    /// Where the point is on each solid, in that solid's frame.
+    /// Position of the point on each solid, in that solid's frame.
     pub(super) places: [Point<N, D>; 2],
-    /// The normal of the contact, in the frame of the first solid.
+    /// Normal of the contact, in the frame of the first solid.
     normal: Vector<N, D>,
 }
 
-/// How two solids lie: what it takes to find where a contact is on each of them.
+/// Pose and normal of a pair, from which positions on both solids follow.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct PairPose<'a, N: Real, const D: usize> {
-    /// The pose of the second solid in the frame of the first; `None` if places on the second are not compared.
+    /// Pose of the second solid in the frame of the first; `None` if positions on it are not
+    /// compared.
     pub(in crate::collide) pose12: Option<&'a Pose<N, D>>,
-    /// Unit, from the first to the second, in the frame of the first.
+    /// Unit vector from the first solid to the second, in the frame of the first.
     pub(in crate::collide) normal: &'a Vector<N, D>,
 }
 
 impl<N: Real, const D: usize> PairPose<'_, N, D> {
-    /// The anchors of a contact, given its point on the first solid in the frame of that solid.
+    /// Returns the anchors of a contact, given its point on the first solid in that solid's frame.
     #[inline]
     pub(in crate::collide) fn anchors(
         &self,
@@ -102,18 +105,19 @@ impl<N: Real, const D: usize> PairPose<'_, N, D> {
     }
 }
 
-/// The anchors of some points.
+/// Anchors of the points of a manifold.
 pub(in crate::collide) type AnchorList<N, const D: usize> = SmallVec<[Anchors<N, D>; 8]>;
 
 /// The id that a new point inherits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::collide) struct Inherited {
     pub(in crate::collide) id: u32,
-    /// The point is where the old one was. One that is not has moved far, and is not preferred in the choice of points.
+    /// The point is where the old one was. Otherwise it moved far, and is not preferred in the
+    /// choice.
     pub(in crate::collide) is_old: bool,
 }
 
-/// The one point is where the other was.
+/// Returns whether two points are the same contact by position.
 pub(in crate::collide) fn are_near<N: Real, const D: usize>(
     old: &Anchors<N, D>,
     new: &Anchors<N, D>,
@@ -122,8 +126,8 @@ pub(in crate::collide) fn are_near<N: Real, const D: usize>(
     moved(old, new, near_scale(size)) <= N::ONE
 }
 
-/// The square of the way that a point has moved on the solid where it is shorter, times the square of `scale`. On a
-/// vertex it has not moved; with another normal it is far.
+/// Returns the squared distance that a point moved, on the solid where it is smaller, times `scale`
+/// squared. Zero on a vertex, infinite if the normals do not agree.
 #[inline]
 pub(super) fn moved<N: Real, const D: usize>(
     old: &Anchors<N, D>,
@@ -134,6 +138,7 @@ pub(super) fn moved<N: Real, const D: usize>(
         let is_same = is_one_point(old.names.1) && old.names == new.names;
         return if is_same { N::ZERO } else { N::INFINITY };
     }
+    // On the same vertex of either solid it has not moved.
     let is_on_vertex = |solid: usize| {
         let name = |point: &Anchors<N, D>| (point.names.0[solid], point.names.1[solid]);
         matches!(name(old).1, FeatureId::Vertex(_)) && name(old) == name(new)
@@ -143,14 +148,14 @@ pub(super) fn moved<N: Real, const D: usize>(
     }
     let on = |solid: usize| ((new.places[solid] - old.places[solid]) * scale).norm_squared();
     let [on1, on2] = [on(0), on(1)];
-    // Written so that a place that is not known does not count.
+    // Written so that an unknown position does not count.
     if on2 < on1 { on2 } else { on1 }
 }
 
-/// Normals that make a larger angle than that of this cosine are not those of one contact.
+/// Cosine of the largest angle between the normals of one contact: 45°.
 const TURN: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// Contacts with these normals, in the frame of the first solid, may be the same.
+/// Returns whether contacts with these normals, in the frame of the first solid, may be the same.
 #[inline(always)]
 pub(in crate::collide) fn normals_agree<N: Real, const D: usize>(
     old: &Vector<N, D>,
@@ -159,13 +164,14 @@ pub(in crate::collide) fn normals_agree<N: Real, const D: usize>(
     old.dot(new) >= N::lit(TURN)
 }
 
-/// A pair of features names one point: a vertex is among them. Edges may be round rims, which many points lie on.
+/// Returns whether a pair of features has one point: if a vertex is among them. Edges may be round
+/// rims, with many points.
 pub(in crate::collide) fn is_one_point(features: [FeatureId; 2]) -> bool {
     features.iter().any(|id| matches!(id, FeatureId::Vertex(_)))
 }
 
-/// Gives candidates the ids of the old points that they continue, where a pair of features names one old and one new
-/// point.
+/// Gives candidates the ids of old points with the same features, where these have one old and one
+/// new point.
 pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     candidates: &mut [Candidate<N, D>],
@@ -183,8 +189,8 @@ pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     }
 }
 
-/// Gives those of some candidates that have none the ids that none of them has, by [`each_match`]; `pose` is the new
-/// one, `size` that of the pair.
+/// Gives the candidates `some` without an id those ids that none of them has, by [`each_match`];
+/// `pose` is the new pose, `size` that of the pair.
 pub(in crate::collide) fn inherit_by_place<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     pose: &PairPose<'_, N, D>,
@@ -213,7 +219,7 @@ pub(in crate::collide) fn inherit_by_place<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> RawManifold<N, D> {
-    /// The anchors of one of the points.
+    /// Returns the anchors of one of the points.
     #[inline]
     pub(in crate::collide) fn anchors(&self, point: &RawPoint<N, D>) -> Anchors<N, D> {
         let pose = PairPose { pose12: self.pose12.as_ref(), normal: &self.normal };
@@ -222,9 +228,9 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
     }
 }
 
-/// Moves the points of a manifold to the candidates, the nearest of which takes the separation's `distance`, if
-/// they are on the same features in the same order, each pair of features once, and within reach; answers whether it
-/// did. `size` is that of the pair.
+/// Moves the points of a manifold to the candidates if these have the same features in the same
+/// order, each pair once, within reach; returns whether it did. The nearest takes `distance`, the
+/// separation's. `size` is that of the pair.
 pub(in crate::collide) fn renew<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
     distance: N,
@@ -239,6 +245,7 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     if old.len() != candidates.len() || !old.iter().zip(candidates).all(is_same) {
         return false;
     }
+    // Features with several points, as on round rims, are matched by position instead.
     let is_twin = |(at, new): (usize, &Candidate<N, D>)| {
         candidates[..at].iter().any(|other| other.features == new.features)
     };
@@ -258,17 +265,17 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     true
 }
 
-/// Puts points that begin together in the order of their ids: how far each reaches, and its number, given where each is
-/// on the first solid.
+/// Sorts new points into the order of their ids: returns their coordinate along an [`askew`]
+/// direction and their number, given their positions on the first solid.
 ///
-/// They are numbered along a direction that is [`askew`], in the frame of the first solid. Of the four corners of a
-/// rectangle that one comes last which is opposite to the first: a solver that goes through them in this order, as
-/// most do, leaves a quarter of the sway in a stack that it leaves when it goes round.
+/// The direction is fixed in the frame of the first solid. Of the four corners of a rectangle, the
+/// last is opposite to the first. In a solver that visits contacts in this order, as most do, a
+/// stack sways a quarter as much as with corners in circular order.
 #[inline(always)]
 pub(in crate::collide) fn in_order<N: Real, const D: usize>(
     points: impl Iterator<Item = (usize, Point<N, D>)>,
 ) -> SmallVec<[(N, usize); 8]> {
-    // Nearly always there are four at most, and seldom any.
+    // Nearly always there are four at most, and mostly none.
     let mut order = SmallVec::<[(N, usize); 8]>::new();
     for (number, point) in points {
         let reach = askew(&point.coords);
@@ -282,7 +289,7 @@ pub(in crate::collide) fn in_order<N: Real, const D: usize>(
     order
 }
 
-/// Replaces the points of a manifold, in the order of their ids; those without one get the next.
+/// Replaces the points of a manifold, in the order of their ids; those without an id get the next.
 pub(in crate::collide) fn settle<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     chosen: &[usize],

@@ -1,8 +1,14 @@
-//! Which new contact points are old ones: the greedy match by the classes and distances of [`ids`](super::ids).
+//! Matches new contact points to old ones: a greedy match by the classes and distances of
+//! [`ids`](super::ids).
 //!
-//! Few points are bits of a word, and each old one is compared with each new one. Of many, those that can be near on
-//! either solid are found in lists sorted by the first coordinate. Lanes know the places on the first solid, and of the
-//! second which of its vertices a point is on.
+//! ```text
+//!   key   63 62   61 ... 0
+//!         class   bits of `moved` as an `f64`, less the last two    smallest keys match first
+//! ```
+//!
+//! Few points are bits of a `u32`, and all pairs are compared. For many, those that can be near on
+//! either solid are found in lists sorted by the first coordinate. The kernels of `batch` know
+//! positions on the first solid, and for the second which vertex a point is on.
 
 use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
 use crate::math::ones::Ones;
@@ -10,23 +16,24 @@ use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Real};
 use crate::shape::FeatureId;
 
-/// The three classes, above the other bits of a key.
+/// The classes, in the highest bits of a key, and their position.
 const SAME: u64 = 0;
 const NEAR: u64 = 1;
 const FAR: u64 = 2;
 const CLASS_AT: u32 = 62;
 
-/// The square of the farthest way of two edges' crossing in the last class, where the length that is near is 1.
+/// Largest squared distance of a crossing of two edges in the last class, in units of the near
+/// length.
 const FARTHEST: f64 = (REACH / SHARE) * (REACH / SHARE);
 
-/// No pair has this key.
+/// Key of pairs that do not match.
 const NEVER: u64 = u64::MAX;
 
-/// Up to so many old and new points all pairs are compared; of more, those that can be near are found first.
+/// Up to this many old and new points, all pairs are compared.
 const FEW: usize = u32::BITS as usize;
 
-/// Visits the index of each old point that goes on and that of the new point that it is now, and whether that is
-/// where the old one was. `size` is that of the pair ([`smaller_size`](crate::collide::size::smaller_size)).
+/// Visits each match: index of the old point, of the new point, and whether that is near the old
+/// one. `size` is that of the pair ([`smaller_size`](crate::collide::size::smaller_size)).
 ///
 /// Cost: O(n log n) for n points that lie apart.
 pub(in crate::collide) fn each_match<N: Real, const D: usize>(
@@ -42,7 +49,7 @@ pub(in crate::collide) fn each_match<N: Real, const D: usize>(
     }
 }
 
-/// [`each_match`] of points that are bits of a word.
+/// Runs [`each_match`] for points that are bits of a word.
 fn match_few<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
     new: &[Anchors<N, D>],
@@ -56,13 +63,14 @@ fn match_few<N: Real, const D: usize>(
     });
 }
 
-/// The bits of so many points.
+/// Mask of `count` points.
 #[inline(always)]
 fn all(count: usize) -> u32 {
     u32::MAX.unbounded_shr(u32::try_from(FEW - count).unwrap_or(0))
 }
 
-/// The smallest key of points given by bits, and the first that has it; `never` if none is below.
+/// Returns the smallest key of the points in a mask and the first that has it; `never` if none is
+/// less.
 #[inline(always)]
 fn least<K: PartialOrd>(among: u32, never: K, key: impl Fn(usize) -> K) -> (K, usize) {
     let mut least = (never, 0);
@@ -75,10 +83,11 @@ fn least<K: PartialOrd>(among: u32, never: K, key: impl Fn(usize) -> K) -> (K, u
     least
 }
 
-/// Visits pairs of old and new points, both given by bits, the one with the smallest key first and each point once. Ties
-/// go to the old point that comes first, then to the new one. Keys that are not below `never` make no pair.
+/// Visits pairs of old and new points, given by masks: the smallest key first, each point once.
+/// Ties go to the old point that comes first, then to the new one. Keys not below `never` make no
+/// pair.
 ///
-/// `nearest` gives the [`least`] key of an old point with some of the new ones.
+/// `nearest` returns the [`least`] key of an old point among some new ones.
 #[inline(always)]
 fn nearest_first<K: PartialOrd + Copy>(
     [mut old, mut new]: [u32; 2],
@@ -92,12 +101,13 @@ fn nearest_first<K: PartialOrd + Copy>(
         for at in Ones::<FEW>(due) {
             (keys[at], others[at]) = nearest(at, new);
             let has_one = keys[at] < never;
-            // Whoever has none now has none later.
+            // A point without a match now has none later.
             old &= !(u32::from(!has_one) << at);
         }
+        // The new points that are the nearest of some old one.
         let taken = Ones::<FEW>(old).fold(0_u32, |bits, at| bits | 1 << others[at]);
         if taken.count_ones() == old.count_ones() {
-            // Most often each has one of its own.
+            // In most cases each has a match of its own.
             return Ones::<FEW>(old).for_each(|at| visit(at, others[at], keys[at]));
         }
         let (key, first) = least(old, never, |at| keys[at]);
@@ -108,7 +118,7 @@ fn nearest_first<K: PartialOrd + Copy>(
     }
 }
 
-/// [`each_match`] by the sorted keys of the pairs that are possible.
+/// Runs [`each_match`] by the sorted keys of all possible pairs.
 fn match_many<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
     new: &[Anchors<N, D>],
@@ -135,11 +145,12 @@ fn match_many<N: Real, const D: usize>(
     }
 }
 
-/// Visits the numbers of old points of a pair, given by bits, and those of the new points, given by bits, that they are
-/// now, where none is on the features of an old one: only which are near is to be found.
+/// Visits matches by position alone, where no new point has the features of an old one; old and new
+/// points are masks.
 ///
-/// `moved` is the square of the way from an old point to a new one, where the length that is near is 1. `same_vertex`
-/// gives the new points that lie on the same vertex of the second solid as an old point: they have not moved there.
+/// `moved` returns the squared distance of an old and a new point in units of the near length.
+/// `same_vertex` returns the new points on the same vertex of the second solid as an old one, where
+/// they have not moved.
 #[inline(always)]
 pub(in crate::collide) fn each_near<N: Real>(
     [old, new]: [u32; 2],
@@ -155,15 +166,16 @@ pub(in crate::collide) fn each_near<N: Real>(
     nearest_first([old, new], never, nearest, |at, new, _| visit(at, new));
 }
 
-/// The key is one of the first two classes.
+/// Returns whether a key is in one of the first two classes.
 const fn is_near(key: u64) -> bool {
     key >> CLASS_AT < FAR
 }
 
-/// The key of a pair; [`NEVER`] if the two are not the same contact. `scale` is one over the length that counts as near.
+/// Returns the key of a pair; [`NEVER`] if it is no match. `scale` is the reciprocal of the near
+/// length.
 #[inline]
 fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> u64 {
-    // Most are told apart by the first coordinates. Written so that NaN is far.
+    // The first coordinates exclude most pairs. Written so that NaN is far.
     let is_beside =
         |solid: usize| ((new.places[solid][0] - old.places[solid][0]) * scale).abs() <= N::ONE;
     let is_same = old.names == new.names;
@@ -180,8 +192,8 @@ fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, sca
     key(class, moved)
 }
 
-/// Visits the pairs of many points that [`key_of`] may accept: of the same names, and, on either solid, within `length`
-/// along the first axis.
+/// Visits the pairs of many points that [`key_of`] may accept: those with the same names, and those
+/// within `length` along the first axis on either solid.
 fn each_possible<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
     new: &[Anchors<N, D>],
@@ -201,7 +213,8 @@ fn each_possible<N: Real, const D: usize>(
     }
 }
 
-/// The sort key of a pair: its class, then `moved`, which is not negative, without its last two bits.
+/// Returns the sort key of a pair: its class, then `moved` (not negative) without its last two
+/// bits.
 fn key<N: Real>(class: u64, moved: N) -> u64 {
     class << CLASS_AT | moved.as_f64().to_bits() >> 2
 }
@@ -216,14 +229,14 @@ fn sorted<N: Real, const D: usize>(
     keys
 }
 
-/// Iterates over the indices whose keys lie between two, both included.
+/// Iterates over the indices whose keys lie between `low` and `high`, both inclusive.
 fn between(keys: &[(u64, u32)], [low, high]: [u64; 2]) -> impl Iterator<Item = usize> {
     let from = keys.partition_point(|&(key, _)| key < low);
     keys[from..].iter().take_while(move |&&(key, _)| key <= high).map(|&(_, at)| at as usize)
 }
 
 impl<N: Real, const D: usize> Anchors<N, D> {
-    /// A number that points with the same names share, and few others.
+    /// Returns a hash of the names.
     fn names_key(&self) -> u64 {
         let ([part1, part2], features) = self.names;
         let [feature1, feature2] = features.mapped(|id| match id {

@@ -1,12 +1,20 @@
-//! From the separation of a pair to its manifold: the points that span the area of contact.
+//! Builds the manifold of a pair from its separation: points that span the area of contact.
 //!
-//! The separation has the normal and the witness, the nearest pair of points. The supporting features of both
-//! solids, projected along the normal, are points, segments and convex polygons ([`ring`]), and the corners of
-//! their intersection ([`clip`]) are the candidates. In 2D that is an interval ([`stretch`]), and over a
-//! [`half_space`] every corner counts. [`reduce`] chooses a few candidates and [`ids`] numbers them.
+//! ```text
+//!   separation   `frame`           supporting features           candidates      points and ids
+//!   (witness) -> ContactFrame  ->  3D: `ring`, `clip`        ->  corners of  ->  `reduce`
+//!                                  2D: `stretch`                 the common      `ids`, `matching`
+//!                                  half-space: `half_space`      area
+//! ```
 //!
-//! The witness is always represented, so the smallest distance of a manifold is that of the separation exactly;
-//! with a ball it is the only point.
+//! The separation provides the normal and the witness, its nearest pair of points. The supporting
+//! features of both solids, projected along the normal, are points, segments and convex polygons
+//! ([`ring`]), and the corners of their intersection ([`clip`]) are the candidates. In 2D the
+//! intersection is an interval ([`stretch`]); over a [`half_space`] every corner counts. [`reduce`]
+//! chooses a few candidates and [`ids`] numbers them.
+//!
+//! The witness is always represented, so the smallest distance of a manifold is exactly that of the
+//! separation. With a ball it is the only point.
 
 mod along;
 mod chain;
@@ -44,9 +52,9 @@ use crate::tables::ByDimension;
 
 /// Builds the manifold of two solids in 2D: at most two points.
 ///
-/// `out` holds the previous manifold of the pair, whose points hand on their ids; it is empty
-/// afterwards if and only if the solids are farther apart than the prediction or overlap without
-/// bound. A separation that is not a number gives an empty manifold.
+/// `out` holds the previous manifold of the pair, from whose points ids are inherited. Afterwards
+/// it is empty if and only if the solids are farther apart than the prediction or overlap without
+/// bound. A separation that is NaN gives an empty manifold.
 pub(crate) fn build2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -56,7 +64,7 @@ pub(crate) fn build2<N: Real>(
     build_in_plane(pair, separation, request, request.max_points.min(2), out);
 }
 
-/// As [`build2`], with as many points as are asked for.
+/// Builds the manifold like [`build2`], with up to `request.max_points` points.
 pub(crate) fn between2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -66,6 +74,7 @@ pub(crate) fn between2<N: Real>(
     build_in_plane(pair, separation, request, request.max_points, out);
 }
 
+/// Builds the manifold in 2D with at most `limit` points.
 fn build_in_plane<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -78,14 +87,14 @@ fn build_in_plane<N: Real>(
     }
     let frame = ContactFrame::new(pair, separation, request, tangents2(&separation.normal));
     if !stretch::build(pair, &frame, limit, out) {
-        // A user's solid with a supporting feature that is neither a point nor a side.
+        // A user's solid whose supporting feature is neither a point nor a side.
         settle_witness(pair, separation, out);
     }
 }
 
 /// Builds the manifold of two solids in 3D: at most `request.max_points` points.
 ///
-/// As [`build2`].
+/// `out` is used as by [`build2`].
 pub(crate) fn build3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
@@ -98,8 +107,8 @@ pub(crate) fn build3<N: Real>(
     }
 }
 
-/// Builds the manifold of a pair that is too far apart, of a ball, the first solid, or of a half-space, the
-/// second; false of others.
+/// Builds the manifold if the pair is too far apart, the first solid is a ball, or the second a
+/// half-space; returns `false` for other pairs.
 fn build_one_sided<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -128,7 +137,7 @@ fn build_one_sided<N: Space<D>, const D: usize>(
     true
 }
 
-/// The nearest points are all there is.
+/// Builds the manifold of the nearest points alone.
 fn settle_witness<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -146,19 +155,19 @@ fn settle_witness<N: Space<D>, const D: usize>(
     out.pose12 = None;
 }
 
-/// Two directions that complete a normal of space to a right-handed basis.
+/// Returns two directions that complete the normal to a right-handed basis.
 pub(crate) fn tangents3<N: Real>(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
     let (u, v) = orthonormal_basis(normal);
     [u, v]
 }
 
-/// The direction along the line of contact in 2D, and zero for the second, which does not exist.
+/// Returns the tangent in 2D, and zero for the second tangent, which does not exist.
 #[inline]
 pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
 }
 
-/// The manifold of a pair in 3D from its separation.
+/// Computes separation and manifold of a pair in 3D.
 pub(crate) fn contacts_of_separation3<N: Real>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
@@ -170,7 +179,7 @@ pub(crate) fn contacts_of_separation3<N: Real>(
     }
 }
 
-/// The manifold of a pair in 2D from its separation.
+/// Computes separation and manifold of a pair in 2D.
 pub(crate) fn contacts_of_separation2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
@@ -182,34 +191,38 @@ pub(crate) fn contacts_of_separation2<N: Real>(
     }
 }
 
-/// An old point stands for the deepest one as long as it is no farther than this part of the size of the smaller
-/// solid from being as deep: half the diagonal of its box. So a solid that trembles at rest keeps its points, though
-/// the deepest corner is another one at each step. The points then have the depth of the pair, and are that near to
-/// the surfaces.
+/// An old point may stand for the deepest one while its depth is within this share of the pair's
+/// size (half the diagonal of the smaller box). So a solid that vibrates at rest keeps its points
+/// though the deepest corner changes in each step. The points then have the depth of the pair, and
+/// are that close to the surfaces.
 const SLACK: f64 = 1.0 / 512.0;
 
-/// Up to so many candidates are all points, if so many are asked for. Among more there may be some that coincide but for
-/// rounding, as where the corners of equal boxes meet.
+/// Up to this many candidates are all kept, if as many are asked for. Among more some may coincide
+/// up to rounding, as where corners of equal boxes meet.
 pub(in crate::collide) const ALL: usize = 4;
 
-/// The measures by which the points of a manifold are chosen.
+/// Parameters of the choice of points.
 pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
-    /// The solids as they lie now, the normal from the first to the second.
+    /// Current poses of the solids, and the normal from the first to the second.
     pub(in crate::collide) pose: PairPose<'a, N, D>,
-    /// The size of the pair, which is asked for where the points are not the old ones.
+    /// Computes the size of the pair (`collide/size.rs`); called if the points are not the old
+    /// ones.
     pub(in crate::collide) size: &'a dyn Fn() -> N,
+    /// Signed distance of the pair, which one of the deepest points takes.
     pub(in crate::collide) distance: N,
     /// Lengths below this are rounding errors.
     pub(in crate::collide) tolerance: N,
+    /// Largest number of points; at least one is kept.
     pub(in crate::collide) limit: usize,
 }
 
-/// Old points up to this distance stand for the deepest one, given the distance and the size of the pair.
+/// Returns the distance up to which an old point may stand for the deepest one, given the distance
+/// and the size of the pair.
 pub(in crate::collide) fn slack_level<N: Real>(distance: N, size: N, tolerance: N) -> N {
     distance + max(size * N::lit(SLACK), tolerance)
 }
 
-/// Replaces the manifold of a pair with nearest points in a frame by at most `limit` of the candidates.
+/// Replaces the manifold of a pair by at most `limit` candidates that were computed in `frame`.
 fn choose_in_frame<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     frame: &ContactFrame<N, D>,
@@ -229,7 +242,8 @@ fn choose_in_frame<N: Real, const D: usize>(
     out.pose12 = Some(*pose12).filter(|_| keeps_pose(pair));
 }
 
-/// Places on the second solid are compared: not where lanes may serve the pair, which keep no pose.
+/// Returns whether positions on the second solid are compared: not if the kernels of `batch` may
+/// serve the pair, which keep no pose.
 fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     let has_lanes = |kind: &Kind<'_, N, D>| {
         matches!(kind, Kind::Ball(_) | Kind::Cuboid(_) | Kind::Segment(_) | Kind::Capsule(_))
@@ -237,8 +251,8 @@ fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     !(has_lanes(&pair.first) && has_lanes(&pair.second))
 }
 
-/// Replaces the points of a manifold and its normal by at most `limit` of the candidates, and at least one. One of the
-/// deepest takes the distance of the pair, which it has but for rounding or the slack of an old point.
+/// Replaces the points of a manifold and its normal by at most `limit` candidates, and at least
+/// one. One of the deepest takes the distance of the pair, which it has up to rounding or `SLACK`.
 pub(in crate::collide) fn choose<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     choice: &PointChoice<'_, N, D>,
@@ -257,7 +271,7 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
         let levels = [distance + tolerance, slack_level(distance, size, tolerance)];
         let chosen = chosen(candidates, levels, tolerance, limit);
         if is_over {
-            // The ids of candidates that are not chosen go to chosen ones near them.
+            // Ids of candidates that are not chosen go to chosen ones near them.
             ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &chosen);
         }
         let deepest = deepest_of(chosen.len(), levels[0], |at| {
@@ -270,8 +284,8 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
     out.normal = *choice.pose.normal;
 }
 
-/// The indices of at most `limit` candidates, one of the deepest among them: up to the first level, or an old one up to
-/// the second.
+/// Returns the indices of at most `limit` candidates, one of the deepest among them: those up to
+/// the first level, or an old one up to the second.
 #[inline]
 fn chosen<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
@@ -286,8 +300,8 @@ fn chosen<N: Real, const D: usize>(
     reduce::chosen(&mut reduce::projected(seen, levels), limit, tolerance)
 }
 
-/// Adds the nearest points, in place of the candidate with the same features if there is one: of round rims and of
-/// two faces there may be more.
+/// Adds the nearest points. They replace the candidate with the same features if there is exactly
+/// one; round rims and pairs of faces may have more.
 fn add_witness<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     features: [FeatureId; 2],
@@ -301,7 +315,7 @@ fn add_witness<N: Real, const D: usize>(
     out.push(Candidate::alone(witness, features));
 }
 
-/// The candidate that stands for the witness; see [`deepest_of`].
+/// Returns the index of the candidate that stands for the witness; see [`deepest_of`].
 fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
     deepest_of(candidates.len(), limit, |index| {
         let candidate = &candidates[index];
@@ -309,8 +323,9 @@ fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) ->
     })
 }
 
-/// Of candidates whose distance is the smallest but for rounding, at most `limit`, one that the previous
-/// manifold held, then the deepest: its index. `what` returns of each whether it was held, and its distance.
+/// Returns the index of the candidate that stands for the witness: one that continues an old point
+/// if its distance is at most `limit`, else the deepest. `what` returns for each candidate whether
+/// it continues one, and its distance.
 #[inline]
 pub(in crate::collide) fn deepest_of<N: Real>(
     count: usize,

@@ -1,17 +1,22 @@
-//! The choice of contact points: of the candidates, projected along the normal, those that span the most area.
+//! Chooses contact points: the candidates that span the most area, projected along the normal.
 //!
-//! Four corners of a convex polygon are the ends of a diagonal and, independently of each other, the corners
-//! farthest from it on either side. So the best four of a few candidates come from all diagonals that start at one
-//! of the deepest, and no order of the candidates is needed. More points than four, and four of many, are corners
-//! of the convex hull (A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", 1979), found
-//! by dynamic programming along it (J. E. Boyce, D. P. Dobkin, R. L. Drysdale and L. J. Guibas, "Finding extremal
-//! polygons", 1985). Both are exact up to [`FEW`] candidates; of a longer hull those corners that add most stand
-//! for all.
+//! ```text
+//!        .-- left --.        `start`: a deepest candidate, `end`: any other; area of both
+//!   start -------- end       triangles, each with the farthest candidate on its side
+//!        '- right --'
+//! ```
 //!
-//! Points of the previous manifold are kept as they are while they span [`ENOUGH`] of the best choice and have one
-//! of the deepest among them; else each of them counts for a little more than a new one. So solids at rest keep
-//! their points, also where many choices are as good: of the eight corners that two squares turned by 45° share,
-//! either four span as much.
+//! The best four of a few candidates come from all such diagonals, so no order of the candidates is
+//! needed. More points than four, and four of many, are corners of the convex hull (A. M. Andrew,
+//! "Another efficient algorithm for convex hulls in two dimensions", 1979), found by dynamic
+//! programming along it (J. E. Boyce, D. P. Dobkin, R. L. Drysdale and L. J. Guibas, "Finding
+//! extremal polygons", 1985). Both are exact up to [`FEW`] candidates; a longer hull keeps the
+//! corners that add most.
+//!
+//! Old points, those of the previous manifold, are kept while they span [`ENOUGH`] of the best
+//! choice and include a deepest one; otherwise each counts slightly more than a new one. So solids
+//! at rest keep their points, also where many choices are equal, as among the eight corners of two
+//! squares at 45°.
 
 use core::cmp::Ordering;
 
@@ -19,44 +24,44 @@ use smallvec::SmallVec;
 
 use crate::math::{Mapped, Real, Vector, cross2, max, max_component, min};
 
-/// Of so many candidates the best are found exactly.
+/// Up to this many candidates, the best choice is exact.
 const FEW: usize = 16;
 
-/// What a new point counts for beside one that the previous manifold had: three of them lose 5 % of the
-/// best area at most.
+/// Weight of a new point, where an old one has 1: three old points lose at most 5 % of the best
+/// area.
 const NEW: f64 = 63.0 / 64.0;
 
-/// What a point of the previous manifold counts for among more than four, as a part of the area of all.
+/// Bonus of an old point in choices of more than four, as a share of the hull's area.
 const KEPT: f64 = 1.0 / 256.0;
 
-/// The part of the best area, or of the best length of points in a row, that old points have to span.
+/// Share of the best area, or of the best length of points in a row, that old points have to span.
 const ENOUGH: f64 = 0.9;
 
-/// Points in a strip that is no wider than this part of its length are a row: its ends bound it, and points between
-/// them come and go by rounding errors.
+/// Points in a strip narrower than this share of its length are a row: its ends bound it, and
+/// points between them come and go by rounding.
 const THIN: f64 = 1.0 / 4096.0;
 
 /// A candidate projected along the normal.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Projected<N: Real> {
     pub(in crate::collide) at: Vector<N, 2>,
-    /// Which candidate it is.
+    /// Index of the candidate.
     pub(in crate::collide) index: usize,
-    /// As deep as the manifold, but for rounding or the slack of an old point.
+    /// As deep as the manifold, up to rounding or the slack of an old point.
     pub(in crate::collide) is_deepest: bool,
     /// The previous manifold had it.
     pub(in crate::collide) is_kept: bool,
 }
 
-/// All candidates of a manifold, one at least.
+/// All candidates of a manifold, at least one.
 pub(in crate::collide) type Projections<N> = SmallVec<[Projected<N>; FEW]>;
 
-/// Some of the candidates.
+/// Indices of some candidates.
 pub(in crate::collide) type Indices = SmallVec<[usize; 8]>;
 
-/// The candidates, given where each is seen, its distance, and whether the previous manifold had it. As deep as
-/// the manifold are those at most at `level`, or the one with the smallest distance, and if none of these is old, the
-/// old ones up to `slack`.
+/// Projects the candidates, given as coordinates, distance, and whether the previous manifold had
+/// them. As deep as the manifold are those with a distance up to `level`, or the least; if none of
+/// these is old, also old ones up to `slack`.
 #[inline]
 pub(in crate::collide) fn projected<N: Real>(
     candidates: impl Iterator<Item = (Vector<N, 2>, N, bool)> + Clone,
@@ -64,7 +69,7 @@ pub(in crate::collide) fn projected<N: Real>(
 ) -> Projections<N> {
     let lowest = candidates.clone().fold(N::INFINITY, |low, (_, distance, _)| min(distance, low));
     let level = max(level, lowest);
-    // An old point that is the deepest needs none to stand for it.
+    // If an old point is the deepest, no other has to stand for it.
     let has_old = candidates.clone().any(|(_, distance, is_kept)| is_kept && distance <= level);
     let slack = if has_old { level } else { slack };
     let mut points = Projections::new();
@@ -75,10 +80,10 @@ pub(in crate::collide) fn projected<N: Real>(
     points
 }
 
-/// The indices, in ascending order, of at most `limit` candidates that span the most, one of the deepest among
-/// them.
+/// Returns the indices, ascending, of at most `limit` candidates that span the most, one of the
+/// deepest among them.
 ///
-/// Lengths below the tolerance are rounding errors. Scaling all lengths by a power of two changes nothing.
+/// Lengths below `tolerance` count as rounding. Scaling by a power of two changes nothing.
 #[inline]
 pub(in crate::collide) fn chosen<N: Real>(
     points: &mut Projections<N>,
@@ -93,7 +98,7 @@ pub(in crate::collide) fn chosen<N: Real>(
     old_or(best, points, limit, tolerance)
 }
 
-/// The old points, if they are few enough and as good as the best choice.
+/// Returns the old points, if they are few enough and as good as the best choice.
 fn old_or<N: Real>(best: Indices, points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let old: Projections<N> = points.iter().filter(|point| point.is_kept).copied().collect();
     if old.len() > limit || !old.iter().any(|point| point.is_deepest) {
@@ -114,7 +119,7 @@ fn old_or<N: Real>(best: Indices, points: &[Projected<N>], limit: usize, toleran
     if is_enough { sorted(old.iter().map(|point| point.index).collect()) } else { best }
 }
 
-/// Twice the area of the convex hull of few points, and the largest distance between two of them.
+/// Returns twice the area of the convex hull of few points, and their largest distance.
 fn span<N: Real>(points: &Projections<N>) -> [N; 2] {
     let ring = hull(&mut points.clone(), N::ZERO);
     let (mut area, mut longest) = (N::ZERO, N::ZERO);
@@ -126,8 +131,8 @@ fn span<N: Real>(points: &Projections<N>) -> [N; 2] {
     [area, longest]
 }
 
-/// As [`chosen`], of the corners of the convex hull alone, also where there are no more than the limit. Costs
-/// n log n for n candidates.
+/// Computes [`chosen`] from the corners of the convex hull alone, also if they are no more than the
+/// limit. Cost: O(n log n) for n candidates.
 #[inline(never)]
 pub(in crate::collide) fn spanning<N: Real>(
     points: &mut Projections<N>,
@@ -152,7 +157,7 @@ fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: 
     }
     ring.extend(inner);
     if ring.is_empty() {
-        // Areas that are no numbers.
+        // Areas that are NaN.
         ring.push(points[a_deepest(points)]);
     }
     if ring.len() > limit {
@@ -161,7 +166,7 @@ fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: 
     sorted(ring.iter().map(|corner| corner.index).collect())
 }
 
-/// The total order of numbers; most need one look.
+/// Total order of numbers; most take one comparison.
 #[inline]
 pub(in crate::collide) fn ordering<N: Real>(a: N, b: N) -> Ordering {
     if a < b {
@@ -178,15 +183,15 @@ fn sorted(mut indices: Indices) -> Indices {
     indices
 }
 
-/// The place of a deepest candidate, of one that the previous manifold had if there is one.
+/// Returns the index of a deepest candidate, of an old one if there is one.
 pub(in crate::collide) fn a_deepest<N: Real>(points: &[Projected<N>]) -> usize {
     let is_old = |point: &Projected<N>| point.is_deepest && point.is_kept;
     let old = points.iter().position(is_old);
     old.or_else(|| points.iter().position(|point| point.is_deepest)).unwrap_or(0)
 }
 
-/// Makes the largest coordinate about 1, so that no area leaves the range of numbers; answers by what
-/// power of two.
+/// Scales the largest coordinate to about 1, so that areas neither overflow nor underflow; returns
+/// the factor, a power of two.
 fn rescale<N: Real>(points: &mut [Projected<N>]) -> N {
     let extent = points.iter().fold(N::ZERO, |extent, point| max(extent, max_component(&point.at)));
     let scale = N::ONE / extent.power_of_two_below();
@@ -196,7 +201,7 @@ fn rescale<N: Real>(points: &mut [Projected<N>]) -> N {
     scale
 }
 
-/// At most four of few points, and no more than the limit: those that span the most.
+/// Returns at most four of few points, and no more than `limit`: those that span the most.
 fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let best = if limit > 2 { best_diagonal(points, limit > 3, tolerance) } else { None };
     let mut chosen = best.unwrap_or_else(|| farthest(points, limit, tolerance));
@@ -206,7 +211,7 @@ fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> In
     chosen
 }
 
-/// The places of a deepest point and of that farthest from it, and of the other end if all lie in a row.
+/// Returns a deepest point, the one farthest from it, and the other end if all lie in a row.
 fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let mut chosen = Indices::from_slice(&[a_deepest(points)]);
     let mut most = tolerance;
@@ -227,7 +232,7 @@ fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Ind
     chosen
 }
 
-/// The place of the point farthest from another, and how far it counts to be.
+/// Returns the point farthest from another, and their weighted distance.
 fn farthest_from<N: Real>(points: &[Projected<N>], from: usize) -> (usize, N) {
     let (mut best, mut most) = (from, N::ZERO);
     for (to, point) in points.iter().enumerate() {
@@ -239,22 +244,22 @@ fn farthest_from<N: Real>(points: &[Projected<N>], from: usize) -> (usize, N) {
     (best, most)
 }
 
-/// What a point counts for.
+/// Returns the weight of a point.
 #[inline]
 fn weight<N: Real>(point: &Projected<N>) -> N {
     if point.is_kept { N::ONE } else { N::lit(NEW) }
 }
 
-/// The coordinates of few points and what they count for, side by side for vectors.
+/// Coordinates and weights of few points, side by side for vectors.
 struct CoordinateRows<N: Real> {
     x: [[N; LANES]; FEW / LANES],
     y: [[N; LANES]; FEW / LANES],
     weights: [[N; LANES]; FEW / LANES],
-    /// So many rows are used.
+    /// Number of used rows.
     len: usize,
 }
 
-/// How many numbers are treated side by side.
+/// Numbers in one row.
 const LANES: usize = 4;
 
 impl<N: Real> CoordinateRows<N> {
@@ -270,7 +275,8 @@ impl<N: Real> CoordinateRows<N> {
         rows
     }
 
-    /// What a diagonal spans with the farthest points on its left and on its right, doubled.
+    /// Returns twice the areas that a diagonal spans with the farthest points on its left and
+    /// right.
     #[inline]
     fn sides(&self, start: &Projected<N>, end: &Projected<N>) -> [N; 2] {
         let way = end.at - start.at;
@@ -289,8 +295,8 @@ impl<N: Real> CoordinateRows<N> {
     }
 }
 
-/// The places of the ends of the best diagonal and of the farthest points on both sides of it, or on one side
-/// unless there may be four; `None` if all points lie in a row.
+/// Returns the ends of the best diagonal and the farthest points on both sides, or on one side
+/// unless `is_four`; `None` if all points lie in a row.
 fn best_diagonal<N: Real>(points: &[Projected<N>], is_four: bool, tolerance: N) -> Option<Indices> {
     let (mut ends, mut most) = ([0; 2], N::ZERO);
     let rows = CoordinateRows::of(points);
@@ -311,7 +317,7 @@ fn best_diagonal<N: Real>(points: &[Projected<N>], is_four: bool, tolerance: N) 
     with_sides(points, ends, is_four, tolerance)
 }
 
-/// The ends of a diagonal and the points farthest from it.
+/// Returns the ends of a diagonal and the points farthest from it.
 fn with_sides<N: Real>(
     points: &[Projected<N>],
     ends: [usize; 2],
@@ -340,7 +346,7 @@ fn with_sides<N: Real>(
     (corners.len() > 2).then_some(corners)
 }
 
-/// The corners of the convex hull, counter-clockwise.
+/// Returns the corners of the convex hull, counter-clockwise.
 fn hull<N: Real>(points: &mut [Projected<N>], tolerance: N) -> Projections<N> {
     points.sort_by(|a, b| ordering(a.at.x, b.at.x).then_with(|| ordering(a.at.y, b.at.y)));
     let mut ring = Projections::new();
@@ -375,8 +381,8 @@ fn twice_area<N: Real>(a: &Projected<N>, b: &Projected<N>, c: &Projected<N>) -> 
     cross2(&(b.at - a.at), &(c.at - a.at))
 }
 
-/// Leaves out corners that lie, but for rounding, on the way between those beside them: the deepest last, and
-/// those of the previous manifold before them.
+/// Removes corners that lie, up to rounding, between their neighbours: deepest ones last, and old
+/// ones before them.
 fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     for rank in 0..4 {
         let mut at = 0;
@@ -393,7 +399,8 @@ fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     }
 }
 
-/// Of points in a row but for rounding both chains may have one that is not an end: the ends are between it and itself.
+/// Returns whether a point lies between two others. An end of points in a row may have the same
+/// inner point on both sides, which both chains contain; `length` is zero then, and the end stays.
 fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: N) -> bool {
     let (way, arm) = (ends[1].at - ends[0].at, own.at - ends[0].at);
     let (length, along) = (way.norm(), way.dot(&arm));
@@ -402,8 +409,8 @@ fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: 
     is_in_row && along >= -room && along <= length * length + room
 }
 
-/// Leaves at most so many corners of a hull: those of the previous manifold, a deepest one if there is one, and
-/// again and again the one that adds most.
+/// Reduces a hull to at most `count` corners: old ones, a deepest one if there is one, and
+/// repeatedly the one that adds most.
 fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     if ring.len() <= count {
         return;
@@ -419,7 +426,7 @@ fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     *ring = places.iter().map(|&place| ring[place]).collect();
 }
 
-/// Of the corners between some, of which the first is one, the one that adds most, and where it belongs.
+/// Returns the corner that adds most to `places`, of which the first is 0, and its position there.
 fn best_addition<N: Real>(ring: &[Projected<N>], places: &[usize]) -> Option<(usize, usize)> {
     let (mut best, mut most) = (None, N::ZERO);
     for (at, &from) in places.iter().enumerate() {
@@ -438,7 +445,7 @@ fn best_addition<N: Real>(ring: &[Projected<N>], places: &[usize]) -> Option<(us
     best
 }
 
-/// The polygon of so many corners that spans the most, one of the deepest among them if there is any.
+/// Returns the polygon of `count` corners that spans the most, with a deepest one if there is any.
 fn largest_polygon<N: Real>(mut ring: Projections<N>, count: usize) -> Projections<N> {
     let has_deepest = ring.iter().any(|corner| corner.is_deepest);
     let is_first = |corner: &Projected<N>| corner.is_deepest || !has_deepest;
@@ -459,8 +466,8 @@ fn largest_polygon<N: Real>(mut ring: Projections<N>, count: usize) -> Projectio
     best
 }
 
-/// The largest polygon of so many corners, the first one among them, and twice its area: from the best ways to
-/// each corner over a number of others those over one more.
+/// Returns the largest polygon of `count` corners that has the first one, and twice its area: the
+/// best ways to each corner over `number` others give those over one more.
 fn largest_with_first<N: Real>(
     ring: &[Projected<N>],
     count: usize,

@@ -1,9 +1,19 @@
-//! The supporting feature of a 3D solid as a ring of corners, seen along the normal of a frame.
+//! Supporting feature of a 3D solid as a ring of corners, projected along the normal of a frame.
 //!
-//! A point has one corner, a segment two and one side, a face three or more and as many sides. Corners lie in
-//! blocks of eight lanes, of which most rings need one, and a leaning round cap two. Ids are those of [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature).
-//! Corners that coincide when seen along the normal are merged; a face without area counts as a segment, and
-//! what tilts too much as its nearest corner.
+//! ```text
+//!     corner 0 ---side 0---> corner 1       flats: corners in the tangents (u, v), witness at 0
+//!        ^                      |           inward[i]: unit normal of side i, into the ring
+//!     side 3                  side 1        turn: 1 if counter-clockwise in (u, v), else -1
+//!        |                      v           corner and side i: lane i % 8 of block i / 8
+//!     corner 3 <---side 2--- corner 2
+//! ```
+//!
+//! A point has one corner, a segment two and one side, a face three or more and as many sides. Most
+//! rings need one block of [`LANES`] corners; a tilted round cap needs two. [`LANES`] is the
+//! capacity of `FaceRing`, which `supporting` fills; `clip` measures corners against whole blocks
+//! of sides. Ids are those of [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature).
+//! Corners that coincide in projection are merged. A face without area becomes a segment, and a
+//! feature that is tilted by more than 60° its nearest corner.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -14,52 +24,58 @@ use crate::math::simd::Simd;
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component, min};
 use crate::shape::{FaceRing, FeatureId, Kind, Segment};
 
-/// How many corners are side by side.
+/// Corners in one block.
 pub(super) const LANES: usize = FaceRing::<f32>::MAX;
 
-/// A corner, and the side that leads from it to the next.
+/// A corner, and the side from it to the next.
 #[derive(Clone, Copy)]
 pub(super) struct RingCorner<N: Real> {
     pub(super) point: Point<N, 3>,
-    /// Where it is seen along the normal.
+    /// Coordinates in the tangents of the frame.
     pub(super) flat: Vector<N, 2>,
     pub(super) id: FeatureId,
+    /// Id of the side from this corner to the next.
     pub(super) side: FeatureId,
 }
 
-/// Up to eight corners by coordinate; what is beyond the last one means nothing.
+/// Up to eight corners by coordinate; lanes after the last corner are unspecified.
 pub(super) struct RingBlock<N: Real> {
-    /// In the frame of the first solid, and seen along the normal.
+    /// Corners in the frame of the first solid, and their coordinates in the tangents.
     points: [[N; LANES]; 3],
     pub(super) flats: [[N; LANES]; 2],
-    /// The unit normals of the sides, inward.
+    /// Inward unit normals of the sides in the tangents.
     pub(super) inward: [[N; LANES]; 2],
 }
 
 /// A supporting feature with the radius around it.
 pub(super) struct SupportRing<'a, N: Real> {
     which: Which,
-    /// Of the solid in the frame of the first one; `None` of the first itself.
+    /// Pose of the solid in the frame of the first one; `None` for the first itself.
     pose: Option<&'a Pose<N, 3>>,
+    /// Id of the feature.
     pub(super) id: FeatureId,
-    /// Of corners.
+    /// Number of corners.
     pub(super) count: usize,
+    /// Corners as `supporting` filled them, in the frame of the solid, with their ids.
     faces: FaceBlocks<N>,
+    /// Corners in the frame of the first solid, filled by [`SupportRing::project`].
     pub(super) blocks: SmallVec<[RingBlock<N>; 2]>,
-    /// The outward normal of a face in the frame of the first solid; of others it means nothing.
+    /// Outward normal of a face in the frame of the first solid; unspecified for other features.
     normal: Vector<N, 3>,
-    /// By the sense of rotation, as seen along the normal, 1 or -1.
+    /// Sense of rotation in the tangents: 1 for counter-clockwise, -1 for clockwise.
     turn: N,
+    /// Radius around the feature.
     radius: N,
-    /// Between the normals of the frame and of a face, or between a segment and the plane of contact.
+    /// Cosine of the angle between the normals of frame and face, or between a segment and the
+    /// contact plane.
     cosine: N,
-    /// Of a rounded solid the corner nearest to the other: how far below the supporting plane, and where it
-    /// is seen.
+    /// For a solid with a radius: depth of the corner nearest to the other solid below the
+    /// supporting plane, and its coordinates in the tangents.
     top: (N, Vector<N, 2>),
 }
 
 impl<'a, N: Real> SupportRing<'a, N> {
-    /// A ring without corners for one solid of a pair.
+    /// Creates a ring without corners for one solid of a pair.
     #[inline(always)]
     pub(super) fn blank(which: Which, pose: Option<&'a Pose<N, 3>>) -> Self {
         Self {
@@ -77,8 +93,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
     }
 
-    /// Fills a blank ring with the supporting feature, which is still to be [projected](Self::project). A ring is
-    /// some hundred bytes long, so it is filled where it lies.
+    /// Fills a blank ring with the supporting feature; the caller then [projects](Self::project)
+    /// it. A ring has some hundred bytes, so it is filled in place.
     pub(super) fn fill(&mut self, kind: Kind<'_, N, 3>, frame: &ContactFrame<N, 3>) {
         let outward = self.which.outward(frame);
         let direction = self.pose.map_or(outward, |pose| pose.inverse_vector(&outward));
@@ -99,13 +115,13 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.count == 2
     }
 
-    /// None of a point, one of a segment, else one for each corner.
+    /// Number of sides: none for a point, one for a segment, else one for each corner.
     #[inline]
     pub(super) const fn side_count(&self) -> usize {
         if self.count < 3 { self.count - 1 } else { self.count }
     }
 
-    /// The corner after a corner.
+    /// Index of the next corner.
     #[inline]
     pub(super) const fn next(&self, at: usize) -> usize {
         if at + 1 < self.count { at + 1 } else { 0 }
@@ -130,26 +146,27 @@ impl<'a, N: Real> SupportRing<'a, N> {
         RingCorner { point: self.point(at), flat: self.flat(at), id, side }
     }
 
-    /// The id of the side from a corner to the next.
+    /// Id of the side from a corner to the next.
     #[inline]
     pub(super) fn side_id(&self, at: usize) -> FeatureId {
         if self.is_segment() { self.id } else { self.faces[at / LANES].sides[at % LANES] }
     }
 
-    /// From a corner to the next, seen along the normal.
+    /// Vector from a corner to the next, in the tangents.
     #[inline]
     pub(super) fn side(&self, at: usize) -> Vector<N, 2> {
         self.flat(self.next(at)) - self.flat(at)
     }
 
-    /// The point of a side at a share of the way between its ends.
+    /// Returns the point of a side at the parameter `share`, from 0 at its first corner to 1.
     #[inline]
     pub(super) fn along_side(&self, at: usize, share: N) -> Point<N, 3> {
         let (from, to) = (self.point(at), self.point(self.next(at)));
         from + (to - from) * share
     }
 
-    /// The point of a segment or face that is seen at the same place as another one.
+    /// Returns the point of a segment or face with the tangent coordinates `flat`, those of
+    /// `point`.
     pub(super) fn under(
         &self,
         point: &Point<N, 3>,
@@ -165,7 +182,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         point + frame.normal() * along
     }
 
-    /// The part of a side that contains a place on its line: one of its corners or itself.
+    /// Returns the part of a side that contains a point of its line: one of its corners or the
+    /// side; `None` beyond them.
     pub(super) fn on_side(
         &self,
         at: usize,
@@ -186,7 +204,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         (share >= N::ZERO && share <= side.norm_squared()).then(|| self.side_id(at))
     }
 
-    /// How far the rounded surface is above a point of the core.
+    /// Returns the height of the rounded surface above a point of the core.
     #[inline]
     pub(super) fn lift(&self, core: &Point<N, 3>, frame: &ContactFrame<N, 3>) -> N {
         if self.radius <= N::ZERO {
@@ -197,7 +215,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         lifted(self.radius, self.cosine, room, *top, away_squared)
     }
 
-    /// Places the corners in a frame, simplifies what has no extent there, and computes the sides.
+    /// Transforms and projects the corners, simplifies a feature without extent, and computes the
+    /// sides.
     #[inline(always)]
     pub(super) fn project<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -225,7 +244,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.find_sides::<S, V>(simd);
     }
 
-    /// The inward normals of the sides.
+    /// Computes the inward normals of the sides.
     #[inline(always)]
     fn find_sides<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S) {
         let (used, first) = (self.count.div_ceil(LANES), self.flat(0));
@@ -246,9 +265,10 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
     }
 
-    /// Simplifies what has no extent when seen along the normal.
+    /// Simplifies a feature that has no extent in projection.
     fn settle(&mut self, frame: &ContactFrame<N, 3>) {
         let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
+        // Corners that coincide have no extent: merged, they may have one.
         let mut extent = if self.is_point() { None } else { self.extent(tolerance) };
         if extent.is_none() && self.is_segment() {
             self.end_on(&outward, tolerance);
@@ -267,6 +287,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
             self.turn = N::ONE;
             self.cosine = self.side(0).norm() / (self.point(1) - self.point(0)).norm();
         }
+        // Tilted by more than 60°.
         if self.count > 1 && self.cosine < N::lit(MIN_COSINE) {
             self.keep_farthest(&outward);
         }
@@ -278,7 +299,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
     }
 
-    /// Twice the signed area, and the longest side; `None` where corners coincide.
+    /// Returns twice the signed area and the index of the longest side; `None` if corners coincide.
     fn extent(&self, tolerance: N) -> Option<(N, usize)> {
         let (mut area, mut longest, mut most) = (N::ZERO, 0, N::ZERO);
         let origin = self.flat(0);
@@ -301,7 +322,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         Some((area, longest))
     }
 
-    /// Merges each corner with those that follow it at the same place; the last one's side leads on.
+    /// Merges each corner with those after it that coincide; the side of the last of these leads
+    /// on.
     fn merge_coincident(&mut self, tolerance: N) {
         let is_apart =
             |a: &RingCorner<N>, b: &RingCorner<N>| max_component(&(a.flat - b.flat)) > tolerance;
@@ -319,8 +341,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.replace(&kept);
     }
 
-    /// A segment that is seen as a point is its end nearest to the other solid; one without length has no ends
-    /// and keeps its id.
+    /// Reduces a segment that projects to a point to its end nearest to the other solid. A segment
+    /// without length has no ends and keeps its id.
     fn end_on(&mut self, outward: &Vector<N, 3>, tolerance: N) {
         let (id, way) = (self.id, self.point(1) - self.point(0));
         self.keep_farthest(outward);
@@ -329,7 +351,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.id = if has_ends { self.id } else { id };
     }
 
-    /// Leaves the two ends of a face without width, with the id of its longest side.
+    /// Reduces a face without width to its two ends, with the id of its longest side.
     fn flatten(&mut self, longest: usize) {
         let (along, from) = (self.side(longest), self.flat(longest));
         let (mut low, mut high) = (0, 0);
@@ -342,7 +364,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.replace(&[self.corner(low), self.corner(high)]);
     }
 
-    /// Leaves the corner nearest to the other solid.
+    /// Reduces the ring to the corner nearest to the other solid.
     fn keep_farthest(&mut self, outward: &Vector<N, 3>) {
         let height = |at: usize| self.point(at).coords.dot(outward);
         let higher = |best: usize, at: usize| if height(at) > height(best) { at } else { best };
@@ -351,7 +373,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.replace(&[farthest]);
     }
 
-    /// Replaces the corners by some of them.
+    /// Replaces the corners by a subset.
     fn replace(&mut self, corners: &[RingCorner<N>]) {
         for (at, corner) in corners.iter().enumerate() {
             let (face, lane) = (&mut self.faces[at / LANES], at % LANES);
@@ -365,7 +387,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.count = corners.len();
     }
 
-    /// Finds the corner that is nearest to the other solid, the first of equals.
+    /// Finds the corner nearest to the other solid, the first of equals.
     fn find_top(&mut self, frame: &ContactFrame<N, 3>) {
         let below = |at: usize| self.which.below_witness(&self.point(at), frame);
         let (mut best, mut least) = (0, below(0));
@@ -377,7 +399,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
     }
 }
 
-/// The end that a point of a segment lies at, or the segment; `None` if both ends are that near.
+/// Returns the end that a point of a segment lies at, or the segment; `None` if it is at both ends.
 pub(super) fn part_of<N: Real, const D: usize>(
     segment: &Segment<N, D>,
     point: &Point<N, D>,

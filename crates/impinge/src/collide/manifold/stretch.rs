@@ -1,9 +1,9 @@
-//! Two flat-sided 2D solids: the interval in which their supporting sides overlap.
+//! Two flat-sided 2D solids: the overlap interval of their supporting sides.
 //!
-//! The one path to the contacts of segments, capsules, triangles, boxes, polygons, what is rounded of these, and
-//! support maps that show a side or a corner; boxes, and segments and capsules, have lanes besides. A supporting
-//! feature is a side or a corner, perhaps with a radius around it, two sides are parallel seen along the normal,
-//! and a place along the line of contact is one number:
+//! This is the one path to the contacts of segments, capsules, triangles, boxes, polygons, rounded
+//! ones, and support maps whose feature is a side or a corner. Boxes, and segments and capsules,
+//! have kernels besides (`collide/batch/`). A supporting feature is a side or a corner, with a
+//! radius around it. A position along the tangent is one number:
 //!
 //! ```text
 //!          from ─────────────── to          the second solid's side
@@ -13,16 +13,16 @@
 //!           └─── overlap ──┘  ───────────→  the line of contact
 //! ```
 //!
-//! The contacts are the ends of the overlap that the request admits, an angle being a number in that test
-//! ([`ContactFrame::admit`]), and the witness where none of them is as near.
+//! The contacts are the ends of the overlap that the request admits, with the angle as a number in
+//! that test ([`ContactFrame::admit`]), and the witness if none of them is as near.
 
 use super::frame::{Candidates, ContactFrame, MIN_COSINE, Which, lifted, part_beside};
 use super::{Pair, RawManifold, add_witness, choose_in_frame};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
 
-/// Builds the manifold of two solids within the prediction, neither of them a ball or a half-space; false
-/// where one has a supporting feature that is neither a side nor a corner.
+/// Builds the manifold of two solids within the prediction, neither of them a ball or a half-space;
+/// returns `false` if a supporting feature is neither a side nor a corner.
 pub(super) fn build<N: Real>(
     pair: &Pair<'_, N, 2>,
     frame: &ContactFrame<N, 2>,
@@ -45,33 +45,39 @@ pub(super) fn build<N: Real>(
     true
 }
 
-/// An end of a side.
+/// An end of a side, or a corner.
 #[derive(Clone, Copy)]
 pub(super) struct Corner<N: Real, const D: usize> {
+    /// Position in the frame of the first solid.
     pub(super) point: Point<N, D>,
+    /// Coordinates along the tangents; in 2D the second is zero.
     pub(super) flat: Vector<N, 2>,
     pub(super) id: FeatureId,
 }
 
-/// What a solid shows of itself: a side, or a point.
+/// Supporting feature of a solid: a side, or a point.
 pub(super) struct Stretch<N: Real> {
     which: Which,
     id: FeatureId,
-    /// Of a point the first counts.
+    /// Ends of the side; for a point the first counts.
     pub(super) corners: [Corner<N, 2>; 2],
+    /// The feature is a side; otherwise it is the point of the first corner.
     pub(super) is_side: bool,
+    /// Radius around the feature.
     rounding: N,
-    /// Between the side and the line of contact.
+    /// Cosine of the angle between the side and the tangent.
     cosine: N,
-    /// From the first corner to the second, seen along the normal, and the length of that.
+    /// Signed length from the first corner to the second along the tangent, and its magnitude.
     along: N,
     length: N,
-    /// Of a rounded solid the corner nearest to the other: how far it is below the supporting plane, and
-    /// where it is seen.
+    /// For a solid with a radius: depth of the corner nearest to the other solid below the
+    /// supporting line, and its tangent coordinates.
     top: (N, Vector<N, 2>),
 }
 
 impl<N: Real> Stretch<N> {
+    /// Returns the supporting feature of a solid at `pose` in the frame of the first; `None` if it
+    /// is neither a side nor a corner.
     #[inline(always)]
     pub(super) fn of(
         which: Which,
@@ -85,12 +91,13 @@ impl<N: Real> Stretch<N> {
         Some(Self::placed(which, &shown, rounding(kind), pose, frame))
     }
 
-    /// That of a segment, the first solid.
+    /// Feature of a segment that is the first solid.
     #[inline]
     pub(super) fn of_segment(segment: &Segment<N, 2>, frame: &ContactFrame<N, 2>) -> Self {
         Self::placed(Which::First, &Shown::of_segment(segment), N::ZERO, None, frame)
     }
 
+    /// Transforms and simplifies a feature.
     #[inline(always)]
     fn placed(
         which: Which,
@@ -121,11 +128,12 @@ impl<N: Real> Stretch<N> {
         stretch
     }
 
-    /// A side without length is its first corner, with the name of the side; one that leans too much, or lies along
-    /// the normal, is its nearest corner.
+    /// Reduces a side without length to its first corner, with the id of the side; and one that is
+    /// tilted too far, or lies along the normal, to its nearest corner.
     #[inline(always)]
     fn settle(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
+        // Long in projection. A side along the normal is not, but it has a length.
         let is_long = max_component(&(from.flat - to.flat)) > tolerance;
         self.is_side &= is_long || max_component(&(from.point - to.point)) > tolerance;
         if !self.is_side {
@@ -142,6 +150,7 @@ impl<N: Real> Stretch<N> {
         }
     }
 
+    /// Finds the corner nearest to the other solid.
     fn find_top(&mut self, frame: &ContactFrame<N, 2>) {
         let [first, second] = &self.corners;
         let depth = self.which.below_witness(&first.point, frame);
@@ -154,7 +163,7 @@ impl<N: Real> Stretch<N> {
         }
     }
 
-    /// The part that the witness lies on.
+    /// Returns the part that the witness lies on.
     pub(super) fn at_witness(&self, frame: &ContactFrame<N, 2>) -> FeatureId {
         let near = |corner: &Corner<N, 2>| corner.flat.norm() <= N::TWO * frame.tolerance;
         match &self.corners {
@@ -164,15 +173,17 @@ impl<N: Real> Stretch<N> {
         }
     }
 
-    /// The point of the core that is seen at a place.
+    /// Returns the point of the core at a tangent coordinate.
     #[inline(always)]
     pub(super) fn under(&self, place: N) -> Point<N, 2> {
         let [from, to] = &self.corners;
+        // Sides run in either direction along the tangent.
         let share = (place - from.flat.x) * self.along / (self.along * self.along);
         from.point + (to.point - from.point) * min(max(share, N::ZERO), N::ONE)
     }
 
-    /// The part beside a place; `None` beyond the ends.
+    /// Returns the part beside a tangent coordinate, ends by their distance along the side; `None`
+    /// beyond the ends.
     #[inline(always)]
     fn beside(&self, place: N, tolerance: N) -> Option<FeatureId> {
         let along = (place - self.corners[0].flat.x) * self.along / self.length;
@@ -181,7 +192,8 @@ impl<N: Real> Stretch<N> {
         part_beside(along, self.length, tolerance, [from.id, to.id], self.id)
     }
 
-    /// The part that contains a place: an end or the side; `None` beyond the ends.
+    /// Returns the part that contains a tangent coordinate: an end or the side; `None` beyond the
+    /// ends.
     pub(super) fn locate(&self, place: N, tolerance: N) -> Option<FeatureId> {
         let [from, to] = &self.corners;
         let near = |corner: &Corner<N, 2>| (corner.flat.x - place).abs() <= N::TWO * tolerance;
@@ -192,7 +204,7 @@ impl<N: Real> Stretch<N> {
         (along >= N::ZERO && along <= self.length * self.length).then_some(self.id)
     }
 
-    /// How far the rounded surface is above a point of the core, along the normal.
+    /// Returns the height of the rounded surface above a point of the core, along the normal.
     #[inline]
     fn lift(&self, core: &Point<N, 2>, frame: &ContactFrame<N, 2>) -> N {
         if self.rounding <= N::ZERO {
@@ -204,7 +216,7 @@ impl<N: Real> Stretch<N> {
     }
 }
 
-/// [`Pose::point`], of which the products of matrices are not inlined.
+/// Computes [`Pose::point`], whose products of matrices are not inlined.
 #[inline(always)]
 fn placed<N: Real>(pose: &Pose<N, 2>, local: &Point<N, 2>) -> Point<N, 2> {
     let (turn, shift) = (&pose.rotation, &pose.translation);
@@ -213,7 +225,7 @@ fn placed<N: Real>(pose: &Pose<N, 2>, local: &Point<N, 2>) -> Point<N, 2> {
     Point::<N, 2>::new(x, y)
 }
 
-/// The radius by which the core of a solid is inflated.
+/// Returns the radius around the core of a solid.
 #[inline]
 fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
     match kind {
@@ -231,8 +243,8 @@ pub(super) struct Shared<'a, N: Real> {
 }
 
 impl<N: Real> Shared<'_, N> {
-    /// The ends of the stretch that the sides share: each is an end of one of them and the place beside it
-    /// on the other.
+    /// Adds the ends of the overlap interval: each is an end of one side and the point beside it on
+    /// the other.
     pub(super) fn candidates(&self, out: &mut Candidates<N, 2>) {
         for corner in &self.first.corners {
             if let Some(on) = self.second.beside(corner.flat.x, self.frame.tolerance) {
@@ -248,7 +260,7 @@ impl<N: Real> Shared<'_, N> {
         }
     }
 
-    /// Adds a pair of points, each moved by half of what they are beside each other, once.
+    /// Adds a pair of points, once; each is moved by half their offset along the tangent.
     fn push(
         &self,
         core1: &Point<N, 2>,
@@ -261,7 +273,7 @@ impl<N: Real> Shared<'_, N> {
         self.push_facing(&(core1 + half), &(core2 - half), features, out);
     }
 
-    /// Adds a pair of points that face each other, once.
+    /// Adds a pair of points across from each other, once.
     pub(super) fn push_facing(
         &self,
         core1: &Point<N, 2>,

@@ -1,6 +1,7 @@
-//! The supporting features of the kinds of space as rings of corners, in the frames of their solids.
+//! Supporting features of the kinds in 3D as rings of corners, in the frames of their solids.
 //!
-//! They are those of [`SupportMap::core_feature`], which serves what has no function here.
+//! They equal those of [`SupportMap::core_feature`], which serves all other kinds. A ring is one
+//! `FaceRing` for up to eight corners; a round cap may fill two.
 
 use smallvec::SmallVec;
 
@@ -13,10 +14,10 @@ use crate::shape::{
     SupportMap, Triangle,
 };
 
-/// The corners of a feature, eight at a time; the id and the normal of the feature are those of the first eight.
+/// Corners of a feature, eight per ring; id and normal of the feature are those of the first ring.
 pub(super) type FaceBlocks<N> = SmallVec<[FaceRing<N>; 2]>;
 
-/// Fills a blank ring with the supporting feature of a solid's core, and returns the radius around the core.
+/// Fills a blank ring with the supporting feature of a solid's core, and returns the radius.
 pub(super) fn supporting_feature<N: Real>(
     kind: Kind<'_, N, 3>,
     direction: &Vector<N, 3>,
@@ -47,6 +48,7 @@ fn fill_point<N: Real>(id: FeatureId, point: &Point<N, 3>, face: &mut FaceRing<N
     true
 }
 
+/// Fills a blank ring with a segment; `id` is that of the segment, and of its side.
 fn fill_ends<N: Real>(
     id: FeatureId,
     ends: [(FeatureId, Point<N, 3>); 2],
@@ -64,7 +66,8 @@ fn fill_segment<N: Real>(segment: &Segment<N, 3>, face: &mut FaceRing<N>) -> boo
     fill_ends(FeatureId::Edge(0), ends, face)
 }
 
-/// What a box or a hull shows in a direction; `None` of a flat box, some of whose parts coincide, and of other solids.
+/// Returns the part of a box or hull that faces a direction; `None` for a flat box, some of whose
+/// parts coincide, and for other kinds.
 pub(super) fn part_shown<N: Real>(
     kind: Kind<'_, N, 3>,
     direction: &Vector<N, 3>,
@@ -79,7 +82,8 @@ pub(super) fn part_shown<N: Real>(
     }
 }
 
-/// Fills a blank ring with a part of a box or a hull. False of a face with more than eight corners.
+/// Fills a blank ring with a part of a box or hull; `false` for a face with more than eight
+/// corners.
 pub(super) fn fill_part<N: Real>(
     kind: Kind<'_, N, 3>,
     part: FeatureId,
@@ -98,7 +102,7 @@ pub(super) fn fill_part<N: Real>(
     }
 }
 
-/// False of thin triangles, and where rounding decides what faces the direction.
+/// Fills a ring with the part of a triangle; `false` for thin triangles and close cases.
 fn fill_triangle<N: Real>(
     triangle: &Triangle<N, 3>,
     direction: &Vector<N, 3>,
@@ -115,7 +119,7 @@ fn fill_triangle<N: Real>(
     true
 }
 
-/// False of a cap.
+/// Fills a ring with a point or line of a round solid; `false` for a cap.
 fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bool {
     match part {
         Some(RoundPart::Point(id, point)) => fill_point(id, &point, face),
@@ -124,13 +128,14 @@ fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bo
     }
 }
 
-/// Fills a feature with the part of a core that faces a direction, as contacts are made of it, and returns a corner
-/// more if there is one, which precedes the first.
+/// Fills `out` with the part of a core that faces a direction, in the form used for contacts;
+/// returns one more corner if there is one, which precedes the first.
 ///
-/// A round cap has its corners at fixed places on the solid, those of its own normal, so that a solid that trembles
-/// on its cap touches with the same points however it leans. Where the lowest point of the rim lies between two of
-/// them, it is the corner more. A cap that leans so far that no old corner may stand for the lowest point (`SLACK`) has
-/// its corners about that point: it rolls on its rim.
+/// The corners of a round cap are fixed on the solid: those for its own normal. So a solid that
+/// vibrates on its cap touches with the same points at any tilt. If the lowest point of the rim
+/// lies between two of them, it is returned as the additional corner. If the tilt is so large that
+/// no old corner may stand for the lowest point (`SLACK`), the corners are placed around that
+/// point: the cap rolls on its rim.
 pub(super) fn contact_feature<N: Real, const D: usize>(
     map: &dyn SupportMap<N, D>,
     direction: &Vector<N, D>,
@@ -138,10 +143,12 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
 ) -> Option<Point<N, D>> {
     map.core_feature(direction, out);
     let normal = if out.vertices.len() > 2 { map.round_face(direction)? } else { return None };
+    // The corners for the cap's own normal: fixed on the solid.
     map.core_feature(&normal, out);
     let lowest = map.core_support(direction);
     let height = |point: &Point<N, D>| point.coords.dot(direction);
     let top = out.vertices.iter().map(height).fold(-N::INFINITY, max);
+    // How far the lowest point of the rim is below the lowest corner.
     let (lower, reach) = (height(&lowest) - top, map.reach());
     if lower > N::lit(SLACK) * reach {
         map.core_feature(direction, out);
@@ -154,7 +161,7 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     })
 }
 
-/// Makes the corner that follows a point on the rim the first.
+/// Rotates the corners so that the first is the one after a point on the rim.
 fn turn_behind<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N, D>) {
     let count = out.vertices.len();
     let way = |at: usize| (out.vertices[at] - point).norm();
@@ -164,7 +171,8 @@ fn turn_behind<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N
     out.vertices.rotate_left((before + 1) % count);
 }
 
-/// Any feature. One without corners, as users' solids may have, is the support point.
+/// Fills the rings with any feature. A feature without corners, as users' solids may have, becomes
+/// the support point.
 fn fill_feature<N: Real>(
     map: &dyn SupportMap<N, 3>,
     direction: &Vector<N, 3>,

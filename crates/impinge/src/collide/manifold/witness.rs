@@ -1,4 +1,4 @@
-//! What the nearest points of two convex solids lie on.
+//! Features that the nearest points of two convex solids lie on.
 
 use super::frame::{ContactFrame, Which, rounding};
 use super::ring::part_of;
@@ -8,7 +8,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{FeatureId, Kind};
 
-/// The features of two solids of the plane that the points of their separation lie on.
+/// Returns the features of two solids in 2D that the points of their separation lie on.
 pub(crate) fn features2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -16,7 +16,7 @@ pub(crate) fn features2<N: Real>(
     features(pair, separation, shown2)
 }
 
-/// The features of two solids of space that the points of their separation lie on.
+/// Returns the features of two solids in 3D that the points of their separation lie on.
 pub(crate) fn features3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
@@ -24,7 +24,7 @@ pub(crate) fn features3<N: Real>(
     features(pair, separation, shown3)
 }
 
-/// The feature of one of two solids of the plane, the first or the second: one of [`features2`].
+/// Returns the feature of one solid in 2D, the second if `is_second`: one of [`features2`].
 pub(crate) fn feature2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -34,7 +34,7 @@ pub(crate) fn feature2<N: Real>(
     feature(pair, separation, tolerance, shown2, is_second)
 }
 
-/// The feature of one of two solids of space, the first or the second: one of [`features3`].
+/// Returns the feature of one solid in 3D, the second if `is_second`: one of [`features3`].
 pub(crate) fn feature3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
@@ -44,11 +44,11 @@ pub(crate) fn feature3<N: Real>(
     feature(pair, separation, tolerance, shown3, is_second)
 }
 
-/// The smallest part of the supporting feature of one of two solids, the first or the second, that holds the
-/// point of a separation.
+/// Computes the smallest part of one solid's supporting feature that contains the point of a
+/// separation; of the second solid if the flag is set.
 type ShownFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
 
-/// The frame of a witness that nothing else is asked of.
+/// Creates a frame that is used for its witness only.
 fn frame<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -58,6 +58,7 @@ fn frame<N: Real, const D: usize>(
     ContactFrame::new(pair, separation, &request, tangents)
 }
 
+/// Returns both features: by position where that decides, else by the supporting feature.
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -68,6 +69,7 @@ fn features<N: Real, const D: usize>(
     }
     let (noise, normal) = (rounding(pair), separation.normal);
     let first = by_place(pair.first, &separation.point1, &normal, noise);
+    // In the frame of the second solid.
     let second = || {
         let point = pair.pose12.inverse_point(&separation.point2);
         by_place(pair.second, &point, &-pair.pose12.inverse_vector(&normal), noise)
@@ -78,9 +80,9 @@ fn features<N: Real, const D: usize>(
     ]
 }
 
-/// The part of a solid with flat faces, of a segment or of what is rounded of these that holds a point of the
-/// surface, seen from where a unit vector points: the point tells, without what the solid shows there. `None` of
-/// other kinds, and where rounding does not let it tell.
+/// Returns the part of a solid that contains a surface point with the outward normal `outward`,
+/// from the point alone, without the supporting feature. Serves flat-faced solids, segments,
+/// capsules and rounded ones; `None` for other kinds, and in close cases.
 fn by_place<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
     point: &Point<N, D>,
@@ -105,6 +107,7 @@ fn by_place<N: Real, const D: usize>(
     }
 }
 
+/// Returns one feature: for balls and triangles by position, else by the supporting feature.
 fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -121,8 +124,8 @@ fn feature<N: Real, const D: usize>(
     seam.unwrap_or_else(|| shown(pair, separation, is_second))
 }
 
-/// The side or corner of a triangle that a solid with flat faces touches, or the core of a capsule: the points
-/// of these are exact, so that the place tells.
+/// Returns the side or corner of a triangle touched by a flat-faced solid or the core of a capsule.
+/// Their nearest points are exact, so the position decides.
 fn on_seam<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -143,7 +146,8 @@ fn on_seam<N: Real, const D: usize>(
     part.filter(|part| !matches!(part, FeatureId::Face(_)))
 }
 
-/// What a ball, the first solid, touches, where the kind of the other says so at once; `None` of other solids.
+/// Returns the part that a ball, the first solid, touches, if the other's kind gives it at once;
+/// `None` for other pairs.
 fn of_ball<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -154,8 +158,8 @@ fn of_ball<N: Real, const D: usize>(
     }
 }
 
-/// The part of the second solid that a ball, the first, touches, where its kind says so at once: as its
-/// supporting feature does, but for what is within rounding of another part.
+/// Returns the part of the second solid that a ball, the first, touches, if its kind gives it at
+/// once. It is the part that the supporting feature gives, except within rounding of another part.
 #[inline]
 pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -172,7 +176,7 @@ pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     }
 }
 
-/// One of two solids, and its pose in the frame of the first.
+/// Returns one of two solids, and its pose in the frame of the first.
 fn solid<'a, N: Real, const D: usize>(
     pair: &'a Pair<'_, N, D>,
     is_second: bool,
@@ -202,7 +206,7 @@ fn shown3<N: Real>(
 ) -> FeatureId {
     let frame = frame(pair, separation, tangents3(&separation.normal));
     let (which, kind, pose) = solid(pair, is_second);
-    // A ball's only feature, and a half-space's.
+    // The only feature of a ball or a half-space.
     if let Kind::Ball(_) | Kind::Plane(_) | Kind::Composite(_) = kind {
         return FeatureId::Face(0);
     }

@@ -1,5 +1,6 @@
-//! The contacts of a ball and a surface of triangles in 3D, with the bits of the generic path, which defines
-//! them. What all triangles share is computed once, and triangles that others hide are skipped.
+//! Contacts of a ball and a surface of triangles in 3D. The results are bit for bit those of the
+//! generic path, which defines them. Quantities that all triangles share are computed once, and
+//! triangles that others hide are skipped.
 
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::over::over3;
@@ -21,13 +22,13 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, min};
 use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, SurfaceAccess, Triangle};
 
-/// Lengths below this many rounding units of all sizes are rounding errors.
+/// Rounding error of lengths, in units of epsilon times all sizes.
 const ROUNDING: f64 = 16.0;
-/// Most of these cost no more than a look at whether their box meets the ball's.
+/// Parts to cache in the large room: a part outside the ball's box costs only a test of boxes.
 const MAX_ROOMY: usize = 5 * LANES;
 
-/// Brings the contacts of a ball and a surface up to date; returns false where the generic path must do it,
-/// as of all other solids.
+/// Updates the contacts of a ball and a surface. Returns false, with nothing changed but the cache
+/// of parts, if the pair needs the generic path, as every other solid does.
 pub(crate) fn update_on_surface<N: Real>(
     contacts: &mut CompositeContacts<N, 3>,
     between: &Between<'_, N, 3>,
@@ -53,27 +54,29 @@ pub(crate) fn update_on_surface<N: Real>(
 /// A ball and the surface that it may touch.
 struct Rolling<'b, 'a, N: Real> {
     between: &'b Between<'a, N, 3>,
-    /// What is asked of a triangle.
+    /// The request for one triangle.
     request: ManifoldRequest<N>,
     ball: &'a Ball<N>,
     parts: &'a dyn CompositeShape<N, 3>,
     surface: SurfaceAccess<'a, N, 3>,
-    /// The surface's frame in that of the ball, put through its middle.
+    /// The rotation from the frame of the surface to that of the ball, without a translation.
     turn: Pose<N, 3>,
-    /// The middle of the ball, and where it comes from, in the surface's frame.
+    /// The centre of the ball and its reference point, in the frame of the surface.
     center: Point<N, 3>,
     from: Point<N, 3>,
 }
 
-/// A triangle as the middle of the ball sees it.
+/// A triangle relative to the centre of the ball, in the axes of the surface.
 struct SeenTriangle<N: Real> {
     part: u32,
+    /// Relative to the centre of the ball.
     triangle: Triangle<N, 3>,
+    /// Bound of the rounding errors of lengths.
     tolerance: N,
 }
 
 impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
-    /// `None` of other solids, and of composites that are no surface.
+    /// `None` for other solids, and for composites without a surface.
     fn new(between: &'b Between<'a, N, 3>, request: &ManifoldRequest<N>) -> Option<Self> {
         let Kind::Ball(ball) = between.pair.first else { return None };
         let [_, parts] = between.composites();
@@ -85,8 +88,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(Self { between, request, ball, parts, surface, turn, center, from: center })
     }
 
-    /// A box around all that is within reach of the ball, of which all parts are kept; `None` if some are
-    /// not, or are no triangles.
+    /// Returns a box around everything within reach of the ball, with all its parts in the cache;
+    /// `None` if the cache cannot hold them by corners, or if they are not triangles.
     fn box_within(&self, around: &mut PartCache<N, 3>) -> Option<Aabb<N, 3>> {
         let reach = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
         let aabb = enclosing(&Aabb::around(self.center, reach), &self.between.pose21);
@@ -94,8 +97,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         (is_kept && around.has_triangles_alone()).then_some(aabb)
     }
 
-    /// Finds the contacts of the triangles that are not hidden; answers what counts as rounding among
-    /// the others, or `None` where they matter.
+    /// Finds the contacts of the triangles that are not hidden. Returns the rounding error of the
+    /// hidden ones, or `None` if the generic path must consider these.
     fn find(
         &mut self,
         contacts: &mut CompositeContacts<N, 3>,
@@ -112,7 +115,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             within,
         };
         let seen = near_triangles(&question, self.surface.has_plain_seams());
-        // What is outside the box is beyond reach.
+        // Everything outside the box is beyond reach.
         let reach = self.ball.radius() + self.request.prediction;
         let clearance = min(reach, seen.from_middle);
         let way = Travelled { old: contacts.reference, clearance };
@@ -130,8 +133,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         self.rounding_of_hidden(&seen, around, part_contacts)
     }
 
-    /// What counts as rounding of the triangles that are hidden, if that matters; `None` where one of them
-    /// may be the nearest of all that can be touched.
+    /// Returns the largest rounding error of the hidden triangles, or zero if it does not matter.
+    /// `None` if one of them may be the nearest of all that can be touched.
     fn rounding_of_hidden(
         &self,
         seen: &NearTriangles<N>,
@@ -162,7 +165,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(most)
     }
 
-    /// One of the triangles that are kept; `None` where the numbers end.
+    /// Returns a cached triangle; `None` if its coordinates overflow.
     fn seen(&self, around: &PartCache<N, 3>, index: usize) -> Option<SeenTriangle<N>> {
         let corners = around.tiles()[index / LANES].corners(index % LANES);
         let [a, b, c] = corners.mapped(|corner| corner - self.between.pose21.translation);
@@ -172,7 +175,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(SeenTriangle { part: around.parts()[index], triangle, tolerance })
     }
 
-    /// Adds the contact of a triangle, if there is one.
+    /// Appends the contact of a triangle, if there is one.
     fn add(
         &self,
         seen: &SeenTriangle<N>,
@@ -198,7 +201,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         part_contacts.extend(found);
     }
 
-    /// The contact of a triangle over which the ball plainly is, or beside which; `None` of others.
+    /// Computes the contact of a triangle without the generic path: `Some(None)` if there is no
+    /// contact, `None` if the case is not certain.
     #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
     fn plainly(
         &self,
@@ -237,7 +241,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(Some(PartContact { distance, normal, piece, lowest, status, face, tolerance }))
     }
 
-    /// What the surface says of the way from the ball to a triangle.
+    /// Filters the normal of the ball's separation from a triangle by the surface.
     fn filtered_normal(
         &self,
         seen: &SeenTriangle<N>,
@@ -256,7 +260,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 }
 
-/// Visits some of the triangles by their numbers, in order, given the bits of each eight.
+/// Visits the indices of some triangles in order; `bits` selects those of a packet from its masks.
+/// Stops with `None` if `visit` returns it.
 fn each_lane<N>(
     seen: &NearTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,

@@ -1,5 +1,6 @@
-//! The contacts of a convex solid and a chain of segments in 2D, with the bits of the generic path, which defines
-//! them. What all segments share is computed once, and segments beyond the prediction are skipped.
+//! Contacts of a convex solid and a chain of segments in 2D. The results are bit for bit those of
+//! the generic path, which defines them. Quantities that all segments share are computed once, and
+//! segments beyond the prediction are skipped.
 
 use super::cull::relative_slack;
 use super::gather::{depth_in, search_box};
@@ -26,13 +27,14 @@ use crate::shape::{
     SupportMap, Surface, SurfaceAccess,
 };
 
-/// Lengths below this many rounding units of all sizes are rounding errors.
+/// Rounding error of lengths, in units of epsilon times all sizes.
 const ROUNDING: f64 = 16.0;
-/// Among so many tiles the segments at a point are looked for; among more the chain itself is asked.
+/// Packets that are searched for the segments at a point; with more, the surface of the chain is
+/// called instead.
 const MAX_SEARCHED: usize = 8;
 
-/// Brings the contacts of a convex solid and a chain up to date; answers false where that is left to the
-/// generic path.
+/// Updates the contacts of a convex solid and a chain. Returns false, with nothing changed but the
+/// cache of parts, if the pair needs the generic path.
 pub(crate) fn update_chain<N: Real>(
     contacts: &mut CompositeContacts<N, 2>,
     between: &Between<'_, N, 2>,
@@ -61,28 +63,31 @@ pub(crate) fn update_chain<N: Real>(
 /// A convex solid and the chain that it may touch.
 struct Chain<'b, 'a, N: Real> {
     between: &'b Between<'a, N, 2>,
-    /// What is asked of a segment.
+    /// The request for one segment.
     request: ManifoldRequest<N>,
     solid: Kind<'a, N, 2>,
     parts: &'a dyn CompositeShape<N, 2>,
     surface: SurfaceAccess<'a, N, 2>,
+    /// `None` if only the surface itself can decide.
     sidedness: Option<Sidedness>,
-    /// The chain's frame in that of the solid, put through one point.
+    /// The rotation from the frame of the chain to that of the solid, without a translation.
     turn: Pose<N, 2>,
-    /// That of a pair of a segment and the solid: of the solid in the chain's frame, unless it comes first.
+    /// The pose of the second in the frame of the first, of a segment and the solid in the order of
+    /// kinds.
     pose12: Pose<N, 2>,
-    /// In pairs with a segment, by the order of kinds: balls do, and segments, as the part of the first shape.
+    /// Whether the solid comes before a segment in the order of kinds: balls do, and so do
+    /// segments, as the part of the first shape.
     comes_first: bool,
-    /// The point that the pairs are seen from, in the chain's frame.
+    /// The origin of the solid in the frame of the chain; segments are translated to it.
     origin: Point<N, 2>,
-    /// The middle of the solid, and where it comes from, in the chain's frame.
+    /// The centre of the solid and its reference point, in the frame of the chain.
     center: Point<N, 2>,
     from: Point<N, 2>,
-    /// No point of the solid is farther from its origin.
+    /// Bounding radius of the solid around its origin.
     size: N,
 }
 
-/// The segments that are kept: all that overlap a box.
+/// The cached segments: all that overlap the box `within`.
 struct KeptLinks<'t, N: Real> {
     tiles: &'t [PartPacket<N, 2>],
     parts: &'t [u32],
@@ -90,6 +95,7 @@ struct KeptLinks<'t, N: Real> {
 }
 
 impl<N: Real> KeptLinks<'_, N> {
+    /// The ends of the segment at an index in `parts`.
     fn ends(&self, index: usize) -> [Point<N, 2>; 2] {
         let [a, b, _] = self.tiles[index / LANES].corners(index % LANES);
         [a, b]
@@ -113,7 +119,7 @@ impl<N: Real> KnownSegments<N> for KeptLinks<'_, N> {
             while ending != 0 {
                 let index = block * LANES + ending.trailing_zeros() as usize;
                 ending &= ending - 1;
-                // Beyond the last part are copies of it.
+                // Lanes after the last part are copies of it.
                 if let Some(&part) = self.parts.get(index) {
                     visit(part, self.ends(index));
                 }
@@ -125,15 +131,20 @@ impl<N: Real> KnownSegments<N> for KeptLinks<'_, N> {
 /// A segment of the chain within reach of the solid.
 struct ChainLink<'c, 'b, 'a, N: Real> {
     chain: &'c Chain<'b, 'a, N>,
+    /// 0 for the solid, and the index of the segment.
     parts: [u32; 2],
+    /// Relative to the origin of the solid.
     segment: Segment<N, 2>,
+    /// The segment as a surface.
     known: KnownSegment<'c, N>,
+    /// The separation of the pair, in the order of kinds.
     found: Separation<N, 2>,
+    /// Bound of the rounding errors of lengths.
     tolerance: N,
 }
 
 impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
-    /// `None` of solids that have no kernel here, and of composites that are no surface.
+    /// `None` for solids that have no kernel here, and for composites without a surface.
     fn new(between: &'b Between<'a, N, 2>, request: &ManifoldRequest<N>) -> Option<Self> {
         let solid = between.pair.first;
         let comes_first = matches!(solid, Kind::Ball(_) | Kind::Segment(_));
@@ -167,8 +178,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         })
     }
 
-    /// A box around all that is within reach of the solid, of which all parts are kept; `None` if some are
-    /// not, or are no segments.
+    /// Returns a box around everything within reach of the solid, with all its parts in the cache;
+    /// `None` if the cache cannot hold them by corners, or if they are not segments.
     fn box_within(&self, around: &mut PartCache<N, 2>) -> Option<Aabb<N, 2>> {
         let reach = self.size + self.request.prediction;
         let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(reach));
@@ -182,7 +193,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         (around.reaches(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
     }
 
-    /// Finds the contacts of the segments within reach.
+    /// Finds the contacts of the segments within reach; `None` if the generic path must do it.
     fn find(
         &mut self,
         contacts: &mut CompositeContacts<N, 2>,
@@ -215,7 +226,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         Some(())
     }
 
-    /// One of the segments that are kept; `None` if it cannot be touched or is not finitely far away.
+    /// Returns a cached segment within reach; `None` if it cannot be touched or its distance is not
+    /// finite.
     fn link<'c>(
         &'c self,
         kept: &'c KeptLinks<'_, N>,
@@ -237,17 +249,18 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         Some(ChainLink { chain: self, parts, segment, known, found: *found, tolerance })
     }
 
-    /// A direction from the first of a pair to the second, from the solid to the chain in the solid's frame.
+    /// Converts a direction from the first of a pair to the second into one from the solid to the
+    /// chain, in the frame of the solid.
     fn outward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.vector(normal) }
     }
 
-    /// The opposite of [`Self::outward`].
+    /// The inverse of [`Self::outward`].
     fn inward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.inverse_vector(normal) }
     }
 
-    /// A point of a pair's manifold with a normal, in the frame of the solid.
+    /// Converts a point of a pair's manifold with this normal into the frame of the solid.
     fn placed(&self, point: RawPoint<N, 2>, normal: &Vector<N, 2>) -> RawPoint<N, 2> {
         if self.comes_first {
             return point;
@@ -259,7 +272,7 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
 }
 
 impl<N: Real> ChainLink<'_, '_, '_, N> {
-    /// Finds the contact of the segment, if there is one; `None` where that is left to the generic path.
+    /// Appends the contact of the segment, if there is one; `None` if the generic path must do it.
     fn find(
         &self,
         part_contacts: &mut PartContacts<N, 2>,
@@ -281,7 +294,7 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         };
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
         let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
-        // Contacts along the face may be none, or say that what overlaps is apart.
+        // Contacts along the face may be missing, or be apart where the parts overlap.
         let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
         if !points[start..].iter().any(|point| point.distance <= highest) {
             points.truncate(start);
@@ -301,7 +314,7 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         Some(())
     }
 
-    /// What the chain says of a normal of the solid.
+    /// Filters the normal of a contact, in the frame of the solid, by the chain.
     fn filtered_normal(&self, normal: &Vector<N, 2>) -> FilteredNormal<N, 2> {
         let chain = self.chain;
         let middle = centroid(&[*self.segment.a(), *self.segment.b()]) + chain.origin.coords;
@@ -322,7 +335,8 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         SegmentPair { pair, tolerance: self.tolerance, prediction: request.prediction }
     }
 
-    /// Appends the contacts at the nearest points with a normal, and answers it as the pieces have it.
+    /// Appends the contacts at the nearest points for a normal in the frame of the solid. Returns
+    /// the normal with the rounding that pieces have.
     fn between(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let witness = Separation { normal: inward, ..self.found };
@@ -330,7 +344,8 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         Some(self.chain.outward(&inward))
     }
 
-    /// Appends the contacts along a normal, and answers it as the pieces have it.
+    /// Appends the contacts along a normal in the frame of the solid. Returns the normal with the
+    /// rounding that pieces have.
     fn along(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let distance = self.found.distance;
@@ -341,5 +356,5 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
     }
 }
 
-/// The points of all pieces.
+/// The contact points of all pieces.
 type ChainPoints<N> = crate::collide::RawPoints<N, 2>;

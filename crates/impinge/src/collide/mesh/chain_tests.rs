@@ -1,4 +1,5 @@
-//! Contacts of chains against the generic path, which defines them: the same bits, step after step.
+//! Contacts of chains compared with the generic path, which defines them: the same bits in each
+//! update.
 
 use super::chain::update_chain;
 use super::{
@@ -16,6 +17,7 @@ use crate::shape::{
     Ball, Capsule, ConvexPolygon, Cuboid, HeightField, Polyline, Segment, Shape, Triangle,
 };
 
+/// Updates of each solid.
 const STEPS: usize = 6;
 
 /// Heights along a line: rough, gentle, or flat with steps.
@@ -35,7 +37,7 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..13).map(&mut next).collect()
 }
 
-/// A ground about the origin, seen from above or below, with one side or two.
+/// A terrain around the origin, mirrored or not, with one side or two.
 fn ground_of<N: Space<2>>(random: &mut Random, round: usize) -> Box<dyn Shape<N, 2>> {
     let heights = heights::<N>(random, round % 3);
     let is_one_sided = random.pick(3) == 0;
@@ -55,7 +57,7 @@ fn ground_of<N: Space<2>>(random: &mut Random, round: usize) -> Box<dyn Shape<N,
     let mut line =
         if is_closed { Polyline::closed(points.clone()) } else { Polyline::open(points.clone()) };
     if random.pick(4) == 0 {
-        // Two vertices at one place that are no joint.
+        // Two vertices at one position that are not joined.
         points[9].x += N::HALF;
         points[6] = points[9];
         line.set_vertices(&points);
@@ -86,7 +88,7 @@ fn pose_of<N: Real>(place: Vector<N, 2>, angle: N) -> Pose<N, 2> {
     Pose { rotation: Matrix::<N, 2>::new(cosine, -sine, sine, cosine), translation: place }
 }
 
-/// What two ways say is the same, names and all.
+/// Both paths must agree in all bits, ids included.
 pub(super) fn assert_same<N: Real, const D: usize>(
     quick: &CompositeContacts<N, D>,
     slow: &CompositeContacts<N, D>,
@@ -103,8 +105,8 @@ pub(super) fn assert_same<N: Real, const D: usize>(
     }
 }
 
-/// The contact within a limit is the same whether the nearest part was looked for before or not, and whichever
-/// way it is found.
+/// The contact within a limit must not depend on whether the nearest part was searched first, nor
+/// on the path.
 pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     [placed1, placed2]: [&Placed<'_, N, D>; 2],
     limit: N,
@@ -122,13 +124,14 @@ pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     let distance = |found: Option<Separation<N, D>>| found.map(|found| found.distance);
     assert_eq!(distance(at_once), distance(general), "{}", what());
     match [at_once, expected].map(distance) {
-        // A contact asked for alone has the distance of the solids where it differs by rounding.
+        // The contact of a query has the distance of the solids if it differs by rounding alone.
         [Some(a), Some(b)] => assert!((a - b).abs() <= rounding(&between), "{a}, {b}: {}", what()),
         [a, b] => assert_eq!(a, b, "{}", what()),
     }
 }
 
-/// What two ways say of one solid that moves; how many updates the quick one did, and what it found.
+/// Compares both paths for one moving solid. Returns the number of updates by the quick path, and
+/// of contact points.
 fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (solid, ground) = (solid_of::<N>(random), ground_of::<N>(random, round));
     let far = N::lit([0.0, 40.0][random.pick(2)]);

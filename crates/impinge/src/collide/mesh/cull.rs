@@ -1,9 +1,18 @@
-//! Lower bounds of the distances of eight parts of a surface from a convex solid.
+//! Lower bounds of the distances from a convex solid to eight parts of a surface at a time.
 //!
-//! Most parts whose boxes are near are not near themselves. A plane between the solid and a part says
-//! so for the price of a few products: the one across the shortest way from the part to the solid's
-//! middle. Any plane gives a lower bound of the distance, so no case needs care but for rounding. Of the solid its core
-//! counts by its extents along its own axes alone, as that of a box.
+//! Most parts with boxes near the solid are not near themselves. A plane across the shortest way
+//! from the part to the solid's centre rejects them for a few products. Every plane gives a lower
+//! bound of the distance, so only rounding needs care. The core of the solid enters by its extents
+//! along its own axes, as a box would.
+//!
+//! ```text
+//!   part                          solid
+//!     ╲                         ┌───────┐
+//!      ●──────── toward ────────┼───>·  │   · centre
+//!     ╱                         └───────┘
+//!      ├──── lower bound ───────┤       own: extent of the core and its radius
+//!      ├─────── from_middle ────┼─own┤  lower bound = from_middle - own - slack
+//! ```
 
 use super::part_cache::PartCache;
 use crate::bounding_volume::Aabb;
@@ -15,18 +24,18 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Point, Real, Space, Vector, Wide, filled, max, max_component, min};
 use crate::shape::{Geometry, Kind};
 
-/// Bounds are loosened by so many rounding units of all lengths, or by what is left where the search
-/// for the distance of curved solids stops, whichever is more.
+/// Slack of bounds, relative to all lengths: 128 rounding units, and at least `CURVED`, the
+/// tolerance of the search for the distance of curved solids.
 const ROUNDING: f64 = 128.0;
 const CURVED: f64 = 1.0e-10;
 
-/// The slack of bounds, as a share of all lengths.
+/// The slack of bounds, relative to all lengths.
 #[inline]
 pub(super) fn relative_slack<N: Real>() -> N {
     max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED))
 }
 
-/// What is shorter has lost digits.
+/// Shorter lengths have lost digits to underflow.
 #[inline]
 fn least_length<N: Real>() -> N {
     N::MIN_POSITIVE / N::EPSILON
@@ -34,32 +43,34 @@ fn least_length<N: Real>() -> N {
 
 /// A convex solid in the frame of a composite.
 pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
-    /// Its middle.
+    /// The centre of the solid.
     pub(super) center: Vector<N, D>,
-    /// Its frame's axes, as columns.
+    /// The axes of the solid, as columns.
     pub(super) turn: Matrix<N, D>,
-    /// Half the extents of its core along them.
+    /// Half the extents of its core along these axes.
     pub(super) half: Vector<N, D>,
+    /// The radius around the core.
     pub(super) rounding: N,
-    /// Parts beyond this are of no interest, nor those outside a box.
+    /// Parts beyond this distance, or outside the box from `low` to `high`, are rejected.
     pub(super) reach: N,
     pub(super) low: Vector<N, D>,
     pub(super) high: Vector<N, D>,
-    /// The size of the solid, its place and the reach.
+    /// Sum of the solid's bounding radius, its translation and `reach`, for rounding errors.
     pub(super) size: N,
 }
 
-/// Which of eight parts may be near, and how near.
+/// Lower bounds for eight parts.
 pub(super) struct LowerBounds<N> {
     /// A bit for each part that may be within reach.
     pub(super) near: u8,
-    /// Those in the box are at least so far from the middle of the solid; zero if that is not known.
+    /// Lower bound of the distance from the solid's centre to the parts in the box; zero if
+    /// unknown.
     pub(super) from_middle: N,
 }
 
 impl<N: Space<D>, const D: usize> LowerBoundQuery<N, D> {
-    /// Of a convex first shape, about parts of the second in a box; what is known of the solid is kept `around`. `None`
-    /// of two composites and of half-spaces.
+    /// Takes a convex first shape, and parts of the second in a box. The extents of the solid are
+    /// cached in `around`. `None` for two composites and for half-spaces.
     pub(super) fn new(
         between: &Between<'_, N, D>,
         reach: N,
@@ -81,18 +92,18 @@ impl<N: Space<D>, const D: usize> LowerBoundQuery<N, D> {
         })
     }
 
-    /// The middle of the solid.
+    /// The centre of the solid.
     pub(super) fn middle(&self) -> Point<N, D> {
         Point::from(self.center)
     }
 
-    /// The bounds of eight parts.
+    /// Computes the bounds for eight parts.
     pub(super) fn bounds(&self, tiles: &PartPacket<N, D>) -> LowerBounds<N> {
         at(Level::new(), tiles, self)
     }
 }
 
-/// [`bounds`] of all lanes, on the level of which the answers do not depend.
+/// [`bounds`] of all lanes. The result does not depend on the SIMD level.
 fn at<N: Real, const D: usize>(
     level: Level,
     tiles: &PartPacket<N, D>,
@@ -107,6 +118,8 @@ fn at<N: Real, const D: usize>(
     all
 }
 
+/// The bounds for the lanes of `V`: a mask of those that may be near, and the least distance from
+/// the centre to those in the box.
 #[inline(always)]
 fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -128,7 +141,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         dot(&arms[0], &arms[0]).larger(dot(&arms[1], &arms[1])).larger(dot(&arms[2], &arms[2]));
     let slack = V::all(simd, relative_slack()) * (farthest.sqrt() + V::all(simd, query.size));
     let (length, tiny) = (norm(&toward), V::all(simd, least_length()));
-    // NaN bounds nothing.
+    // NaN gives no bound.
     let is_bound = length.simd_gt(slack)
         & heights[0].simd_gt(tiny)
         & heights[1].simd_gt(tiny)
@@ -143,7 +156,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     LowerBounds { near, from_middle: known.into_iter().fold(N::INFINITY, |least, x| min(x, least)) }
 }
 
-/// The parts whose boxes overlap that of the search.
+/// The parts whose boxes overlap the box of the query.
 #[inline(always)]
 fn is_in<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -162,8 +175,9 @@ fn is_in<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     is_in
 }
 
-/// From the nearest point of each part to a point, given the ways from the corners to it: in the middle of
-/// a triangle by its shares of the corners, else the nearest of the sides.
+/// Returns the vector from the nearest point of each part to a point, given the vectors from the
+/// corners to it. Over the inside of a triangle it follows from the barycentric coordinates, else
+/// from the nearest side.
 #[inline(always)]
 fn toward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -186,7 +200,8 @@ fn toward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     either(is_over, &over, &shorter(&shorter(&first, &second), &third))
 }
 
-/// From the nearest point of a segment to a point, given the ways from its ends.
+/// Returns the vector from the nearest point of a segment to a point, given the vectors from its
+/// ends to it.
 #[inline(always)]
 fn from_side<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -203,12 +218,13 @@ fn from_side<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     )
 }
 
+/// Returns the shorter of two vectors, the first in a tie.
 #[inline(always)]
 fn shorter<S: Simd, V: Wide<S>, const D: usize>(first: &[V; D], second: &[V; D]) -> [V; D] {
     either(dot(second, second).simd_lt(dot(first, first)), second, first)
 }
 
-/// How far the core reaches along vectors, times their lengths.
+/// The extent of the core along vectors, times their lengths.
 #[inline(always)]
 fn extent<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -234,7 +250,7 @@ mod tests {
 
     type P3 = Point<f64, 3>;
 
-    /// Numbers from -1 to 1.
+    /// Pseudo-random numbers from -1 to 1.
     fn noise(state: &mut u64) -> f64 {
         *state ^= *state << 13;
         *state ^= *state >> 7;
@@ -242,7 +258,7 @@ mod tests {
         (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// The least distance from a point to places all over a triangle: never below the true one.
+    /// The least distance from a point to samples of a triangle: never below the true one.
     fn sampled([a, b, c]: &[P3; 3], p: &P3) -> f64 {
         const STEPS: u32 = 48;
         let shares = (0..=STEPS).flat_map(|v| (0..=STEPS - v).map(move |w| (v, w)));
@@ -253,8 +269,8 @@ mod tests {
         shares.map(distance).fold(f64::INFINITY, f64::min)
     }
 
-    /// What is known of the distance of a solid at the origin and a mesh of one triangle: a lower bound of that from the
-    /// middle, and whether the triangle is out of reach.
+    /// The bounds of a solid at the origin and a mesh of one triangle: that of the distance from
+    /// the centre, and whether the triangle is out of reach.
     fn bound(solid: &dyn Shape<f64, 3>, corners: [P3; 3], reach: f64) -> (f64, bool) {
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
         let geometries = (solid.geometry(), mesh.geometry());
@@ -275,7 +291,7 @@ mod tests {
     fn bounds_are_below_the_distance_and_close_to_it() {
         let (mut state, mut close, origin) = (1_u64, 0, P3::origin());
         for round in 0..400 {
-            // Every other one is a sliver.
+            // Every other triangle is a sliver.
             let thin = if round % 2 == 0 { 1.0 } else { 1e-9 };
             let mut corner = || P3::from([0, 1, 2].mapped(|_| 2.0 * noise(&mut state)));
             let [a, b, mut c] = [corner(), corner(), corner()];

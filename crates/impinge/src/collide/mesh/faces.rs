@@ -1,13 +1,13 @@
 //! Contacts of a box or a hull with the triangles of a surface in 3D.
 //!
 //! ```text
-//!   near triangles ──> separating axes ──> what the surface says ──> points along the normal
-//!                      eight lanes         one by one, from what     eight lanes
-//!                                          the pair keeps
+//!   near triangles ──> separating axes ──> normal filter ───────> points along the normal
+//!                      `gaps3`,            one by one, from the   `FaceSolid::each_clip`,
+//!                      eight lanes         cached `FaceSeams`     eight lanes
 //! ```
 //!
-//! Triangles whose separation is not plain, and those that the lanes leave, go through
-//! [`part_contact`] like those of any solid.
+//! A triangle whose gap is not plain, or that a kernel leaves undecided, falls back to
+//! [`part_contact`], the path of any two parts.
 
 use smallvec::SmallVec;
 
@@ -27,8 +27,9 @@ use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, max};
 use crate::shape::{FaceSeams, FeatureId, Geometry, Kind, SurfaceAccess};
 use core::cell::Cell;
 
-/// Appends the contacts of a box or a hull and the triangles of a surface that are kept and near; answers false of
-/// others. Contacts within the `prediction` are asked for, of parts perhaps more.
+/// Appends the contacts of a box or a hull with the nearby triangles of a surface. Returns `false`
+/// for other solids and composites. `prediction` is that of the whole shapes; the request for parts
+/// in `query` may have a larger one.
 pub(crate) fn face_contacts<N: Real>(
     query: &Query<'_, N, 3>,
     scene: &Scene<'_, N, 3>,
@@ -54,51 +55,53 @@ pub(crate) fn face_contacts<N: Real>(
     is_served
 }
 
-/// A solid among the triangles of a surface.
+/// A box or hull and the nearby triangles of a surface.
 struct FaceMeeting<'a, N: Real> {
     query: &'a Query<'a, N, 3>,
     scene: &'a Scene<'a, N, 3>,
     surface: SurfaceAccess<'a, N, 3>,
     around: &'a PartCache<N, 3>,
     solid: Kind<'a, N, 3>,
-    /// The solid's axes in the frame of the surface, as columns, and its origin there.
+    /// The rotation from the frame of the solid to that of the surface, whose columns are the axes
+    /// of the solid, and the origin of the solid in the frame of the surface.
     turn: Matrix<N, 3>,
     origin: Vector<N, 3>,
-    /// Where the solid comes from, in the frame of the surface.
+    /// The reference point of the solid, which decides sides, in the frame of the surface.
     from: Point<N, 3>,
     reach: N,
-    /// Of each near triangle its place among those that are kept.
+    /// The index in the cache of each near triangle, in the order in which `gaps3` counts them.
     places: SmallVec<[usize; 24]>,
 }
 
-/// A triangle in the frame of its surface.
+/// A cached triangle, in the frame of its surface.
 struct KeptTriangle<'a, N: Real> {
     part: u32,
     corners: [Point<N, 3>; 3],
     seams: &'a FaceSeams<N>,
-    /// Lengths below this are rounding errors of it and the solid.
+    /// Bound of the rounding errors of lengths of the triangle and the solid.
     tolerance: N,
 }
 
-/// A contact that the surface has, in the frame of the surface.
+/// A contact that the surface admits, in the frame of the surface.
 struct FaceContact<N: Real> {
     /// Unit, from the triangle to the solid.
     normal: Vector<N, 3>,
     status: PartStatus,
-    /// The normal of the face, if that is touched.
+    /// The normal of the face in contact; `None` for a side or corner, and for a dropped contact.
     face: Option<Vector<N, 3>>,
 }
 
-/// What a surface says of a triangle.
+/// The result of the normal filter for one triangle.
 enum SurfaceAnswer<N: Real> {
     Nothing,
     Contact(FaceContact<N>),
-    /// The nearest points are needed.
+    /// The filter needs the touched feature, which the gap does not name.
     Unclear,
 }
 
 impl<'a, N: Real> FaceMeeting<'a, N> {
-    /// `None` of other solids and composites, and of bodies, whose insides count as well.
+    /// `None` unless a box or hull meets a surface whose cached parts are all triangles. Also
+    /// `None` for bodies: a solid inside them has contacts too.
     fn new(
         query: &'a Query<'a, N, 3>,
         scene: &'a Scene<'a, N, 3>,
@@ -130,7 +133,7 @@ impl<'a, N: Real> FaceMeeting<'a, N> {
         })
     }
 
-    /// One of the triangles that are kept; `None` where nothing is known of its seams.
+    /// Returns a cached triangle; `None` if its seams are unknown.
     fn triangle(&self, place: usize) -> Option<KeptTriangle<'a, N>> {
         let seams = self.around.seams(place)?;
         let corners = self.around.tiles()[place / LANES].corners(place % LANES);
@@ -141,7 +144,7 @@ impl<'a, N: Real> FaceMeeting<'a, N> {
         Some(KeptTriangle { part: self.around.parts()[place], corners, seams, tolerance })
     }
 
-    /// What the surface says of a triangle, given how near the solid is.
+    /// Filters the normal of a gap by the surface.
     fn answer(&self, triangle: &KeptTriangle<'_, N>, gap: &TriangleGap<N>) -> SurfaceAnswer<N> {
         let known = triangle.seams.in_surface(self.surface, &triangle.corners[0]);
         let surface = Some(SurfaceAccess::of_own(&known));
@@ -175,7 +178,8 @@ impl<'a, N: Real> FaceMeeting<'a, N> {
         SurfaceAnswer::Contact(FaceContact { normal, status, face })
     }
 
-    /// What is asked of the clip for a contact; `None` where the nearest points are needed, or the solid shows no face.
+    /// Returns the input of the clip for a contact. `None` for a flat box, and for an `Own` contact
+    /// beyond the prediction of the parts: both fall back to the generic path.
     fn asked(
         &self,
         contact: &FaceContact<N>,
@@ -186,19 +190,20 @@ impl<'a, N: Real> FaceMeeting<'a, N> {
         if is_own && distance > self.query.request.prediction {
             return None;
         }
-        // What touches but for rounding does not reach below the face.
+        // If the parts overlap by no more than rounding, no point is deeper than that.
         let least = if !is_own && distance > -tolerance { distance } else { -N::INFINITY };
         let normal = self.query.between.pair.pose12.vector(&contact.normal);
         TriangleAsked::new(self.solid, normal, is_own.then_some(distance), least)
     }
 }
 
-/// A solid whose faces are clipped in lanes.
+/// Whether the faces of a solid are clipped in lanes.
 pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) -> bool {
     matches!(solid, Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// Triangles that are to be clipped together, each with the number of its contact and its place.
+/// Triangles waiting for the clip, up to eight, each with the index of its contact and its index in
+/// the cache.
 struct Due<N: Real> {
     triangles: PartPacket<N, 3>,
     asked: SmallVec<[TriangleAsked<N>; LANES]>,
@@ -212,7 +217,7 @@ impl<N: Real> Default for Due<N> {
     }
 }
 
-/// The contacts as they are found.
+/// The contacts found so far.
 struct FaceContacts<'s, 'a, N: Real> {
     meeting: &'s FaceMeeting<'a, N>,
     contacts: &'s mut PartContacts<N, 3>,
@@ -220,12 +225,13 @@ struct FaceContacts<'s, 'a, N: Real> {
     slot: Option<PlacedPair<'a, N, 3>>,
     due: Due<N>,
     clip: FaceClip<N>,
-    /// So many contacts turned out to be none; they have no distance.
+    /// Number of contacts that the generic path did not confirm; their distance is infinite.
     missing: usize,
 }
 
 impl<N: Real> FaceContacts<'_, '_, N> {
-    /// Adds the contact of a triangle, of which it may be known how near it is.
+    /// Adds the contact of a triangle, if it has one. Without a gap it falls back to the generic
+    /// path.
     fn add(&mut self, place: usize, gap: Option<&TriangleGap<N>>) {
         if gap.is_none_or(|gap| self.add_plain(place, gap).is_none()) {
             let found = self.in_general(place);
@@ -236,7 +242,8 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         }
     }
 
-    /// Adds the contact of a triangle with a plain gap, if there is one; `None` where the general way finds it.
+    /// Adds the contact of a triangle with a plain gap, if it has one. `None` if the generic path
+    /// has to decide.
     fn add_plain(&mut self, place: usize, gap: &TriangleGap<N>) -> Option<()> {
         let triangle = self.meeting.triangle(place)?;
         let contact = match self.meeting.answer(&triangle, gap) {
@@ -265,14 +272,15 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         Some(())
     }
 
-    /// Notes whether a face that is touched is a front.
+    /// Clears `are_fronts` if a face in contact is not a front.
     fn note_face(&mut self, place: usize, face: Option<&Vector<N, 3>>) {
         let seams = self.meeting.around.seams(place);
         let is_front = |face| seams.is_some_and(|seams: &FaceSeams<N>| seams.is_front(face));
         self.arena.are_fronts &= face.is_none_or(is_front);
     }
 
-    /// Finds the points of the triangles that are due.
+    /// Clips the waiting triangles. Those that the lanes leave undecided are computed by the
+    /// generic path.
     fn clip(&mut self) {
         let (Due { triangles, asked, contacts }, meeting) =
             (core::mem::take(&mut self.due), self.meeting);
@@ -302,6 +310,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
                 None => left |= 1 << lane,
             }
         });
+        // Contacts keep their positions, which are sorted by part.
         for lane in Ones::<LANES>(left.into()) {
             let (contact, place) = &contacts[lane];
             match self.in_general(*place) {
@@ -314,7 +323,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         }
     }
 
-    /// The contact of a triangle as of any two parts.
+    /// Computes the contact of a triangle by the generic path.
     fn in_general(&mut self, place: usize) -> Option<PartContact<N, 3>> {
         let FaceMeeting { query, scene, around, .. } = *self.meeting;
         let parts = [0, around.parts()[place]];
@@ -324,6 +333,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         Some(found)
     }
 
+    /// Removes the contacts that the generic path did not confirm.
     fn drop_missing(&mut self) {
         if self.missing > 0 {
             self.contacts.retain(|contact| contact.distance.is_finite_number());

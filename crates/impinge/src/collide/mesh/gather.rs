@@ -1,4 +1,4 @@
-//! Which parts may touch.
+//! Finds the pairs of parts that may touch.
 
 use smallvec::SmallVec;
 
@@ -14,27 +14,27 @@ use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, min};
 use crate::shape::{CompositeShape, Part};
 
-/// Pairs of parts, by their numbers; 0 stands for a shape that is not a composite.
+/// Pairs of part indices; 0 stands for a convex shape.
 pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
 
-/// A bit for each part of tiles.
+/// For each tile a byte with a bit for each of its eight parts.
 pub(super) type NearBits = SmallVec<[u8; 8]>;
 
-/// What of two shapes may be within reach of each other.
+/// The pairs of parts that may be within a distance.
 pub(crate) struct Nearby<N: Real> {
-    /// In order.
+    /// Sorted.
     pub(super) parts: PartPairs,
-    /// The same as bits for each of the tiles that are kept; empty if there are none.
+    /// The parts of the second shape in `parts`, as bits of the cached tiles; empty without tiles.
     pub(super) near: NearBits,
-    /// No part of the second shape is nearer to the middle of the first, if that is convex; zero if
-    /// nothing is known.
+    /// Lower bound of the distance from the centre of a convex first shape to the second shape;
+    /// zero if unknown.
     pub(super) clearance: N,
 }
 
-/// What of a convex solid and a composite, or of two composites, may be within `reach`: of the
-/// candidates those that no plane proves to be farther.
+/// Finds the parts of a convex solid and a composite, or of two composites, that may be within
+/// `reach`. Parts that a separating plane proves to be farther are culled.
 ///
-/// What is kept `around` must be of the same composite.
+/// `around` must belong to the same composite. It is refilled if its box is too small.
 pub(super) fn nearby<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     is_self: bool,
@@ -57,7 +57,7 @@ pub(super) fn nearby<N: Space<D>, const D: usize>(
     Nearby { parts, near: NearBits::new(), clearance: N::ZERO }
 }
 
-/// Of the parts that are kept those that may be within reach; of parts without corners those whose boxes may be.
+/// Culls the cached parts by lower bounds, or by their boxes if parts have no cached corners.
 fn near_kept<N: Space<D>, const D: usize>(
     query: &LowerBoundQuery<N, D>,
     composite: &dyn CompositeShape<N, D>,
@@ -69,7 +69,7 @@ fn near_kept<N: Space<D>, const D: usize>(
     for (kept, tiles) in around.parts().chunks(LANES).zip(around.tiles()) {
         let bounds = query.bounds(tiles);
         clearance = min(clearance, bounds.from_middle);
-        // Beyond the last part are copies of it.
+        // The lanes beyond the last part hold copies of it.
         let bits = bounds.near & (u8::MAX >> (LANES - kept.len()));
         near.push(bits);
         parts.extend(Ones::<LANES>(bits.into()).map(|lane| [0, kept[lane]]));
@@ -84,7 +84,8 @@ fn near_kept<N: Space<D>, const D: usize>(
     Nearby { parts, near, clearance }
 }
 
-/// A box in the frame of the second shape around all that is within `reach` of the first.
+/// Returns a box in the frame of the second shape that encloses all points within `reach` of the
+/// first.
 pub(super) fn search_box<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     reach: N,
@@ -93,7 +94,7 @@ pub(super) fn search_box<N: Space<D>, const D: usize>(
     enclosing(&aabb, &between.pose21)
 }
 
-/// How far a point is from the outside of a box that holds it.
+/// The distance of a point from the boundary of a box that holds it; negative outside.
 pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point<N, D>) -> N {
     let mut least = N::INFINITY;
     for axis in 0..D {
@@ -103,10 +104,10 @@ pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point
     least
 }
 
-/// The pairs of parts whose boxes are within `reach` of each other, in order; 0 stands for a shape
-/// that is not a composite.
+/// Returns the pairs of parts whose boxes are within `reach` of each other, sorted; 0 stands for a
+/// convex shape.
 ///
-/// Of a shape with itself: the pairs of parts that do not hang together, each once.
+/// For a shape with itself: the pairs of parts that are not adjacent, each once.
 pub(super) fn candidates<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     is_self: bool,
@@ -120,14 +121,14 @@ pub(super) fn candidates<N: Space<D>, const D: usize>(
             let aabb = search_box(between, reach);
             parts2.search().overlapping(&aabb, &mut |part2| found.push([0, part2]));
         }
-        // Composites come last among the kinds.
+        // In the order of kinds, composites come last.
         [_, None] => {}
     }
     found.sort_unstable();
     found
 }
 
-/// Keeps all pairs.
+/// Collects all pairs, with a constant limit.
 struct NearPairs<'a, N> {
     reach: N,
     found: &'a mut PartPairs,
@@ -140,8 +141,9 @@ impl<N: Real, const D: usize> MeetingVisitor<N, D> for NearPairs<'_, N> {
     }
 }
 
-/// The parts of two composites that may be within `reach`: by their trees, which tell by the parts as well. Where they
-/// have none, the parts of one are looked up in the other: of the one with fewer parts those that are near the other.
+/// Finds the parts of two composites that may be within `reach`: by their trees, which test the
+/// parts too. Without trees, each part of the composite with fewer parts that is near the other
+/// composite is looked up there.
 fn of_two<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     parts1: &dyn CompositeShape<N, D>,
@@ -170,7 +172,7 @@ fn of_two<N: Space<D>, const D: usize>(
     });
 }
 
-/// The parts of one composite, each with those of larger numbers.
+/// Finds the pairs of parts of one composite, the smaller index first.
 fn of_one<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     reach: N,
@@ -186,7 +188,7 @@ fn of_one<N: Space<D>, const D: usize>(
     }
 }
 
-/// The box of a part and of what is within `reach` of it, seen from the frame that `pose` leads to.
+/// The box of a part, loosened by `reach`, in the frame that `pose` maps to.
 fn box_of_part<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     index: u32,

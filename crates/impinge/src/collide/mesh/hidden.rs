@@ -1,11 +1,19 @@
-//! Faces that the solid cannot see, since it is on the other side of their neighbours.
+//! Faces hidden from the solid, because it is on the back of their neighbours.
 //!
-//! Each face of a surface with two sides is touched from the side that the solid's middle is on. Near
-//! an edge that is wrong for one of two: a box that lies on a table near its rim is in front of the
-//! top, but behind the plane of the side, whose inside it would seem to touch. Where two faces meet
-//! there are three cases: each is behind the other, as on a ridge; each is in front of the other, as
-//! in a valley; or the first is in front of the second, but the second behind the first. Then no solid
-//! is in front of both, and what lies behind is hidden.
+//! Each face of a two-sided surface is touched from the side that the centre of the solid is on.
+//! Near an edge that is wrong for one of two faces:
+//!
+//! ```text
+//!      ┌───────────┐
+//!      │     ·     │      · centre of a box: in front of the top,
+//!  ────┴─────────┐─┘        but behind the plane of the side, whose inside
+//!   top          │          it would seem to touch: the side is hidden
+//!                │ side
+//! ```
+//!
+//! Two faces that meet are each behind the other (a ridge), each in front of the other (a valley),
+//! or the first is in front of the second but the second behind the first. In the last case no
+//! solid is in front of both, and the face behind is hidden.
 
 use smallvec::SmallVec;
 
@@ -15,15 +23,15 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Point, Real, Space, Vector, max, min};
 
-/// Faces whose normals' cosine is above this hide nothing from each other.
+/// Faces do not hide each other if the cosine of their normals is larger.
 const ALIKE: f64 = 0.99;
-/// Heights up to so many rounding units of the lengths of both parts are rounding errors.
+/// Rounding error of heights, in units of epsilon times the lengths of both parts.
 const ROUNDING: f64 = 16.0;
-/// Of the faces around a corner only so many hide others: those nearest to the solid. Surfaces have six around
+/// Faces around a corner that can hide others: those nearest to the solid. Surfaces have six around
 /// most corners, but a fan of triangles has all around one.
 const MAX_HIDING: usize = 16;
 
-/// Where a face lies to the plane of another.
+/// The side of a plane that a face lies on.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum PlaneSide {
     Front,
@@ -31,29 +39,30 @@ enum PlaneSide {
     Across,
 }
 
-/// A face that is touched.
+/// A face in contact.
 struct TouchedFace<N: Real, const D: usize> {
+    /// Its index among the contacts.
     contact: usize,
-    /// How far its part is from the solid.
+    /// The distance of its part from the solid.
     distance: N,
-    /// Unit, on the side that is touched.
+    /// Unit, on the touched side.
     normal: Vector<N, D>,
     /// A segment has its second end twice.
     corners: [Point<N, D>; 3],
 }
 
-/// The faces, and for each corner of each the number of the corner and the index of the face; in order.
+/// The faces, and the pairs of corner id and face index, sorted.
 type TouchedFaces<N, const D: usize> =
     (SmallVec<[TouchedFace<N, D>; 8]>, SmallVec<[(u64, u32); 24]>);
 
-/// Leaves out the contacts of a convex solid with faces that others hide, with which they share a corner.
+/// Drops the contacts of a convex solid with faces that are hidden by faces with a common corner.
 ///
-/// Cost: O(n log n) in the number of faces that are touched.
+/// Cost: O(n log n) in the number of faces in contact.
 pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
 ) {
-    // Between two composites it is not one solid that is on one side.
+    // Two composites have no single centre that is on one side.
     if !scene.first_is_convex() {
         return;
     }
@@ -80,7 +89,7 @@ pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
     }
 }
 
-/// The faces that are touched.
+/// Collects the faces in contact.
 fn faces_of<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &[PartContact<N, D>],
@@ -93,7 +102,7 @@ fn faces_of<N: Space<D>, const D: usize>(
         let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
             continue;
         };
-        // What has no corners, as parts of a user's surface may be, hides nothing.
+        // Parts without corners, which a user's surface may have, hide nothing.
         let Some((corners, _)) = corners_of(&part) else { continue };
         let corners = corners.mapped(|corner| part.pose.point(&corner));
         scene.each_corner(piece.parts[1], |corner| shared.push((corner, next_face)));
@@ -104,12 +113,13 @@ fn faces_of<N: Space<D>, const D: usize>(
     (faces, shared)
 }
 
-/// Faces with these normals hide nothing from each other.
+/// Whether faces with these normals cannot hide each other.
 pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N, D>) -> bool {
     a.dot(b) > N::lit(ALIKE)
 }
 
-/// Which of two contacts is hidden: its face is behind the other, but the other is not behind it.
+/// Returns the contact that is hidden: its face is behind the other, but the other is not behind
+/// it.
 fn hidden_of<N: Real, const D: usize>(
     a: &TouchedFace<N, D>,
     b: &TouchedFace<N, D>,
@@ -122,11 +132,11 @@ fn hidden_of<N: Real, const D: usize>(
         (PlaneSide::Front, PlaneSide::Back) => (b, a),
         _ => return None,
     };
-    // What is farther hides nothing, so that the prediction never changes what overlaps.
+    // A farther face hides nothing, so that the prediction never changes an overlap.
     (front.distance <= max(back.distance, N::ZERO)).then_some(back.contact)
 }
 
-/// Where a part lies to the plane of another.
+/// Returns the side of the plane of one face that the other lies on, within rounding error.
 fn place<N: Real, const D: usize>(
     part: &TouchedFace<N, D>,
     plane: &TouchedFace<N, D>,

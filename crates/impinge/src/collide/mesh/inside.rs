@@ -1,4 +1,5 @@
-//! The contacts of what lies wholly inside a body: they lead out through the nearest part of its boundary.
+//! Contacts of pieces that lie wholly inside a body: they lead out through the nearest part of its
+//! boundary.
 
 use super::part_contact::{Arena, plain};
 use super::scene::Scene;
@@ -8,10 +9,10 @@ use crate::math::{Space, Unit};
 use crate::shape::Plane;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// The pieces that are inside of bodies. Contacts that their parts have with the boundary, which is near, are
-    /// taken away: from inside it is no surface that they come close to.
+    /// Returns the pieces that are inside of bodies, and removes the contacts of their parts with
+    /// the boundary: from inside, the boundary is no surface to touch.
     ///
-    /// A piece whose parts overlap some of the boundary is not inside: these contacts lead out.
+    /// A piece with a part that overlaps the boundary is not inside: its contacts lead out.
     pub(super) fn take_inside(&self, contacts: &mut PartContacts<N, D>) -> InsidePieces<N, D> {
         if self.is_self || !self.between.has_bodies() {
             return InsidePieces::new();
@@ -29,8 +30,8 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         pieces
     }
 
-    /// Adds the contacts of a piece that is inside: those that its parts have with the half-space below the plane
-    /// that the way out leads through.
+    /// Adds the contacts of a piece that is inside: those of its parts with the half-space below
+    /// the exit plane.
     pub(super) fn add_inside(
         &self,
         scene: &Scene<'_, N, D>,

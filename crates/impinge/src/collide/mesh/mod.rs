@@ -1,23 +1,22 @@
-//! Contacts of composites: those of the parts, as the whole has them.
+//! Contacts of composites: those of their parts that the whole shape admits.
 //!
-//! 1. [`gather`] finds the parts within the prediction: among those in [`part_cache`], where they serve still,
-//!    less those that a lower bound rejects ([`cull`]).
-//! 2. [`part_contact`] computes the contact of every two parts and asks the surfaces, if there are any, whether
-//!    the normal is one that the whole has there ([`normal_filter`]): if it is that of a seam, only contacts with
-//!    the face of the part count.
-//! 3. [`hidden`] drops contacts from behind a face that is touched from its front, [`resolve`] those that another
+//! 1. [`gather`] finds the parts within the prediction: those in [`part_cache`], while its box
+//!    suffices, without those that a lower bound culls ([`cull`]).
+//! 2. [`part_contact`] computes the contact of each pair of parts. [`normal_filter`] rejects
+//!    normals that a surface does not admit: at such a seam only contacts with the face count.
+//! 3. [`hidden`] drops contacts with faces that a neighbour hides, [`resolve`] those that another
 //!    contact explains. Solids that overlap always keep a contact.
-//! 4. [`inside`] adds the contacts of what lies wholly inside a body and so touches no part.
-//! 5. [`patch`] merges what is left into flat patches.
+//! 4. [`inside`] adds the contacts of pieces that lie wholly inside a body and touch no part.
+//! 5. [`patch`] merges the rest into flat patches.
 //!
-//! Boxes and hulls take step 2 in [`faces`], eight triangles of a surface at a time. [`chain`] does all of this for a
-//! chain in 2D, [`ball`] for a ball in 3D.
+//! Boxes and hulls take step 2 in [`faces`], eight triangles of a surface at a time. [`chain`] does
+//! all steps for a chain in 2D, [`ball`] for a ball in 3D.
 //!
-//! The classes of normals at a seam are those of Catto's chain shapes (Box2D, 2023), whose edges know
-//! their neighbours.
+//! The classes of normals at a seam are those of Catto's chain shapes (Box2D, 2023), whose edges
+//! know their neighbours.
 //!
-//! The contact of a query with a composite is the deepest of the manifolds that a world would have; with a
-//! half-space it is that of the nearest part.
+//! A query for the contact with a composite returns the deepest of the contacts that a world would
+//! have; with a half-space, that of the nearest part.
 
 mod ball;
 #[cfg(test)]
@@ -71,28 +70,26 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, min};
 use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
 
-/// So many points of two parts are kept before they are merged with those of others: all that two
-/// facets of usual solids have.
+/// Points kept per pair of parts before merging; enough for two facets of common solids.
 const PART_POINTS: usize = 16;
 
-/// Parts that are farther than the nearest by no more than this part of its distance are looked at
-/// too.
+/// Parts up to this fraction farther than the nearest are searched too.
 const NEARLY: f64 = 1.0 / 64.0;
 
-/// Lengths up to this part of a solid's size are small beside it.
+/// A limit up to this fraction of a solid's size is small.
 const SMALL: f64 = 1.0 / 4.0;
 
-/// The contacts of two shapes of which one at least is a composite, kept from update to update; in
-/// the frame of the first.
+/// Contacts of two shapes, at least one of them a composite, cached between updates; in the frame
+/// of the first.
 #[derive(Clone, Debug)]
 pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     patches: Vec<Patch<N, D>>,
     ids: PairIds,
-    /// In the frame of the second shape, where the middle of the first was when it was last seen on
-    /// the side of the surface that it came from: a solid that was pushed halfway through a surface
-    /// with two sides, or jumped there, is still on its old side.
+    /// The centre of the first shape, in the frame of the second, when it was last on the side of
+    /// the surface that it came from. A solid that was pushed halfway through a two-sided surface,
+    /// or jumped there, still counts as being on its old side.
     reference: Reference<N, D>,
-    /// The second shape in the frame of the first when the points were found.
+    /// The pose of the second shape in the frame of the first at the last update.
     pose12: Pose<N, D>,
     around: PartCache<N, D>,
 }
@@ -110,12 +107,12 @@ impl<N: Real, const D: usize> Default for CompositeContacts<N, D> {
 }
 
 impl<N: Real, const D: usize> CompositeContacts<N, D> {
-    /// Forgets what was found of shapes that may be others now; the contacts and their names stay.
+    /// Clears the cache of the shapes, which may have changed; the contacts and their ids stay.
     pub(crate) fn forget_shapes(&mut self) {
         self.around = PartCache::default();
     }
 
-    /// A number of each place in memory that an update reads first, of no meaning.
+    /// Touches the cache lines that the next update reads first; the returned value is meaningless.
     #[inline]
     pub(crate) fn prefetch(&self) -> N {
         let patch = self.patches.first();
@@ -124,17 +121,18 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
         max(max(normal, point.map_or(N::ZERO, |point| point.raw.distance)), self.around.prefetch())
     }
 
-    /// The manifolds.
+    /// The manifolds, sorted by their first parts.
     pub(crate) fn patches(&self) -> &[Patch<N, D>] {
         &self.patches
     }
 
-    /// How many contact points there are.
+    /// The number of contact points.
     pub(crate) fn len(&self) -> usize {
         self.patches.iter().map(|patch| patch.points.len()).sum()
     }
 
-    /// Calls with the normal, the distance and the first point of each contact.
+    /// Calls `each` with the normal, the distance and the first point of each contact; the distance
+    /// may be changed.
     pub(crate) fn each_point(&mut self, mut each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
         for Patch { normal, points } in &mut self.patches {
             points.iter_mut().for_each(|point| {
@@ -143,7 +141,7 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
         }
     }
 
-    /// The same contacts with the second shape first.
+    /// Exchanges the two shapes; points and normals are then in the frame of the new first shape.
     pub(crate) fn flip(&mut self) {
         self.reference = None;
         self.forget_shapes();
@@ -160,22 +158,21 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// Computes the contacts for new poses, of two shapes or of one with itself; points that
-    /// moved keep their ids. Other shapes than before have to be announced
-    /// by [`Self::forget_shapes`].
+    /// Computes the contacts for new poses, of two shapes or of one with itself; points that moved
+    /// keep their ids. If a shape has changed, [`Self::forget_shapes`] must be called before.
     pub(crate) fn update(
         &mut self,
         between: &Between<'_, N, D>,
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
-        // What is inside of a body touches no part: that is asked in one way.
+        // A solid inside a body touches no part; only the generic path handles it.
         if between.has_bodies() || !<N::Algorithms>::update_quickly(self, between, request) {
             self.update_in_general(between, is_self, request);
         }
     }
 
-    /// [`Self::update`] of any two shapes.
+    /// [`Self::update`] by the generic path.
     fn update_in_general(
         &mut self,
         between: &Between<'_, N, D>,
@@ -186,7 +183,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let around = &mut self.around;
         let nearby = gather::nearby(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
-        // A body knows by itself on which side its inside is.
+        // A body has its own inside: no side is remembered.
         let old = self.reference.filter(|_| !between.has_bodies());
         let way = Travelled { old, clearance: nearby.clearance };
         let reference = center.map(|center| advanced(between, &way, center));
@@ -197,8 +194,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         self.conclude(&between.pair, request, [reference, center], &contacts, &arena);
     }
 
-    /// Keeps what is found as contacts, and the middle of the first shape: where it counts as being if the
-    /// shapes overlap, else where it is.
+    /// Merges the contacts into patches, and keeps the reference point for the next update:
+    /// `reference` while the shapes overlap, else `center`.
     fn conclude(
         &mut self,
         pair: &Pair<'_, N, D>,
@@ -216,7 +213,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
             pieces.push(found.piece.clone());
         }
         if !pieces.is_empty() && self.patches.capacity() == 0 {
-            // Most pairs never have more than one: what lies close together is read faster.
+            // Most pairs never have more than one; an exact capacity keeps memory compact.
             self.patches.reserve_exact(1);
         }
         let (pieces, points) = (pieces.as_slice(), arena.points.as_slice());
@@ -227,7 +224,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     }
 }
 
-/// Settling would change nothing: all hold, with faces of about one normal, and as near as the nearest.
+/// Whether [`Query::settle`] would change nothing: all contacts are [`PartStatus::Own`], their
+/// faces have about one normal, and the lowest point is as near as the nearest part.
 fn is_settled<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
     let mut face: Option<Vector<N, D>> = None;
@@ -245,21 +243,23 @@ fn is_settled<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     contacts.is_empty() || lowest <= max(distance, N::ZERO)
 }
 
-/// The middle of a convex first shape, in the frame of the second.
+/// The centre of a convex first shape, in the frame of the second.
 fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Option<Point<N, D>> {
     let map = Geometry(between.pair.first).as_support_map()?;
     Some(between.pose21.point(&map.center()))
 }
 
-/// Where the middle of the first shape was.
+/// The reference point of the last update, and the free space around the new centre.
 struct Travelled<N: Real, const D: usize> {
     old: Reference<N, D>,
-    /// No part of the second shape is nearer to where it is.
+    /// Lower bound of the distance from the centre of the first shape to the second; zero if
+    /// unknown.
     clearance: N,
 }
 
-/// Where the middle of the first shape counts as being: where it is, unless the straight way there
-/// from where it was leads through the surface and is no longer than the shape is.
+/// Returns the reference point of the first shape: its centre, unless the segment from the old
+/// reference point to it crosses the surface and is at most twice the bounding radius long; then
+/// the old one.
 fn advanced<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     way: &Travelled<N, D>,
@@ -272,7 +272,7 @@ fn advanced<N: Space<D>, const D: usize>(
     let (Some(old), Some(composite), Some(map)) = (old, composite, map) else { return center };
     let way = center - old;
     let length = way.norm();
-    // Half of what is known to be free leaves room for rounding.
+    // Half of the clearance leaves room for rounding.
     let is_free = length < clearance * N::HALF;
     if is_free || way == Vector::<N, D>::zeros() || length > N::TWO * size(map) {
         return center;
@@ -281,27 +281,28 @@ fn advanced<N: Space<D>, const D: usize>(
     if is_hit { old } else { center }
 }
 
-/// What is asked of a pair.
+/// The input for the contacts of a pair.
 pub(crate) struct Query<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
-    /// The two are one shape.
+    /// Whether the two are one shape.
     is_self: bool,
-    /// What is kept of the parts of the second shape.
+    /// The cached parts of the second shape.
     around: &'a PartCache<N, D>,
     reference: &'a Reference<N, D>,
-    /// What is asked of two parts.
+    /// The request for each pair of parts.
     request: &'a ManifoldRequest<N>,
 }
 
 pub(crate) type PartContacts<N, const D: usize> = SmallVec<[PartContact<N, D>; 8]>;
 
-/// Beside more parts than these room is made for all that may be found, so many points at each.
+/// Above this number of pairs of parts, memory is reserved for a contact each, with
+/// `POINTS_AT_A_PART` points.
 const MANY_PARTS: usize = 32;
 const POINTS_AT_A_PART: usize = 4;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// What some pairs of parts say; which of it holds is settled. Contacts within the `prediction` are asked for,
-    /// of parts perhaps more.
+    /// Computes the contacts of nearby pairs of parts, and decides which hold. `prediction` is that
+    /// of the whole shapes; that of the parts in `request` may be larger.
     fn part_contacts(
         &self,
         prediction: N,
@@ -329,7 +330,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         contacts
     }
 
-    /// Settles which of the contacts hold.
+    /// Decides which contacts hold, and computes the points that are still missing.
     fn settle(
         &self,
         scene: &Scene<'_, N, D>,
@@ -345,8 +346,9 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     }
 }
 
-/// What is asked of two parts: of points that turning brings near, the nearest point may lie on
-/// another part, so that is looked at when all are known.
+/// Returns the request for each pair of parts. Its prediction is larger by the distance that
+/// turning can bring points nearer. Their centre of rotation, the nearest point, may lie on another
+/// part, so [`merge`] drops the points that stay beyond.
 fn of_parts<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -357,13 +359,13 @@ fn of_parts<N: Space<D>, const D: usize>(
     ManifoldRequest { prediction: prediction + way, sine: N::ZERO, max_points: PART_POINTS }
 }
 
-/// No point of a solid is farther from its origin.
+/// The bounding radius of a solid around its origin.
 fn size<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> N {
     map.reach() + map.rounding()
 }
 
-/// The contact of two placed shapes in the world frame, `None` beyond `limit`: of composites the
-/// deepest of what their manifolds are made of.
+/// Returns the contact of two placed shapes in the world frame, `None` beyond `limit`. For
+/// composites it is the deepest point of the manifolds that a world would have.
 pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -377,7 +379,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     let in_world = |found| placed(&found, ordered.first, ordered.swapped);
     if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_way(&between)
     {
-        // Points that differ by rounding alone are all there, whatever the limit.
+        // Points that differ by rounding alone are all considered, whatever the limit is.
         let rounding = rounding(&between);
         let mut found = deepest_within(&between, max(limit, rounding))?;
         let is_close = found.distance > N::ZERO && found.distance <= rounding;
@@ -386,26 +388,26 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
         }
         return Some(found).filter(|found| found.distance <= limit).map(in_world);
     }
-    // The deepest contact of two composites is looked for among all that they have.
+    // The deepest contact of two composites is searched among all their contacts.
     let nearest = match between.composites() {
         [Some(_), Some(_)] => touching_of_ordered(&ordered, limit)?,
         _ => of_ordered(&ordered, limit)?,
     };
-    // A half-space has one normal, whatever part it meets: the deepest part has the deepest contact.
+    // A half-space has one normal, so the deepest part has the deepest contact.
     if between.is_half_space_first() && nearest.distance.is_finite_number() {
         return Some(nearest);
     }
     deepest(&between, nearest.distance, limit).map(in_world)
 }
 
-/// A length is small beside a convex first shape: to look for the nearest part before those within it is
-/// dearer than to look at all of these.
+/// Whether `limit` is small relative to a convex first shape. Then visiting all parts within it
+/// costs less than searching for the nearest part first.
 fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, limit: N) -> bool {
     let map = Geometry(between.pair.first).as_support_map();
     limit >= N::ZERO && map.is_some_and(|map| limit <= size(map) * N::lit(SMALL))
 }
 
-/// Contacts mostly have a kernel of their own: of balls and surfaces, and of chains.
+/// Whether the pair mostly has a kernel of its own: balls on surfaces, and chains.
 fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
     let [None, Some(parts)] = between.composites() else { return false };
     if parts.has_bodies() {
@@ -415,19 +417,19 @@ fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool
     matches!(between.pair.first, Kind::Ball(_)) || is_chain()
 }
 
-/// The deepest contact of shapes whose distance is known. Of shapes that are apart only the parts as
-/// near as the nearest are looked at, unless that is one that cannot be touched.
+/// Returns the deepest contact of shapes whose distance is known. If they are apart, only parts
+/// about as near as the nearest are searched, unless none of these can be touched.
 ///
-/// A contact that differs from the distance by rounding alone has that: it exists where the shapes touch, and is
-/// no overlap where they are apart. One of [`has_own_way`] of shapes that are apart is as it is found without the
-/// distance.
+/// A contact whose distance differs from `distance` by rounding alone gets that distance: it exists
+/// where the shapes touch, and is no overlap where they are apart. Pairs with [`has_own_way`] that
+/// are apart keep the distance of the contact.
 fn deepest<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     distance: N,
     limit: N,
 ) -> Option<Separation<N, D>> {
     let (near, rounding) = (max(distance, N::ZERO), rounding(between));
-    // Along the normal of its face a part may be a little farther than it is.
+    // Along the normal of its face, a part may be a little farther than its distance.
     let reach = near + near * N::lit(NEARLY) + rounding;
     let mut found =
         deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)))?;
@@ -441,16 +443,16 @@ fn deepest<N: Space<D>, const D: usize>(
     (found.distance <= limit).then_some(found)
 }
 
-/// A contact of shapes that touch, which rounding has left apart.
+/// Returns the contact with distance zero, for shapes that touch and are apart by rounding alone.
 fn touching<N: Real, const D: usize>(found: &Separation<N, D>) -> Separation<N, D> {
     Separation { distance: N::ZERO, point2: found.point1, ..*found }
 }
 
-/// Lengths below this are rounding errors of the pair.
+/// Bound of the rounding errors of lengths in the pair.
 fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
     let size = |kind: Kind<'_, N, D>| {
         let aabb = aabb_of(kind, &Pose::identity());
-        // What is far from its origin has large numbers, too.
+        // Points far from the origin have large coordinates too.
         let far = || aabb.half_extents().norm() + aabb.center().coords.norm();
         if aabb.is_bounded() { far() } else { N::ZERO }
     };
@@ -458,8 +460,8 @@ fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
     N::lit(64.0) * N::EPSILON * (sizes + between.pair.pose12.translation.norm())
 }
 
-/// How far those parts of one composite are apart that do not hang together; negative where they
-/// overlap, `None` beyond `limit`. The pair is that of the shape with itself.
+/// Returns the least distance of two parts of one composite that are not adjacent; negative if they
+/// overlap, `None` beyond `limit`. `pair` is the shape with itself.
 pub(crate) fn own_distance<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

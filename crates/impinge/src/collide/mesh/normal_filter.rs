@@ -1,40 +1,41 @@
-//! Whether a contact with one part of a surface is one of the whole.
+//! Decides whether a contact with one part of a surface is a contact of the whole.
 
 use crate::math::{Point, Real, Space, Vector, unit};
 use crate::shape::{FeatureId, SurfaceAccess};
 
-/// Normals this many rounding units from a face's own are that one.
+/// A normal within this many rounding units of the face's own counts as that.
 const ROUNDING: f64 = 4096.0;
-/// On a face there is no other normal than its own: what differs by less is that one.
+/// On a face the only normal is its own: a normal that differs by less counts as that.
 const ON_FACE: f64 = 1.0 / 64.0;
-/// A normal that points this far to the other side of a face is one of the other side.
+/// A normal with a smaller component along the face's own belongs to the other side of the face.
 pub(super) const BEHIND: f64 = -0.5;
 
-/// To look for a ridge a face's normal is leaned by this part of the way to another: by more than
-/// what counts as flat.
+/// To find a ridge, the normal of the face is tilted by this share towards another: by more than
+/// the limit of flatness.
 const A_LITTLE: f64 = 1.0 / 32.0;
 
-/// What a surface says of a contact of one of its parts. Normals are away from the part, in the
-/// frame of the composite.
+/// The result of the filter for one contact. Normals are away from the part, in the frame of the
+/// composite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FilteredNormal<N: Real, const D: usize> {
-    /// The part cannot be touched from where the other solid is.
+    /// The part cannot be touched from the position of the other solid.
     Nothing,
-    /// The surface has this normal there.
+    /// The surface admits the normal at the feature.
     Admitted,
-    /// The normal is that of the face, but for rounding.
+    /// The normal is that of the face, within rounding.
     Face(Vector<N, D>),
-    /// The normal is that of a seam. Contacts with the face itself have this one.
+    /// The seam does not admit the normal. A contact with the face itself has the normal given
+    /// here.
     Snapped(Vector<N, D>),
-    /// The normal lies beyond those of a ridge, at whose other side another part has a face: this
-    /// one's counts only if no other contact explains the overlap.
+    /// The normal lies beyond those of a ridge, on whose other side another part has a face. The
+    /// contact with this part's face counts only if no other contact explains the overlap.
     Beyond(Vector<N, D>),
-    /// The normal is that of a seam, and there is no face.
+    /// The seam does not admit the normal, and the part has no face.
     Refused,
 }
 
 impl<N: Real, const D: usize> FilteredNormal<N, D> {
-    /// The normal of the face that a contact would be with.
+    /// The normal of the face that the contact is with.
     pub(super) const fn face(&self) -> Option<Vector<N, D>> {
         match self {
             Self::Face(face) | Self::Snapped(face) | Self::Beyond(face) => Some(*face),
@@ -43,21 +44,21 @@ impl<N: Real, const D: usize> FilteredNormal<N, D> {
     }
 }
 
-/// The contact of a part with the other solid, as seen by the composite.
+/// The contact of a part with the other solid, in the frame of the composite.
 pub(super) struct Case<'a, N: Real, const D: usize> {
     pub(super) part: u32,
-    /// Where on the part; most cases are settled without it.
+    /// The feature of the part at the contact; most cases are decided without it.
     pub(super) feature: &'a dyn Fn() -> FeatureId,
-    /// The other solid is beside the part, so that [`FilteredNormal::Snapped`] says as much as
-    /// [`FilteredNormal::Beyond`].
+    /// Whether the other solid is beside the part, so that `Snapped` and `Beyond` have the same
+    /// effect and need no distinction.
     pub(super) is_beside: bool,
     /// Unit, away from the part.
     pub(super) outward: Vector<N, D>,
-    /// From the part to where the other solid comes from.
+    /// From the part to the reference point of the other solid.
     pub(super) toward: Vector<N, D>,
 }
 
-/// The solid at `center` can touch the part.
+/// Whether a solid whose reference point is `center` can touch the part; true without a surface.
 pub(super) fn faces<N: Space<D>, const D: usize>(
     surface: Option<SurfaceAccess<'_, N, D>>,
     part: u32,
@@ -66,7 +67,8 @@ pub(super) fn faces<N: Space<D>, const D: usize>(
     surface.is_none_or(|surface| surface.faces(part, center))
 }
 
-/// What the surface of a shape, if it has one, says of a contact.
+/// Filters the normal of a contact by the surface of a shape; without a surface every normal is
+/// admitted.
 pub(super) fn filter_normal<N: Space<D>, const D: usize>(
     surface: Option<SurfaceAccess<'_, N, D>>,
     case: &Case<'_, N, D>,
@@ -103,8 +105,9 @@ pub(super) fn filter_normal<N: Space<D>, const D: usize>(
     }
 }
 
-/// What tells that the part ends at a ridge, and that the normal, which is not one of the ridge's, lies
-/// beyond all that are: seen from the face, normals that lean a little the same way are the ridge's.
+/// Returns the normal of the face tilted slightly towards the normal of the contact. If the seam
+/// admits it but not the contact's, the part ends at a ridge, and the contact's normal lies beyond
+/// all that the ridge has.
 fn leaning<N: Space<D>, const D: usize>(
     case: &Case<'_, N, D>,
     face: &Vector<N, D>,
@@ -113,7 +116,7 @@ fn leaning<N: Space<D>, const D: usize>(
     unit(&leaning).map(|(leaning, _)| leaning)
 }
 
-/// A flat piece; for the segments of a surface in 2D that is an edge.
+/// Whether a feature is a flat face; a segment of a surface in 2D is an edge instead.
 fn is_face(feature: FeatureId) -> bool {
     matches!(feature, FeatureId::Face(_))
 }

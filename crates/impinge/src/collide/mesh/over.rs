@@ -1,24 +1,24 @@
 //! The feature of a triangle that a ball touches, if rounding cannot change it.
 //!
-//! What a contact lies on follows in general from the supporting features of a manifold. For a ball over a triangle
-//! that is not thin it is plain to see: the middle lies over the inside, beside one side or beside
-//! one corner, each by far more than what counts as rounding.
+//! In general the feature of a contact follows from the supporting features of a manifold. For a
+//! ball over a triangle that is not thin the region of its centre decides: over the inside, beside
+//! one side or beside one corner, by far more than rounding error.
 
 use crate::math::{Mapped, Point, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Triangle};
 
-/// So many tolerances from the border of a region its answer is certain.
+/// Distance from the border of a region, in tolerances, from which the region is certain.
 const CERTAIN: f64 = 64.0;
 /// The least ratio of a triangle's height to its longest side.
 const MIN_HEIGHT: f64 = 1.0 / 32.0;
 
-/// In 2D triangles are filled.
+/// In 2D triangles are filled and have no such regions.
 pub(crate) fn over2<N: Real>(_: &Triangle<N, 2>, _: &Point<N, 2>, _: N) -> Option<FeatureId> {
     None
 }
 
-/// The feature of a triangle in 3D that is nearest to the middle of a ball, as supporting features would name
-/// it; of its two faces the one that the ball is on. `None` where that is not certain.
+/// Returns the feature of a triangle in 3D nearest to the centre of a ball, as supporting features
+/// would name it; of the two faces, the one on the side of the ball. `None` if it is not certain.
 pub(crate) fn over3<N: Real>(
     triangle: &Triangle<N, 3>,
     center: &Point<N, 3>,
@@ -31,7 +31,7 @@ pub(crate) fn over3<N: Real>(
     let longest = max(lengths[0], max(lengths[1], lengths[2]));
     let normal = cross(&sides[0], &sides[1]);
     let (area, room) = (normal.norm(), N::lit(CERTAIN) * tolerance);
-    // False for NaN, which is not certain.
+    // False for NaN.
     let is_plain = area > N::lit(MIN_HEIGHT) * longest * longest && longest > room;
     if !is_plain {
         return None;
@@ -49,22 +49,22 @@ pub(crate) fn over3<N: Real>(
     beside(&Border { sides, arms, lengths, insides, room })
 }
 
-/// The border of a triangle and what lies beside it.
+/// A triangle and the position of a point relative to its border.
 struct Border<N: Real> {
     sides: [Vector<N, 3>; 3],
     /// From the corners to the point.
     arms: [Vector<N, 3>; 3],
     lengths: [N; 3],
-    /// How far inside of each side the point is.
+    /// The distance of the point from each side, positive inside.
     insides: [N; 3],
     room: N,
 }
 
-/// The side that the point is beyond and between the ends of, or the corner that it is beyond both
-/// sides of.
+/// Returns the side that the point is beyond, between its ends, or the corner that it is beyond
+/// along both sides.
 fn beside<N: Real>(border: &Border<N>) -> Option<FeatureId> {
     let Border { sides, arms, lengths, insides, room } = border;
-    // Where two sides meet at a small angle, a place on one is nearer to the other.
+    // Where two sides meet at a small angle, the nearest point may be on the other side.
     let aside = N::lit(CERTAIN) * *room;
     for at in 0..3 {
         let along = sides[at].dot(&arms[at]) / lengths[at];

@@ -1,6 +1,12 @@
-//! The parts around a solid, kept from update to update.
+//! The parts around a solid, cached between updates.
 //!
-//! The parts are those of the shape that the last update saw: a new shape forgets them.
+//! The cache belongs to the shape of the last update: a new shape clears it.
+//!
+//! ```text
+//!  parts   p0 p1 p2 … p10                       ascending indices of parts
+//!  tiles   [p0 … p7] [p8 p9 p10 p10 … p10]      corners of eight parts, the last one repeated
+//!  seams   one per part                         filled when a solid is near
+//! ```
 
 use smallvec::SmallVec;
 
@@ -10,20 +16,20 @@ use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportMap, Triangle};
 
-/// The room that is searched around a box to find parts for later.
+/// The margin around a box in which parts are cached for later updates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum CacheRoom {
-    /// Where it holds no more parts than are looked at side by side.
+    /// Until it holds more parts than one packet, or another given number.
     #[default]
     Large,
-    /// There were too many in a large room.
+    /// The large margin held too many parts.
     Small,
-    /// There is no later.
+    /// No later update: only the box itself.
     None,
 }
 
 impl CacheRoom {
-    /// As a share of the half extents of the box.
+    /// The margin relative to the largest half extent of the box.
     fn share(self) -> f64 {
         match self {
             Self::Large => 0.5,
@@ -33,46 +39,50 @@ impl CacheRoom {
     }
 }
 
-/// What is kept of the seams of a triangle.
+/// The cached seams of a triangle.
 #[derive(Clone, Copy, Debug)]
 enum KeptSeams<N: Real> {
-    /// Nobody asked.
+    /// Not computed yet.
     Unasked,
-    /// The surface has to be asked each time.
+    /// The surface must be called each time.
     Unknown,
     Known(FaceSeams<N>),
 }
 
-/// The parts around a convex solid, found for a larger box than it needs: they serve for as long as it
-/// stays in that.
+/// The parts around a convex solid, found for a larger box than it needs. They serve as long as the
+/// solid stays in that box.
 ///
-/// Parts that are given by their corners, in the frame of the composite, are kept with these: eight side
-/// by side, in one place of memory, whereas the composite has them wherever its vertices lie. That is 36 bytes for
+/// Corners of triangles and segments in the frame of the composite are copied, eight parts side by
+/// side, in one block of memory; in the composite they lie wherever its vertices are. That takes 36
+/// bytes for each triangle around the solid with `f32`.
 /// each triangle around the solid with `f32`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PartCache<N: Real, const D: usize> {
+    /// The box with all its parts in the cache; `None` before the first search.
     within: Option<Aabb<N, D>>,
-    /// In order.
+    /// The indices of all parts that overlap `within`, ascending.
     parts: SmallVec<[u32; 8]>,
-    /// Of all parts, or of none.
+    /// The corners of all parts; empty unless all have corners in the frame of the composite.
     tiles: Vec<PartPacket<N, D>>,
-    /// Of all parts, as far as they were near to a solid that asks for it, or of none.
+    /// The seams of all parts, filled where a solid was near; empty if no solid needs them.
     seams: Vec<KeptSeams<N>>,
+    /// Whether the corners in `tiles` are those of segments.
     are_segments: bool,
     /// Half the extents of the solid's core, in its own frame.
     half: Option<Vector<N, D>>,
+    /// The margin of the next search; it never grows.
     room: CacheRoom,
 }
 
 impl<N: Real, const D: usize> PartCache<N, D> {
-    /// For one update alone.
+    /// A cache for a single update, without a margin.
     pub(super) fn for_once() -> Self {
         Self { room: CacheRoom::None, ..Self::default() }
     }
 }
 
 impl<N: Real, const D: usize> PartCache<N, D> {
-    /// A number of the first corner that is kept, of no meaning.
+    /// A meaningless number from the first packet, to load its cache line.
     #[inline]
     pub(super) fn prefetch(&self) -> N {
         self.tiles.first().map_or(N::ZERO, |tiles| tiles.corners[0][0][0])
@@ -80,7 +90,7 @@ impl<N: Real, const D: usize> PartCache<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PartCache<N, D> {
-    /// Makes sure that the parts are among those kept that overlap a box; answers whether they are.
+    /// Makes sure that the cache holds all parts that overlap a box; false if the box is unbounded.
     pub(super) fn reaches(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
@@ -89,7 +99,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.reaches_with(composite, aabb, LANES)
     }
 
-    /// [`Self::reaches`] with the large room where that holds no more parts than `most`.
+    /// [`Self::reaches`], with the large margin as long as this holds at most `most` parts.
     pub(super) fn reaches_with(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
@@ -106,11 +116,13 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         true
     }
 
-    /// The parts that are kept are all that overlap a box.
+    /// Whether the cache holds all parts that overlap a box.
     pub(super) fn holds(&self, aabb: &Aabb<N, D>) -> bool {
         self.within.as_ref().is_some_and(|within| within.contains(aabb))
     }
 
+    /// Searches the parts around a box with a margin and copies their corners. Once the large
+    /// margin holds more than `most` parts, the small one is used from then on.
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
         let with_room = |room: CacheRoom| aabb.loosened(half * N::lit(room.share()));
@@ -129,7 +141,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.keep_seams(&before);
     }
 
-    /// Keeps what is known of the seams of parts that were kept before, and forgets the rest.
+    /// Keeps the seams of parts that were cached before, and drops the rest.
     fn keep_seams(&mut self, before: &[u32]) {
         if before.is_empty() {
             return self.seams.clear();
@@ -145,6 +157,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.seams = kept;
     }
 
+    /// Replaces the list of parts by those that overlap `within`, unsorted.
     fn search(&mut self, composite: &dyn CompositeShape<N, D>, within: &Aabb<N, D>) {
         self.parts.clear();
         composite.search().overlapping(within, &mut |part| self.parts.push(part));
@@ -152,14 +165,14 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
 
     /// Copies the corners of all parts, if all have corners.
     fn fill_tiles(&mut self, composite: &dyn CompositeShape<N, D>) {
-        // Not a byte more than that: there are as many of these as pairs.
+        // Exact capacity: there are as many of these lists as pairs.
         self.tiles.reserve_exact(self.parts.len().div_ceil(LANES));
         for parts in self.parts.chunks(LANES) {
             let mut tiles = PartPacket::blank();
             for lane in 0..LANES {
                 let part = composite.part(parts[lane.min(parts.len() - 1)]);
                 let is_first = lane == 0 && self.tiles.is_empty();
-                // Only what lies in the frame of its composite.
+                // Corners are only kept for parts in the frame of the composite.
                 let corners = corners_of(&part).filter(|_| part.pose.is_same(&Pose::identity()));
                 match corners {
                     Some((corners, is_segment)) if is_first || is_segment == self.are_segments => {
@@ -173,18 +186,18 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         }
     }
 
-    /// The parts, in order.
+    /// The cached parts, ascending.
     pub(super) fn parts(&self) -> &[u32] {
         &self.parts
     }
 
-    /// The corners of all parts in packets of eight; empty if they are not kept.
+    /// The corners of all parts in packets of eight; empty if some part has none.
     pub(super) fn tiles(&self) -> &[PartPacket<N, D>] {
         &self.tiles
     }
 
-    /// Asks the surface of a composite for the seams of those of its triangles that are near, given a bit for each part
-    /// of each tile.
+    /// Gets the seams of triangles from the surface of the composite; `near` has a bit for each
+    /// part of each packet that needs them.
     pub(super) fn learn_seams(&mut self, composite: &dyn CompositeShape<N, D>, near: &[u8]) {
         let surface = composite.surface_access().filter(|_| self.has_triangles_alone());
         let Some(surface) = surface else { return };
@@ -200,7 +213,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         }
     }
 
-    /// What is kept of the seams of a triangle.
+    /// The seams of the part at an index in [`Self::parts`]; `None` if unknown.
     pub(super) fn seams(&self, place: usize) -> Option<&FaceSeams<N>> {
         match self.seams.get(place)? {
             KeptSeams::Known(seams) => Some(seams),
@@ -208,17 +221,17 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         }
     }
 
-    /// All parts are segments that are kept by their corners.
+    /// Whether all parts are segments with cached corners.
     pub(super) fn has_segments_alone(&self) -> bool {
         self.parts.is_empty() || self.are_segments && !self.tiles.is_empty()
     }
 
-    /// All parts are triangles that are kept by their corners.
+    /// Whether all parts are triangles with cached corners.
     pub(super) fn has_triangles_alone(&self) -> bool {
         self.parts.is_empty() || !(self.are_segments || self.tiles.is_empty())
     }
 
-    /// Half the extents of the core of the solid that this is about.
+    /// Half the extents of the core of the solid, along its own axes.
     pub(super) fn half(&mut self, map: &dyn SupportMap<N, D>) -> Vector<N, D> {
         *self.half.get_or_insert_with(|| {
             let center = map.center();
@@ -233,7 +246,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         })
     }
 
-    /// A part from what is kept of it.
+    /// Returns a part from its cached corners.
     pub(super) fn part(&self, part: u32) -> Option<Part<'static, N, D>> {
         if self.tiles.is_empty() {
             return None;
@@ -249,7 +262,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
     }
 }
 
-/// The corners of a part in its own frame, those of a segment with the second twice, and whether it is one.
+/// Returns the corners of a part in its own frame, the second end of a segment twice, and whether
+/// it is a segment; `None` for other parts.
 pub(super) fn corners_of<N: Real, const D: usize>(
     part: &Part<'_, N, D>,
 ) -> Option<([Point<N, D>; 3], bool)> {

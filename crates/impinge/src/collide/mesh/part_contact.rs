@@ -1,4 +1,11 @@
-//! The contact of each pair of parts, by the normals that the surfaces have.
+//! The contact of each pair of parts, with a normal that the surfaces admit.
+//!
+//! ```text
+//!   separation ──> filter_normal ──> settled ──> Nothing   no contact
+//!   of the pair    per surface                   Refused   `Left`, without points
+//!                                                Found     points at the nearest points
+//!                                                Forced    points along the normal of a face
+//! ```
 
 use crate::tables::ByDimension;
 
@@ -12,54 +19,57 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector, min};
 use crate::shape::{FeatureId, Kind, SurfaceAccess};
 
-/// Whether a contact of two parts is one of the two shapes.
+/// Whether a contact of two parts is a contact of the shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PartStatus {
     /// It is one.
     Own,
-    /// It is one with the face of a part, whose seams the parts alone would touch at.
+    /// It is along the normal of a face, whose seam does not admit the normal of the parts. Dropped
+    /// if a shallower contact explains the overlap.
     Snapped,
-    /// The same, beyond a ridge: it is one if nothing else explains that the parts overlap.
+    /// It is along the normal of a face that ends at a ridge, and the normal of the parts lies
+    /// beyond the ridge. Dropped if another contact explains the overlap, even one along the same
+    /// normal.
     Beyond,
-    /// It is none, as long as there is another.
+    /// It is dropped, unless it is the nearest and no other contact is as near.
     Left,
 }
 
 /// The contact of two parts that are within reach of each other.
 #[derive(Clone, Debug)]
 pub(crate) struct PartContact<N: Real, const D: usize> {
-    /// How far the two are apart, each taken alone, and along which normal, from the first shape to
-    /// the second in the frame of the first; zero where several say so.
+    /// The separation of the two parts alone, and its normal: unit, from the first shape to the
+    /// second, in the frame of the first. The normal is zero without a normal filter.
     pub(super) distance: N,
     pub(super) normal: Vector<N, D>,
-    /// What they say of the contact of the shapes, in the frame of the first. Without points where
-    /// that is no contact of the shapes: few are asked for it, see [`nearest_points`].
+    /// The manifold of the pair, in the frame of the first shape. It has no points where the filter
+    /// drops the contact, and until [`nearest_points`] where [`Self::is_owing`].
     pub(super) piece: Piece<N, D>,
-    /// The least distance of the piece's points.
+    /// The least distance of the points in `piece`; infinite without points.
     pub(super) lowest: N,
     pub(super) status: PartStatus,
-    /// The normal of the face of the second shape's part that touches, in the second's frame; `None`
-    /// if it touches otherwise.
+    /// The normal of the face in contact of the second shape's part, in the frame of the second
+    /// shape; `None` for a contact with another feature.
     pub(super) face: Option<Vector<N, D>>,
-    /// Lengths below this are rounding errors.
+    /// Bound of the rounding errors of lengths.
     pub(super) tolerance: N,
 }
 
-/// The memory of one update: the points of all contacts, and the manifold that is being made.
+/// The buffers of one update: the points of all contacts, and the manifold being built.
 #[derive(Default)]
 pub(crate) struct Arena<N: Real, const D: usize> {
     /// The points of all pieces.
     pub(super) points: RawPoints<N, D>,
-    /// What counts as rounding of parts that were passed over.
+    /// Bound of the rounding errors of parts that were skipped.
     pub(super) rounding: N,
-    /// All faces that are touched are fronts of a surface that has its fronts on one side: none hides another, since the
-    /// solid is in front of all.
+    /// Whether all faces in contact are fronts, with neighbours oriented alike. Then none hides
+    /// another: the solid is in front of all.
     pub(super) are_fronts: bool,
     raw: RawManifold<N, D>,
 }
 
 impl<N: Real, const D: usize> Arena<N, D> {
-    /// An empty manifold to be made.
+    /// Returns the manifold buffer, emptied.
     pub(super) fn blank(&mut self) -> &mut RawManifold<N, D> {
         self.raw.points.clear();
         &mut self.raw
@@ -71,7 +81,8 @@ impl<N: Real, const D: usize> PartContact<N, D> {
         self.piece.parts
     }
 
-    /// It holds, but what it said along a face's normal does not: its nearest points are still to be found.
+    /// Whether the contact holds but has no points yet: those along the normal of a face did not
+    /// hold.
     pub(super) fn is_owing(&self) -> bool {
         self.status != PartStatus::Left && self.piece.points.is_empty()
     }
@@ -82,7 +93,7 @@ impl<N: Real, const D: usize> PartContact<N, D> {
     }
 }
 
-/// Appends the manifold of two parts to the points; answers the piece and its least distance.
+/// Appends the manifold in the arena to its points; returns the piece and its least distance.
 fn appended<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
@@ -92,11 +103,12 @@ fn appended<N: Space<D>, const D: usize>(
     (placed.piece(&arena.raw, parts, &mut arena.points), lowest)
 }
 
-/// Where the solid that meets a surface comes from, where it is not just its middle.
+/// The reference point of the first shape in the frame of the second: it decides on which side of a
+/// surface the shape is. `None` for the centre of the part.
 pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 
-/// The contact of two parts, of which the separation may be known; `None` if they are beyond
-/// reach or cannot touch.
+/// Computes the contact of two parts; `known` is their separation if it is known. `None` if they
+/// are beyond the prediction, or on a side where the surface cannot be touched.
 pub(super) fn compute<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     placed: &PlacedPair<'_, N, D>,
@@ -108,11 +120,11 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
     let (reference, request) = (query.reference, query.request);
     let has_surface = scene.surfaces.iter().any(Option::is_some);
     if !(has_surface && placed.has_centers()) {
-        // A half-space has the same normal everywhere: there are no seams to slide over.
+        // The normal of a half-space is the same everywhere: seams do not matter.
         return plain(placed, parts, request, arena);
     }
     let centers = match scene.surfaces[0] {
-        // Of a convex first shape nothing is asked.
+        // Without a surface of the first shape, centres in its frame do not matter.
         None => placed.centers_in_second(reference).map(|[other, own]| [[other; 2], [own; 2]])?,
         Some(_) => placed.centers()?,
     };
@@ -124,7 +136,7 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
     of_surfaces(scene, &meeting, &found, request, arena)
 }
 
-/// Solids side by side: their contacts are those of the whole.
+/// Computes the contact of two parts without a normal filter.
 pub(super) fn plain<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
@@ -141,19 +153,20 @@ pub(super) fn plain<N: Space<D>, const D: usize>(
     Some(PartContact { distance: lowest, normal, piece, lowest, status, face, tolerance })
 }
 
-/// Two parts, of which one at least belongs to a surface.
+/// Two parts, at least one of which belongs to a surface.
 struct PartMeeting<'a, N: Real, const D: usize> {
     placed: &'a PlacedPair<'a, N, D>,
     parts: [u32; 2],
-    /// Of the part of the first shape and of that of the second, as seen by both shapes.
+    /// The centre of part `i` in the frame of shape `j`, as `centers[i][j]`; for a convex first
+    /// shape all are in the frame of the second.
     centers: [[Point<N, D>; 2]; 2],
-    /// Of the first shape, as seen by the second.
+    /// Replaces the centre of the first part in the frame of the second shape.
     reference: &'a Reference<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
-    /// What the two surfaces say of how near the two parts are. `over` is the feature of the second part that
-    /// a ball is over, if that is known.
+    /// Filters the normal of a separation by the surface of each shape. `over` is the feature of
+    /// the second part nearest to the centre of a ball, if known.
     fn filtered_normals(
         &self,
         scene: &Scene<'_, N, D>,
@@ -161,7 +174,8 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         tolerance: N,
         over: Option<FeatureId>,
     ) -> [FilteredNormal<N, D>; 2] {
-        // Where the other solid comes from, and the part itself, as the shape of the part sees it.
+        // The reference point of the other solid and the centre of the part, in the frame of the
+        // part's shape.
         let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
         let other2 = self.reference.unwrap_or(other2);
         let [surface1, surface2] = scene.surfaces;
@@ -192,8 +206,10 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
-    /// A normal, from the first shape to the second in the frame of the first, pushes what touches a body into it: as
-    /// the face of a surface does that lies in a wall of the body, and has the inside on its back as well.
+    /// Whether a contact along `normal` would push the other shape into a body. A face in an inner
+    /// wall of a body has such a normal: the inside is on its back as well.
+    ///
+    /// `normal` is from the first shape to the second, in the frame of the first.
     fn leads_into_body(&self, scene: &Scene<'_, N, D>, normal: &Vector<N, D>) -> bool {
         if !scene.are_bodies(self.parts) {
             return false;
@@ -207,12 +223,12 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
     }
 }
 
-/// A ball over a side or a corner has no point over the face.
+/// Whether a ball lies beside a triangle, over a side or a corner: it has no point over the face.
 pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
 
-/// The contact of two parts, of which one at least belongs to a surface.
+/// Computes the contact of two parts, at least one of which belongs to a surface.
 fn of_surfaces<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     meeting: &PartMeeting<'_, N, D>,
@@ -245,7 +261,8 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             PartStatus::Own
         }
         Settled::Forced(face, status) => {
-            // What touches but for rounding does not reach below the face, unless it does from inside of a body.
+            // If the parts overlap by no more than rounding, no point is deeper than that, unless
+            // the solid comes from inside of a body.
             let is_below = || {
                 distance <= N::ZERO && normal.dot(&face) < N::lit(BEHIND) && scene.are_bodies(parts)
             };
@@ -265,8 +282,8 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     Some(PartContact { distance, normal, piece, lowest, status, face, tolerance })
 }
 
-/// Builds the manifold of two parts that touch at their nearest points, with a normal that the surface has there, `over`
-/// being the feature that a ball is over if that is certain.
+/// Builds the manifold of two parts at their nearest points, along a normal that the surface
+/// admits. `over` is the feature that a ball is over, if it is certain.
 fn build_touching<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     witness: &Separation<N, D>,
@@ -283,7 +300,7 @@ fn build_touching<N: Space<D>, const D: usize>(
     }
 }
 
-/// The feature of a triangle that a ball is over, where that is certain.
+/// Returns the feature of a triangle that is nearest to the centre of a ball, if it is certain.
 fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Option<FeatureId> {
     let (Kind::Ball(_), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
         return None;
@@ -292,8 +309,8 @@ fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Opt
     <N::Algorithms>::over(triangle, &center, tolerance)
 }
 
-/// The name of a contact is the feature that the ball is over: close to a side a ball may yet have
-/// the normal of the face.
+/// Whether `over` and the filter agree on face or rim: the contact gets the id of `over`, but a
+/// ball close to a side may have the normal of the face.
 pub(super) fn is_certain<N: Real, const D: usize>(
     over: FeatureId,
     filtered: &FilteredNormal<N, D>,
@@ -301,7 +318,7 @@ pub(super) fn is_certain<N: Real, const D: usize>(
     matches!(over, FeatureId::Face(_)) == matches!(filtered, FilteredNormal::Face(_))
 }
 
-/// The contact of a ball with a known feature.
+/// Makes the contact point of a ball and a known feature.
 pub(super) fn of_ball<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     over: FeatureId,
@@ -311,7 +328,7 @@ pub(super) fn of_ball<N: Real, const D: usize>(
     RawPoint { point1, distance, feature1, feature2, id, code: 0 }
 }
 
-/// What two parts within reach say on their own of how near they are.
+/// Appends the manifold of two parts at their nearest points, without a normal filter.
 pub(super) fn nearest_points<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     parts: [u32; 2],
@@ -326,8 +343,9 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
     appended(&placed, parts, arena)
 }
 
-/// The contacts along a face's normal are none, or say that parts that overlap are apart: the face,
-/// cut to where the other part is above it, may end beside the overlap.
+/// Whether the points along the normal of a face miss the contact: there are none, or the parts
+/// overlap and all points are apart. The face, clipped to where the other part is above it, may end
+/// beside the overlap.
 pub(super) fn overlooks<N: Real, const D: usize>(
     points: &[RawPoint<N, D>],
     distance: N,
@@ -337,18 +355,19 @@ pub(super) fn overlooks<N: Real, const D: usize>(
     !points.iter().any(|point| point.distance <= highest)
 }
 
-/// What both surfaces together say.
+/// The combined result of both surfaces. Normals are from the first shape to the second, in the
+/// frame of the first.
 enum Settled<N: Real, const D: usize> {
     Nothing,
     Refused,
-    /// A contact with this normal at the witness.
+    /// A contact at the nearest points, with this normal.
     Found(Vector<N, D>),
-    /// Contacts with a face along this normal, where there are some.
+    /// Contacts along this normal of a face, if there are any.
     Forced(Vector<N, D>, PartStatus),
 }
 
-/// Combines the results of both surfaces; `normal` is the one that they are about. All in the frame of
-/// the first shape.
+/// Combines the results of both surfaces for `normal`, which is in the frame of the first shape, as
+/// is the result. If two faces compete, the one closer to `normal` wins.
 fn settled<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     filtered: &[FilteredNormal<N, D>; 2],

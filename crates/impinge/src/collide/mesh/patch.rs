@@ -1,10 +1,19 @@
-//! Manifolds of many parts merged: one for each flat patch, of few points.
+//! Merges the manifolds of many parts into few: one for each flat patch.
 //!
 //! The manifolds of the parts of a composite lie side by side. Those with one normal in one plane
-//! are pieces of one area of contact; of all their points those on its outline delimit it.
+//! are pieces of one contact area; of all their points those on its outline bound it.
 //!
-//! A contact point keeps its id by the rule of [`ids`](crate::collide::manifold::ids), in which the parts count
-//! among the features.
+//! ```text
+//!  pieces, one per pair of parts        patch
+//!   ┌────────┐┌────────┐
+//!   │a      b││c      d│                ●───────────────●
+//!   │        ││        │    merge ─>    │               │   four corners span the area;
+//!   │e      f││g      h│                ●───────────────●   c and g are copies of b and f
+//!   └────────┘└────────┘
+//! ```
+//!
+//! A contact point keeps its id by the rule of [`ids`](crate::collide::manifold::ids), in which the
+//! parts count among the features.
 
 use core::cell::OnceCell;
 use core::cmp::Ordering;
@@ -23,51 +32,58 @@ use crate::collide::size::smaller_size;
 use crate::collide::{ManifoldRequest, Pair, PairIds, RawPoint};
 use crate::math::{Pose, Real, Space, Vector};
 
-/// A manifold of two shapes one of which is a composite, in the frame of the first shape.
+/// A manifold of two shapes, at least one of them a composite, in the frame of the first shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Patch<N: Real, const D: usize> {
     /// Unit, from the first shape to the second.
     pub(crate) normal: Vector<N, D>,
+    /// Sorted by id.
     pub(crate) points: SmallVec<[PatchPoint<N, D>; 4]>,
 }
 
-/// A point of a manifold, and the parts that it lies on.
+/// A point of a manifold, and the parts it lies on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchPoint<N: Real, const D: usize> {
+    /// In the frame of the first shape.
     pub(crate) raw: RawPoint<N, D>,
+    /// The part of the first shape and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
 }
 
-/// What two parts contribute, in the frame of the first shape: some of the [`RawPoints`](crate::collide::RawPoints).
+/// The manifold of two parts, in the frame of the first shape: a normal and a range of
+/// [`RawPoints`](crate::collide::RawPoints).
 #[derive(Clone, Debug)]
 pub(crate) struct Piece<N: Real, const D: usize> {
     /// Unit, from the first shape to the second.
     pub(crate) normal: Vector<N, D>,
+    /// The part of the first shape and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
+    /// Its points, as a range of `Merging::points`.
     pub(crate) points: Range<usize>,
 }
 
-/// What a merged manifold is made of and how.
+/// The input of [`merge`].
 pub(crate) struct Merging<'a, N: Real, const D: usize> {
     pub(crate) pair: &'a Pair<'a, N, D>,
     pub(crate) request: &'a ManifoldRequest<N>,
-    /// Lengths below this are rounding errors.
+    /// Bound of the rounding errors of lengths.
     pub(crate) tolerance: N,
-    /// In the order of their parts, of which no two are the same.
+    /// Sorted by their parts; each pair of parts occurs once.
     pub(crate) pieces: &'a [Piece<N, D>],
+    /// The points of all pieces.
     pub(crate) points: &'a [RawPoint<N, D>],
-    /// See [`Self::size`].
+    /// Cache of [`Self::size`].
     pub(crate) size: OnceCell<N>,
 }
 
-/// The ids that points inherit.
+/// The id that each point inherits; `None` for a new point.
 pub(super) type KeptIds = SmallVec<[Option<Inherited>; 32]>;
 
-/// Merges the manifolds of parts into patches, which come in the order of their first parts, and
-/// replaces those of the update before, when the shapes lay at `old_pose12`.
+/// Merges the manifolds of parts into patches, sorted by their first parts. Replaces the patches of
+/// the last update, where the second shape had the pose `old_pose12`.
 ///
-/// The manifolds of parts may hold points beyond the prediction, of which those stay that turning
-/// about the patch's nearest point brings near enough.
+/// The manifolds of parts may hold points beyond the prediction. Of these, `request.sine` keeps
+/// those that a rotation about the deepest point of the patch may bring within it.
 pub(crate) fn merge<N: Space<D>, const D: usize>(
     merging: &Merging<'_, N, D>,
     old_pose12: &Pose<N, D>,
@@ -92,7 +108,7 @@ pub(crate) fn merge<N: Space<D>, const D: usize>(
     patches.truncate(groups.groups.len());
 }
 
-/// Makes a patch of the only point of all, as of a ball, if it is near enough.
+/// Makes a patch of a single point, as of a ball, if it is within the prediction.
 fn merge_one<N: Real, const D: usize>(
     merging: &Merging<'_, N, D>,
     piece: &Piece<N, D>,
@@ -101,7 +117,7 @@ fn merge_one<N: Real, const D: usize>(
     ids: &mut PairIds,
 ) {
     let mut raw = merging.points[piece.points.start];
-    // False for NaN, which is not near.
+    // False for NaN.
     let is_near = raw.distance <= merging.request.prediction;
     if !is_near {
         return patches.clear();
@@ -113,6 +129,8 @@ fn merge_one<N: Real, const D: usize>(
     patches.truncate(1);
 }
 
+/// Returns what identifies a point between updates: its position on both shapes, its parts and its
+/// features.
 fn anchors<N: Real, const D: usize>(
     pose: &PairPose<'_, N, D>,
     raw: &RawPoint<N, D>,
@@ -121,7 +139,7 @@ fn anchors<N: Real, const D: usize>(
     pose.anchors(&raw.point1, raw.distance, (parts, [raw.feature1, raw.feature2]))
 }
 
-/// A patch without points, in the place of an old one if there is one.
+/// Returns the points of patch `at`, cleared for reuse; appends a patch if there is none.
 fn blank<N: Real, const D: usize>(
     patches: &mut Vec<Patch<N, D>>,
     at: usize,
@@ -139,8 +157,8 @@ fn blank<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Merging<'_, N, D> {
-    /// Fills in the ids that points have from old ones, by the rule of [`ids`](crate::collide::manifold::ids): first where
-    /// parts and features name one point, then by place.
+    /// Fills in the ids that points inherit, by the rule of [`ids`](crate::collide::manifold::ids):
+    /// first by parts and features where these identify one point, then by position.
     fn keep(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>], kept: &mut KeptIds) {
         kept.resize(self.points.len(), None);
         let (mut at, mut olds, mut ids) = (0, AnchorList::new(), SmallVec::<[u32; 8]>::new());
@@ -163,8 +181,8 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         }
     }
 
-    /// The point of a piece where a point of an old patch was, with the same features, if these name one point of
-    /// either.
+    /// Returns the point of a piece that inherits the id of an old point by its features; `None` if
+    /// the features do not identify one point, among the old points and the new.
     fn only_heir(
         &self,
         old_pose: &PairPose<'_, N, D>,
@@ -192,7 +210,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         (is_only && are_near()).then_some(heir)
     }
 
-    /// Gives the points that have none the ids of old points.
+    /// Matches the remaining old and new points by position.
     #[inline(never)]
     fn keep_by_places(&self, olds: &[Anchors<N, D>], ids: &[u32], kept: &mut KeptIds) {
         let (mut news, mut places) = (AnchorList::new(), SmallVec::<[usize; 32]>::new());
@@ -208,13 +226,14 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         });
     }
 
-    /// The size of the pair, for lengths in proportion to it.
+    /// The size of the pair, for tolerances in proportion to it.
     pub(super) fn size(&self) -> N {
         *self.size.get_or_init(|| smaller_size([self.pair.first, self.pair.second]))
     }
 
-    /// The piece of two parts, most often that at a place or the next: the points of one pair of parts come
-    /// together, and patches in the order of their parts.
+    /// Returns the index of the piece of two parts. `place` is a guess: the points of one pair of
+    /// parts come together and patches are sorted by their parts, so that it is mostly there or
+    /// next.
     #[inline]
     fn piece_of(&self, parts: [u32; 2], place: usize) -> Option<usize> {
         let is_at = |at: usize| self.pieces.get(at).is_some_and(|piece| piece.parts == parts);
@@ -227,7 +246,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         self.pieces.binary_search_by(|piece| piece.parts.cmp(&parts)).ok()
     }
 
-    /// The index of the deepest point of a piece, by the order of [`by_depth`].
+    /// Returns the index of the deepest point of a piece, by the order of [`by_depth`].
     pub(super) fn deepest_of(&self, piece: &Piece<N, D>) -> Option<usize> {
         let deeper = |best: usize, next: usize| {
             if by_depth(&self.points[next], &self.points[best]).is_lt() { next } else { best }
@@ -236,7 +255,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
     }
 }
 
-/// Deepest first, then in the order of the features.
+/// Orders points by distance, the deepest first, then by their features.
 pub(super) fn by_depth<N: Real, const D: usize>(
     a: &RawPoint<N, D>,
     b: &RawPoint<N, D>,

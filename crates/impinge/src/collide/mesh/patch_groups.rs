@@ -1,8 +1,14 @@
-//! Which pieces make one patch: those with one normal in one plane.
+//! Groups the pieces that make one patch: those with one normal in one plane.
 //!
-//! On rough terrain each piece has a normal of its own, and is a patch. Elsewhere pieces are taken deepest first,
-//! and each is compared with the deepest piece of the patches before whose normals may be the same. The normals
-//! of many pieces lie in cells along one axis, so that few are compared.
+//! If all normals differ, as on rough terrain, each piece is a patch. Else pieces are taken deepest
+//! first, and each is compared with the deepest piece of the earlier patches that may have its
+//! normal. For many pieces, cells of the normals' component along one axis limit the candidates:
+//!
+//! ```text
+//!  AXIS ──┬──────┬──────┬──────┬──────┬──>   compared: the patches in the own cell
+//!         │      │ near │ own  │ near │       and in both neighbours, since normals of
+//!         └──────┴──────┴──────┴──────┘       one patch differ by less than a cell
+//! ```
 
 use core::ops::Range;
 
@@ -13,22 +19,22 @@ use super::patch::{Merging, Piece};
 use crate::math::order::{order_of, sort_few, sort_keyed};
 use crate::math::{Mapped, Real, Vector, min};
 
-/// Normals that differ by more than this, as vectors, are those of different patches; points that
-/// lie farther from a plane than this part of their distance lie in different planes.
+/// Largest difference, as vectors, of normals in one patch; and largest height above a plane,
+/// relative to the distance, of points in one plane.
 const SAME: f64 = 1.0 / 1024.0;
-/// The normals of so many pieces are in one cell.
+/// Up to this number of pieces there is one cell.
 const FEW_PIECES: usize = 12;
-/// How long a cell is: longer by rounding than what the normals of one patch differ by.
+/// Length of a cell: `SAME` and a margin for rounding.
 const CELL: f64 = SAME * (1.0 + 1.0 / 16.0);
-/// The axis of the cells, a unit vector. It is askew to the axes of space, along which most faces of what people
-/// build lie.
+/// The axis of the cells, a unit vector. It is oblique to the coordinate axes, along which most
+/// faces of buildings lie.
 const AXIS: [f64; 3] = [0.36, 0.48, 0.8];
-/// Of the patches in a cell so many are compared: the deepest.
+/// Patches in one cell that a piece is compared with: the deepest.
 const MAX_COMPARED: usize = 32;
-/// So many normals for each piece are compared to find that all differ.
+/// Comparisons per piece to find out whether all normals differ.
 const MAX_ALIKE: usize = 4;
 
-/// A piece, and its deepest point.
+/// A piece and the index of its deepest point.
 #[derive(Clone, Copy)]
 pub(super) struct Lead {
     pub(super) piece: usize,
@@ -37,15 +43,16 @@ pub(super) struct Lead {
 
 /// The pieces of one patch.
 pub(super) struct PieceGroup {
-    /// The piece whose point is the deepest.
+    /// The piece with the deepest point.
     pub(super) lead: Lead,
-    /// The first of the parts.
+    /// The lowest parts among the pieces.
     first: [u32; 2],
-    /// Where in the order of all they are.
+    /// Its range in `Groups::order`.
     pieces: Range<usize>,
 }
 
-/// The pieces of each group together, given how many each has, and pieces with their groups.
+/// Returns the pieces sorted by group, and sets the range of each group; the length of
+/// `group.pieces` gives the number of its pieces. `pieces` are (piece, group).
 fn pieces_by_group(
     groups: &mut [PieceGroup],
     pieces: impl Iterator<Item = (usize, usize)>,
@@ -65,16 +72,16 @@ fn pieces_by_group(
     order
 }
 
-/// In the order of the first parts.
+/// Sorts groups by their first parts.
 fn sort_by_parts(groups: &mut [PieceGroup]) {
     sort_few(groups, |one, other| one.first < other.first);
 }
 
-/// The patches that some pieces make.
+/// The pieces, grouped into patches.
 pub(super) struct Groups {
-    /// Those within the prediction, in the order of their first parts.
+    /// The groups within the prediction, sorted by their first parts.
     pub(super) groups: SmallVec<[PieceGroup; 8]>,
-    /// The pieces of each group together.
+    /// The pieces, sorted by group.
     order: SmallVec<[usize; 16]>,
 }
 
@@ -98,7 +105,7 @@ impl Groups {
         all
     }
 
-    /// Each piece is a patch of its own.
+    /// Makes a group of each piece.
     fn of_one_each<N: Real, const D: usize>(merging: &Merging<'_, N, D>, leads: &[Lead]) -> Self {
         let group = |(at, lead): (usize, &Lead)| PieceGroup {
             lead: *lead,
@@ -109,7 +116,8 @@ impl Groups {
         Self { groups: leads.iter().enumerate().map(group).collect(), order }
     }
 
-    /// The deepest first, pieces join the patch whose first piece they are level with.
+    /// Adds the pieces, deepest first, to the group whose lead they are coplanar with, or to a new
+    /// one.
     fn of_level<N: Real, const D: usize>(
         merging: &Merging<'_, N, D>,
         leads: &[Lead],
@@ -144,21 +152,21 @@ impl Groups {
         Self { groups, order }
     }
 
-    /// The pieces of one of the groups.
+    /// Returns the pieces of a group.
     pub(super) fn pieces(&self, group: &PieceGroup) -> &[usize] {
         &self.order[group.pieces.clone()]
     }
 }
 
-/// Two pieces, of which the first is the deeper, have one normal and lie in one plane: that of
-/// the points of the first shape or that of those of the second.
+/// Whether two pieces, the first the deeper, have one normal and lie in one plane: on the surface
+/// of the first shape or on that of the second.
 fn are_level<N: Real, const D: usize>(
     merging: &Merging<'_, N, D>,
     lead1: &Lead,
     lead2: &Lead,
 ) -> bool {
     let piece = |lead: &Lead| &merging.pieces[lead.piece];
-    // Written so that NaN differs.
+    // False for NaN.
     let is_same = (piece(lead1).normal - piece(lead2).normal).norm_squared() <= square_of_same();
     if !is_same {
         return false;
@@ -176,24 +184,26 @@ fn square_of_same<N: Real>() -> N {
     N::lit(SAME) * N::lit(SAME)
 }
 
-/// A stretch of the axis, in which the normals of some pieces end.
+/// An interval of the axis that contains the component of some normals.
 struct NormalCell {
+    /// The position of the interval, in lengths of a cell.
     number: i32,
-    /// The patches whose first pieces are here, the deepest first.
+    /// The patches whose lead is in this cell, the deepest first.
     patches: SmallVec<[usize; 2]>,
 }
 
-/// The normals of many pieces in cells; those of few in one.
+/// The cells of the normals; one cell if there are few pieces.
 struct NormalCells {
-    /// In ascending order.
+    /// Sorted by number.
     cells: SmallVec<[NormalCell; 1]>,
-    /// The place of the cell of each of many pieces.
+    /// The index of the cell of each piece; empty if there is one cell.
     of_pieces: Vec<usize>,
-    /// Many pieces in the order of their cells.
+    /// The pieces sorted by cell; empty if there is one cell.
     order: Vec<(i32, usize)>,
 }
 
 impl NormalCells {
+    /// Sorts pieces into cells, unless they are few.
     fn of<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> Self {
         let (mut cells, mut of_pieces, mut order) = (SmallVec::new(), Vec::new(), Vec::new());
         let empty = |number| NormalCell { number, patches: SmallVec::new() };
@@ -213,7 +223,8 @@ impl NormalCells {
         Self { cells, of_pieces, order }
     }
 
-    /// No two pieces have one normal; false, too, where many would have to be compared.
+    /// Whether all normals differ. False, too, if the answer takes more than `MAX_ALIKE`
+    /// comparisons per piece.
     fn have_own_normals<N: Real, const D: usize>(&self, pieces: &[Piece<N, D>]) -> bool {
         let are_apart = |a: usize, b: usize| {
             (pieces[a].normal - pieces[b].normal).norm_squared() > square_of_same()
@@ -231,12 +242,13 @@ impl NormalCells {
         })
     }
 
-    /// All pieces are in one cell, and so are all patches.
+    /// Whether all pieces are in one cell.
     const fn is_one(&self) -> bool {
         self.of_pieces.is_empty()
     }
 
-    /// The patches whose normals may be the same as that of a piece.
+    /// Returns the patches that may have the normal of a piece, from its cell and the two
+    /// neighbours.
     fn near(&self, piece: usize) -> impl Iterator<Item = usize> {
         let own = self.of_pieces.get(piece).copied().unwrap_or(0);
         let number = self.cells[own].number;
@@ -245,14 +257,14 @@ impl NormalCells {
         close.flat_map(|cell| cell.patches.iter().take(MAX_COMPARED).copied())
     }
 
-    /// Puts a patch into the cell of its first piece.
+    /// Adds a patch to the cell of its first piece.
     fn put(&mut self, patch: usize, piece: usize) {
         let own = self.of_pieces.get(piece).copied().unwrap_or(0);
         self.cells[own].patches.push(patch);
     }
 }
 
-/// The number of the cell of a unit vector.
+/// The cell number of a unit vector.
 #[expect(clippy::cast_possible_truncation, reason = "a unit vector is in some thousands of cells")]
 fn cell_of<N: Real, const D: usize>(normal: &Vector<N, D>) -> i32 {
     let along = |sum: f64, (own, axis): (&N, f64)| sum + own.as_f64() * axis;
@@ -264,7 +276,7 @@ mod tests {
     use super::*;
     use crate::math::noise::Noise;
 
-    /// Pieces without points, with normals all over, of which some are nearly equal.
+    /// Pieces without points, with normals in all directions, some of them nearly equal.
     fn pieces<const D: usize>(count: usize, has_equal: bool) -> Vec<Piece<f64, D>> {
         let mut noise = Noise(3);
         let mut pieces: Vec<Piece<f64, D>> = Vec::new();
@@ -279,7 +291,8 @@ mod tests {
         pieces
     }
 
-    /// All patches with the same normal are near, and few others: their number does not grow with that of all.
+    /// All patches with the normal of a piece must be candidates, and few others: their number must
+    /// not grow with the number of patches.
     fn check<const D: usize>(count: usize, most: usize) {
         let pieces = pieces::<D>(count, true);
         let (mut cells, mut compared, mut same) = (NormalCells::of(&pieces), 0, 0);

@@ -1,8 +1,15 @@
-//! The few points that stand for a patch: those of its only piece, or of the points of all its pieces the ones on
-//! the outline.
+//! Chooses the few points of a patch: those of its only piece, or the ones on the outline of all
+//! pieces.
 //!
-//! A patch has few points, most often those of one piece. So all is done in place, in lists that the
-//! patches of a shape share.
+//! ```text
+//!  gather: all points within the prediction, in 2D coordinates along two tangents
+//!  drop_copies: of points closer than 4 tolerances, one stays
+//!  choose: a deepest point, and those that span the largest area
+//!  points: ids, and the depth of the deepest
+//! ```
+//!
+//! Most patches have the few points of one piece, so all steps work in place, in lists that the
+//! patches of a pair share.
 
 use crate::tables::ByDimension;
 use smallvec::SmallVec;
@@ -16,30 +23,32 @@ use crate::collide::manifold::{deepest_of, slack_level};
 use crate::math::order::sort_few;
 use crate::math::{Real, Space, Vector};
 
-/// So many points need no memory for their outline but that of the function.
+/// Points that fit into the lists without an allocation.
 const FEW: usize = 16;
 
-/// A point of a patch, seen along its normal.
+/// A point of a patch, projected along its normal.
 #[derive(Clone, Copy)]
 pub(super) struct Member<N> {
+    /// The coordinates along both tangents, relative to the deepest point.
     flat: Vector<N, 2>,
-    /// The index of its piece, and its own.
+    /// The index of its piece in `Merging::pieces`; `point` is its index in `Merging::points`.
     piece: usize,
     point: usize,
 }
 
-/// The points of a patch.
+/// The points of one patch.
 pub(super) type Members<N> = SmallVec<[Member<N>; FEW]>;
 
-/// What the points of a patch are chosen by.
+/// The input for choosing points; `kept` holds the inherited ids.
 pub(super) struct Choosing<'a, N: Real, const D: usize> {
     pub(super) merging: &'a Merging<'a, N, D>,
     pub(super) kept: &'a KeptIds,
 }
 
 impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
-    /// Fills a patch, given the piece with the deepest point and all pieces, with at most as many
-    /// points as are asked for: the deepest and those that span most. The list of members is used again and again.
+    /// Fills the patch of `pieces`, of which `lead` has the deepest point, with at most
+    /// `max_points` points: the deepest and those that span the largest area. `members` is scratch
+    /// space.
     pub(super) fn fill(
         &self,
         lead: Lead,
@@ -60,7 +69,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         let limit = if is_line { most.min(2) } else { most };
         let lowest = self.merging.points[lead.deepest].distance;
         let level = lowest + self.merging.tolerance;
-        // The points of one piece are the corners of an area already.
+        // The few points of a single piece are corners of an area already.
         if !(pieces.len() == 1 && members.len() <= limit) {
             self.drop_copies(members);
             self.choose(members, level, limit, is_line);
@@ -68,7 +77,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         self.points(members, lowest, out, ids);
     }
 
-    /// Leaves at most `limit` members, one of the deepest among them.
+    /// Keeps at most `limit` members, one of the deepest among them.
     fn choose(&self, members: &mut Members<N>, level: N, limit: usize, is_line: bool) {
         let seen =
             members.iter().map(|member| (member.flat, self.distance(member), self.is_old(member)));
@@ -81,14 +90,15 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         } else {
             reduce::spanning(&mut points, limit, tolerance)
         };
-        // They are in ascending order.
+        // The indices ascend, so no member is overwritten before it is read.
         for (at, index) in indices.iter().enumerate() {
             members[at] = members[*index];
         }
         members.truncate(indices.len());
     }
 
-    /// Appends the chosen points in the order of their numbers; one of them has the distance of the deepest.
+    /// Appends the chosen points sorted by id. The distance of one of them is set to `lowest`, that
+    /// of the deepest.
     fn points(
         &self,
         chosen: &[Member<N>],
@@ -121,7 +131,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
-    /// The previous manifolds held it, at this place.
+    /// Whether the last manifolds had this point, at this position.
     fn is_old(&self, member: &Member<N>) -> bool {
         self.kept[member.point].is_some_and(|kept| kept.is_old)
     }
@@ -130,8 +140,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         self.merging.points[member.point].distance
     }
 
-    /// The points of a group that the request asks for, the deepest first; that one always, also
-    /// where its coordinates are no numbers.
+    /// Collects the points within the prediction, with the margin for rotation, the deepest first.
+    /// The deepest is always a member, even if its coordinates are NaN.
     fn gather(
         &self,
         Lead { piece: lead, deepest }: Lead,
@@ -159,18 +169,18 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
-    /// Sorts the points along the first tangent, then along the second; of points at one place, which
-    /// the parts around it all have, one stays: one with a number, the deepest, or that of the first
-    /// parts.
+    /// Sorts the points along the first tangent, then along the second, and removes copies: parts
+    /// that meet at a point all have it. The deepest copy stays, or among equals one with an
+    /// inherited id, then that of the lowest parts.
     fn drop_copies(&self, members: &mut Members<N>) {
         let near = N::lit(4.0) * self.merging.tolerance;
         sort(members);
-        // The first ones are those kept.
+        // The first `count` members are those kept.
         let (mut count, mut is_exchanged) = (0, false);
         for next in 0..members.len() {
             let member = members[next];
             let flat = member.flat;
-            // Sorted along the first tangent: only the last few can be at the same place.
+            // Sorted along the first tangent: only the last few can be at the same position.
             let in_reach = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
             let mut last = (0..count).rev().take_while(in_reach);
             match last.find(|&at| (members[at].flat - flat).norm_squared() <= near * near) {
@@ -186,11 +196,13 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
         members.truncate(count);
         if is_exchanged {
-            // An exchange may have taken a point past its neighbours.
+            // An exchange may break the order.
             sort(members);
         }
     }
 
+    /// Whether `new` replaces `old` at one position: by depth if it differs by more than the
+    /// tolerance, else by an inherited id, then by the lower parts.
     fn is_better(&self, new: &Member<N>, old: &Member<N>) -> bool {
         let tolerance = self.merging.tolerance;
         let rank = |member: &Member<N>| {
@@ -201,7 +213,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 }
 
-/// Leaves of sorted points on a line the two ends, old points, and, if neither end is as deep, a deepest one.
+/// Keeps, of points sorted along a line, the two ends, the old points and, if neither end is
+/// deepest, one that is.
 fn keep_ends<N: Real>(points: &mut Projections<N>) {
     let (last, deepest) = (points.len() - 1, a_deepest(points));
     let is_inner = !(points[0].is_deepest || points[last].is_deepest);
@@ -211,17 +224,18 @@ fn keep_ends<N: Real>(points: &mut Projections<N>) {
     });
 }
 
-/// Tangents of a surface turned by one radian: along the first of these few points of a grid are at one place.
+/// Rotates the tangents by one radian, so that few points of a grid have one coordinate along the
+/// first.
 fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vector<N, D>; 2] {
     let [cosine, sine] = [0.540_302_305_868_139_7, 0.841_470_984_807_896_5].map(N::lit);
-    // In 2D there is only one.
+    // In 2D the second tangent is zero.
     if *second == Vector::<N, D>::zeros() {
         return [*first, *second];
     }
     [first * cosine + second * sine, second * cosine - first * sine]
 }
 
-/// Sorts points along the first tangent, then along the second; equal ones stay as they are.
+/// Sorts points along the first tangent, then along the second; stable.
 #[inline]
 fn sort<N: Real>(members: &mut [Member<N>]) {
     if members.len() > FEW {
@@ -230,6 +244,7 @@ fn sort<N: Real>(members: &mut [Member<N>]) {
     sort_few(members, |one, other| by_place(one, other).is_lt());
 }
 
+/// Orders by the first coordinate, then by the second.
 #[inline]
 fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
     let (a, b) = (&a.flat, &b.flat);

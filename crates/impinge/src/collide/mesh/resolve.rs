@@ -1,4 +1,4 @@
-//! Which of the contacts of the parts are contacts of the whole.
+//! Decides which contacts of parts are contacts of the whole shapes.
 
 use smallvec::SmallVec;
 
@@ -7,30 +7,31 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Real, Space, Vector, max};
 
-/// Normals whose cosine is above this say the same.
+/// Normals with a larger cosine count as one direction.
 const ALIKE: f64 = 0.99;
 
-/// So many ways of different directions are known at a time.
+/// Ways out that are kept at a time, of different directions.
 const MAX_WAYS: usize = 32;
 
-/// A way to part the two shapes as far as some of their parts know: a normal and a depth along it.
+/// A way out of the overlap, according to one contact: the second shape moves along `normal` by
+/// `depth`.
 struct WayOut<N: Real, const D: usize> {
     normal: Vector<N, D>,
     depth: N,
 }
 
-/// Ways to part the shapes, found shallowest first: the longest of each direction.
+/// Ways out, added shallowest first; of each direction only the longest is kept.
 struct Ways<N: Real, const D: usize>(SmallVec<[WayOut<N, D>; MAX_WAYS]>);
 
-/// Leaves the contacts that hold for the whole.
+/// Drops the contacts that do not hold for the whole shapes.
 ///
-/// Along the normal of a face the depth is that of the whole solid below the face, which for a face
-/// that is met at its rim only may be the width of the solid: a box on the top of a cliff is not
-/// deep in its wall. So of two explanations of an overlap the shallower holds: what is left out is a
-/// contact with a face whose part comes free as well when the solids are parted along the normal of
-/// another contact by that one's depth, where that is less.
+/// Along the normal of a face the depth is that of the whole solid below the face. For a face that
+/// is touched only at its rim this may be the width of the solid: a box on top of a cliff is not
+/// deep in its wall. So the shallower of two explanations of an overlap holds. A contact with a
+/// face is dropped if its parts are also separated once the shapes move along the normal of
+/// another, shallower contact by the depth of that.
 ///
-/// If nothing else says how near the solids are, what the nearest two parts say on their own holds:
+/// If no remaining contact is as near as the nearest two parts, the contact of these two is kept:
 /// solids that overlap always have a contact.
 pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
@@ -49,9 +50,10 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     keep_one(contacts, arena);
 }
 
-/// Leaves out contacts with faces that other contacts explain, first such as are none beyond a ridge.
+/// Drops contacts with faces that other contacts explain: first those that are not beyond a ridge,
+/// then those that are.
 ///
-/// Cost: O(n log n) in the number of contacts, each held against a limited number of ways.
+/// Cost: O(n log n) in the number of contacts, each compared with at most `MAX_WAYS` ways out.
 fn leave_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
@@ -75,13 +77,13 @@ fn leave_explained<N: Space<D>, const D: usize>(
     }
 }
 
-/// How deep a contact is.
+/// The depth of a contact; negative if it is apart.
 fn depth<N: Real, const D: usize>(contact: &PartContact<N, D>) -> N {
     -contact.lowest
 }
 
-/// The indices of the contacts with some statuses, each with its place in the order of depths; of equals that
-/// with the first parts comes first.
+/// Returns the indices of the contacts with some statuses, sorted by depth, the shallowest first;
+/// ties keep the order of the parts.
 fn shallowest_first<N: Real, const D: usize>(
     contacts: &[PartContact<N, D>],
     is_meant: impl Fn(PartStatus) -> bool,
@@ -97,8 +99,8 @@ fn shallowest_first<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Ways<N, D> {
-    /// Adds a contact that is no shallower than those before, in the place of one along about its
-    /// normal; or, where there are too many, of the one that was first.
+    /// Adds the way out of a contact that is at least as deep as all before. It replaces the one of
+    /// about the same normal, or the first if there are too many.
     fn add(&mut self, contact: &PartContact<N, D>) {
         let (normal, depth) = (contact.piece.normal, depth(contact));
         if depth <= N::ZERO {
@@ -114,8 +116,8 @@ impl<N: Real, const D: usize> Ways<N, D> {
     }
 }
 
-/// Another way parts the two parts too: one that is no longer, and of a contact with a face that
-/// is not beyond a ridge one that leads elsewhere.
+/// Whether one of the ways out separates the two parts of a contact. A contact that is not beyond a
+/// ridge is not explained by a way along its own normal.
 fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contact: &PartContact<N, D>,
@@ -127,12 +129,12 @@ fn is_explained<N: Space<D>, const D: usize>(
         return false;
     }
     let is_beyond = contact.status == PartStatus::Beyond;
-    // A way that is shorter than the parts are deep in each other does not part them.
+    // A way shorter than the depth of the parts does not separate them.
     let least = -contact.distance - contact.tolerance;
     let is_asked = |way: &&WayOut<N, D>| {
         way.depth >= least && (is_beyond || way.normal.dot(&normal) < N::lit(ALIKE))
     };
-    // The plane that is known to part the two best may do so well enough once they are moved.
+    // The known separating plane of the parts may suffice after the motion.
     let rest = |way: &WayOut<N, D>| contact.distance + contact.normal.dot(&way.normal) * way.depth;
     let (mut asked, room): (SmallVec<[&WayOut<N, D>; 16]>, N) =
         (SmallVec::new(), -contact.tolerance);
@@ -142,7 +144,7 @@ fn is_explained<N: Space<D>, const D: usize>(
         }
         asked.push(way);
     }
-    // A point of the part that is still well within the solid says that they are not parted.
+    // If a point of the part stays well inside the solid, they are not separated.
     let points = &arena.points[contact.piece.points.clone()];
     let mut shifts = SmallVec::<[Vector<N, D>; 16]>::new();
     for way in asked {
@@ -158,8 +160,8 @@ fn is_explained<N: Space<D>, const D: usize>(
     !shifts.is_empty() && scene.pair(contact.parts()).is_parted_by_one(&shifts, contact.tolerance)
 }
 
-/// If the contacts that hold are farther than the nearest two parts, adds that of these. What is
-/// apart by rounding only, where parts touch, is made to touch.
+/// Adds the contact of the nearest two parts if all contacts that hold are farther. If they are
+/// farther by rounding alone, their distance is corrected instead.
 fn keep_one<N: Real, const D: usize>(contacts: &mut [PartContact<N, D>], arena: &mut Arena<N, D>) {
     let nearest = least_of(contacts, |contact| Some(contact.distance));
     let Some(nearest) = nearest else { return };
@@ -177,14 +179,16 @@ fn keep_one<N: Real, const D: usize>(contacts: &mut [PartContact<N, D>], arena: 
             contacts[index].lowest = least;
         }
         _ => {
-            // Points that it has are of a face's normal, and farther.
+            // Its points, if any, are along the normal of a face and farther: they are computed
+            // anew.
             contacts[nearest].status = PartStatus::Own;
             contacts[nearest].piece.points = 0..0;
         }
     }
 }
 
-/// The index of the least of some number of the contacts, the first of equals.
+/// Returns the index of the least value among the contacts, the first in a tie; contacts without a
+/// value are skipped.
 fn least_of<N: Real, const D: usize>(
     contacts: &[PartContact<N, D>],
     value: impl Fn(&PartContact<N, D>) -> Option<N>,

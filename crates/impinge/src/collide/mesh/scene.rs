@@ -1,4 +1,4 @@
-//! The parts of two shapes, placed for computing with them.
+//! Parts of two shapes, placed for the pair algorithms.
 
 use crate::tables::ByDimension;
 use core::cell::OnceCell;
@@ -13,50 +13,53 @@ use crate::collide::{Pair, RawManifold, RawPoints};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
 
-/// Two shapes, one of them a composite at least.
+/// Two shapes, at least one of them a composite.
 pub(crate) struct Scene<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
-    /// What holds the parts of each together.
+    /// The surface of each shape, if it has one.
     pub(super) surfaces: [Option<SurfaceAccess<'a, N, D>>; 2],
-    /// What is kept of the parts of the second.
+    /// The cached parts of the second shape.
     around: &'a PartCache<N, D>,
-    /// How the parts of a surface lie that a convex solid meets: most lie alike.
+    /// The placement that the parts of a surface have relative to a convex solid; most have the
+    /// same.
     usual: OnceCell<Usual<N, D>>,
 }
 
-/// How a part that is given by its corners lies to a convex first shape.
+/// The placement of a part with corners relative to a convex first shape.
 #[derive(Clone, Copy)]
 struct Usual<N: Real, const D: usize> {
-    /// Of the part, in the frame of its shape.
+    /// The pose of the part in the frame of its shape.
     pose: Pose<N, D>,
     is_segment: bool,
-    /// Of the part's frame, the point that the two are seen from.
+    /// The anchor of both, in the frame of the part.
     local: Vector<N, D>,
-    /// The point in the frames of the two shapes.
+    /// The anchor in the frames of the two shapes.
     origins: [Point<N, D>; 2],
     lying: Lying<N, D>,
 }
 
-/// How two bodies lie to each other.
+/// The relative pose of two bodies.
 #[derive(Clone, Copy)]
 struct Lying<N: Real, const D: usize> {
-    /// The second of the bodies, in the order of their kinds, in the frame of the first.
+    /// The pose of the second body in the frame of the first, in the order of kinds.
     pose12: Pose<N, D>,
-    /// The first of the bodies is the part of the second shape.
+    /// Whether the first body is the part of the second shape.
     is_turned: bool,
-    /// The frame of the first of the bodies, in that of the first shape put through the point.
+    /// The frame of the first body in that of the first shape, translated to the anchor.
     frame: Pose<N, D>,
-    /// The rotation of the second shape's frame in that of the first.
+    /// The rotation from the frame of the second shape to that of the first.
     turn: Pose<N, D>,
 }
 
 /// A part of one of the shapes; a convex shape is its own part.
 struct PlacedPart<'a, N: Real, const D: usize> {
-    /// Where it lies to the axes of its shape put through the point that it is seen from.
+    /// The pose in the frame of its shape, translated to the anchor.
     pose: Pose<N, D>,
+    /// If it has corners, these are relative to the anchor.
     solid: WholeOrPart<'a, N, D>,
 }
 
+/// A whole convex shape, or a part of a composite.
 enum WholeOrPart<'a, N: Real, const D: usize> {
     Whole(Kind<'a, N, D>),
     Part(PartSolid<'a, N, D>),
@@ -64,20 +67,20 @@ enum WholeOrPart<'a, N: Real, const D: usize> {
 
 /// A part of the first shape and one of the second, in the order of their kinds.
 ///
-/// Both are seen from one point close to them, as [`Between::parts`] does; so this is the same
-/// pair, up to the order, and as far apart to the bit.
+/// Both are relative to an anchor close to them, as in [`Between::parts`]. So this is the same
+/// pair, up to the order, with bit for bit the same distance.
 pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     /// In the order of kinds.
     bodies: [PlacedPart<'a, N, D>; 2],
     lying: Lying<N, D>,
-    /// The point in the frames of the two shapes.
+    /// The anchor in the frames of the two shapes.
     origins: [Point<N, D>; 2],
-    /// The part of the second shape lies as those of its [`Scene`] usually do.
+    /// Whether the part of the second shape has the usual placement of its [`Scene`].
     is_usual: bool,
 }
 
-/// A part seen from another origin. Corners are moved rather than the pose, so that solids that share
-/// corners still do.
+/// Translates a part to another origin. Corners are moved instead of the pose, so that parts keep
+/// their shared corners.
 fn moved<'a, N: Real, const D: usize>(
     part: &Part<'a, N, D>,
     origin: &Point<N, D>,
@@ -107,7 +110,7 @@ impl<N: Real, const D: usize> PlacedPart<'_, N, D> {
         }
     }
 
-    /// The corners of what is given by them.
+    /// The corners of a triangle or segment, relative to the anchor.
     fn corners(&self) -> Option<[Vector<N, D>; 3]> {
         match &self.solid {
             WholeOrPart::Whole(_) => None,
@@ -115,7 +118,7 @@ impl<N: Real, const D: usize> PlacedPart<'_, N, D> {
         }
     }
 
-    /// A point well inside; `None` of a half-space.
+    /// A point well inside; `None` for a half-space.
     fn center(&self) -> Option<Point<N, D>> {
         let map = Geometry(self.kind()).as_support_map()?;
         Some(self.pose.point(&map.center()))
@@ -129,24 +132,23 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         Self { between, surfaces, around, usual: OnceCell::new() }
     }
 
-    /// A part of the second shape, from what is kept of it or else from the shape.
+    /// Returns a part of the second shape, from the cache or else from the shape.
     fn part2(&self, composite: &'a dyn CompositeShape<N, D>, part: u32) -> Part<'a, N, D> {
         self.around.part(part).unwrap_or_else(|| composite.part(part))
     }
 
-    /// The first shape is one solid.
     pub(super) fn first_is_convex(&self) -> bool {
         self.between.composites()[0].is_none()
     }
 
-    /// One of two parts bounds a body.
+    /// Whether one of two parts bounds a body.
     pub(super) fn are_bodies(&self, parts: [u32; 2]) -> bool {
         let mut both = self.surfaces.iter().zip(parts);
         both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_body(part)))
     }
 
-    /// A point of the first shape's frame lies in that shape by more than a depth: no plane parts the two
-    /// by less than that. False of composites.
+    /// Whether a point, in the frame of the first shape, lies in that shape by more than `depth`:
+    /// then no plane separates the two by less. False for composites and half-spaces.
     pub(super) fn is_within(&self, point: &Point<N, D>, depth: N) -> bool {
         match self.between.pair.first {
             Kind::Composite(_) | Kind::Plane(_) => false,
@@ -167,21 +169,22 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         }
     }
 
-    /// A part of the second shape, if that is a composite.
+    /// Returns a part of the second shape; `None` if that is no composite.
     pub(super) fn second_part(&self, part: u32) -> Option<Part<'a, N, D>> {
         let [_, composite] = self.between.composites();
         Some(self.part2(composite?, part))
     }
 
-    /// Calls with the corners of a part of the second shape that others may share.
+    /// Calls `visit` with the ids of the corners of a part of the second shape, which other parts
+    /// may share.
     pub(super) fn each_corner(&self, part: u32, mut visit: impl FnMut(u64)) {
         if let [_, Some(composite)] = self.between.composites() {
             composite.each_corner(part, &mut visit);
         }
     }
 
-    /// [`Self::pair`] in a place that is used again and again: of parts that lie alike only the part is
-    /// exchanged.
+    /// [`Self::pair`] in a reused slot: if parts have the usual placement, only the part is
+    /// replaced.
     pub(super) fn pair_in<'s>(
         &self,
         slot: &'s mut Option<PlacedPair<'a, N, D>>,
@@ -199,7 +202,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         slot.get_or_insert_with(|| self.pair(parts))
     }
 
-    /// Two parts.
+    /// Returns the pair of two parts.
     pub(super) fn pair(&self, [part1, part2]: [u32; 2]) -> PlacedPair<'a, N, D> {
         let [composite1, composite2] = self.between.composites();
         let piece1 = composite1.map(|composite| composite.part(part1));
@@ -227,8 +230,9 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         PlacedPair::new(bodies, self.turn(), origins)
     }
 
-    /// A part of the first shape (0) or the second (1), and in the place of the other shape a half-space, given in the
-    /// other's frame, whose boundary runs through a point of the frame of the first.
+    /// Returns the pair of a part of the first shape (0) or the second (1) and a half-space instead
+    /// of the other shape. The `plane` is in the frame of the other shape; its boundary runs
+    /// through `point`, in the frame of the first.
     pub(super) fn above<'p>(
         &'p self,
         plane: &'p Plane<N, D>,
@@ -251,13 +255,13 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         PlacedPair::new(bodies, self.turn(), origins)
     }
 
-    /// The rotation of the second shape's frame in that of the first.
+    /// The rotation from the frame of the second shape to that of the first.
     fn turn(&self) -> Pose<N, D> {
         Pose { rotation: self.between.pair.pose12.rotation, ..Pose::identity() }
     }
 
-    /// A convex solid and a part that lies like those before: the same pair at less cost. `None` of
-    /// others.
+    /// Returns the pair of a convex solid and a part with the usual placement, at less cost; `None`
+    /// for other parts.
     fn as_usual(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
         if let PartSolid::Shape(_) = part.solid {
             return None;
@@ -271,6 +275,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         Some(PlacedPair { is_usual: true, ..PlacedPair::of(bodies, usual.lying, usual.origins) })
     }
 
+    /// Returns the placement of a part, which serves all parts with the same pose and kind.
     fn usual(&self, part: &Part<'a, N, D>) -> Usual<N, D> {
         let origins = [Point::origin(), Point::from(self.between.pose21.translation)];
         let rotation = part.pose.rotation;
@@ -288,7 +293,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Usual<N, D> {
-    /// A part seen from the point; `None` of one that lies otherwise.
+    /// Returns a part translated to the anchor; `None` if it has another placement.
     fn recentred<'a>(&self, part: &Part<'a, N, D>) -> Option<PartSolid<'a, N, D>> {
         let is_segment = matches!(part.solid, PartSolid::Segment(_));
         let is_alike = self.pose.is_same(&part.pose) && self.is_segment == is_segment;
@@ -297,11 +302,12 @@ impl<N: Space<D>, const D: usize> Usual<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Lying<N, D> {
-    /// By the poses of a part of the first shape and one of the second.
+    /// Takes the poses of a part of the first shape and one of the second, relative to the anchor.
     fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_turned: bool) -> Self {
         let (frame1, frame2) = (*pose1, turn.compose(pose2));
         let pose12 = Pose::relative(&frame1, &frame2);
-        // Turned round like any pair whose kinds are in the opposite order: to the bit that of the separation.
+        // Inverted as for every pair in the opposite order of kinds, so that the bits agree with
+        // the separation.
         let (frame, pose12) = if is_turned { (frame2, pose12.inverse()) } else { (frame1, pose12) };
         Self { pose12, is_turned, frame, turn }
     }
@@ -315,7 +321,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
         Self::of(bodies, lying, origins)
     }
 
-    /// A part of the first shape and one of the second.
+    /// Takes a part of the first shape and one of the second.
     fn of(
         [body1, body2]: [PlacedPart<'a, N, D>; 2],
         lying: Lying<N, D>,
@@ -325,8 +331,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
         Self { bodies, lying, origins, is_usual: false }
     }
 
-    /// Puts another part of the second shape in the place of one that lies as usual; answers whether that
-    /// one does.
+    /// Replaces the part of the second shape; returns false, without a change, if the new part does
+    /// not have the usual placement.
     fn exchange(&mut self, usual: &Usual<N, D>, part: &Part<'a, N, D>) -> bool {
         let Some(solid) = usual.recentred(part) else { return false };
         let at = usize::from(!self.lying.is_turned);
@@ -342,13 +348,13 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Pair { first: first.kind(), second: second.kind(), pose12: self.lying.pose12 }
     }
 
-    /// None of the two is a half-space.
+    /// Whether neither is a half-space.
     pub(super) fn has_centers(&self) -> bool {
         self.bodies.iter().all(|body| Geometry(body.kind()).as_support_map().is_some())
     }
 
-    /// Points well inside the part of the first shape and that of the second, each as seen by the
-    /// first shape and by the second; `None` if one is a half-space.
+    /// Points well inside the part of the first shape and that of the second, each in the frames of
+    /// both shapes; `None` if one is a half-space.
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
         let [center1, center2] = self.turned([self.bodies[0].center()?, self.bodies[1].center()?]);
         let [origin1, origin2] = self.origins.mapped(|origin| origin.coords);
@@ -356,8 +362,8 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
-    /// Of a convex first shape and a part of the second, of which [`Self::centers`] are known to be: these
-    /// as the second shape sees them, or the first as where it comes from.
+    /// For a convex first shape: the centre of that, or `from` instead, and the centre of the part
+    /// of the second, in the frame of the second; `None` if one is a half-space.
     pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
         let [first, second] = if self.lying.is_turned { [1, 0] } else { [0, 1] };
         let origin = self.origins[1].coords;
@@ -369,7 +375,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([other, own])
     }
 
-    /// Lengths below this are rounding errors of the pair.
+    /// Bound of the rounding errors of lengths in the pair.
     pub(super) fn tolerance(&self) -> N {
         let size = |body: &PlacedPart<'_, N, D>| {
             let map = Geometry(body.kind()).as_support_map();
@@ -379,34 +385,36 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         N::lit(16.0) * N::EPSILON * (lengths + self.lying.pose12.translation.norm())
     }
 
-    /// Something given for the first shape and the second, in the order of the kinds, or back.
+    /// Converts a pair of values from the order of shapes to the order of kinds, or back.
     pub(super) fn turned<S>(&self, [a, b]: [S; 2]) -> [S; 2] {
         if self.lying.is_turned { [b, a] } else { [a, b] }
     }
 
-    /// A direction in the second shape's frame, in the first's.
+    /// Rotates a direction from the frame of the second shape to that of the first.
     pub(super) fn seen_by_first(&self, direction: &Vector<N, D>) -> Vector<N, D> {
         self.lying.turn.vector(direction)
     }
 
-    /// A direction in the first shape's frame, in the second's.
+    /// Rotates a direction from the frame of the first shape to that of the second.
     pub(super) fn seen_by_second(&self, direction: &Vector<N, D>) -> Vector<N, D> {
         self.lying.turn.inverse_vector(direction)
     }
 
-    /// A direction from the first body to the second, as one from the first shape to the second.
+    /// Converts a direction from the first body to the second into one from the first shape to the
+    /// second.
     pub(super) fn outward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.lying.frame.vector(normal);
         if self.lying.is_turned { -normal } else { normal }
     }
 
-    /// The opposite of [`Self::outward`].
+    /// The inverse of [`Self::outward`].
     pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.lying.frame.inverse_vector(normal);
         if self.lying.is_turned { -normal } else { normal }
     }
 
-    /// Moving the second shape by one of some vectors of the first's frame parts the two, up to a tolerance.
+    /// Whether the two parts are separated, within `tolerance`, once the second shape moves by one
+    /// of some vectors in the frame of the first.
     pub(super) fn is_parted_by_one(&self, ways: &[Vector<N, D>], tolerance: N) -> bool {
         let Some([one, other]) = self.corners() else {
             return ways.iter().any(|way| self.is_parted(way, tolerance));
@@ -419,30 +427,31 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
             }
             pairs.count = ways.len();
             let PairVerdicts { beyond, within } = <N::Algorithms>::part_pairs(&pairs, -tolerance);
-            // Few pairs are as far apart as the tolerance but for rounding.
+            // Few pairs are so close to the limit that the lanes leave them undecided.
             let is_open = |lane: usize| (beyond | within) >> lane & 1 == 0;
             let mut open = ways.iter().enumerate().filter(|(lane, _)| is_open(*lane));
             beyond != 0 || open.any(|(_, way)| self.is_parted(way, tolerance))
         })
     }
 
-    /// The corners of the part of the first shape and of that of the second, in the frame of the first put through the
-    /// point that they are seen from; `None` of parts without.
+    /// The corners of both parts in the frame of the first shape, relative to the anchor; `None` if
+    /// one has no corners.
     fn corners(&self) -> Option<[[Vector<N, D>; 3]; 2]> {
         let [first, second] = self.turned([&self.bodies[0], &self.bodies[1]]);
         let second = second.corners()?;
         Some([first.corners()?, second.mapped(|corner| self.lying.turn.vector(&corner))])
     }
 
-    /// Moving the second shape by a vector of the first's frame parts the two, up to a tolerance.
+    /// Whether the two parts are separated, within `tolerance`, once the second shape moves by
+    /// `way`, in the frame of the first.
     fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
         let mut pair = self.pair();
         pair.pose12.translation += self.inward(way);
         <N::Algorithms>::separation(&pair, -tolerance).is_none()
     }
 
-    /// A manifold of the bodies as one of the shapes, in the frame of the first; its points are
-    /// appended to others.
+    /// Converts a manifold of the bodies into one of the shapes, in the frame of the first; appends
+    /// its points to `points`.
     pub(super) fn piece(
         &self,
         raw: &RawManifold<N, D>,

@@ -1,4 +1,4 @@
-//! The contacts of two shapes at one time, of which nothing is kept.
+//! The contacts of two shapes at one time, without a cache.
 
 use super::part_cache::PartCache;
 use super::part_contact::{Arena, PartStatus};
@@ -13,14 +13,15 @@ use crate::tables::ByDimension;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FoundContact<N: Real, const D: usize> {
     pub(crate) separation: Separation<N, D>,
+    /// The part of the first shape and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
 }
 
-/// What is done with each contact.
+/// Receives each contact.
 type Visit<'a, N, const D: usize> = dyn FnMut(&FoundContact<N, D>) + 'a;
 
-/// Calls `visit` with each contact of what is within `reach`, by the way that the pair has of its own if there is
-/// one.
+/// Calls `visit` with each contact of the parts within `reach`, by the kernel of the pair if there
+/// is one.
 pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     reach: N,
@@ -42,7 +43,7 @@ pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     each_in_general(between, &request, visit);
 }
 
-/// [`each_contact_within`] of any two shapes.
+/// [`each_contact_within`] by the generic path.
 fn each_in_general<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -62,6 +63,8 @@ fn each_in_general<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> FoundContact<N, D> {
+    /// Makes a separation of a contact point; the second point follows from the first by `normal *
+    /// distance`.
     fn new(normal: &Vector<N, D>, point: &RawPoint<N, D>, parts: [u32; 2]) -> Self {
         let (normal, RawPoint { distance, point1, .. }) = (*normal, *point);
         let point2 = point1 + normal * distance;
@@ -69,7 +72,7 @@ impl<N: Real, const D: usize> FoundContact<N, D> {
     }
 }
 
-/// The deepest contact of what is within reach, the first of equals.
+/// Returns the deepest contact of the parts within `reach`, the first in a tie.
 pub(super) fn deepest_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     reach: N,
@@ -77,7 +80,7 @@ pub(super) fn deepest_within<N: Space<D>, const D: usize>(
     deepest_of(|visit| each_contact_within(between, reach, visit))
 }
 
-/// [`deepest_within`] without the way that some pairs have of their own.
+/// [`deepest_within`] by the generic path alone.
 #[cfg(test)]
 pub(super) fn deepest_in_general<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
@@ -86,6 +89,7 @@ pub(super) fn deepest_in_general<N: Space<D>, const D: usize>(
     deepest_of(|visit| each_in_general(between, request, visit))
 }
 
+/// Returns the deepest of the contacts that `each` visits, the first in a tie.
 fn deepest_of<N: Real, const D: usize>(
     each: impl FnOnce(&mut Visit<'_, N, D>),
 ) -> Option<Separation<N, D>> {

@@ -1,11 +1,10 @@
-//! One part of each of two shapes as a pair of its own, without what distance from the frames' origins
-//! costs.
+//! One part of each of two shapes as a pair, independent of the distance from the frames' origins.
 //!
-//! The triangles of a mesh come in the frame of the mesh, whose origin may be far away; the tolerances
-//! of the pair algorithms are in proportion to all coordinates. So both parts are seen from a point
-//! close to them: from a frame in which the first solid lies as it is, or the part of the first shape.
-//! The same point serves all parts that one solid is held against, so that triangles that shared a
-//! corner still do.
+//! The triangles of a mesh are in the frame of the mesh, whose origin may be far away, and the
+//! tolerances of the pair algorithms grow with all coordinates. So both parts are placed relative
+//! to an anchor close to them: the origin of the convex solid, or the anchor of the first part. The
+//! anchor is the same for all parts that one solid is compared with, so that triangles keep their
+//! shared corners.
 
 use super::bounds::{aabb_of, enclosing};
 use crate::bounding_volume::Aabb;
@@ -15,23 +14,24 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Triangle};
 
-/// Two shapes, at least one of them a composite, and how each lies in the frame of the other.
+/// Two shapes, at least one of them a composite, and the pose of each in the frame of the other.
 #[derive(Clone, Copy)]
 pub(crate) struct Between<'a, N: Real, const D: usize> {
     pub(crate) pair: Pair<'a, N, D>,
-    /// The pose of the first in the frame of the second. As exact as `pair.pose12`: both are made from
+    /// The pose of the first in the frame of the second. As exact as `pair.pose12`: both come from
     /// the difference of the positions.
     pub(crate) pose21: Pose<N, D>,
 }
 
-/// A part, or all of a convex solid, seen from some point of the frame of its shape.
+/// A part, or a whole convex solid, relative to an anchor in the frame of its shape.
 #[derive(Clone, Copy)]
 struct AnchoredPart<'a, N: Real, const D: usize> {
     solid: PartOf<'a, N, D>,
-    /// Where it lies to the axes of its shape put through that point.
+    /// Its pose in the frame of the shape, translated to the anchor.
     pose: Pose<N, D>,
 }
 
+/// A whole convex shape, or a part of a composite.
 #[derive(Clone, Copy)]
 enum PartOf<'a, N: Real, const D: usize> {
     Whole(Kind<'a, N, D>),
@@ -42,40 +42,39 @@ enum PartOf<'a, N: Real, const D: usize> {
 pub(crate) struct PartPair<'a, N: Real, const D: usize> {
     seen1: AnchoredPart<'a, N, D>,
     seen2: AnchoredPart<'a, N, D>,
-    /// The point that both are seen from, in the frame of the first shape.
+    /// The anchor of both parts, in the frame of the first shape.
     origin1: Point<N, D>,
     pose12: Pose<N, D>,
 }
 
 impl<'a, N: Real, const D: usize> Between<'a, N, D> {
-    /// Two placed shapes whose canonical order is known.
+    /// Takes two placed shapes whose canonical order is known.
     pub(crate) fn of_ordered(ordered: &Ordered<'_, 'a, N, D>) -> Self {
         let pose21 = Pose::relative(&ordered.second.pose, &ordered.first.pose);
         Self { pair: ordered.pair(), pose21 }
     }
 
-    /// Two shapes of which only the pose of the second in the frame of the first is known.
+    /// Takes two shapes with only the pose of the second in the frame of the first.
     pub(crate) fn of_pair(pair: &Pair<'a, N, D>) -> Self {
         Self { pair: *pair, pose21: pair.pose12.inverse() }
     }
 
-    /// The parts of both shapes; `None` for a convex solid.
+    /// Both shapes as composites; `None` for a convex solid.
     pub(crate) fn composites(&self) -> [Option<&'a dyn CompositeShape<N, D>>; 2] {
         [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
 
-    /// Closed surfaces among the parts of one of them are bodies, in which the other may lie.
+    /// Whether a composite has closed surfaces that bound bodies, in which the other shape may lie.
     #[inline]
     pub(crate) fn has_bodies(&self) -> bool {
         self.composites().iter().flatten().any(|composite| composite.has_bodies())
     }
 
-    /// The first shape is a half-space.
     pub(crate) fn is_half_space_first(&self) -> bool {
         matches!(self.pair.first, Kind::Plane(_))
     }
 
-    /// The pair of two parts; 0 is the only part of a convex solid.
+    /// Returns the pair of two parts; a convex solid has only part 0.
     pub(crate) fn parts(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
         let [composite1, composite2] = self.composites();
         if composite1.is_none() && composite2.is_none() {
@@ -98,7 +97,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         PartPair { seen1, seen2, origin1, pose12 }
     }
 
-    /// Two convex solids as they are.
+    /// Returns two convex solids as they are, without an anchor.
     fn whole(&self) -> PartPair<'a, N, D> {
         let [seen1, seen2] = [self.pair.first, self.pair.second]
             .mapped(|kind| AnchoredPart { solid: PartOf::Whole(kind), pose: Pose::identity() });
@@ -107,21 +106,22 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Between<'_, N, D> {
-    /// A box around one of the shapes, the first (0) or the second (1), in the frame of the other.
+    /// Returns a box around one of the shapes, the first (0) or the second (1), in the frame of the
+    /// other.
     pub(crate) fn whole_in_other(&self, which: usize) -> Aabb<N, D> {
         let (kind, pose) = self.seen_by_other(which);
         enclosing(&aabb_of(kind, pose), pose)
     }
 
-    /// A box in the frame of the first shape (0) or the second (1) as one in the frame of the other, around all that
-    /// it holds.
+    /// Transforms a box from the frame of the first shape (0) or the second (1) into the frame of
+    /// the other; the result encloses it.
     pub(crate) fn box_in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         let pose = self.seen_by_other(which).1;
         enclosing(&aabb.transformed_by(pose), pose)
     }
 
-    /// A box around a part of the first shape (0) or the second (1), in the frame of the other; all of a
-    /// convex solid is its part.
+    /// Returns a box around a part of the first shape (0) or the second (1), in the frame of the
+    /// other; a convex solid is its own part.
     pub(crate) fn aabb_in_other(&self, which: usize, part: u32) -> Aabb<N, D> {
         let Some((part, pose)) = self.part_in_other(which, part) else {
             return self.whole_in_other(which);
@@ -129,8 +129,8 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         enclosing(&part.solid.as_shape().aabb(&pose), self.seen_by_other(which).1)
     }
 
-    /// A part of the first shape (0) or the second (1), and its pose in the frame of the other; `None` of a
-    /// convex solid.
+    /// Returns a part of the first shape (0) or the second (1) and its pose in the frame of the
+    /// other; `None` for a convex solid.
     pub(crate) fn part_in_other(
         &self,
         which: usize,
@@ -142,7 +142,7 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         Some((part, pose))
     }
 
-    /// The boxes around two composites are farther apart than a limit, seen from one of the two.
+    /// Whether the boxes of two composites are farther apart than `limit`, in the frame of either.
     pub(crate) fn are_boxes_beyond(&self, limit: N) -> bool {
         let [Some(parts1), Some(parts2)] = self.composites() else { return false };
         let is_beyond = |parts: &dyn CompositeShape<N, D>, other: usize| {
@@ -152,14 +152,15 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         is_beyond(parts1, 1) || is_beyond(parts2, 0)
     }
 
-    /// The first shape (0) or the second (1), and its pose in the frame of the other.
+    /// Returns the first shape (0) or the second (1) and its pose in the frame of the other.
     pub(super) fn seen_by_other(&self, which: usize) -> (Kind<'_, N, D>, &Pose<N, D>) {
         let Pair { first, second, pose12 } = &self.pair;
         if which == 0 { (*first, &self.pose21) } else { (*second, pose12) }
     }
 }
 
-/// Which of two composites has fewer parts, the first (0) or the second (1); it, and the other.
+/// Returns which of two composites has fewer parts, the first (0) or the second (1, only if
+/// strictly fewer); that composite, and the other.
 pub(crate) fn by_number<'a, N: Real, const D: usize>(
     parts1: &'a dyn CompositeShape<N, D>,
     parts2: &'a dyn CompositeShape<N, D>,
@@ -168,6 +169,7 @@ pub(crate) fn by_number<'a, N: Real, const D: usize>(
 }
 
 impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
+    /// Places `piece`, or the whole convex shape if there is none, relative to the anchor `origin`.
     fn new(whole: Kind<'a, N, D>, piece: Option<Part<'a, N, D>>, origin: &Point<N, D>) -> Self {
         let Some(piece) = piece else {
             let pose = Pose::from_translation(-origin.coords);
@@ -197,24 +199,24 @@ impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
 }
 
 impl<N: Real, const D: usize> PartPair<'_, N, D> {
-    /// The parts, for the pair algorithms.
+    /// The parts as the pair algorithms take them.
     pub(crate) fn pair(&self) -> Pair<'_, N, D> {
         Pair { first: self.seen1.kind(), second: self.seen2.kind(), pose12: self.pose12 }
     }
 
-    /// Where the parts lie, in the frame of the first shape.
+    /// The poses of the parts in the frame of the first shape.
     pub(crate) fn poses(&self) -> [Pose<N, D>; 2] {
         let Pose { rotation, translation } = self.seen1.pose;
         let pose1 = Pose { rotation, translation: self.origin1.coords + translation };
         [pose1, pose1.compose(&self.pose12)]
     }
 
-    /// A vector of the frame of the first shape, in that of the first part.
+    /// Transforms a vector from the frame of the first shape to that of the first part.
     pub(crate) fn to_first_part(&self, vector: &Vector<N, D>) -> Vector<N, D> {
         self.seen1.pose.inverse_vector(vector)
     }
 
-    /// What is known in the frame of the first shape, as an answer about [`Self::pair`].
+    /// Transforms a separation from the frame of the first shape to that of [`Self::pair`].
     pub(crate) fn in_first_part(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let placed =
             |point: &Point<N, D>| self.seen1.pose.inverse_point(&Point::from(point - self.origin1));
@@ -226,7 +228,7 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
         }
     }
 
-    /// An answer about [`Self::pair`], in the frame of the first shape.
+    /// Transforms a separation from the frame of [`Self::pair`] to that of the first shape.
     pub(crate) fn in_first(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let placed = |point| self.origin1 + self.seen1.pose.point(point).coords;
         Separation {
@@ -238,7 +240,8 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
     }
 }
 
-/// A point close to a part: of what is given by its corners the first of them, else its own origin.
+/// Returns a point close to a part: the first corner of a triangle or segment, else the origin of
+/// the part.
 pub(crate) fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N, D> {
     match &part.solid {
         PartSolid::Triangle(triangle) => part.pose.point(&triangle.corners()[0]),
@@ -247,8 +250,8 @@ pub(crate) fn anchor<N: Real, const D: usize>(part: &Part<'_, N, D>) -> Point<N,
     }
 }
 
-/// What is given by its corners, moved so that `origin` becomes the origin; `None` for shapes with
-/// frames of their own, and where the numbers end.
+/// Translates a triangle or segment so that `origin` becomes the origin. `None` for shapes with
+/// frames of their own, and if a coordinate overflows.
 pub(crate) fn recentred<'a, N: Real, const D: usize>(
     solid: &PartSolid<'a, N, D>,
     origin: &Vector<N, D>,

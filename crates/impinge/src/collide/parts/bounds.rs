@@ -1,15 +1,16 @@
-//! Boxes for looking for parts: as large as rounding asks for.
+//! Boxes to search parts with, loosened by the rounding error of their coordinates.
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
 use crate::shape::{Kind, Shape, SupportMap};
 
-/// Boxes and times are off by so many rounding errors of the coordinates that they come from.
+/// Rounding error of boxes and times, in units of epsilon times the coordinates that they come
+/// from.
 const ROUNDING_ERRORS: f64 = 16.0;
 
-/// A box around a solid of any kind placed at `pose`.
+/// Returns a box around a solid of any kind placed at `pose`.
 ///
-/// Cost: that of a few support points; of a composite, of the bounds that its search knows.
+/// Cost: a few support points; for a composite, the bounds that its search keeps.
 pub(crate) fn aabb_of<N: Space<D>, const D: usize>(
     kind: Kind<'_, N, D>,
     pose: &Pose<N, D>,
@@ -30,7 +31,7 @@ pub(crate) fn aabb_of<N: Space<D>, const D: usize>(
     }
 }
 
-/// The box of a support map: of its farthest points along the axes.
+/// Returns the box of a support map from its support points along the axes.
 fn of_map<N: Real, const D: usize>(map: &dyn SupportMap<N, D>, pose: &Pose<N, D>) -> Aabb<N, D> {
     let (mut mins, mut maxs) = (pose.point(&map.center()), pose.point(&map.center()));
     for axis in 0..D {
@@ -43,7 +44,8 @@ fn of_map<N: Real, const D: usize>(map: &dyn SupportMap<N, D>, pose: &Pose<N, D>
     Aabb::try_new(mins, maxs).unwrap_or_else(|_| Aabb::unbounded())
 }
 
-/// A box that holds what `aabb` would hold if arithmetic were exact; everything if it is no box.
+/// Returns a box that holds what `aabb`, a box placed by `pose`, would hold in exact arithmetic.
+/// Unbounded if the loosened box is not valid.
 pub(crate) fn enclosing<N: Real, const D: usize>(
     aabb: &Aabb<N, D>,
     pose: &Pose<N, D>,
@@ -53,21 +55,21 @@ pub(crate) fn enclosing<N: Real, const D: usize>(
     Aabb::try_new(*grown.mins(), *grown.maxs()).unwrap_or_else(|_| Aabb::unbounded())
 }
 
-/// A box around a point that holds all that rounding makes of it; `None` if it is not finite.
+/// Returns a box around a point, loosened by rounding error; `None` if the point is not finite.
 ///
-/// `bounds` is a box around all that it is held against.
+/// `bounds` encloses everything that the box is compared with.
 #[inline(always)]
 pub(crate) fn around_point<N: Real, const D: usize>(
     point: &Point<N, D>,
     bounds: &Aabb<N, D>,
 ) -> Option<Aabb<N, D>> {
     let at = Aabb::at(*point);
-    // Neither infinite nor NaN, so that the box is one.
+    // Infinite and NaN coordinates are rejected, so that the box is valid.
     let is_finite = (0..D).all(|axis| point[axis].is_finite_number());
     is_finite.then(|| at.loosened(rounding(extent(bounds) + extent(&at))))
 }
 
-/// The largest of the finite coordinates of a box.
+/// Returns the largest absolute value of the finite coordinates of a box.
 pub(super) fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
     let mut most = N::ZERO;
     for axis in 0..D {
@@ -80,13 +82,13 @@ pub(super) fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
     most
 }
 
-/// What rounding makes of coordinates of this size.
+/// The rounding error of coordinates up to `scale`.
 fn rounding<N: Real>(scale: N) -> N {
     N::lit(ROUNDING_ERRORS) * N::EPSILON * scale
 }
 
-/// A limit for boxes that loses no part that is as near, but for rounding, as a distance or time of
-/// zero or more. Unlimited where its square, which searches may compute, is no number of the type.
+/// Returns a limit for boxes that rejects no part within `limit`, a distance or time of zero or
+/// more. Infinite if the square, which searches may compute, is not finite.
 pub(crate) fn loosened<N: Real>(limit: N) -> N {
     let within = limit + rounding(limit);
     if (within * within).is_finite_number() { within } else { N::INFINITY }

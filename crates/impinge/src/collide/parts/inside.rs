@@ -1,9 +1,17 @@
 //! Pieces of one shape that lie wholly inside a body of the other.
 //!
-//! A body is given by a closed surface, which is a skin to the searches of parts. A connected piece that touches no
-//! part of it is inside as a whole or outside as a whole, so that one point decides. Out of the body leads the way to
-//! the nearest part of the boundary: the piece is as deep as it reaches below the plane through the nearest point
-//! there, perpendicular to that way.
+//! A body is bounded by a closed surface; searches of parts see only this surface. A connected
+//! piece that touches no part of it is inside or outside as a whole, so one point decides. The exit
+//! leads from the piece through the nearest point of the boundary. The depth is the extent of the
+//! piece below the plane through that point, perpendicular to the exit.
+//!
+//! ```text
+//!   ═════════●═════════  boundary        ┬
+//!            ↑ outward                   │
+//!         ╭──┴──╮                        │ depth
+//!         │piece│                        │
+//!         ╰──○──╯                        ┴
+//! ```
 
 use core::ops::Range;
 
@@ -18,43 +26,48 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
 use crate::shape::{EnclosedBody, Geometry, Kind};
 
-/// A connected piece of one shape, one of whose points lies in a body of the other.
+/// A connected piece of one shape; a point of it lies in a body of the other.
 #[derive(Clone, Debug)]
 pub(crate) struct InsidePiece<N: Real, const D: usize> {
-    /// The piece is one of the first shape (0) or of the second (1).
+    /// Whether the piece belongs to the first shape (0) or the second (1).
     pub(crate) inner: usize,
-    /// Its number, as its parts have it; 0 of a convex solid.
+    /// The index of the piece, from
+    /// [`CompositeShape::piece_of`](crate::shape::CompositeShape::piece_of); 0 for a convex solid.
     piece: u32,
     /// The parts of the other shape that bound the body.
     boundary: Range<u32>,
-    /// The part of the piece and that of the boundary that are nearest, of those through which a way leads out.
+    /// The nearest pair of a part of the piece and a part of the boundary through which the body is
+    /// left.
     nearest: Option<PartSeparation<N, D>>,
-    /// Of those through which it leads deeper into the body: the way where there is no other.
+    /// The nearest pair through which a way leads deeper into the body: used if there is no
+    /// `nearest`.
     blocked: Option<PartSeparation<N, D>>,
 }
 
-/// Where a way may lead out, the body is asked about a point beyond the boundary: farther by this part of the way, and
-/// by rounding.
+/// To decide whether a way leaves the body, a point behind the boundary is tested: this part of the
+/// distance farther, and at least the rounding error.
 const BEYOND: f64 = 1.0 / 64.0;
-/// Lengths up to so many rounding units of coordinates are rounding errors.
+/// Rounding error of lengths, in units of epsilon times the coordinates.
 const ROUNDING: f64 = 64.0;
 
+/// The pieces of both shapes that are inside bodies.
 pub(crate) type InsidePieces<N, const D: usize> = SmallVec<[InsidePiece<N, D>; 1]>;
 
-/// The plane through the nearest point of the boundary, perpendicular to the way out; in the frame of the first shape.
+/// The exit plane: through the nearest point of the boundary, perpendicular to the way out; in the
+/// frame of the first shape.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exit<N: Real, const D: usize> {
     pub(crate) point: Point<N, D>,
     /// Unit, out of the body.
     pub(crate) outward: Vector<N, D>,
-    /// The parts that are nearest.
+    /// The pair of parts that gives the exit.
     pub(crate) parts: [u32; 2],
 }
 
-/// The pieces of the two shapes of which a point lies in a body of the other: they are inside of it, or cross its
-/// boundary.
+/// Returns the pieces of both shapes with their test point in a body of the other. They are inside
+/// the body or cross its boundary.
 ///
-/// Cost: a winding number for each piece whose parts are within the box of the other shape.
+/// Cost: a winding number for each piece with parts in the box of the other shape.
 pub(crate) fn held_pieces<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
 ) -> InsidePieces<N, D> {
@@ -68,10 +81,11 @@ pub(crate) fn held_pieces<N: Space<D>, const D: usize>(
     pieces
 }
 
-/// Finds the ways out of the bodies, and leaves the pieces that have one: those that are inside as a whole.
+/// Finds the exits of the pieces from their bodies, and drops the pieces that clearly cross a
+/// boundary.
 ///
-/// Cost: one search of the nearest parts for all; it takes time in proportion to the square of their number where that is
-/// large.
+/// Cost: one search for nearest parts, shared by all pieces; each pair of parts is compared with
+/// each piece, so that many pieces take quadratic time.
 pub(crate) fn find_exits<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     pieces: &mut InsidePieces<N, D>,
@@ -82,7 +96,7 @@ pub(crate) fn find_exits<N: Space<D>, const D: usize>(
     }
 }
 
-/// Appends the pieces of which a point lies in a body.
+/// Appends the pieces whose test point lies in the body.
 fn add_held<N: Space<D>, const D: usize>(
     body: &EnclosedBody<'_, N, D>,
     inner: usize,
@@ -95,7 +109,8 @@ fn add_held<N: Space<D>, const D: usize>(
     }
 }
 
-/// A point of each piece of a shape that may be inside the other, in the frame of the other. Half-spaces have none.
+/// Returns the centre of one part of each piece that may be inside the other shape, in the frame of
+/// the other. Half-spaces have none.
 fn points_of_pieces<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     inner: usize,
@@ -117,8 +132,8 @@ fn points_of_pieces<N: Space<D>, const D: usize>(
     points
 }
 
-/// The parts of a shape whose boxes meet that of the other one, each after the number of its piece; in order. A piece
-/// that is inside the other shape has all its parts among them.
+/// Returns the parts of a shape whose boxes meet that of the other, each as (piece, part), sorted.
+/// They include all parts of a piece that is inside the other shape.
 fn parts_near_other<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     inner: usize,
@@ -135,7 +150,8 @@ fn parts_near_other<N: Space<D>, const D: usize>(
     parts
 }
 
-/// Calls with a part of a shape and its pose in the frame of the shape; a convex solid is its own part.
+/// Calls `visit` with a part and its pose in the frame of its shape; a convex solid is its own
+/// part.
 fn each_solid<N: Space<D>, const D: usize>(
     shape: Kind<'_, N, D>,
     part: u32,
@@ -147,18 +163,20 @@ fn each_solid<N: Space<D>, const D: usize>(
     }
 }
 
-/// Finds the nearest parts of each piece and its boundary.
+/// Finds the nearest pair of parts of each piece and its boundary.
 struct NearestBoundary<'p, 'a, N: Real, const D: usize> {
     between: &'p Between<'a, N, D>,
     pieces: &'p mut InsidePieces<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, N, D> {
+    /// The largest known distance of a piece from its boundary.
     fn limit(&self) -> N {
         self.pieces.iter().fold(-N::INFINITY, |most, piece| max(most, piece.distance()))
     }
 
-    /// What crosses the boundary is not inside: how deep does not matter.
+    /// A piece that crosses the boundary is dropped whatever its depth, so the search ends at
+    /// contact.
     fn bound(&self) -> N {
         let limit = self.limit();
         if limit <= N::ZERO { -N::ONE } else { loosened(limit) }
@@ -184,28 +202,30 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, 
 }
 
 impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
-    /// One of two parts belongs to the piece, and the other to the boundary of the body.
+    /// Whether one part belongs to the piece and the other to the boundary of the body.
     pub(crate) fn has(&self, between: &Between<'_, N, D>, parts: [u32; 2]) -> bool {
         self.boundary.contains(&parts[1 - self.inner]) && self.is_own(between, parts[self.inner])
     }
 
+    /// Whether a part of the inner shape belongs to the piece.
     fn is_own(&self, between: &Between<'_, N, D>, part: u32) -> bool {
         let composite = between.composites()[self.inner];
         composite.is_none_or(|composite| composite.piece_of(part) == self.piece)
     }
 
-    /// Calls with each part of the piece.
+    /// Calls `visit` with each part of the piece.
     pub(crate) fn each_part(&self, between: &Between<'_, N, D>, mut visit: impl FnMut(u32)) {
         let near = parts_near_other(between, self.inner);
         near.iter().filter(|(piece, _)| *piece == self.piece).for_each(|(_, part)| visit(*part));
     }
 
-    /// How near the boundary is, as far as that is known.
+    /// The distance to the boundary as far as known; infinite at first.
     fn distance(&self) -> N {
         self.nearest.map_or(N::INFINITY, |nearest| nearest.separation.distance)
     }
 
-    /// Behind the nearest point of the boundary the body ends: it does not where bodies of one surface overlap.
+    /// Whether the body ends behind the nearest point of the boundary. It does not where bodies of
+    /// one surface overlap.
     fn leads_out(&self, between: &Between<'_, N, D>, found: &PartSeparation<N, D>) -> bool {
         let Some(Exit { point, outward, .. }) = self.exit_at(found) else { return true };
         let outer = 1 - self.inner;
@@ -223,21 +243,22 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         !is_held
     }
 
-    /// The way out of the body; `None` of a piece that clearly crosses the boundary, where parts in contact know more.
+    /// Returns the exit from the body. `None` if the piece clearly crosses the boundary: then the
+    /// contacts of its parts hold.
     pub(crate) fn exit(&self) -> Option<Exit<N, D>> {
         self.exit_at(&self.nearest.or(self.blocked)?)
     }
 
-    /// The way out of the body through some part of its boundary.
+    /// Returns the exit through the part of the boundary in `found`.
     fn exit_at(&self, found: &PartSeparation<N, D>) -> Option<Exit<N, D>> {
         let PartSeparation { separation, parts, .. } = *found;
         let Separation { normal, point1, point2, distance } = separation;
         let (point, outward) = if self.inner == 0 { (point2, normal) } else { (point1, -normal) };
-        // Parts that overlap by rounding alone may be apart to who else asks.
+        // Another algorithm may find a gap where this one finds an overlap within rounding error.
         (distance > -rounding([&point1, &point2])).then_some(Exit { point, outward, parts })
     }
 
-    /// How deep the piece is, as a separation; `None` where there is no [`Self::exit`].
+    /// Returns the depth of the piece as a separation; `None` if there is no [`Self::exit`].
     fn separation(&self, between: &Between<'_, N, D>) -> Option<PartSeparation<N, D>> {
         let Exit { point, outward, parts } = self.exit()?;
         let pose12 = &between.pair.pose12;
@@ -272,13 +293,14 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     }
 }
 
-/// What rounding makes of lengths between two points.
+/// The rounding error of lengths between two points.
 fn rounding<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> N {
     let size = max(max_component(&points[0].coords), max_component(&points[1].coords));
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
-/// The answer to what is [`Wanted`] of two shapes, among whose parts are bodies: `best` is that of the parts alone.
+/// Extends `best`, the result for the surfaces alone, to the bodies of the shapes: returns the pair
+/// of parts that is [`Wanted`] within `limit`.
 pub(super) fn with_inside<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,

@@ -1,48 +1,53 @@
-//! Which parts of two composites that are searched by trees may be within reach of each other.
+//! Pairs of parts of two composites, both searched by trees, that may be within reach of each
+//! other.
 //!
-//! The trees tell by boxes; the pairs that these leave are held against each other in lanes ([`pair_lanes`]), along every
-//! direction that may part two triangles.
+//! The trees reject pairs by boxes. The remaining pairs are tested in SIMD lanes ([`pair_lanes`]),
+//! along every axis that may separate two triangles.
 //!
 //! [`pair_lanes`]: super::pair_lanes
 
 use super::between::Between;
 use super::bounds::extent;
 use super::pair_lanes::PartPairs;
-use super::slabs::corners;
+use super::slabs::{corners, range};
 use super::solid_bounds::gap_slack;
 use crate::bounding_volume::Aabb;
 use crate::bvh::{Toward, TreeMeeting, visit_meetings};
 use crate::collide::packet::LANES;
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, min};
-use crate::shape::CompositeShape;
+use crate::shape::{CompositeShape, TriMesh};
 use crate::tables::ByDimension;
 
-/// What is done with pairs of parts.
+/// Receives the pairs of parts that a search finds.
 pub(crate) trait MeetingVisitor<N: Real, const D: usize> {
-    /// Looks at two parts; answers the reach from now on, which never grows, and `None` to end the search.
+    /// Handles two parts. Returns the reach from now on, which must never grow; `None` ends the
+    /// search.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N>;
 
-    /// The unit vector from the first composite to the second between the best parts so far, in the frame of the first.
+    /// The unit vector from the first composite to the second between the best parts so far, in the
+    /// frame of the first.
     fn normal(&self) -> Option<Vector<N, D>> {
         None
     }
 }
 
-/// Which pairs of parts are asked for.
+/// The pairs of parts that a search looks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Meetings {
     /// All within reach, each once.
     Each,
-    /// Few, since one of them is likely to end the search: none is kept back for others.
+    /// Any pair: one is likely to end the search, so that no pair waits for a full batch of lanes.
     Any,
-    /// Few, since the reach shrinks to what is found: a pair that is likely to be near comes first, and may come twice.
+    /// The nearest: the reach shrinks to the best distance. A pair that is likely to be near comes
+    /// first, and may come twice.
     Nearest,
 }
 
-/// Visits the pairs of parts that may be within `reach`; answers false of composites that are not searched by
-/// trees, or too far away.
+/// Visits the pairs of parts that may be within `reach`. Returns false, without a visit, for
+/// composites that are not searched by trees or are too far away for boxes of `f32`.
 ///
-/// Cost: O(n + k) for k pairs whose boxes are within reach of n blocks that are, as long as boxes are good ones.
+/// Cost: O(n + k) for k pairs with boxes within reach in n blocks within reach, as long as the
+/// boxes fit tightly.
 pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     reach: N,
@@ -54,7 +59,7 @@ pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
     let [Some(tree1), Some(tree2)] = trees else { return false };
     let ways =
         [&between.pair.pose12, &between.pose21].mapped(|pose| max_component(&pose.translation));
-    // So far away boxes of `f32` say nothing.
+    // Translations beyond `f32` make the boxes infinite.
     if ways.iter().any(|way| !way.as_f32().is_finite()) {
         return false;
     }
@@ -63,6 +68,7 @@ pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
     let mut meeting = PartMeetings {
         between,
         parts: [parts1, parts2],
+        meshes: [parts1.as_mesh(), parts2.as_mesh()],
         reach: Some(reach),
         slack: if wanted == Meetings::Nearest { gap_slack(size) } else { N::ZERO },
         wanted,
@@ -76,31 +82,57 @@ pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
     true
 }
 
+/// A search of two trees for pairs of parts, with up to eight pairs waiting for the lanes.
 struct PartMeetings<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
+    /// The composites that are meshes, for quicker access to corners.
+    meshes: [Option<&'a TriMesh<N, D>>; 2],
     reach: Option<N>,
-    /// Boxes may be farther apart than the nearest parts by this much.
+    /// Boxes may be farther apart than the nearest parts by this rounding error.
     slack: N,
     wanted: Meetings,
-    /// The corners of the part that is looked at, in the frame of the other composite, if it is given by them.
+    /// The corners of the current part in the frame of the other composite; `None` for a shape
+    /// without corners.
     own: Option<[Vector<N, D>; 3]>,
-    /// The numbers of the pairs that are kept back.
+    /// The pairs in the lanes, waiting for a full batch.
     kept: [[u32; 2]; LANES],
     pairs: PartPairs<N, D>,
     visitor: &'q mut dyn MeetingVisitor<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
+    /// Returns the corners of a part of the first shape (0) or the second (1), in its frame; `None`
+    /// for a part without.
+    fn corners_of(&self, which: usize, id: u32) -> Option<[Vector<N, D>; 3]> {
+        if let Some(mesh) = self.meshes[which] {
+            return Some(mesh.corners(id).mapped(|corner| corner.coords));
+        }
+        let part = self.parts[which].part(id);
+        corners(&part.solid, &part.pose)
+    }
+
+    /// Whether two parts are beyond reach along the line through their centroids; this rejects most
+    /// pairs that boxes do not.
+    fn are_beyond(&self, one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) -> bool {
+        let Some(reach) = self.reach.filter(|_| self.wanted == Meetings::Nearest) else {
+            return false;
+        };
+        let way = (other[0] + other[1] + other[2]) - (one[0] + one[1] + one[2]);
+        let [gap1, gap2] = [range(one, &way)[1], range(other, &way)[0]];
+        gap2 - gap1 > (reach + self.slack) * way.norm()
+    }
+
+    /// Passes a pair to the visitor, which returns the new reach.
     fn found(&mut self, pair: [u32; 2]) {
         self.reach = self.reach.and_then(|_| self.visitor.visit(pair));
     }
 
-    /// Visits the pairs that are kept back, but for those that are certainly beyond reach.
+    /// Tests the waiting pairs in lanes and visits those not certainly beyond reach.
     fn flush(&mut self) {
         let (mut looked_at, mut within) = (0, None);
         while let Some(reach) = self.reach.filter(|_| looked_at < self.pairs.count) {
-            // Again only where the reach has shrunk.
+            // The lanes are tested again only after the reach has shrunk.
             if within.is_none_or(|(known, _)| reach < known) {
                 let beyond = <N::Algorithms>::part_pairs(&self.pairs, reach).beyond;
                 within = Some((reach, !beyond));
@@ -113,7 +145,7 @@ impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
         self.pairs.count = 0;
     }
 
-    /// Keeps a pair back, the corners of both in one frame.
+    /// Puts a pair into the next lane; the corners of both parts are in one frame.
     fn keep(&mut self, pair: [u32; 2], one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) {
         let lane = self.pairs.count;
         self.kept[lane] = pair;
@@ -148,10 +180,11 @@ impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, 
         Some([normal, self.pose(0).vector(&-normal)])
     }
 
+    /// Also keeps the transformed corners of the part in `own`.
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D> {
-        let part = self.parts[which].part(id);
-        let pose = self.pose(which).compose(&part.pose);
-        self.own = corners(&part.solid, &pose);
+        let pose = self.pose(which);
+        let own = self.corners_of(which, id);
+        self.own = own.map(|own| own.mapped(|corner| pose.point(&Point::from(corner)).coords));
         let Some([a, b, c]) = self.own else { return self.between.aabb_in_other(which, id) };
         let (mut low, mut high) = (a, a);
         for axis in 0..D {
@@ -161,11 +194,17 @@ impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, 
         Aabb::try_new(low.into(), high.into()).unwrap_or_else(|_| Aabb::unbounded())
     }
 
+    fn corners(&self) -> Option<[Vector<N, D>; 3]> {
+        self.own
+    }
+
+    /// Rejects pairs along the line through their centroids, puts those with corners into the
+    /// lanes, and visits all others at once.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         for &other in others {
             let pair = if which == 0 { [own, other] } else { [other, own] };
-            let part = self.parts[1 - which].part(other);
-            match (self.own, corners(&part.solid, &part.pose)) {
+            match (self.own, self.corners_of(1 - which, other)) {
+                (Some(one), Some(other)) if self.are_beyond(&one, &other) => {}
                 (Some(one), Some(other)) => self.keep(pair, &one, &other),
                 _ => self.found(pair),
             }

@@ -1,10 +1,11 @@
 //! Composites as their parts: which pairs of parts are near, and how far apart the nearest are.
 //!
-//! The parts of nested composites are numbered in a row, so a composite has one level. An answer about
-//! a part is that of the convex algorithm for it: [`between`] places two parts for it, [`bounds`] makes
-//! boxes that rounding cannot make too small. [`solid_bounds`] tells how near parts can be to a convex solid,
-//! [`inside`] asks what lies inside closed surfaces that bound bodies, [`slab_lanes`] how near eight are to one part. Which part answers never depends on the order in which
-//! a search proposes them: of equal answers the one with the lowest numbers counts.
+//! Nested composites are flattened: their parts are numbered consecutively, on one level. The
+//! result for a part is that of the convex algorithm. [`between`] makes a pair of two parts,
+//! [`bounds`] makes boxes that include rounding errors, [`solid_bounds`] bounds the distance from a
+//! convex solid to a part, [`slab_lanes`] from one part to eight, and [`inside`] finds pieces
+//! inside closed surfaces that bound bodies. The part that is returned does not depend on the order
+//! of a search: the lowest indices win a tie.
 
 pub(crate) mod between;
 pub(crate) mod bounds;

@@ -1,4 +1,4 @@
-//! The nearest two parts of two shapes, or those that overlap deepest.
+//! The nearest two parts of two shapes, or the deepest overlapping ones.
 
 use super::between::Between;
 use super::bounds::loosened;
@@ -8,17 +8,18 @@ use super::separation::{PairVisitor, PartSeparation, visit_near_pairs};
 use crate::collide::separation::separation as of_convex;
 use crate::math::{Real, Space, Vector, max, min};
 
-/// Which of the pairs of parts is asked for.
+/// The pair of parts that a search looks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
-    /// The nearest, or where parts overlap the deepest; of several the first by numbers.
+    /// The nearest pair, or the deepest if parts overlap; the lowest indices win a tie.
     Deepest,
-    /// The nearest, or any that touches or overlaps: enough to know the distance.
+    /// The nearest pair, or any that touches or overlaps: enough for the distance.
     Touching,
 }
 
-/// The separation of the two parts that [`Wanted`] asks for; `None` if none are within the limit. Parts that are
-/// likely to be these can be asked `first`: they bound the search. See [`visit_near_pairs`] for the cost.
+/// Returns the separation of the pair that is [`Wanted`]; `None` if no pair is within `limit`. A
+/// likely pair can be passed as `first`: its distance bounds the search. See [`visit_near_pairs`]
+/// for the cost.
 pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,
@@ -40,7 +41,7 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     nearest.best
 }
 
-/// The best pair of parts so far.
+/// The search for one pair, with the best so far.
 struct NearestPart<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     limit: N,
@@ -49,8 +50,8 @@ struct NearestPart<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
-    /// Looks for parts of two composites that touch, for which it is enough to see that boxes overlap; answers whether
-    /// nothing more is asked.
+    /// Searches two composites for parts that touch, by overlaps of boxes alone. Returns true if
+    /// the search is settled: there is a contact, or `limit` admits nothing else.
     fn settles_touching(&mut self) -> bool {
         let (between, reach) = (self.between, min(self.limit, N::ZERO));
         let mut touching = TouchingPart { nearest: self, reach };
@@ -58,7 +59,8 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
         is_searched && (self.limit <= N::ZERO || self.bound() < N::ZERO)
     }
 
-    /// Looks for the nearest parts of two composites; answers whether these are apart, and so the ones that are wanted.
+    /// Searches two composites for their nearest parts. Returns true if these are apart, so that
+    /// they are the wanted pair; parts that overlap need the search by depth.
     fn settles_apart(&mut self) -> bool {
         let (between, reach) = (self.between, self.limit());
         reach > N::ZERO
@@ -67,7 +69,7 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     }
 }
 
-/// Any parts that touch.
+/// The search for any pair that touches.
 struct TouchingPart<'a, 'q, N: Real, const D: usize> {
     nearest: &'q mut NearestPart<'a, N, D>,
     reach: N,
@@ -81,6 +83,7 @@ impl<N: Space<D>, const D: usize> MeetingVisitor<N, D> for TouchingPart<'_, '_, 
 }
 
 impl<N: Space<D>, const D: usize> MeetingVisitor<N, D> for NearestPart<'_, N, D> {
+    /// Ends the search at contact: overlaps need the search by depth.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self, parts);
         Some(self.limit()).filter(|reach| *reach > N::ZERO)
@@ -96,6 +99,7 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
         self.best.map_or(self.limit, |best| best.separation.distance)
     }
 
+    /// Negative, to end the search, once there is a contact and any is enough.
     fn bound(&self) -> N {
         let limit = self.limit();
         let is_known = self.best.is_some() && limit <= N::ZERO && self.wanted == Wanted::Touching;
@@ -110,6 +114,7 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
         self.wanted == Wanted::Touching
     }
 
+    /// Computes the separation of two parts, unless they are the best pair already.
     fn visit(&mut self, parts: [u32; 2]) {
         if self.best.is_some_and(|best| best.parts == parts) {
             return;

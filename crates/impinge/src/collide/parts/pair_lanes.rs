@@ -1,9 +1,19 @@
-//! Eight pairs of parts at a time: which are certainly farther apart than a limit, and which certainly are not.
+//! Eight pairs of parts at a time: which are certainly farther apart than a limit, and which
+//! certainly are not.
 //!
-//! Two triangles in space overlap iff neither normal and no direction perpendicular to a side of each parts them, or,
-//! where they lie in one plane, no direction across a side within it; two convex shapes in the plane, iff no direction
-//! across a side does (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). If they do, the one of these along which they
-//! overlap least is the shortest way out. The directions here are of any length: no gap is divided.
+//! Separating axes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996): two triangles in 3D overlap
+//! iff neither normal and no direction perpendicular to a side of each separates them; two coplanar
+//! triangles, iff no direction across a side within the plane does; two convex shapes in 2D, iff no
+//! direction across a side does. If they overlap, the shortest way out is along one of these axes.
+//! The axes have any length `l`: gaps are compared with `limit * l` instead of divided.
+//!
+//! ```text
+//!  axis                        lanes              stops when all are beyond
+//!  centroid to centroid        limit > 0          yes
+//!  2 normals                   all                yes
+//!  9 products of sides         all
+//!  6 sides across the normal   coplanar pairs
+//! ```
 
 use super::slabs::rounding_unit;
 use crate::collide::packet::{LANES, PartPacket};
@@ -11,37 +21,41 @@ use crate::math::lanes::{bits, cross, dot, in_lanes, load, minus, plus};
 use crate::math::simd::{Level, Run, Simd};
 use crate::math::{Real, Wide};
 
-/// Directions across sides whose sine is less are not exact: such pairs are not called near.
+/// A direction perpendicular to two sides is exact only if the sine of their angle is larger; else
+/// the pair is not called within.
 const MIN_SINE: f64 = 1.0 / 64.0;
-/// Pairs are called near where they are within the limit by so many times what rounding does.
+/// Rounding errors by which a pair must be inside the limit to be called within.
 const CERTAIN: f64 = 4.0;
 
-/// Eight pairs of parts, both of each in the same frame.
+/// Up to eight pairs of parts, both of each in one frame.
 pub(crate) struct PartPairs<N, const D: usize> {
     pub(crate) ones: PartPacket<N, D>,
     pub(crate) others: PartPacket<N, D>,
-    /// How many pairs there are.
+    /// The number of pairs.
     pub(crate) count: usize,
-    /// A length that the rounding of the corners is in proportion to, unless they are larger.
+    /// A length that the rounding error of the corners is in proportion to, unless their
+    /// coordinates are larger.
     pub(crate) place: N,
 }
 
-/// What is certain of each of eight pairs, by bits.
+/// Results for eight pairs, as bits; neither bit of a pair is set if the test is undecided.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct PairVerdicts {
-    /// They are farther apart than the limit; overlaps count as negative.
+    /// The pair is farther apart than the limit; the distance of an overlap is negative.
     pub(crate) beyond: u8,
-    /// They are not, given a limit of zero or less: beyond it the directions here may leave less than the distance.
+    /// The pair is not beyond the limit. Only valid for a limit of zero or less: the gaps along
+    /// these axes may be less than a positive distance.
     pub(crate) within: u8,
 }
 
 impl<N: Real, const D: usize> PartPairs<N, D> {
+    /// An empty batch; rounding errors are in proportion to `place` at least.
     pub(crate) fn new(place: N) -> Self {
         Self { ones: PartPacket::blank(), others: PartPacket::blank(), count: 0, place }
     }
 }
 
-/// The verdicts of pairs in the plane, of which none is called near.
+/// Tests pairs in 2D. No `within` bit is set.
 pub(crate) fn part_pairs2<N: Real>(pairs: &PartPairs<N, 2>, limit: N) -> PairVerdicts {
     verdicts(
         pairs.count,
@@ -49,7 +63,7 @@ pub(crate) fn part_pairs2<N: Real>(pairs: &PartPairs<N, 2>, limit: N) -> PairVer
     )
 }
 
-/// The verdicts of pairs in space.
+/// Tests pairs in 3D.
 pub(crate) fn part_pairs3<N: Real>(pairs: &PartPairs<N, 3>, limit: N) -> PairVerdicts {
     verdicts(
         pairs.count,
@@ -57,6 +71,7 @@ pub(crate) fn part_pairs3<N: Real>(pairs: &PartPairs<N, 3>, limit: N) -> PairVer
     )
 }
 
+/// Tests the lanes in use, one SIMD run after another.
 #[inline(always)]
 fn verdicts(count: usize, of_run: impl Fn(Run) -> PairVerdicts) -> PairVerdicts {
     let mut all = PairVerdicts::default();
@@ -68,6 +83,7 @@ fn verdicts(count: usize, of_run: impl Fn(Run) -> PairVerdicts) -> PairVerdicts 
     all
 }
 
+/// Tests the axes in 2D: perpendicular to each side of both parts.
 #[inline(always)]
 fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -81,6 +97,7 @@ fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     held.verdicts(false)
 }
 
+/// Tests the axes in 3D, in the order of the table at the head of this file.
 #[inline(always)]
 fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -90,12 +107,15 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let mut held = HeldPairs::<S, V, 3>::new(simd, pairs, limit);
     let (own, others) = (sides(&held.one), sides(&held.other));
     let [normal, other_normal] = [cross(&own[0], &own[1]), cross(&others[0], &others[1])];
+    if limit > N::ZERO {
+        // Distant coplanar pairs are hardly separated by the axes of overlap.
+        held.between_middles();
+        if bits(held.beyond) == u8::MAX {
+            return held.verdicts(false);
+        }
+    }
     held.along(&normal);
     held.along(&other_normal);
-    if limit > N::ZERO {
-        // Far pairs beside each other, which the directions that decide about an overlap hardly part.
-        held.between_middles();
-    }
     if bits(held.beyond) == u8::MAX {
         return held.verdicts(false);
     }
@@ -120,29 +140,31 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
                 held.along(&cross(side, normal));
             }
         }
-        // For those in one plane alone, so that lanes do not depend on each other.
+        // The extra axes count for coplanar pairs alone, so that no lane depends on another.
         held.beyond = beyond | (held.beyond & !is_askew);
         held.within = within;
     }
     held.verdicts(true)
 }
 
-/// Eight pairs, seen from the first corner of the first of each, and what is known so far.
+/// Eight pairs relative to the first corner of their first part, and the results so far.
 struct HeldPairs<S: Simd, V: Wide<S>, const D: usize> {
     simd: S,
     one: [[V; D]; 3],
     other: [[V; D]; 3],
-    /// The limit, more and less by what rounding does.
+    /// The limit plus the rounding error, and minus [`CERTAIN`] times it.
     limits: [V; 2],
     is_precise: V::Mask,
     beyond: V::Mask,
-    /// Nothing shows yet that they may be beyond the limit.
+    /// No axis so far may separate the pair by more than the limit.
     within: V::Mask,
-    /// A direction is not exact.
+    /// The direction of an axis was not exact.
     unsure: V::Mask,
 }
 
 impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D> {
+    /// The rounding error is that of the coordinates as given, before the translation to the first
+    /// corner.
     #[inline(always)]
     fn new(simd: S, pairs: &PartPairs<N, D>, limit: N) -> Self {
         let [a, b, c] = &pairs.ones.corners;
@@ -154,7 +176,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
             size = value.abs().larger(size);
         }
         let slack = size * V::all(simd, rounding_unit());
-        // Lengths that are subnormal numbers are not precise.
+        // Subnormal lengths are not precise.
         let least = N::MIN_POSITIVE / N::EPSILON * rounding_unit::<N>();
         let is_precise = slack.simd_gt(V::all(simd, least));
         let limit = V::all(simd, limit);
@@ -168,7 +190,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         Self { simd, one, other, limits, is_precise, beyond: none, within: !none, unsure: none }
     }
 
-    /// Takes the gap along a direction into account.
+    /// Adds the gap along an axis of any length.
     #[inline(always)]
     fn along(&mut self, along: &[V; D]) {
         let squared = dot(along, along);
@@ -183,8 +205,8 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.within &= gap.simd_le(self.limits[1] * length);
     }
 
-    /// Takes the gap along the way from the middle of one to that of the other into account, which tells nothing about an
-    /// overlap.
+    /// Adds the gap along the line through the centroids to `beyond` alone: it says nothing about
+    /// an overlap.
     #[inline(always)]
     fn between_middles(&mut self) {
         let ([a, b, c], [d, e, f]) = (&self.one, &self.other);
@@ -193,18 +215,21 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.within = within;
     }
 
-    /// A direction across two vectors with this product of squares is exact.
+    /// Whether a direction perpendicular to two vectors is exact; `squares` is the product of their
+    /// squared lengths.
     #[inline(always)]
     fn is_wide(&self, along: &[V; D], squares: V) -> V::Mask {
         let least = N::lit(MIN_SINE * MIN_SINE);
         dot(along, along).simd_gt(squares * V::all(self.simd, least))
     }
 
+    /// Marks the pairs whose direction is not exact as unsure.
     #[inline(always)]
     fn ask_width(&mut self, along: &[V; D], squares: V) {
         self.unsure |= !self.is_wide(along, squares);
     }
 
+    /// Returns the results. `within` takes exact directions, and all axes (`has_all`).
     #[inline(always)]
     fn verdicts(&self, has_all: bool) -> PairVerdicts {
         let beyond = bits(self.beyond & self.is_precise);
@@ -213,6 +238,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
     }
 }
 
+/// The vectors from each corner to the next.
 #[inline(always)]
 fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &[[V; D]; 3]) -> [[V; D]; 3] {
     [minus(b, a), minus(c, b), minus(a, c)]
@@ -223,7 +249,7 @@ fn squares_of<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &[[V; D]; 3]) -> [
     [dot(a, a), dot(b, b), dot(c, c)]
 }
 
-/// How low and how high corners lie along a direction.
+/// Returns the lowest and the highest of the corners along a direction.
 #[inline(always)]
 fn extent<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &[[V; D]; 3], along: &[V; D]) -> [V; 2] {
     let (a, b, c) = (dot(a, along), dot(b, along), dot(c, along));
@@ -241,7 +267,7 @@ mod tests {
 
     type Corners<N> = [Point<N, 3>; 3];
 
-    /// What [`separation_in_space`] says, of which no limit is asked.
+    /// The distance by [`separation_in_space`], without a limit.
     fn distance<N: Real>(one: &Corners<N>, other: &Corners<N>) -> N {
         let [one, other] = [one, other].mapped(|[a, b, c]| Triangle::new(*a, *b, *c));
         let [first, second]: [Geometry<'_, N, 3>; 2] = [one.geometry(), other.geometry()];
@@ -249,7 +275,7 @@ mod tests {
         separation_in_space(&pair, N::INFINITY).expect("there is no limit").distance
     }
 
-    /// Verdicts are true, and there are few pairs without one.
+    /// The bits must be true, and few pairs undecided.
     fn check<N: Real>(scale: f64, flat: f64) {
         let (mut noise, mut known, mut all) = (Noise(7), 0, 0);
         for round in 0..200 {
@@ -276,7 +302,7 @@ mod tests {
                 let distance = distance(one, other);
                 let [is_beyond, is_within] = [beyond, within].mapped(|bits| bits >> lane & 1 == 1);
                 assert!(!is_beyond || distance > limit, "beyond: {distance} and {limit}");
-                // Along the axes the gap of triangles that are apart may be less than their distance.
+                // The gap along an axis may be less than the distance of triangles that are apart.
                 assert!(
                     !is_within || distance <= limit || limit > N::ZERO,
                     "within: {distance} and {limit}"

@@ -1,4 +1,4 @@
-//! How far a composite is from another shape: as far as the nearest of its parts.
+//! The distance of a composite to another shape: that of its nearest part.
 
 use crate::math::order::sort_few;
 use crate::tables::ByDimension;
@@ -19,17 +19,17 @@ use crate::math::{Mapped, Point, Real, Space, Vector, max, max_component, unit};
 use crate::partitioning::BoxTree;
 use crate::shape::{CompositeShape, Kind};
 
-/// The separation of two parts, in the frame of the first shape, and which parts they are.
+/// The separation of two parts, in the frame of the first shape, and their indices.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartSeparation<N: Real, const D: usize> {
     pub(crate) separation: Separation<N, D>,
-    /// The same in the frame of the first part: [`Between::parts`].
+    /// The separation in the frame of the first part: [`Between::parts`].
     pub(crate) local: Separation<N, D>,
-    /// The part of the first and of the second; 0 of a solid that is no composite.
+    /// The part of the first shape and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
 }
 
-/// The entry of the pair table.
+/// The entry of the pair table: the separation of two shapes, the deepest if parts overlap.
 pub(crate) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -40,40 +40,42 @@ pub(crate) fn separation<N: Space<D>, const D: usize>(
 
 /// A query that visits pairs of parts, near ones first.
 pub(crate) trait PairVisitor<N: Real, const D: usize> {
-    /// The largest distance at which parts still matter.
+    /// The largest distance at which a pair of parts matters.
     fn limit(&self) -> N;
 
-    /// The largest distance at which boxes still matter; negative to end the search.
+    /// The largest distance at which a pair of boxes matters; negative to end the search.
     fn bound(&self) -> N {
         loosened(max(self.limit(), N::ZERO))
     }
 
-    /// Distances are those from where the parts of the first shape (0) or the second (1) go, in the frame of the
-    /// other; `None` if they stay where they are.
+    /// The sweep of the first shape (0) or the second (1) in the frame of the other: distances are
+    /// from where its parts go. `None` if they stay where they are.
     fn sweep(&self, _which: usize) -> Option<PartSweep<N, D>> {
         None
     }
 
-    /// The unit vector from the first shape to the second between the best parts so far, in the frame of the first;
-    /// `None` as long as there are none, or if one of them moves.
+    /// The unit vector from the first shape to the second between the best parts so far, in the
+    /// frame of the first. `None` before there is a pair, and if one of the shapes moves.
     fn normal(&self) -> Option<Vector<N, D>> {
         None
     }
 
-    /// Any two parts that touch are enough.
+    /// Whether any pair that touches ends the search.
     fn ends_at_touch(&self) -> bool {
         false
     }
 
+    /// Receives a pair of parts; a guessed pair may come twice.
     fn visit(&mut self, parts: [u32; 2]);
 }
 
 /// Visits the pairs of parts of two shapes that are within the limit of a visitor, near ones first.
 ///
-/// Cost: a convex solid searches the parts near it. Two composites that are searched by trees are descended
-/// together, as far as their boxes are near each other. Of others that of fewer parts is gone through, near ones
-/// first, and each part searches the other: at most n log m, where n is the smaller number, as long as parts do not
-/// all overlap. Half-spaces that do not lie along an axis have no box: they are held against every part.
+/// Cost: a convex solid searches the parts near it. Two composites that are searched by trees are
+/// descended together, as far as their boxes are near each other. Otherwise each part of the
+/// composite with fewer parts, near ones first, searches the other: at most n log m, where n is the
+/// smaller number, as long as parts do not all overlap. A half-space that is not aligned to an axis
+/// has no box and is compared with every part.
 pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     visitor: &mut dyn PairVisitor<N, D>,
@@ -104,12 +106,14 @@ struct TreeParts<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
-    /// What rounding may add to the gaps along a direction; infinite if these tell nothing, since parts move.
+    /// The rounding error of gaps along a direction; infinite if these cannot be used, since parts
+    /// move.
     slack: N,
-    /// Those of the part that was gone through last.
+    /// The slabs around the part that was visited last.
     slabs: Option<PartSlabs<N, D>>,
 }
 
+/// The slabs around a part of the first (0) or the second (1) composite.
 struct PartSlabs<N: Real, const D: usize> {
     which: usize,
     part: u32,
@@ -117,6 +121,8 @@ struct PartSlabs<N: Real, const D: usize> {
 }
 
 impl<'a, 'q, N: Space<D>, const D: usize> TreeParts<'a, 'q, N, D> {
+    /// Gaps along directions are used only if neither shape moves and their rounding error is
+    /// finite.
     fn new(
         between: &'a Between<'a, N, D>,
         parts: [&'a dyn CompositeShape<N, D>; 2],
@@ -130,7 +136,7 @@ impl<'a, 'q, N: Space<D>, const D: usize> TreeParts<'a, 'q, N, D> {
         Self { between, visitor, parts, slack, slabs: None }
     }
 
-    /// A box in the frame of the other composite around where the parts in it go.
+    /// Returns a box, in the frame of the other composite, around where the contents of `aabb` go.
     fn swept(&self, which: usize, aabb: Aabb<N, D>) -> Aabb<N, D> {
         self.visitor.sweep(which).map_or(aabb, |sweep| sweep.of_box(&aabb))
     }
@@ -153,6 +159,7 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.visitor.limit()
     }
 
+    /// Parts deeper than a negative limit have boxes that overlap as deep, but for rounding error.
     fn depth(&self) -> N {
         max(-self.visitor.limit() - self.slack, N::ZERO)
     }
@@ -161,6 +168,7 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.toward(0, &self.visitor.normal()?)
     }
 
+    /// Transforms the opposite vector into the frame of the other shape.
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>> {
         let pose12 = &self.between.pair.pose12;
         let toward = match which {
@@ -175,12 +183,14 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.toward(0, &unit(&way)?.0)
     }
 
+    /// Infinite for parts without corners.
     fn reach(&self, which: usize, id: u32, along: &Vector<N, D>) -> N {
         let part = self.parts[which].part(id);
         let Some(corners) = corners(&part.solid, &part.pose) else { return N::INFINITY };
         range(&corners, along)[1]
     }
 
+    /// Minus the rounding error, so that it is a lower bound.
     fn gap(&self, toward: &Toward<N, D>, [reach1, reach2]: [N; 2]) -> N {
         let offset = toward[0].dot(&self.between.pair.pose12.translation);
         offset - reach1 - reach2 - self.slack
@@ -192,6 +202,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         }
     }
 
+    /// Rejects parts by the best direction, by the line through the centroids and by slabs; visits
+    /// the rest in the order of their lower bounds.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         let pair = |other: u32| if which == 0 { [own, other] } else { [other, own] };
         let (best, mut near) = (self.best(), PartGaps::new());
@@ -228,15 +240,16 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 }
 
-/// Parts by how far they are at least, negative where they may overlap.
+/// Lower bounds of the distances of parts, negative where they may overlap, with the parts.
 type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
+    /// The gap of two parts along a direction; minus infinity without corners.
     fn gap_along(&self, toward: &Toward<N, D>, parts: [u32; 2]) -> N {
         self.gap(toward, [0, 1].mapped(|which| self.reach(which, parts[which], &toward[which])))
     }
 
-    /// The gap along the direction from one part to another.
+    /// The gap along the line through the centroids of two parts; minus infinity without corners.
     fn gap_between(&self, parts: [u32; 2]) -> N {
         let middles = [0, 1].mapped(|which| {
             let part = self.parts[which].part(parts[which]);
@@ -248,9 +261,10 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
         toward.map_or(-N::INFINITY, |toward| self.gap_along(&toward, parts))
     }
 
-    /// Those around a part of the first shape (0) or the second (1).
+    /// Returns the slabs around a part of the first shape (0) or the second (1), cached from the
+    /// last visit.
     fn slabs_of(&mut self, which: usize, part: u32) -> PartSlabs<N, D> {
-        // A sweep only gets shorter, so that slabs made before are wide enough.
+        // Sweeps only get shorter, so that old slabs are wide enough.
         let is_own = |kept: &PartSlabs<N, D>| kept.which == which && kept.part == part;
         if let Some(kept) = self.slabs.take().filter(is_own) {
             return kept;
@@ -260,7 +274,7 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
         PartSlabs { which, part, slabs }
     }
 
-    /// Raises the gaps of some parts to those that axes of theirs and slabs leave.
+    /// Raises the lower bounds of parts to their gaps along the slabs and along their own axes.
     fn add_gaps(
         &self,
         around: &PartSlabs<N, D>,
@@ -284,13 +298,14 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
     }
 }
 
+/// The search of [`visit_near_pairs`] for shapes that are not both searched by trees.
 struct NearestSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
-    /// A convex solid, the first shape or the second, against the parts of the other that are near.
+    /// Visits the near parts of a composite for a convex solid, the first shape or the second.
     fn of_solid(&mut self, which: usize, parts: &dyn CompositeShape<N, D>) {
         let (between, is_at_rest) = (self.between, self.visitor.sweep(which).is_none());
         let tree =
@@ -306,13 +321,14 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
         }
     }
 
-    /// A part of one shape, the first or the second, against those of the other that are near.
+    /// Visits the near parts of `others` for one part of the first shape or the second.
     fn of_one(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let between = self.between;
         self.outside(which, part, others, |sweep| AxisSlabs::of_part(between, which, part, sweep));
     }
 
-    /// The same but for parts that slabs tell to be farther than matters; these are made for the first that is asked.
+    /// Visits the near parts of `others` for one part, less those that slabs reject; the slabs are
+    /// made at the first candidate.
     fn outside(
         &mut self,
         which: usize,
@@ -332,7 +348,7 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
         });
     }
 
-    /// The parts of the composite with fewer of them, each against all of the other.
+    /// Visits the near pairs of two composites: each part of the one with fewer searches the other.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let (sweep, bound) = (self.visitor.sweep(1 - which), self.visitor.bound());
@@ -348,7 +364,8 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
     }
 }
 
-/// The parts of a composite by how far they may be from a convex solid, the first shape (0) or the second (1).
+/// Ranks the parts of a composite by a lower bound of their distance to a convex solid, the first
+/// shape (0) or the second (1).
 struct RankedParts<'a, 'q, N: Real, const D: usize> {
     bounds: SolidBounds<'a, N, D>,
     parts: &'a dyn CompositeShape<N, D>,
@@ -369,7 +386,7 @@ impl<N: Space<D>, const D: usize> BoxRanking<N, D> for RankedParts<'_, '_, N, D>
     fn limit(&self) -> Option<N> {
         let ends = self.visitor.bound() < N::ZERO;
         let limit = self.visitor.limit();
-        // Nothing is within NaN.
+        // False for NaN, within which there is nothing.
         (!ends && limit <= N::INFINITY).then_some(limit)
     }
 
@@ -383,7 +400,7 @@ impl<N: Space<D>, const D: usize> BoxRanking<N, D> for RankedParts<'_, '_, N, D>
 }
 
 impl<N: Real, const D: usize> PartSeparation<N, D> {
-    /// Nearer, or as near and earlier by number.
+    /// Whether this pair is nearer, or as near with lower indices.
     pub(super) fn is_before(&self, other: &Self) -> bool {
         let (distance, others) = (self.separation.distance, other.separation.distance);
         distance < others || (distance == others && self.parts < other.parts)

@@ -1,8 +1,9 @@
-//! Slabs around one part against eight others at a time, and the axes of these as well.
+//! Lower bounds of the distances from one part to eight others at a time, by the slabs around the
+//! one and the axes of the others.
 //!
-//! Two triangles in space overlap iff neither normal and no direction perpendicular to a side of each parts them, and if
-//! they do the one of these along which they overlap least is the shortest way out (Gottschalk, Lin and Manocha,
-//! "`OBBTree`", 1996); two in the plane, iff no direction across a side of either does.
+//! Two triangles in 3D overlap iff neither normal and no direction perpendicular to a side of each
+//! separates them, and if they do, the shortest way out is along one of these axes (Gottschalk, Lin
+//! and Manocha, "`OBBTree`", 1996); two in 2D, iff no direction across a side of either does.
 
 use super::slabs::{AxisSlabs, rounding_unit};
 use crate::collide::packet::{LANES, PartPacket};
@@ -10,11 +11,12 @@ use crate::math::lanes::{bits, cross, dot, in_lanes, load, minus, spread};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 
-/// Parts as they are seen from the origin of slabs, by corner and axis.
+/// The corners of parts relative to the origin of the slabs, by corner and axis.
 type Corners<V, const D: usize> = [[V; D]; 3];
 
-/// How far each of eight parts in the plane is from what is in the slabs, or less; overlaps count as negative. Where no
-/// gap along the slabs is within the limit others are not asked, so that gaps beyond it may differ by level.
+/// Returns lower bounds of the distances of eight parts in 2D from the content of the slabs;
+/// negative for overlaps. If the slabs alone put a whole SIMD run beyond `limit`, the other axes
+/// are skipped, so that bounds beyond it may differ by SIMD level.
 pub(crate) fn part_gaps2<N: Real>(
     slabs: &AxisSlabs<N, 2>,
     tiles: &PartPacket<N, 2>,
@@ -44,6 +46,7 @@ pub(crate) fn part_gaps3<N: Real>(
     gaps
 }
 
+/// Gaps in 2D: along the slabs, then across the sides of the other parts.
 #[inline(always)]
 fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -63,6 +66,8 @@ fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     gaps.certain(slabs)
 }
 
+/// Gaps in 3D: along the slabs, then across the planes of the other parts, then perpendicular to a
+/// side of each.
 #[inline(always)]
 fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -90,7 +95,7 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     gaps.certain(slabs)
 }
 
-/// The gaps of eight parts so far.
+/// The largest gaps of eight parts so far.
 struct SlabGaps<S, V, const D: usize> {
     simd: S,
     corners: Corners<V, D>,
@@ -98,6 +103,7 @@ struct SlabGaps<S, V, const D: usize> {
 }
 
 impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D> {
+    /// Adds the gaps along the slabs.
     #[inline(always)]
     fn along(&mut self, slabs: &AxisSlabs<N, D>) {
         for slab in &slabs.slabs {
@@ -108,7 +114,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         }
     }
 
-    /// Takes the gaps along directions of any length into account.
+    /// Adds the gaps along directions of any length.
     #[inline(always)]
     fn across(&mut self, own: &Corners<V, D>, along: &[V; D]) {
         let squared = dot(along, along);
@@ -120,13 +126,14 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         self.gaps = is_length.select(gap, -V::all(simd, N::INFINITY)).larger(self.gaps);
     }
 
+    /// Whether some part may still be within the limit.
     #[inline(always)]
     fn are_within(&self, slabs: &AxisSlabs<N, D>, limit: N) -> bool {
         let beyond = V::all(self.simd, limit) + self.slack(slabs);
         bits(self.gaps.simd_gt(beyond)) != u8::MAX
     }
 
-    /// What rounding may have added to the gaps.
+    /// The rounding error of the gaps.
     #[inline(always)]
     fn slack(&self, slabs: &AxisSlabs<N, D>) -> V {
         let mut size = V::all(self.simd, slabs.size);
@@ -138,11 +145,11 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         size * V::all(self.simd, rounding_unit())
     }
 
-    /// The gaps without what rounding may have added.
+    /// Returns the gaps minus their rounding error.
     #[inline(always)]
     fn certain(&self, slabs: &AxisSlabs<N, D>) -> [N; LANES] {
         let (simd, slack) = (self.simd, self.slack(slabs));
-        // Lengths that are subnormal numbers are not precise.
+        // Subnormal lengths are not precise.
         let least = N::MIN_POSITIVE / N::EPSILON * rounding_unit::<N>();
         let is_precise = slack.simd_gt(V::all(simd, least));
         let gaps = is_precise.select(self.gaps - slack, -V::all(simd, N::INFINITY));
@@ -152,6 +159,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
     }
 }
 
+/// Translates the corners of eight parts to the origin of the slabs.
 #[inline(always)]
 fn seen<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -164,6 +172,7 @@ fn seen<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     [minus(&a, &origin), minus(&b, &origin), minus(&c, &origin)]
 }
 
+/// Copies the corners of one part into all lanes.
 #[inline(always)]
 fn spread_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -172,12 +181,13 @@ fn spread_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     [spread(simd, a), spread(simd, b), spread(simd, c)]
 }
 
+/// The vectors from each corner to the next.
 #[inline(always)]
 fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &Corners<V, D>) -> Corners<V, D> {
     [minus(b, a), minus(c, b), minus(a, c)]
 }
 
-/// How low and how high corners lie along a direction.
+/// Returns the lowest and the highest of the corners along a direction.
 #[inline(always)]
 fn extent<S: Simd, V: Wide<S>, const D: usize>(
     [a, b, c]: &Corners<V, D>,

@@ -1,4 +1,14 @@
-//! Slabs around one part: a part of the other shape whose corners lie far outside of them is far from it.
+//! Slabs around one part, to reject parts of the other shape that lie far outside one of them.
+//!
+//! ```text
+//!                   r ── s
+//!                    ╲  ╱
+//!                     q         ┬
+//!                               │ gap = lowest of q, r, s - highest
+//!     ─────────c────────────────┴─── highest    slab across the side ab
+//!             ╱ ╲                               of the triangle a, b, c
+//!     ───────a───b────────────────── lowest
+//! ```
 
 use smallvec::{SmallVec, smallvec};
 
@@ -7,22 +17,23 @@ use super::sweep::PartSweep;
 use crate::math::{Mapped, Pose, Real, Space, Vector, max, max_component, min, unit};
 use crate::shape::{Part, PartSolid, Plane};
 
-/// Gaps are loosened by so many rounding units of all lengths.
+/// Rounding error of gaps, in units of epsilon times the largest length.
 const ROUNDING: f64 = 128.0;
 
-/// Slabs that a solid lies in, in the frame of the composite that it is held against, while it moves.
+/// Slabs that contain a solid while it moves, in the frame of the composite that it is compared
+/// with.
 pub(crate) struct AxisSlabs<N: Real, const D: usize> {
-    /// Heights are measured from here.
+    /// The zero of all heights.
     pub(super) origin: Vector<N, D>,
-    /// A length that the rounding of the solid's place is in proportion to.
+    /// The solid's contribution to the length that rounding errors are in proportion to.
     pub(super) size: N,
-    /// Those of a triangle: across each side and, in 3D, across its plane.
+    /// For a triangle, one across each side and, in 3D, one across its plane.
     pub(super) slabs: SmallVec<[Slab<N, D>; 5]>,
-    /// Those of the solid as seen from the origin, if it is at rest.
+    /// The corners of the part relative to `origin`; `None` if it moves.
     pub(super) corners: Option<[Vector<N, D>; 3]>,
 }
 
-/// What lies between two planes across a unit vector.
+/// The points with `lowest <= along · x <= highest`, where `along` is a unit vector.
 pub(super) struct Slab<N: Real, const D: usize> {
     pub(super) along: Vector<N, D>,
     pub(super) lowest: N,
@@ -30,7 +41,7 @@ pub(super) struct Slab<N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
-    /// Of a half-space that the second shape is held against: its slab has one side.
+    /// The slab of a half-space, as the first shape; it has no lower side.
     pub(crate) fn of_half_space(
         between: &Between<'_, N, D>,
         plane: &Plane<N, D>,
@@ -38,13 +49,14 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
     ) -> Self {
         let Pose { translation: origin, .. } = between.pose21;
         let along = between.pose21.vector(plane.normal());
-        // What is unbounded goes anywhere, so far at most.
+        // A half-space has no box; its sweep is bounded by the spread of the motion alone.
         let highest = sweep.map_or(N::ZERO, |sweep| sweep.spread);
         let slab = Slab { along, lowest: -N::INFINITY, highest };
         Self { origin, size: highest, slabs: smallvec![slab], corners: None }
     }
 
-    /// Of a part of the first shape (0) or the second (1); none of parts without corners.
+    /// The slabs around a part of the first shape (0) or the second (1); empty for parts without
+    /// corners.
     pub(crate) fn of_part(
         between: &Between<'_, N, D>,
         which: usize,
@@ -68,7 +80,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         slabs
     }
 
-    /// Adds slabs around corners that are seen from the first of them, and around where they go, up to a spread.
+    /// Adds slabs around corners, relative to the first of them, and around their ends, widened by
+    /// `spread`.
     fn surround(&mut self, corners: &[Vector<N, D>; 3], ends: &[Vector<N, D>; 3], spread: N) {
         for along in across(corners) {
             let (start, end) = (range(corners, &along), range(ends, &along));
@@ -78,7 +91,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         }
     }
 
-    /// A part of the composite is certainly farther from the solid than a limit; overlaps count as negative.
+    /// Whether a part of the composite is certainly farther from the solid than `limit`; the
+    /// distance of an overlap is negative. False if there are no slabs or no corners.
     pub(crate) fn are_beyond(&self, part: &Part<'_, N, D>, limit: N) -> bool {
         if self.slabs.is_empty() {
             return false;
@@ -90,18 +104,19 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
             let [lowest, highest] = range(&corners, &slab.along);
             max(max(lowest - slab.highest, slab.lowest - highest), gap)
         });
-        // Lengths that are subnormal numbers are not precise.
+        // Subnormal lengths are not precise.
         let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
         is_precise && gap - size * rounding_unit() > limit
     }
 }
 
-/// What rounding adds to gaps, in units of all lengths.
+/// The rounding error of gaps in units of the largest length.
 pub(super) fn rounding_unit<N: Real>() -> N {
     N::lit(ROUNDING) * N::EPSILON
 }
 
-/// Unit vectors across each side of a triangle whose first corner is the origin and, in 3D, across its plane.
+/// Returns unit vectors across each side of a triangle whose first corner is the origin and, in 3D,
+/// across its plane. Directions without length are left out.
 pub(crate) fn across<N: Real, const D: usize>(
     [_, one, other]: &[Vector<N, D>; 3],
 ) -> impl Iterator<Item = Vector<N, D>> {
@@ -110,7 +125,8 @@ pub(crate) fn across<N: Real, const D: usize>(
     all.filter_map(|direction| Some(unit(&direction)?.0))
 }
 
-/// The placed corners of a part that is given by them; those of a segment begin and end at the same.
+/// Returns the placed corners of a triangle or segment, the first end of a segment twice; `None`
+/// for other parts.
 pub(crate) fn corners<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     pose: &Pose<N, D>,
@@ -123,7 +139,7 @@ pub(crate) fn corners<N: Real, const D: usize>(
     Some(corners.mapped(|corner| pose.point(&corner).coords))
 }
 
-/// How low and how high the corners lie along a direction.
+/// Returns the lowest and the highest of the corners along a direction.
 pub(crate) fn range<N: Real, const D: usize>(
     corners: &[Vector<N, D>; 3],
     along: &Vector<N, D>,
@@ -132,13 +148,13 @@ pub(crate) fn range<N: Real, const D: usize>(
     [min(min(a, b), c), max(max(a, b), c)]
 }
 
-/// A vector less what is along another.
+/// Returns the component of a vector perpendicular to another.
 fn without<N: Real, const D: usize>(v: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
     unit(other).map_or(*v, |(along, _)| v - along * v.dot(&along))
 }
 
-/// What is left of the axis of which most is left when what two vectors span is taken from it; zero where they
-/// span all.
+/// Returns the longest component, perpendicular to both vectors, of a coordinate axis; zero if they
+/// span all directions.
 fn normal_to<N: Real, const D: usize>(one: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
     let along = |v: &Vector<N, D>| unit(v).map_or_else(Vector::<N, D>::zeros, |(along, _)| along);
     let spans = [along(one), along(&without(other, one))];

@@ -1,8 +1,17 @@
-//! Lower bounds of how far a convex solid is from boxes and parts of a composite, also where they overlap.
+//! Lower bounds of the signed distance from a convex solid to boxes and parts of a composite.
 //!
-//! Along a unit vector a solid and what it is held against leave a gap, negative where they overlap, and their signed
-//! distance is the largest of all gaps. So any direction gives a bound; the normal of the solid where it is nearest to a
-//! point of the other gives one that is hardly less than the distance if the other is small.
+//! Along any unit vector two convex sets leave a gap, negative where they overlap, and the largest
+//! gap is their signed distance. So every direction gives a lower bound. The normal of the solid at
+//! its nearest point to some point of the other gives one that is close to the distance if the
+//! other is small.
+//!
+//! ```text
+//!     solid                       box or part
+//!    ╭─────╮                      ┌───┐
+//!    │  ·  │───> along            │   │
+//!    ╰─────╯                      └───┘
+//!          ├──────── gap ─────────┤        gap <= distance
+//! ```
 
 use super::between::Between;
 use crate::bounding_volume::Aabb;
@@ -10,8 +19,8 @@ use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, unit};
 use crate::shape::{Geometry, Kind, Part, SupportMap};
 use crate::tables::ByDimension;
 
-/// Bounds are less than gaps by so many rounding units of all lengths; of curved solids the algorithms are content
-/// with 2⁻⁴⁰ of these.
+/// Rounding error of bounds in units of epsilon times the coordinates. The slack is at least
+/// `CURVED` times these: the algorithms for curved solids stop at 2⁻⁴⁰.
 const ROUNDING: f64 = 128.0;
 const CURVED: f64 = 8.0e-12;
 
@@ -21,12 +30,12 @@ pub(crate) struct SolidBounds<'a, N: Real, const D: usize> {
     map: &'a dyn SupportMap<N, D>,
     pose: Pose<N, D>,
     center: Point<N, D>,
-    /// No coordinate of the solid is larger, but for rounding.
+    /// Bound of the absolute coordinates of the solid, but for rounding.
     size: N,
 }
 
 impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
-    /// Of the first shape (0) or the second (1); `None` of composites and half-spaces.
+    /// Takes the first shape (0) or the second (1); `None` for composites and half-spaces.
     pub(crate) fn of(between: &'a Between<'_, N, D>, which: usize) -> Option<Self> {
         let (solid, pose) = between.seen_by_other(which);
         let map = Geometry(solid).as_support_map()?;
@@ -34,26 +43,27 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         Some(Self { solid, map, pose: *pose, center: pose.point(&map.center()), size })
     }
 
-    /// A point well inside of the solid, in the frame of the composite.
+    /// The centre of the solid, in the frame of the composite.
     pub(crate) const fn center(&self) -> Point<N, D> {
         self.center
     }
 
-    /// The unit vector along which the solid lies nearest to the middle of a box, and how far it reaches along that, or more.
+    /// Returns the outward unit normal at the solid's nearest point to the centre of a box, and an
+    /// upper bound of the solid's extent along it. `None` if there is no finite bound.
     pub(crate) fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)> {
         let outward = self.outward_at(&aabb.center());
         let reach = -self.gap(&outward, N::ZERO, reach_of(aabb));
         (reach < N::INFINITY).then_some((outward, reach))
     }
 
-    /// The signed distance of the solid from anything in the box is not less.
+    /// Returns a lower bound of the signed distance to anything in the box.
     pub(super) fn of_box(&self, aabb: &Aabb<N, D>) -> N {
         self.toward(aabb).map_or(-N::INFINITY, |(along, reach)| {
             along.dot(&aabb.center().coords) - along.abs().dot(&aabb.half_extents()) - reach
         })
     }
 
-    /// The signed distance of the solid from the part, which lies in the box, is not less.
+    /// Returns a lower bound of the signed distance to a part, which lies in the box.
     pub(crate) fn of_part(&self, part: &Part<'_, N, D>, aabb: &Aabb<N, D>) -> N {
         let geometry = part.solid.geometry();
         let Some(map) = geometry.as_support_map() else { return self.of_box(aabb) };
@@ -71,7 +81,8 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         max(gap(&self.outward_at(&part.pose.point(&seen.point))), across)
     }
 
-    /// The outward normal where the solid is nearest to a point, or the way from its middle to that.
+    /// The outward unit normal at the nearest point to `point`, or the direction from the centre to
+    /// `point` for solids without a closed form.
     fn outward_at(&self, point: &Point<N, D>) -> Vector<N, D> {
         match <N::Algorithms>::seen(self.solid, &self.pose.inverse_point(point)) {
             Some(seen) => self.pose.vector(&seen.outward),
@@ -79,26 +90,28 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         }
     }
 
-    /// The gap along a vector from the solid to what is above `lowest`, less all that rounding may have added to it;
-    /// minus infinity of a vector that is no direction. The other reaches that far from the origin.
+    /// Returns the gap along a unit vector from the solid to what lies above `lowest`, minus the
+    /// rounding error; minus infinity if `along` is not a unit vector. `reach` bounds the
+    /// coordinates of the other.
     fn gap(&self, along: &Vector<N, D>, lowest: N, reach: N) -> N {
         let highest = self.map.core_support(&self.pose.inverse_vector(along));
         let height = along.dot(&self.pose.point(&highest).coords) + self.map.rounding();
         let size = self.size + reach;
         let bound = lowest - height - gap_slack(size);
-        // Lengths that are subnormal numbers are not precise.
+        // Subnormal lengths are not precise.
         let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
         let is_unit = (along.norm_squared() - N::ONE).abs() < N::lit(64.0) * N::EPSILON;
         if is_precise && is_unit && bound.is_finite_number() { bound } else { -N::INFINITY }
     }
 }
 
-/// What rounding, and what algorithms are content with, may add to gaps between solids with coordinates of this size.
+/// The error of gaps between solids with coordinates up to `size`, from rounding and from the
+/// tolerance of iterations.
 pub(super) fn gap_slack<N: Real>(size: N) -> N {
     size * max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED))
 }
 
-/// The largest coordinate of a bounded box, but for rounding.
+/// The largest absolute coordinate of a bounded box, but for rounding.
 fn reach_of<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
     max_component(&(aabb.center().coords.abs() + aabb.half_extents()))
 }

@@ -1,10 +1,10 @@
-//! Where the parts of one shape go in the frame of the other.
+//! The motion of the parts of one shape in the frame of the other.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Matrix, Point, Real, Vector, max, min};
 
-/// Where the points of one shape go in a time, in the frame of the other: from a place `x` along the segment to
-/// `x + turn · x + shift`, and nowhere farther from it than the spread.
+/// The motion of the points of one shape during some time, in the frame of the other. A point `x`
+/// stays within `spread` of the segment from `x` to `x + turn · x + shift`.
 ///
 /// ```text
 ///    ,--------------------.
@@ -15,22 +15,23 @@ use crate::math::{Matrix, Point, Real, Vector, max, min};
 pub(crate) struct PartSweep<N: Real, const D: usize> {
     pub(crate) turn: Matrix<N, D>,
     pub(crate) shift: Vector<N, D>,
-    /// With what rounding makes of places; not negative.
+    /// The deviation of the path from the segment, with the rounding error of positions; not
+    /// negative.
     pub(crate) spread: N,
 }
 
 impl<N: Real, const D: usize> PartSweep<N, D> {
-    /// All points go anywhere, so far at most.
+    /// A motion of which only a bound is known: each point stays within `spread`.
     pub(crate) fn anywhere(spread: N) -> Self {
         Self { turn: Matrix::<N, D>::zeros(), shift: Vector::<N, D>::zeros(), spread }
     }
 
-    /// The way of a point but for the spread.
+    /// The displacement of a point, without the spread.
     pub(crate) fn way(&self, place: &Vector<N, D>) -> Vector<N, D> {
         self.turn * place + self.shift
     }
 
-    /// A box around where the points of a box go.
+    /// Returns a box around the swept points of a box.
     pub(crate) fn of_box(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         if !aabb.is_bounded() {
             return Aabb::unbounded();

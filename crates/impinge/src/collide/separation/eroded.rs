@@ -1,21 +1,23 @@
-//! Solids with a part of their roundness taken off.
+//! Ellipsoids as smaller solids with a radius.
 //!
-//! Where a ball rolls around inside of a solid and touches every point of its surface, the solid is the points
-//! within the ball's radius of a smaller convex one (W. Blaschke, "Kreis und Kugel", 1916). So it is a rounded solid
-//! like a capsule, and until the smaller ones overlap its depth is found as a distance is, by a convex search.
+//! If a ball rolls inside a convex solid and touches every point of its surface, the solid consists
+//! of the points within the ball's radius of a smaller convex solid (W. Blaschke, "Kreis und
+//! Kugel", 1916). So it is a core with a radius, like a capsule: until the cores overlap, its depth
+//! is found like a distance, by a convex search.
 
 use crate::math::{Matrix, Point, Real, Vector, max_component, min};
 use crate::shape::{CurvedSupport, Ellipsoid, Geometry, Kind, SupportMap};
 
-/// The share of the largest radius that is taken off: what is left of a sphere still has a size.
+/// Share of the largest radius that is taken off. Below 1, so that the core of a sphere keeps a
+/// size.
 const SHARE: f64 = 15.0 / 16.0;
 
-/// A solid as the points within a radius of what is left when a ball of that radius is taken off all around.
-/// Asked for support points along unit vectors only.
+/// A solid as a core with a radius: the points within `radius` of the eroded solid. Support points
+/// are only asked for along unit vectors.
 #[derive(Clone, Copy)]
 pub(super) struct Eroded<'a, N: Real, const D: usize> {
     solid: &'a dyn SupportMap<N, D>,
-    /// Zero for solids with corners or edges.
+    /// Radius taken off, zero for all kinds but ellipsoids.
     radius: N,
 }
 
@@ -31,8 +33,8 @@ impl<'a, N: Real, const D: usize> Eroded<'a, N, D> {
     }
 }
 
-/// The radius of the largest ball that rolls inside: that of the sharpest bend, at the ends of the longest axis
-/// across the shortest.
+/// Returns the radius of the largest ball that rolls inside an ellipsoid: the least radius of
+/// curvature, `shortest² / longest`, at the ends of the longest axis.
 fn least_curvature_radius<N: Real, const D: usize>(ellipsoid: &Ellipsoid<N, D>) -> N {
     let half_axes = ellipsoid.half_axes();
     let longest = max_component(half_axes);
@@ -90,7 +92,7 @@ mod tests {
     use crate::convex;
     use crate::shape::{Cone, Cuboid, Cylinder, Shape};
 
-    /// As deep or as far apart as without a ball taken off.
+    /// Asserts the same separation with and without erosion.
     fn compare<N: Real>(seed: u64, accuracy: f64) {
         let random = &mut Random(seed);
         for round in 0..600 {

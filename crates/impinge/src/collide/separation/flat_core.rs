@@ -1,10 +1,10 @@
-//! Solids whose cores are hulls of points, as one type: the general algorithm compiled for it calls
-//! no function by pointer.
+//! Solids whose cores are hulls of points, as one type: the general algorithm compiled for it makes
+//! no indirect calls.
 
 use crate::math::{Point, Real, Vector};
 use crate::shape::{Capsule, Cuboid, Kind, Polytope, Segment, SupportMap, Triangle};
 
-/// A solid whose core is the hull of some points.
+/// A solid whose core is the convex hull of points.
 #[derive(Clone, Copy)]
 pub(super) enum FlatCore<'a, N: Real, const D: usize> {
     Segment(&'a Segment<N, D>),
@@ -15,7 +15,7 @@ pub(super) enum FlatCore<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> FlatCore<'a, N, D> {
-    /// `None` for a solid of another kind.
+    /// Wraps a solid; `None` for other kinds.
     pub(super) fn of(kind: Kind<'a, N, D>) -> Option<Self> {
         Some(match kind {
             Kind::Segment(segment) => Self::Segment(segment),

@@ -1,4 +1,5 @@
-//! Any two convex solids: the general algorithm, and what it takes to agree with the others.
+//! Any two convex solids by the general algorithm (`convex`), with a tolerance on the limit and
+//! shared corners, so that its answers agree with those of the closed forms.
 
 use super::eroded::Eroded;
 use super::flat_core::FlatCore;
@@ -8,7 +9,7 @@ use crate::convex::{self, Separation, Simplicial};
 use crate::math::{Pose, Real, Vector, max};
 use crate::shape::{Kind, SupportMap};
 
-/// The two solids of a pair as support maps.
+/// Returns the support maps of both solids; ellipsoids are eroded.
 fn maps<'a, N: Real, const D: usize>(
     pair: &Pair<'a, N, D>,
 ) -> (Eroded<'a, N, D>, Eroded<'a, N, D>) {
@@ -18,9 +19,9 @@ fn maps<'a, N: Real, const D: usize>(
     }
 }
 
-/// A limit that nothing within `limit` exceeds by rounding: the general algorithm may give up on a
-/// bound that is off by rounding, and the exact comparison is made with the final distance. Zero or
-/// more: of solids that overlap, bounds may be off by more than the depth found in the end.
+/// Raises `limit` so that rounding rejects nothing within it. The general algorithm may stop at a
+/// bound that is off by rounding; the exact comparison is made with the final distance. Zero or
+/// more: for overlapping solids the bounds may be off by more than the final depth.
 pub(super) fn loosened<N: Real, const D: usize>(
     map1: &(impl SupportMap<N, D> + ?Sized),
     map2: &(impl SupportMap<N, D> + ?Sized),
@@ -28,12 +29,12 @@ pub(super) fn loosened<N: Real, const D: usize>(
     limit: N,
 ) -> N {
     let sizes = map1.reach() + map1.rounding() + map2.reach() + map2.rounding();
-    // Of curved solids the general algorithm is content with 2⁻⁴⁰ of the size.
+    // The general algorithm accepts 2⁻⁴⁰ of the size for curved solids.
     let relative = max(N::lit(64.0) * N::EPSILON, N::lit(4.0e-12));
     max(limit, N::ZERO) + relative * (sizes + pose12.translation.norm() + limit.abs())
 }
 
-/// The separation of any two convex solids.
+/// Returns the separation of any two convex solids.
 pub(super) fn separation<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -49,14 +50,14 @@ pub(super) fn separation<N: Simplicial<D>, const D: usize>(
     found.filter(|found| found.distance <= limit)
 }
 
-/// Two ellipsoids, or a segment or capsule and one.
+/// Returns whether the second solid is an ellipsoid and the first an ellipsoid, segment or capsule.
 fn are_smooth<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     use Kind::{Capsule, Ellipsoid, Segment};
     matches!((pair.first, pair.second), (Segment(_) | Capsule(_) | Ellipsoid(_), Ellipsoid(_)))
 }
 
-/// The separation of two solids whose cores are hulls of points: the same, with all in one place for
-/// the compiler.
+/// Returns [`separation`] for two solids whose cores are hulls of points. Compiled for the concrete
+/// type [`FlatCore`], so all calls can be inlined.
 pub(super) fn of_flat_cores<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -64,8 +65,8 @@ pub(super) fn of_flat_cores<N: Simplicial<D>, const D: usize>(
     from_start(pair, limit, None)
 }
 
-/// [`of_flat_cores`], searched from a unit vector that leads from the first solid to the second: the nearer it is
-/// to the normal, the sooner that is found.
+/// Computes [`of_flat_cores`], starting the search along `normal`, a unit vector from the first
+/// solid to the second. The closer to the final normal, the fewer steps.
 pub(super) fn of_flat_cores_near<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -74,6 +75,7 @@ pub(super) fn of_flat_cores_near<N: Simplicial<D>, const D: usize>(
     from_start(pair, limit, Some(normal))
 }
 
+/// Computes [`of_flat_cores`] from a first direction, if one is given.
 fn from_start<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -88,7 +90,7 @@ fn from_start<N: Simplicial<D>, const D: usize>(
     found.filter(|found| found.distance <= limit)
 }
 
-/// The distance in [`separation`], or zero if the solids certainly overlap.
+/// Returns the distance of [`separation`], or zero if the solids certainly overlap.
 pub(super) fn distance<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

@@ -1,13 +1,13 @@
-//! Balls inside solids: two that meet prove an overlap at once.
+//! Balls inside solids: if the balls of two solids overlap, so do the solids.
 
 use crate::collide::Pair;
 use crate::math::{Point, Real, Vector, min};
 use crate::shape::{Cone, Kind, SupportMap};
 
-/// The share of both radii within which middles count as near: what is left out is no rounding error.
+/// Share of the sum of both radii below which centres prove an overlap; the rest covers rounding.
 const SHARE: f64 = 1023.0 / 1024.0;
 
-/// Whether balls inside the two solids certainly overlap. `false` says nothing.
+/// Returns whether balls inside the two solids certainly overlap. `false` proves nothing.
 pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     let (Some((center1, radius1)), Some((center2, radius2))) = (of(pair.first), of(pair.second))
     else {
@@ -17,7 +17,8 @@ pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -
     (pair.pose12.point(&center2) - center1).norm_squared() < reach * reach
 }
 
-/// A ball inside a solid, about its middle, if one is known; that of a segment has no size.
+/// Returns a ball inside a solid, about its centre; `None` for kinds without one. The ball of a
+/// segment has radius zero.
 fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Option<(Point<N, D>, N)> {
     let least = |sizes: &Vector<N, D>| sizes.iter().fold(N::MAX, |least, &size| min(size, least));
     Some(match kind {
@@ -38,7 +39,7 @@ fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Option<(Point<N, D>, N)>
     })
 }
 
-/// The ball that touches the cap and the side: in the half-plane of the axis the circle in a triangle.
+/// Returns the inscribed ball, which touches base and side: the incircle of the axial section.
 fn of_cone<N: Real, const D: usize>(cone: &Cone<N>) -> (Point<N, D>, N) {
     let (height, radius) = (cone.half_height() * N::TWO, cone.radius());
     let side = (height * height + radius * radius).sqrt();
@@ -69,7 +70,7 @@ mod tests {
             (Box::new(Rounded::new(Cylinder::new(3.0, 4.0), 0.25)), 3.25),
             (Box::new(ConvexHull::from_points(&corners)), 0.75_f64.sqrt()),
         ];
-        // The middle of the hull is the mean of its corners, not that of the largest ball.
+        // The centre of the hull is the mean of its corners, not the centre of the largest ball.
         for (solid, expected) in solids {
             let (_, radius) = of(solid.geometry().0).expect("a ball is known");
             assert!((radius - expected).abs() < 1e-14, "{radius} in {solid:?}");

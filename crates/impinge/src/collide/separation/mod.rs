@@ -1,22 +1,32 @@
-//! The separation of two convex solids: how far apart or how deep, at which points and along which normal.
+//! Computes the separation of two convex solids: signed distance, normal and nearest points.
+//!
+//! ```text
+//!          solid 1     normal     solid 2        frame: of solid 1 (solid 2 lies at `pose12`)
+//!         .-------.               .-----.        normal: unit, from 1 to 2
+//!        (        *--------------->      )       distance = normal · (point2 - point1)
+//!         '-------' point1  point2'-----'        > 0 apart, 0 touching, < 0 minus the depth
+//! ```
 //!
 //! Distance, closest points, proximity, contact and time of impact are all derived from the
-//! [`Separation`] that the functions here compute, so that they cannot contradict each other. A table per
-//! dimension says which function serves which pair; a pair with a closed form has a file of its own, named in
-//! the order of [`ShapeKind`]:
+//! [`Separation`] that the functions here compute, so they cannot contradict each other. `table2`
+//! and `table3` name the function of each pair of kinds. A pair with a closed form has a file of
+//! its own, named in the order of [`ShapeKind`]:
 //!
-//! - [`balls`], [`segments`], [`boxes`] and [`polygons`] hold closed forms and separating axis tests;
-//! - [`apart`] searches the nearest points of triangles, boxes and hulls in 3D that are well apart, of one pair or eight;
-//! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D, `triangles` and `chain` test eight
-//!   parts of a surface at once;
-//! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep overlaps, `revolved::coaxial`
-//!   those about one axis;
-//! - `shared_corner` settles the distance of solids that are apart by rounding alone;
-//! - `plane_any` serves half-spaces, `rounded` inflated solids, and `general` the rest, by GJK and EPA, smooth ones `eroded`.
+//! - [`balls`], [`segments`], [`boxes`] and [`polygons`] hold closed forms and separating axis
+//!   tests;
+//! - [`apart`] searches the nearest points of triangles, boxes and hulls in 3D that are well apart,
+//!   for one pair or for eight;
+//! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D; `triangles` and
+//!   `chain` test eight parts of a surface at a time;
+//! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep
+//!   overlaps, and `revolved::coaxial` pairs with a common axis;
+//! - `shared_corner` sets the distance to zero for solids that share a corner up to rounding;
+//! - `plane_any` serves half-spaces, `rounded` inflated solids, and `general` all other pairs by
+//!   GJK and EPA; it runs on `eroded` ellipsoids.
 //!
-//! Every function is given a pair and a limit and answers in the frame of the first solid; `None`
-//! exactly if the signed distance is above the limit (or not a number). The limit never changes the
-//! answer.
+//! Each function takes a pair and a `limit` and returns its answer in the frame of the first solid.
+//! It returns `None` exactly if the signed distance is above `limit` or NaN. `limit` never changes
+//! the answer.
 
 pub(crate) mod apart;
 pub(crate) mod balls;
@@ -69,13 +79,14 @@ pub(crate) use world::{
     touching_of_ordered,
 };
 
-/// An algorithm for one pair of kinds.
+/// Algorithm for one pair of kinds: takes the pair and the largest distance of interest.
 pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;
 
-/// One algorithm for each pair of kinds, by row and column in the order of [`ShapeKind`].
+/// One algorithm for each pair of kinds; row and column are the kinds in the order of
+/// [`ShapeKind`].
 type Table<N, const D: usize> = [[Algorithm<N, D>; ShapeKind::COUNT]; ShapeKind::COUNT];
 
-/// The separation of any pair, in either order of kinds.
+/// Returns the separation of a pair of any two kinds, in either order.
 #[inline]
 pub(crate) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -84,13 +95,13 @@ pub(crate) fn separation<N: Space<D>, const D: usize>(
     <N::Algorithms>::separation(pair, limit)
 }
 
-/// The algorithm of a table for a pair.
+/// Looks up the algorithm of a pair in a table.
 #[inline]
 fn look_up<N: Real, const D: usize>(table: &Table<N, D>, pair: &Pair<'_, N, D>) -> Algorithm<N, D> {
     table[Geometry(pair.first).kind() as usize][Geometry(pair.second).kind() as usize]
 }
 
-/// The entry below the diagonal: the pair in its fixed order, turned round.
+/// Entry below the diagonal: computes the pair in its canonical order and flips the answer back.
 fn flipped<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -100,7 +111,7 @@ fn flipped<N: Space<D>, const D: usize>(
     separation(&ordered, limit).map(|found| found.flipped(&pose12))
 }
 
-/// An algorithm was given kinds that it is not for: the table is wrong.
+/// Panics: the table sent this pair to an algorithm for other kinds.
 fn wrong_kinds<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> ! {
     let (first, second) = (Geometry(pair.first).kind(), Geometry(pair.second).kind());
     unreachable!("the pair table sent {first:?} and {second:?} to the wrong algorithm")

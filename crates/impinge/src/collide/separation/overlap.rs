@@ -1,6 +1,6 @@
-//! The distance of two solids where the depth of an overlap is not needed.
+//! Distance of two solids where the depth of an overlap is not needed.
 //!
-//! Where the solids are apart the distance is that of the separation, to the bit.
+//! Where the solids are apart, it is the distance of the separation, to the bit.
 
 use super::balls::{
     ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polygon, ball_polytope, ball_segment,
@@ -16,28 +16,30 @@ use crate::convex::{self, Simplicial};
 use crate::math::{Point, Real, Space};
 use crate::shape::{Geometry, Kind};
 
-/// Solids with separating axes are searched for an overlap where the way out along the line of their middles
-/// is longer than this, in units of the pair: axes tell as soon that they are apart.
+/// Faceted solids with this depth along the line of their middles, in units of the pair, are
+/// searched for an overlap first. Below it, separating axes prove as fast that they are apart.
 const DEEP: f64 = 1.0 / 8.0;
 
-/// How the separation of a pair is found.
+/// How the distance of a pair is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DistanceMethod {
-    /// Nothing is saved if the depth is not asked for.
+    /// By a closed form, which costs the same with the depth.
     Formula,
-    /// By formulas for features; depths take longer than the proof that there is one.
+    /// By formulas for features; proving an overlap first is faster than computing the depth.
     Features,
-    /// The same by separating axes.
+    /// By separating axes; proving an overlap first is faster if it is deep.
     Axes,
-    /// By formulas for features; what these leave is left to an algorithm that can do without depths.
+    /// By the formulas of `revolved`, with a fallback that needs no depths.
     Revolved,
     /// By the general algorithm.
     Search,
 }
 
-/// The signed distance of two solids of space, at most `limit`; where they overlap any number that is not
-/// positive, so that clear overlaps need not be measured. Else it is that of the separation, to the bit; so
-/// pairs that are not in the order of kinds are left to that, which turns them round.
+/// Returns the signed distance of two solids in 3D; `None` above `limit`.
+///
+/// If they overlap and `limit` is zero or more, any number that is not positive may stand for it,
+/// so clear overlaps are not measured. Otherwise it is the distance of the separation, to the bit.
+/// Pairs that are not in the order of kinds go to the separation, which orders them.
 pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     if let Some(known) = known_in_space(pair) {
         return (known <= limit).then_some(known);
@@ -55,7 +57,7 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
     distance(pair, limit, way)
 }
 
-/// [`distance_in_space`], in 2D.
+/// Returns the signed distance of two solids in 2D, with the rule of [`distance_in_space`].
 pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
     if let Some(known) = known(pair, beside_ball_in_plane) {
         return (known <= limit).then_some(known);
@@ -66,7 +68,7 @@ pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: 
     distance(pair, limit, way_in_plane(pair))
 }
 
-/// The signed distance where the formula for it is a part of that for the separation.
+/// Returns the signed distance where its formula is a part of the formula for the separation.
 fn known_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     use Kind::{Capsule, Segment};
     match (pair.first, pair.second) {
@@ -77,8 +79,8 @@ fn known_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     }
 }
 
-/// [`known_in_space`], of what is the same in any dimension; of balls it follows from how a solid is seen from
-/// their middle.
+/// Computes [`known_in_space`] for the kinds that do not depend on the dimension; balls by the
+/// projection of their centre (`beside_ball`).
 #[inline(always)]
 fn known<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -97,8 +99,9 @@ fn known<N: Real, const D: usize>(
     }
 }
 
-/// The distance of a ball around a point from a solid of space, in the frame of that: the projection of the
-/// point without its direction, taken off in the order of the separation.
+/// Returns the signed distance of a ball from a solid in 3D, in the frame of the solid: the
+/// projection of its centre without the direction. Radii are subtracted in the order of the
+/// separation.
 fn beside_ball_in_space<N: Real>(
     radius: N,
     kind: Kind<'_, N, 3>,
@@ -118,7 +121,7 @@ fn beside_ball_in_space<N: Real>(
     Some(apart - radius)
 }
 
-/// [`beside_ball_in_space`], in 2D.
+/// Computes [`beside_ball_in_space`] in 2D.
 fn beside_ball_in_plane<N: Real>(
     radius: N,
     kind: Kind<'_, N, 2>,
@@ -136,7 +139,7 @@ fn beside_ball_in_plane<N: Real>(
     Some(apart - radius)
 }
 
-/// What is the same in any dimension.
+/// Computes the distance of a ball from the kinds that do not depend on the dimension.
 #[inline]
 fn beside_ball<N: Real, const D: usize>(
     radius: N,
@@ -154,6 +157,8 @@ fn beside_ball<N: Real, const D: usize>(
     Some(apart - radius)
 }
 
+/// Computes the distance by a method; [`is_plain`] pairs prove an overlap first where that is
+/// faster.
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -170,26 +175,26 @@ fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     super::separation(pair, limit).map(|found| found.distance)
 }
 
-/// Overlaps need not be measured, and the solids are in the order of kinds.
+/// Returns whether depths are not needed and the solids are in the order of kinds.
 fn is_plain<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
     limit >= N::ZERO && Geometry(pair.first).kind() <= Geometry(pair.second).kind()
 }
 
-/// Both are triangles, boxes or hulls.
+/// Returns whether both solids are triangles, boxes or hulls.
 const fn are_faceted<N: Real>(pair: &Pair<'_, N, 3>) -> bool {
     apart::is_faceted(&pair.first) && apart::is_faceted(&pair.second)
 }
 
-/// None of the solids is a rounded one.
+/// Returns whether neither solid is rounded.
 fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     let is_rounded = |kind| matches!(kind, Kind::Rounded(_));
     !is_rounded(pair.first) && !is_rounded(pair.second)
 }
 
-/// Whether two solids certainly overlap, clearly more than rounding decides. `false` says nothing. Of rounded
-/// solids the cores need not overlap.
+/// Returns whether two solids certainly overlap, by more than rounding. `false` proves nothing. The
+/// cores of capsules and rounded solids need not overlap.
 ///
-/// Costs a few support points of each solid; where they are apart these are for nothing.
+/// Costs a few support points of each solid, which are wasted if they are apart.
 fn certainly_overlap<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     way: DistanceMethod,
@@ -205,12 +210,12 @@ fn certainly_overlap<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// What is rounded; a solid that is not is itself.
+/// Returns the innermost solid of a rounded one; other solids unchanged.
 fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
     if let Kind::Rounded(solid) = kind { inner(solid.inner().0) } else { kind }
 }
 
-/// Of the kinds in their order: see the table of space.
+/// Returns the method for two kinds in order, as in the table of 3D.
 fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
     use Kind::{
         Ball, Capsule, Composite, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle,
@@ -237,7 +242,7 @@ fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
     }
 }
 
-/// Of the kinds in their order: see the table of the plane.
+/// Returns the method for two kinds in order, as in the table of 2D.
 fn way_in_plane<N: Real>(pair: &Pair<'_, N, 2>) -> DistanceMethod {
     use Kind::{Ball, Composite, Plane};
     let (first, second) = (inner(pair.first), inner(pair.second));
@@ -264,7 +269,7 @@ mod tests {
         Rounded, Segment, Shape, Triangle,
     };
 
-    /// How many of the poses were found to overlap, of how many that do; all of these must do.
+    /// Counts the poses proved to overlap, and all poses that overlap.
     fn found<N: Simplicial<D> + Space<D>, const D: usize>(
         solids: &[Box<dyn Shape<N, D>>],
         poses: &[Pose<N, D>],
@@ -292,7 +297,7 @@ mod tests {
         (found, overlapping)
     }
 
-    /// Steps away from where the first stands.
+    /// Translations along a direction, in steps of a tenth of `size`.
     fn steps<N: Real, const D: usize>(direction: Vector<N, D>, size: f64) -> Vec<Vector<N, D>> {
         (0..24).map(|n| direction * N::lit(size * 0.1 * f64::from(n))).collect()
     }
@@ -360,7 +365,7 @@ mod tests {
 
     type Solids<N, const D: usize> = [Box<dyn Shape<N, D>>];
 
-    /// Distances that are a part of the separation are so to the bit, however the solids lie.
+    /// Asserts that distances by a part of the formula have the bits of the separation.
     fn are_parts<N: Space<D>, const D: usize>(
         firsts: &Solids<N, D>,
         seconds: &Solids<N, D>,

@@ -1,4 +1,4 @@
-//! Half-spaces against everything, in any dimension.
+//! Half-spaces against all convex solids, in any dimension.
 
 use super::projection::first_axis;
 use super::wrong_kinds;
@@ -7,7 +7,7 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, unit_or};
 use crate::shape::{Geometry, Kind, Plane, SupportMap};
 
-/// The separation of any convex solid from a half-space: of its point deepest in it.
+/// Returns the separation of a convex solid from a half-space, at the point deepest in it.
 ///
 /// Exact for every support map, curved ones included. Of several equally deep points the solid's
 /// support map chooses.
@@ -25,8 +25,8 @@ pub(super) fn separation<N: Real, const D: usize>(
     (distance <= limit).then_some(Separation { distance, normal, point1, point2 })
 }
 
-/// The distance of a convex solid from a half-space, which has the given pose in the frame of the solid, as
-/// [`separation`] and what is rounded have it; `None` of two half-spaces.
+/// Returns the distance of [`separation`] for a convex solid, rounded ones included, and a
+/// half-space at `pose12` in its frame; `None` for two half-spaces.
 #[inline]
 pub(super) fn distance<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
@@ -39,10 +39,14 @@ pub(super) fn distance<N: Real, const D: usize>(
     Some(Deepest::of(Geometry(kind).as_support_map()?, plane, pose12).distance)
 }
 
-/// The point of a core that is deepest in a half-space, and how far the solid is from that.
+/// The point of a core deepest in a half-space, the normal into it, and the solid's distance from
+/// it.
 struct Deepest<N: Real, const D: usize> {
+    /// Unit, into the half-space, in the frame of the solid.
     normal: Vector<N, D>,
+    /// Point of the core, in the frame of the solid.
     core: Point<N, D>,
+    /// Signed distance of the solid, its radius included.
     distance: N,
 }
 
@@ -56,12 +60,12 @@ impl<N: Real, const D: usize> Deepest<N, D> {
     }
 }
 
-/// The separation of two half-spaces.
+/// Returns the separation of two half-spaces.
 ///
-/// Those that face each other, exactly or up to the rounding of rotations (an angle below 16
-/// epsilon), have a gap or a finite depth. All others overlap without bound: the distance is minus
-/// infinity, the normal the mean of the first's own and the opposite of the second's, and the points
-/// are the origins.
+/// If they face each other, exactly or up to the rounding of rotations (an angle below 16 epsilon),
+/// they have a gap or a finite depth. All others overlap without bound: the distance is minus
+/// infinity, the normal the mean of the first normal and the negated second, and the points are the
+/// origins.
 pub(super) fn plane_plane<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

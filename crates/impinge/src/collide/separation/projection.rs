@@ -1,24 +1,32 @@
-//! Balls against other solids: everything follows from where the centre lies.
+//! Projection of a point onto a solid. The separation of a ball follows from that of its centre.
+//!
+//! ```text
+//!         point  *        distance > 0: outside; < 0: inside, minus the depth
+//!                |        outward: unit, along which the distance is measured
+//!      .---------+-----.  `point` of the projection: on the surface
+//!      |  solid        |  point given = projection.point + outward * distance
+//! ```
 
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, unit};
 
 pub(super) use crate::math::perpendicular_to;
 
-/// A point seen from a solid, in the frame of the solid.
+/// A point projected onto a solid, in the frame of the solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Projection<N: Real, const D: usize> {
-    /// Positive outside, negative inside: the signed distance of the point from the surface.
+    /// Signed distance of the point from the surface: positive outside, negative inside.
     pub(crate) distance: N,
-    /// The unit vector out of the solid along which that distance is measured.
+    /// Unit vector out of the solid along which `distance` is measured.
     pub(crate) outward: Vector<N, D>,
     /// The point of the surface nearest to the given one.
     pub(crate) point: Point<N, D>,
 }
 
 impl<N: Real, const D: usize> Projection<N, D> {
-    /// The separation of a ball around the projected point, at the origin of the first frame, from
-    /// the solid, whose pose is `pose12`. `None` beyond `limit`.
+    /// Returns the separation of a ball from the solid. The ball's centre is the origin of the
+    /// first frame and the point projected; the solid lies at `pose12`. `None` if the distance
+    /// exceeds `limit`.
     pub(super) fn of_ball(
         &self,
         radius: N,
@@ -33,25 +41,25 @@ impl<N: Real, const D: usize> Projection<N, D> {
     }
 }
 
-/// What arithmetic cannot resolve about points that far from the origin.
+/// Returns the rounding error of lengths between points within `reach` of the origin.
 pub(super) fn noise<N: Real>(reach: N) -> N {
     N::lit(8.0) * N::EPSILON * reach
 }
 
-/// The centre of a ball at the origin of the first frame, in the frame of the second solid.
+/// Returns the centre of a ball, the origin of the first frame, in the frame of the second solid.
 pub(super) fn center_in_second<N: Real, const D: usize>(pose12: &Pose<N, D>) -> Point<N, D> {
     pose12.inverse_point(&Point::origin())
 }
 
-/// The first axis: the direction that degenerate cases fall back on.
+/// Returns the first axis, the direction for degenerate cases.
 pub(super) fn first_axis<N: Real, const D: usize>() -> Vector<N, D> {
     let mut axis = Vector::<N, D>::zeros();
     axis[0] = N::ONE;
     axis
 }
 
-/// `v` made perpendicular to the unit vector `d`, of unit length; `None` where nothing certain
-/// remains.
+/// Returns the unit vector of the part of `v` perpendicular to the unit vector `d`; `None` if that
+/// part is within rounding.
 ///
 /// Subtracts twice: the first remainder may be small and so inexact (Kahan: twice is enough).
 pub(super) fn made_perpendicular<N: Real, const D: usize>(

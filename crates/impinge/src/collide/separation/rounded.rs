@@ -1,14 +1,14 @@
-//! Rounded solids against everything: as what is rounded, and nearer by the radius.
+//! Rounded solids against all kinds: the separation of the inner solid, less the radius.
 
 use crate::collide::Pair;
 use crate::convex::Separation;
 use crate::math::{Real, Space};
 use crate::shape::Kind;
 
-/// The separation of two solids of which one or both are rounded.
+/// Returns the separation of two solids of which one or both are rounded.
 ///
-/// Exact for solids that overlap as well: inflating a solid moves each of its supporting planes
-/// outwards by the radius, so the order of the normals stays what it is.
+/// Exact for overlapping solids as well: inflating a solid moves each supporting plane outwards by
+/// the radius, so the normal of least depth stays the same.
 pub(super) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -20,7 +20,8 @@ pub(super) fn separation<N: Space<D>, const D: usize>(
     (found.distance <= limit).then_some(found)
 }
 
-/// What is rounded, and by how much.
+/// Returns the inner solid of a rounded one and its radius; other solids with radius zero. Removes
+/// one layer only.
 pub(crate) fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N, D>, N) {
     match kind {
         Kind::Rounded(solid) => (solid.inner().0, solid.radius()),
@@ -28,7 +29,7 @@ pub(crate) fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N
     }
 }
 
-/// A limit that no distance exceeds which is within `limit` once the radii are taken off it.
+/// Returns a limit for the inner solids: `limit + radii`, raised by rounding.
 fn loosened<N: Real>(limit: N, radii: N) -> N {
     if !limit.is_finite_number() {
         return limit;

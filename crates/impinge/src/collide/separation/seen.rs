@@ -1,4 +1,4 @@
-//! A point in the frame of a solid of any kind: its nearest surface point, which is all that a ball needs.
+//! Projects a point onto a solid of any kind: all that the separation from a ball needs.
 
 use super::balls::{
     ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polygon, ball_polytope,
@@ -8,7 +8,7 @@ use super::projection::{Projection, first_axis};
 use crate::math::{Point, Real, unit};
 use crate::shape::Kind;
 
-/// A point seen from a solid of the plane, in the frame of that; `None` where there is no closed form.
+/// Projects a point onto a solid in 2D, in the frame of the solid; `None` without a closed form.
 pub(crate) fn seen_in_plane<N: Real>(
     kind: Kind<'_, N, 2>,
     point: &Point<N, 2>,
@@ -24,7 +24,7 @@ pub(crate) fn seen_in_plane<N: Real>(
     }
 }
 
-/// [`seen_in_plane`], in 3D.
+/// Projects a point onto a solid in 3D, in the frame of the solid; `None` without a closed form.
 pub(crate) fn seen_in_space<N: Real>(
     kind: Kind<'_, N, 3>,
     point: &Point<N, 3>,
@@ -39,7 +39,7 @@ pub(crate) fn seen_in_space<N: Real>(
     })
 }
 
-/// What is the same in any dimension.
+/// Projects a point onto the kinds whose formula does not depend on the dimension.
 #[inline]
 fn seen<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
@@ -68,7 +68,7 @@ fn seen<N: Real, const D: usize>(
     })
 }
 
-/// As the solid is seen whose points are no farther than `radius` from one that is seen so.
+/// Moves a projection onto `core` to the surface of the solid inflated by `radius`.
 #[inline]
 fn inflated<N: Real, const D: usize>(core: &Projection<N, D>, radius: N) -> Projection<N, D> {
     Projection {

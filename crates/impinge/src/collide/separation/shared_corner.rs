@@ -1,10 +1,11 @@
-//! Solids with flat sides touch if a corner of one is a corner of the other, or lies on a side of it, whatever
-//! rounding makes of their distance.
+//! Sets the distance to zero if a corner of one solid is a corner of the other, or lies on one of
+//! its sides, whatever rounding makes of their distance.
 //!
-//! People build from shared corners: triangles of a mesh, polygons of a map, tetrahedra. The height of a corner over a
-//! side that ends there is computed from the other end of the side, and may be a rounding error above zero. So where
-//! it is no more than that, the corners themselves are compared: to the bit, in the frame of the first solid, and with
-//! sides by the exact sign of an area.
+//! People build from shared corners: triangles of a mesh, polygons of a map, tetrahedra. The height
+//! of a corner over a side that ends there is computed from the other end of the side, so it may be
+//! a rounding error above zero. Where the distance is no more than such an error, the corners
+//! themselves are compared: to the bit, in the frame of the first solid, and with sides by the
+//! exact sign of an area.
 
 use smallvec::SmallVec;
 
@@ -13,11 +14,12 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Real, exact, filled, max, max_component, min};
 use crate::shape::{Geometry, Kind, SupportMap};
 
-/// What may be a rounding error of the distance of two solids, in epsilon of their sizes and how far they are apart.
+/// Distances up to this may be rounding errors, in epsilon of the sizes plus the distance of
+/// origins.
 const ROUNDING: f64 = 64.0;
 
-/// The separation found of two solids, or one of zero at a corner of one that the other has. Boxes among themselves,
-/// whose distance is a difference of their numbers, are left as they are.
+/// Returns `found`, or a distance of zero at a shared corner. Pairs of two boxes stay as they are:
+/// their distance is a difference of their numbers.
 #[inline]
 pub(super) fn settled<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -28,6 +30,7 @@ pub(super) fn settled<N: Real, const D: usize>(
     if is_apart && found.distance <= rounding(pair) { at_corner(pair, found) } else { found }
 }
 
+/// Returns the distance up to which a pair may share a corner.
 fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let [reach1, reach2] = [pair.first, pair.second]
         .mapped(|kind| Geometry(kind).as_support_map().map_or(N::ZERO, SupportMap::reach));
@@ -35,6 +38,7 @@ fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
+/// Compares the corners that are highest along the normal, up to rounding, of both solids.
 #[cold]
 fn at_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -70,7 +74,7 @@ fn at_corner<N: Real, const D: usize>(
     }
 }
 
-/// A point is one of some corners of a convex solid, or lies between two of them.
+/// Returns whether a point is one of `corners`, or lies between two of them.
 fn lies_among<N: Real, const D: usize>(point: &Point<N, D>, corners: &[Point<N, D>]) -> bool {
     let mut pairs = corners
         .iter()
@@ -79,8 +83,8 @@ fn lies_among<N: Real, const D: usize>(point: &Point<N, D>, corners: &[Point<N, 
     corners.contains(point) || pairs.any(|(a, b)| is_between(point, a, b))
 }
 
-/// A point lies on the segment between two others, exactly: in each projection along the axes the three have no
-/// area.
+/// Returns whether a point lies exactly on the segment `a b`: within its box, and the triangle of
+/// the three has no area in any projection along an axis.
 fn is_between<N: Real, const D: usize>(
     point: &Point<N, D>,
     a: &Point<N, D>,
@@ -97,7 +101,7 @@ fn is_between<N: Real, const D: usize>(
     (0..D).all(is_within) && (0..D).all(|one| (one + 1..D).all(|other| is_level(one, other)))
 }
 
-/// The corners of a solid with flat sides, in its own frame; none of other solids.
+/// Visits the corners of a flat-sided solid, in its own frame; none for other solids.
 fn each_corner<N: Real, const D: usize>(
     kind: &Kind<'_, N, D>,
     visit: &mut dyn FnMut(&Point<N, D>),

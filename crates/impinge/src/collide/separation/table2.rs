@@ -1,4 +1,4 @@
-//! Which algorithm serves which pair of kinds in 2D.
+//! Table of the algorithm for each pair of kinds in 2D.
 
 use super::balls::{
     ball_ball, ball_cuboid, ball_ellipsoid, ball_polygon, ball_segment, ball_tapered,
@@ -11,7 +11,7 @@ use crate::collide::parts;
 use crate::convex::Separation;
 use crate::math::Real;
 
-/// The table of the plane, for one scalar.
+/// Table of 2D for one scalar type.
 struct Table2<N>(core::marker::PhantomData<N>);
 
 impl<N: Real> Table2<N> {
@@ -52,7 +52,7 @@ impl<N: Real> Table2<N> {
     };
 }
 
-/// The separation of any pair in 2D.
+/// Returns the separation of a pair of any two kinds in 2D.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
     look_up(&Table2::<N>::TABLE, pair)(pair, limit)
 }

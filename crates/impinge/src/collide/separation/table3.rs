@@ -1,4 +1,4 @@
-//! Which algorithm serves which pair of kinds in 3D.
+//! Table of the algorithm for each pair of kinds in 3D.
 
 use super::balls::{
     ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polytope, ball_segment,
@@ -15,7 +15,7 @@ use crate::collide::parts;
 use crate::convex::Separation;
 use crate::math::Real;
 
-/// The table of space, for one scalar.
+/// Table of 3D for one scalar type.
 struct Table3<N>(core::marker::PhantomData<N>);
 
 impl<N: Real> Table3<N> {
@@ -62,7 +62,7 @@ impl<N: Real> Table3<N> {
     };
 }
 
-/// The separation of any pair in 3D.
+/// Returns the separation of a pair of any two kinds in 3D.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     look_up(&Table3::<N>::TABLE, pair)(pair, limit)
 }

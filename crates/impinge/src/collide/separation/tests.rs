@@ -1,4 +1,4 @@
-//! Every kind has an algorithm with every kind: a new one without fails to compile here, or fails.
+//! Tests that every kind has an algorithm with every kind: a missing one fails to compile or fails.
 
 use crate::collide::Pair;
 use crate::collide::separation::separation;
@@ -92,7 +92,7 @@ impl<N: Space<D>, const D: usize> Solids<N, D> {
         }
     }
 
-    /// The kinds of both dimensions.
+    /// Returns the solid of a kind that both dimensions have.
     fn kind(&self, kind: ShapeKind) -> Option<Kind<'_, N, D>> {
         Some(match kind {
             ShapeKind::Ball => Kind::Ball(&self.ball),

@@ -1,9 +1,9 @@
-//! Triangles against triangles, boxes and hulls, held against the general algorithm and against what needs no
-//! trust in either: a plane that parts two solids bounds their distance from below, and two of their points
-//! from above.
+//! Triangles against triangles, boxes and hulls: compared with the general algorithm and with
+//! bounds that trust neither. A separating plane bounds the distance from below, two points of the
+//! solids from above.
 
-use super::triangles::{TiledTriangles, TriangleGap};
-use super::{gaps3, general, hulls, separation};
+use super::triangles::{TiledTriangles, TriangleGap, pair};
+use super::{Algorithm, gaps3, general, hulls, separation};
 use crate::collide::Pair;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::convex::Separation;
@@ -19,7 +19,7 @@ impl Noise {
         Pose { rotation: matrix, translation: self.vector(away) }
     }
 
-    /// Also slivers, segments and points, and some that lie along the axes.
+    /// A triangle; some are slivers, segments, points or aligned with the axes.
     fn triangle<N: Real>(&mut self, round: usize) -> Triangle<N, 3> {
         let mut corner = || Point::from(self.vector::<N>(1.0));
         let [a, mut b, mut c] = [corner(), corner(), corner()];
@@ -35,8 +35,8 @@ impl Noise {
     }
 }
 
-/// What a separation says is so, up to `slack`: its normal parts the solids by its distance, and its
-/// points are as far from each other and lie in them.
+/// Asserts a separation up to `slack`: its normal separates the solids by the distance, and its
+/// points are that far apart and lie in the solids.
 fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: f64, what: &str) {
     let maps = [pair.first, pair.second].map(|kind| match kind {
         Kind::Triangle(triangle) => triangle as &dyn SupportMap<N, 3>,
@@ -62,7 +62,7 @@ fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: 
     }
 }
 
-/// Some directions all around.
+/// Directions to all sides.
 fn directions<N: Real>() -> impl Iterator<Item = Vector<N, 3>> {
     let steps = || [-1.0, 0.0, 1.0].into_iter();
     let all = steps().flat_map(move |x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
@@ -70,18 +70,18 @@ fn directions<N: Real>() -> impl Iterator<Item = Vector<N, 3>> {
     some.map(|v| Vector::<f64, 3>::from(v).normalize().map(N::lit))
 }
 
-/// What was met.
+/// Counts of the cases that occurred.
 #[derive(Default)]
 struct Tally {
     overlaps: usize,
-    /// Answers that are not those of the general algorithm to the bit.
+    /// Answers that differ in bits from those of the general algorithm.
     closed: usize,
     rounds: usize,
 }
 
-/// Holds the separating axis test against the general algorithm.
-fn check_pair<N: Real>(pair: &Pair<'_, N, 3>, size: f64, tally: &mut Tally) {
-    let (slack, own) = (256.0 * N::EPSILON.as_f64() * size, hulls::separation::<N>);
+/// Compares a separating axis test with the general algorithm.
+fn check_pair<N: Real>(own: Algorithm<N, 3>, pair: &Pair<'_, N, 3>, size: f64, tally: &mut Tally) {
+    let slack = 256.0 * N::EPSILON.as_f64() * size;
     let found = own(pair, N::INFINITY).expect("within infinity");
     let general = general::of_flat_cores(pair, N::INFINITY).expect("within infinity");
     let triangle = match pair.first {
@@ -102,7 +102,7 @@ fn check_pair<N: Real>(pair: &Pair<'_, N, 3>, size: f64, tally: &mut Tally) {
 
 /// Boxes, hulls and triangles at every depth, of sizes from a tenth to one, some of them flat.
 fn at_random<N: Real>(rounds: usize) {
-    let (mut noise, mut tallies) = (Noise(7), [(); 3].map(|()| Tally::default()));
+    let (mut noise, mut tallies) = (Noise(7), [(); 4].map(|()| Tally::default()));
     for round in 0..rounds {
         let triangle = noise.triangle::<N>(round);
         let mut half = noise.vector::<N>(0.5).abs() + Vector::<N, 3>::repeat(N::lit(0.05));
@@ -119,9 +119,12 @@ fn at_random<N: Real>(rounds: usize) {
         let first = triangle.geometry().0;
         let other = noise.triangle::<N>(round / 2);
         let kinds = [cuboid.geometry().0, hull.geometry().0, other.geometry().0];
-        for (second, tally) in kinds.into_iter().zip(&mut tallies) {
-            check_pair(&Pair { first, second, pose12 }, 4.0, tally);
+        let [with_kinds @ .., with_pairs] = &mut tallies;
+        for (second, tally) in kinds.into_iter().zip(with_kinds) {
+            check_pair(hulls::separation, &Pair { first, second, pose12 }, 4.0, tally);
         }
+        let pair = Pair { first, second: kinds[2], pose12 };
+        check_pair(pair::separation, &pair, 4.0, with_pairs);
     }
     for Tally { overlaps, closed, rounds } in &tallies {
         assert!(
@@ -180,7 +183,7 @@ fn a_box_on_a_face_has_its_normal() {
     }
 }
 
-/// Many triangles against one solid, and each of them alone.
+/// Many triangles against one solid, in packets and alone.
 fn together<N: Real>(rounds: usize) {
     let (mut noise, mut touching) = (Noise(5), 0);
     for round in 0..rounds {
@@ -207,7 +210,7 @@ fn together<N: Real>(rounds: usize) {
     assert!(touching > rounds, "{touching} touch");
 }
 
-/// Answers how many are within the limit and plain.
+/// Returns how many triangles are within the limit and plain.
 fn check_together<N: Real>(
     triangles: &[Triangle<N, 3>],
     solid: Kind<'_, N, 3>,
@@ -242,8 +245,8 @@ fn check_together<N: Real>(
     touching
 }
 
-/// What is plain of a triangle among others is true of its separation; only along its own normal it may be
-/// farther.
+/// Asserts that the gap of a triangle in a packet agrees with its separation; along its own normal
+/// it may be farther.
 fn check_gap<N: Real>(
     gap: &TriangleGap<N>,
     triangle: &Triangle<N, 3>,

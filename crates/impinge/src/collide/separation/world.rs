@@ -1,4 +1,4 @@
-//! The separation of two solids in the world, in the order in which they are given.
+//! Separation of two placed solids in the world frame, in the order in which they are given.
 
 use crate::collide::far::Apart;
 use crate::collide::pair::{Ordered, Placed, Placing};
@@ -8,11 +8,12 @@ use crate::math::{IsometryRef, Pose, Real, Space, Vector};
 use crate::shape::{Geometry, Shape};
 use crate::tables::ByDimension;
 
-/// The separation of two placed solids in the world frame, `None` beyond `limit`.
+/// Returns the separation of two placed solids in the world frame; `None` beyond `limit`.
 ///
-/// Also `None` if a pose is not finite. Computed in the canonical order and in the frame of that
-/// order's first solid, then taken to the world: swapping the arguments swaps the points and turns the
-/// normal round, bit for bit. Of composites that overlap it is that of their deepest parts.
+/// Also `None` if a pose is not finite. It is computed in canonical order, in the frame of the
+/// first solid of that order, and then placed in the world. So swapping the arguments swaps the
+/// points and negates the normal, bit for bit. For overlapping composites it is the separation of
+/// the deepest pair of parts.
 pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -21,7 +22,7 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     of_ordered(&Ordered::new(placed1, placed2), limit)
 }
 
-/// [`in_world`] of two whose canonical order is known.
+/// Computes [`in_world`] for two solids whose canonical order is known.
 #[inline]
 pub(crate) fn of_ordered<N: Space<D>, const D: usize>(
     ordered: &Ordered<'_, '_, N, D>,
@@ -31,7 +32,7 @@ pub(crate) fn of_ordered<N: Space<D>, const D: usize>(
     Some(placed(&found, ordered.first, ordered.swapped))
 }
 
-/// [`in_world`], but of composites that overlap the separation of any two parts that do.
+/// Computes [`in_world`], but for overlapping composites the separation of any overlapping parts.
 pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -40,7 +41,7 @@ pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
     touching_of_ordered(&Ordered::new(placed1, placed2), limit)
 }
 
-/// [`touching_in_world`] of two whose canonical order is known.
+/// Computes [`touching_in_world`] for two solids whose canonical order is known.
 pub(crate) fn touching_of_ordered<N: Space<D>, const D: usize>(
     ordered: &Ordered<'_, '_, N, D>,
     limit: N,
@@ -49,8 +50,8 @@ pub(crate) fn touching_of_ordered<N: Space<D>, const D: usize>(
     Some(placed(&found, ordered.first, ordered.swapped))
 }
 
-/// The distance in [`touching_in_world`], a number that is the same in every frame; of two convex solids
-/// that certainly overlap zero, without asking how deep.
+/// Returns the distance of [`touching_in_world`]. For two convex solids that certainly overlap it
+/// is zero, without computing the depth.
 pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -67,7 +68,7 @@ pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     <N::Algorithms>::distance(&pair, limit)
 }
 
-/// The separation in the frame of the first; `None` also if a pose is not finite.
+/// Computes the separation in the frame of the first solid; `None` also if a pose is not finite.
 #[inline]
 fn in_first<N: Space<D>, const D: usize>(
     ordered: &Ordered<'_, '_, N, D>,
@@ -81,7 +82,7 @@ fn in_first<N: Space<D>, const D: usize>(
     if pair.pose12.is_finite() { super::separation(&pair, limit) } else { None }
 }
 
-/// [`in_first`], where one is a composite.
+/// Computes [`in_first`] where at least one solid is a composite.
 fn of_composites<N: Space<D>, const D: usize>(
     ordered: &Ordered<'_, '_, N, D>,
     limit: N,
@@ -94,7 +95,7 @@ fn of_composites<N: Space<D>, const D: usize>(
     nearest_between(&between, limit, wanted, None).map(|found| found.separation)
 }
 
-/// A separation in the frame of one solid, in that of the world.
+/// Transforms a separation from the frame of `first` to the world frame, and flips it if `swapped`.
 #[inline]
 pub(crate) fn placed<N: Real, const D: usize>(
     found: &Separation<N, D>,
@@ -118,25 +119,25 @@ pub(crate) fn placed<N: Real, const D: usize>(
 }
 
 impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
-    /// A shape where the user's isometry puts it.
+    /// Places a shape at the user's isometry.
     #[inline]
     pub(crate) fn new(isometry: IsometryRef<'_, N, D>, shape: Geometry<'a, N, D>) -> Self {
         let pose = if shape.turns() { isometry.pose() } else { isometry.unturned() };
         Self { pose, shape }
     }
 
-    /// A solid where an isometry of the scalar's own type puts it.
+    /// Places a solid at an isometry of the scalar's own type.
     #[inline]
     pub(crate) fn of_isometry(isometry: &N::Isometry, shape: Geometry<'a, N, D>) -> Self {
         Self { pose: shape.pose_at(isometry), shape }
     }
 
-    /// A solid at a pose, which may have a rotation that is none of the solid's.
+    /// Places a solid at a pose, without the rotation if the solid does not turn.
     pub(crate) fn of_pose(pose: &Pose<N, D>, shape: Geometry<'a, N, D>) -> Self {
         Self { pose: if shape.turns() { *pose } else { pose.without_rotation() }, shape }
     }
 
-    /// Two shapes where they are placed; `None` if they are certainly farther apart than `limit`.
+    /// Places two shapes; `None` if they are certainly farther apart than `limit`.
     #[inline]
     pub(crate) fn within(
         one: &impl Placing<'a, N, D>,
@@ -150,7 +151,7 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
     }
 }
 
-/// A shape where the user's isometry puts it.
+/// A shape at the user's isometry, placed only when needed.
 #[derive(Clone, Copy)]
 pub(crate) struct AtIsometry<'i, 'a, N: Space<D>, const D: usize> {
     isometry: IsometryRef<'i, N, D>,

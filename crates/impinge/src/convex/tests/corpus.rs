@@ -1,4 +1,4 @@
-//! Every case of the collected data whose solids are convex: where other libraries went wrong.
+//! All collected cases with convex solids: those that other libraries got wrong.
 
 use serde_json::Value;
 
@@ -18,7 +18,8 @@ struct Case<'a> {
     id: &'a str,
     shapes: [&'a Value; 2],
     pose12: &'a Value,
-    /// Whose frame the pair is to be brought into, if the poses are given in the world's.
+    /// Pose of the frame that the pair is brought into, if the poses are given in world
+    /// coordinates.
     pose1: Option<&'a Value>,
     expected: f64,
     tolerance: f64,
@@ -31,7 +32,7 @@ fn relative<N: Own<D>, const D: usize>(case: &Case<'_>) -> Pose<N, D> {
     }
 }
 
-/// What is wrong with the answer; `None` for solids that are not convex.
+/// Returns the error of the answer; `None` for solids that are not convex.
 fn check<N, const D: usize>(case: &Case<'_>) -> Option<Result<(), String>>
 where
     N: Simplicial<D> + Own<D>,
@@ -47,7 +48,7 @@ where
     let exact = [solid::<f64, D>(case.shapes[0])?, solid::<f64, D>(case.shapes[1])?];
     let proven = height([&*exact[0], &*exact[1]], &relative::<f64, D>(case), &normal);
     let across = (found.point2 - found.point1).map(Real::as_f64) - normal * distance;
-    // The reference has a gap of its own, up to about 1e-9 of the size on curved solids: an answer
+    // The reference has a gap of its own, up to about 1e-9 of the size for curved solids: an answer
     // above it is right if its own normal proves it.
     let beyond = distance - case.expected;
     let proven_better = beyond > 0.0 && proven >= case.expected && beyond < 10.0 * case.tolerance;
@@ -80,8 +81,8 @@ where
     )))
 }
 
-/// On curved surfaces, and they decide the tolerance of `f64`, points are good to about the square
-/// root of what distances are: 1e-7 of the size. (`f32` has a tolerance that covers this.)
+/// On curved surfaces, which decide the tolerance of `f64`, points are accurate to about the square
+/// root of distances: 1e-7 of the size. (`f32` has a tolerance that covers this.)
 fn slack<N: Real>(name: &str) -> f64 {
     match name.starts_with("point ") {
         true if size_of::<N>() == 8 => 1e3,

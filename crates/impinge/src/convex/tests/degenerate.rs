@@ -132,7 +132,7 @@ fn extreme_sizes() {
     }
 }
 
-/// The signed distance along a line through touching changes no faster than the way made.
+/// The signed distance along a line through touching changes no faster than the length moved.
 #[test]
 fn continuous_through_touching() {
     let cube = Cuboid::new(vector::<f32, 3>([1.0, 0.5, 0.75]));
@@ -160,7 +160,7 @@ fn continuous_through_touching() {
     }
 }
 
-/// Input that is not a number ends, and gives no answer or any.
+/// NaN input terminates, with or without an answer.
 #[test]
 fn not_a_number() {
     let cube = Cuboid::new(vector::<f32, 3>([1.0; 3]));

@@ -25,7 +25,8 @@ fn expect<N: Real, const D: usize>(
     within(found, distance, normal, points, [100.0 * N::EPSILON.as_f64(); 2]);
 }
 
-/// As `expect`; a normal on a curved surface is right up to the square root of the distance.
+/// Compares as `expect`; a normal on a curved surface is accurate to the square root of the
+/// distance.
 #[track_caller]
 fn expect_curved<N: Real>(found: Option<Separation<N, 3>>, distance: f64, normal: [f64; 3]) {
     let tolerance = 64.0 * N::EPSILON.as_f64() + 1e-11;
@@ -113,7 +114,7 @@ fn by_hand_in_the_plane() {
     pairs_in_the_plane::<f64>();
 }
 
-/// All directions that can part two overlapping boxes.
+/// Returns all directions that can separate two overlapping boxes.
 fn axes<const D: usize>(pose12: &Pose<f64, D>, crosses: &[Vector<f64, D>]) -> Vec<Vector<f64, D>> {
     let mut axes = crosses.to_vec();
     for axis in 0..D {
@@ -125,7 +126,7 @@ fn axes<const D: usize>(pose12: &Pose<f64, D>, crosses: &[Vector<f64, D>]) -> Ve
     axes
 }
 
-/// Compares overlapping boxes with the best of all axes, in parts of their scale.
+/// Compares overlapping boxes with the best of all axes, relative to their scale.
 fn against_all_axes<N, const D: usize>(
     crosses: impl Fn(&Pose<f64, D>) -> Vec<Vector<f64, D>>,
     tolerance: f64,

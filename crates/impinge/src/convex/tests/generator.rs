@@ -18,7 +18,7 @@ impl Generator {
         z ^ (z >> 31)
     }
 
-    /// A number in `low..high` that is one of `f32` too.
+    /// Returns a number in `low..high` that `f32` represents exactly.
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         let bits = u32::try_from(self.next() >> 40).expect("24 bits are left");
         f64::from((low + (high - low) * f64::from(bits) / 16_777_216.0).as_f32())
@@ -28,7 +28,7 @@ impl Generator {
         Vector::from_fn(|_, _| self.between(-reach, reach))
     }
 
-    /// A direction; uniform enough.
+    /// Returns a direction, uniform enough.
     pub(super) fn direction<const D: usize>(&mut self) -> Vector<f64, D> {
         let axis = Vector::<f64, D>::from_fn(|row, _| f64::from(u8::from(row == 0)));
         loop {
@@ -43,7 +43,8 @@ impl Generator {
         json!(self.vector::<D>(reach).iter().copied().collect::<Vec<_>>())
     }
 
-    /// A solid of a kind, about `size` large; `thin` makes one extent 200 times smaller.
+    /// Returns a solid of a kind with about the size `size`; `thin` makes one extent 200 times
+    /// smaller.
     pub(super) fn shape<const D: usize>(&mut self, kind: &str, size: f64, thin: bool) -> Value {
         let slim = if thin { size / 200.0 } else { size };
         let mut length = |scale: f64| self.between(0.5, 2.0) * scale;
@@ -71,7 +72,7 @@ impl Generator {
         }
     }
 
-    /// A rotation, as the test data gives it.
+    /// Returns a rotation, in the form of the test data.
     pub(super) fn rotation<const D: usize>(&mut self) -> Pose<f64, D>
     where
         f64: Own<D>,
@@ -86,7 +87,7 @@ impl Generator {
 pub(super) struct Sample<const D: usize> {
     pub(super) shapes: [Value; 2],
     pub(super) pose12: Pose<f64, D>,
-    /// What tolerances are in proportion to.
+    /// Length that tolerances are relative to.
     pub(super) scale: f64,
 }
 
@@ -94,7 +95,8 @@ impl<const D: usize> Sample<D>
 where
     f64: Simplicial<D> + Own<D>,
 {
-    /// A random rotation, then moved along a random direction until the distance is about `target`.
+    /// Draws a rotation, then moves the second along a random direction until the distance is about
+    /// `target`.
     pub(super) fn new(shapes: [Value; 2], target: f64, generator: &mut Generator) -> Self {
         let mut sample = Self { shapes, pose12: generator.rotation(), scale: 0.0 };
         let [a, b] = sample.solids::<f64>();
@@ -111,7 +113,7 @@ where
         sample
     }
 
-    /// The pair with numbers that are ones of `N` too; the rotation is then one up to roundings only.
+    /// Rounds all numbers to `N`; the rotation is one up to rounding then.
     pub(super) fn representable<N: Real>(mut self) -> Self {
         self.pose12.translation.apply(|x| *x = N::lit(*x).as_f64());
         self.pose12.rotation.apply(|x| *x = N::lit(*x).as_f64());

@@ -1,4 +1,4 @@
-//! Checks of the convex algorithms, against what needs no trust in them.
+//! Checks of the convex algorithms against facts that do not depend on them.
 
 mod corpus;
 mod degenerate;

@@ -21,9 +21,9 @@ const KINDS: [&str; 9] = [
     "cylinder_y",
     "cone_y",
 ];
-/// The kinds with a core of flat faces; those before the last two.
+/// Number of kinds with a flat-faced core: those before the last two.
 const FLAT: usize = 7;
-/// Far, near, touching from both sides, shallow, deep; in parts of the size.
+/// Far, near, touching from both sides, shallow, deep; relative to the size.
 const TARGETS: [f64; 6] = [1.5, 1e-2, 1e-6, -1e-6, -1e-2, -0.4];
 /// Sizes, and whether one extent is far smaller.
 const SIZES: [(f64, bool); 4] = [(1.0, false), (1e-3, false), (1e3, false), (1.0, true)];
@@ -48,7 +48,7 @@ where
     }
 }
 
-/// The largest height found along sampled directions: all around, and ever closer to the normal.
+/// Returns the largest height along sampled directions: all around, and ever closer to the normal.
 fn sampled<const D: usize>(
     solids: [&dyn SupportMap<f64, D>; 2],
     sample: &Sample<D>,
@@ -66,9 +66,9 @@ fn sampled<const D: usize>(
 
 #[derive(Default)]
 struct Tally {
-    /// Of the distance.
+    /// Errors of distances.
     errors: Vec<f64>,
-    /// Of the points: how far off the solids they lie.
+    /// Errors of points: how far they lie off the solids.
     astray: Vec<f64>,
     overlaps: usize,
     worst: [f64; 5],
@@ -105,14 +105,14 @@ where
     }
 }
 
-/// The largest number and the one that a hundredth of them exceeds.
+/// Returns the largest number, and the one that a hundredth of them exceeds.
 fn summary(errors: &mut [f64]) -> [f64; 2] {
     errors.sort_by(f64::total_cmp);
     let count = errors.len();
     [errors[count - 1], errors[count - 1 - count / 100]]
 }
 
-/// What must hold of the errors in parts of the scale: largest and 99 % of distances, then of points.
+/// Bounds of the errors relative to the scale: largest and 99 % of distances, then of points.
 type Bounds = [[f64; 2]; 2];
 
 fn certificates<N, const D: usize>(kinds: usize, bounds: [Bounds; 2])
@@ -153,7 +153,7 @@ fn certificates_in_space() {
     certificates::<f64, 3>(KINDS.len(), [flat, [[1e-10, 1e-11], [1e-7, 1e-8]]]);
 }
 
-/// The answer for swapped solids is the flipped answer, up to rounding.
+/// Asserts that the answer for swapped solids is the flipped answer, up to rounding.
 fn swapped<N, const D: usize>(kinds: usize, tolerance: [f64; 2])
 where
     N: Simplicial<D> + Own<D>,
@@ -189,7 +189,7 @@ fn scaled(shape: &serde_json::Value, factor: f64) -> serde_json::Value {
     }
 }
 
-/// Scaling all lengths by 2^`exponent` scales all answers so, to the bit.
+/// Asserts that scaling all lengths by 2^`exponent` scales all answers, to the bit.
 fn scales_exactly<N, const D: usize>(kinds: usize, exponent: i32)
 where
     N: Simplicial<D> + Own<D>,

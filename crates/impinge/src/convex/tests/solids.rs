@@ -1,4 +1,4 @@
-//! Solids for the tests, and what is true of them, found slowly.
+//! Solids for the tests, and their properties, computed slowly.
 
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use crate::shape::{Ball, Capsule, Cone, Cuboid, Cylinder, Segment, SupportMap, T
 
 pub(super) type Solid<N, const D: usize> = Box<dyn SupportMap<N, D>>;
 
-/// The hull of some points, inflated.
+/// The hull of some points, with a radius.
 pub(super) struct Points<N: Real, const D: usize> {
     pub(super) points: Vec<Point<N, D>>,
     pub(super) rounding: N,
@@ -34,7 +34,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Points<N, D> {
     }
 }
 
-/// A box, inflated.
+/// A box with a radius.
 struct RoundCuboid<N: Real, const D: usize> {
     cuboid: Cuboid<N, D>,
     rounding: N,
@@ -50,7 +50,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for RoundCuboid<N, D> {
     }
 }
 
-/// A solid that is symmetric around y, with another axis in its place.
+/// A solid symmetric about y, with another axis in its place.
 struct Along<N: Real> {
     axis: usize,
     solid: Solid<N, 3>,
@@ -156,7 +156,7 @@ fn point<N: Real, const D: usize>(value: &Value) -> Point<N, D> {
     Point::from(vector(value))
 }
 
-/// The solid that an entry of the test data describes, if it is a convex one.
+/// Returns the solid of an entry of the test data, if it is convex.
 pub(super) fn solid<N: Own<D>, const D: usize>(shape: &Value) -> Option<Solid<N, D>> {
     if let Some(own) = N::own(shape) {
         return Some(own);
@@ -184,7 +184,7 @@ pub(super) fn solid<N: Own<D>, const D: usize>(shape: &Value) -> Option<Solid<N,
     })
 }
 
-/// How far the plane across `normal` separates two solids: `min n·b − max n·a`.
+/// Returns how far the plane across `normal` separates two solids: `min n·b − max n·a`.
 pub(super) fn height<N: Real, const D: usize>(
     solids: [&dyn SupportMap<N, D>; 2],
     pose12: &Pose<N, D>,

@@ -1,11 +1,11 @@
-//! How far a point lies off the surface of a solid, in closed form: nothing of the algorithms.
+//! Distance of a point from the surface of a solid in closed form, independent of the algorithms.
 
 use serde_json::Value;
 
 use super::solids::{number, vector};
 use crate::math::{Vector, cross};
 
-/// The signed distance of a point from the solid that an entry of the test data describes: negative
+/// Returns the signed distance of a point from the solid of an entry of the test data: negative
 /// inside.
 pub(super) fn off(shape: &Value, point: &Vector<f64, 3>) -> f64 {
     let corner = |name: &str| vector::<f64, 3>(&shape[name]);

@@ -7,13 +7,14 @@ use super::surface::off;
 use crate::math::{Point, Real};
 
 const KINDS: [&str; 6] = ["segment", "capsule_y", "triangle", "cuboid", "cylinder_y", "cone_y"];
-/// Far, near, touching, shallow and ever deeper; in parts of the size.
+/// Far, near, touching, shallow and ever deeper; relative to the size.
 const TARGETS: [f64; 10] = [1.0, 1e-2, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1, -0.3, -0.8];
 
-/// How often each pair of kinds is tried.
+/// Number of trials for each pair of kinds.
 const ROUNDS: usize = 400;
 
-/// How far the points of an answer lie off their solids, and how far from being across of each other.
+/// Returns the errors of an answer's points: off either solid, and from lying across from each
+/// other.
 fn errors<N: Simplicial<3> + Own<3>>(sample: &Sample<3>, found: &Separation<N, 3>) -> [f64; 3] {
     let [point1, point2] =
         [found.point1, found.point2].map(|p| Point::from(p.coords.map(Real::as_f64)));
@@ -26,7 +27,7 @@ fn errors<N: Simplicial<3> + Own<3>>(sample: &Sample<3>, found: &Separation<N, 3
     ]
 }
 
-/// `allowed` is in parts of the pair's size.
+/// `allowed` is relative to the size of the pair.
 fn check<N>(rounds: usize, allowed: f64)
 where
     N: Simplicial<3> + Own<3>,

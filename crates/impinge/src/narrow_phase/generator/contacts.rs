@@ -1,4 +1,4 @@
-//! The contacts of a pair alone, whether a composite is among its shapes or not.
+//! Contacts of a single pair, of convex solids or with a composite.
 
 use crate::collide::{ManifoldRequest, Placed, Solid};
 use crate::math::{Point, Pose, Real, Space, Vector};
@@ -6,16 +6,16 @@ use crate::narrow_phase::state::{CompositeState, ContactState, KeptContacts, Kep
 use crate::query::ContactManifold;
 use crate::shape::Geometry;
 
-/// Contacts as they are kept.
+/// Stored contacts of a single pair.
 #[derive(Clone)]
 pub(in crate::narrow_phase) enum PairContacts<N: Real, const D: usize> {
     Convex(ContactState<N, D>),
-    /// Of a pair with a composite.
+    /// Contacts of a pair with a composite.
     Composite(Box<CompositeState<N, D>>),
 }
 
 impl<N: Real, const D: usize> PairContacts<N, D> {
-    /// There is none yet.
+    /// Creates an empty state.
     pub(in crate::narrow_phase) fn new(has_composite: bool) -> Self {
         if has_composite {
             Self::Composite(Box::default())
@@ -48,12 +48,12 @@ impl<N: Real, const D: usize> KeptPoints<N, D> for PairContacts<N, D> {
     }
 }
 
-/// Of two things those of the solid in whose frame contacts are kept first.
+/// Returns two values with that of the solid in whose frame contacts are stored first.
 pub(super) fn in_kept_order<T>([one, other]: [T; 2], is_swapped: bool) -> [T; 2] {
     if is_swapped { [other, one] } else { [one, other] }
 }
 
-/// How the solid in whose frame contacts are kept lies to the other one.
+/// Returns the pose of the solid in whose frame contacts are stored, relative to the other.
 pub(super) fn pose21<N: Real, const D: usize>(
     [one, other]: &[Pose<N, D>; 2],
     is_swapped: bool,
@@ -62,7 +62,7 @@ pub(super) fn pose21<N: Real, const D: usize>(
     Pose::relative(away, home)
 }
 
-/// Shapes at poses.
+/// Combines poses and shapes.
 pub(super) fn placed<'a, N: Real, const D: usize>(
     [pose1, pose2]: &[Pose<N, D>; 2],
     [shape1, shape2]: [Geometry<'a, N, D>; 2],
@@ -71,7 +71,7 @@ pub(super) fn placed<'a, N: Real, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> PairContacts<N, D> {
-    /// Brings the contacts up to date; solids of a few numbers come with copies.
+    /// Updates the contacts. `copies` has the solids that are small enough for a copy.
     pub(in crate::narrow_phase) fn update(
         &mut self,
         (poses, shapes): (&[Pose<N, D>; 2], [Geometry<'_, N, D>; 2]),
@@ -86,7 +86,7 @@ impl<N: Space<D>, const D: usize> PairContacts<N, D> {
         }
     }
 
-    /// The manifolds that hold a contact, in the memory of old ones.
+    /// Returns the manifolds that hold a contact, in the memory of `old`.
     pub(in crate::narrow_phase) fn manifolds(
         &self,
         placed: &[Placed<'_, N, D>; 2],

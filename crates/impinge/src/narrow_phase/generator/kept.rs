@@ -1,7 +1,8 @@
-//! Shapes that a pair knows again from call to call, and keeps for whoever reads its contacts.
+//! Copies by which a generator recognises its shapes from call to call, and which its readers use
+//! later.
 //!
-//! Solids of a few numbers are copied and compared, hulls are known by a [twin](Polytope::twin) that is shared, and
-//! composites, of which nothing is kept, by their [`Revision`].
+//! Small solids are copied and compared. Hulls are recognised by a shared [twin](Polytope::twin),
+//! composites by their [`Revision`]; of a composite itself nothing is kept.
 
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ use crate::shape::{
 };
 use crate::tables::ByDimension;
 
-/// A shape as it was at the last call.
+/// A shape at the last call.
 #[derive(Clone, Debug)]
 pub(super) enum KeptShape<N: Real, const D: usize> {
     Solid(Solid<N, D>),
@@ -28,7 +29,7 @@ pub(super) enum KeptShape<N: Real, const D: usize> {
     Composite(Revision),
 }
 
-/// A solid of revolution, of space alone.
+/// A solid of revolution; in 3D only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Revolved<N: Real> {
     Cylinder(Cylinder<N>),
@@ -36,7 +37,7 @@ pub(crate) enum Revolved<N: Real> {
 }
 
 impl<N: Real, const D: usize> KeptShape<N, D> {
-    /// `None` for shapes of the user's own, which may change unnoticed.
+    /// Returns a copy; `None` for custom shapes, which may change unnoticed.
     pub(super) fn of(shape: Geometry<'_, N, D>) -> Option<Self> {
         Some(match shape.0 {
             Kind::Ball(_) | Kind::Segment(_) | Kind::Capsule(_) | Kind::Cuboid(_) => {
@@ -55,7 +56,7 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
         })
     }
 
-    /// A shape answers all questions as the kept one does.
+    /// Returns `true` if a shape is equal to the kept one for all queries.
     pub(super) fn is(&self, shape: Geometry<'_, N, D>) -> bool {
         match (self, shape.0) {
             (Self::Solid(kept), _) => kept.is(shape),
@@ -76,7 +77,7 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
         }
     }
 
-    /// The copy of a solid that a few numbers describe.
+    /// Returns the copy of a small solid.
     pub(super) const fn solid(&self) -> Option<&Solid<N, D>> {
         match self {
             Self::Solid(solid) => Some(solid),
@@ -84,7 +85,7 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
         }
     }
 
-    /// The shape as queries see it; `None` for a composite.
+    /// Returns the geometry of the shape; `None` for a composite.
     pub(super) fn geometry(&self) -> Option<Geometry<'_, N, D>>
     where
         N: Space<D>,
@@ -103,16 +104,17 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
     }
 }
 
-/// What a contact of a composite lies on.
+/// The solids that a contact of a composite lies on.
 #[derive(Clone, Debug)]
 pub(super) struct KeptTouch<N: Real, const D: usize> {
-    /// The parts and their poses; `None` for a shape that is its own part.
+    /// Parts with their poses; `None` for a shape that is its own part.
     parts: [Option<(KeptShape<N, D>, Pose<N, D>)>; 2],
     turns_with_second: Option<bool>,
 }
 
 impl<N: Space<D>, const D: usize> KeptTouch<N, D> {
-    /// `None` where a part is a solid of the user's own; `are_whole` tells the shapes that are their own parts.
+    /// Copies the solids; `None` if a part is a custom solid. `are_whole` marks the shapes that are
+    /// their own parts.
     pub(super) fn of(touched: &Touched<'_, N, D>, are_whole: [bool; 2]) -> Option<Self> {
         let Touched { solids, poses, turns_with_second, .. } = touched;
         let mut parts = [None, None];
@@ -124,7 +126,8 @@ impl<N: Space<D>, const D: usize> KeptTouch<N, D> {
         Some(Self { parts, turns_with_second: *turns_with_second })
     }
 
-    /// What the contact lies on; `None` if a shape that is its own part is not kept.
+    /// Returns the solids that the contact lies on. `wholes` are the shapes that are their own
+    /// parts; `None` if one of these is missing.
     pub(super) fn touched<'a>(
         &'a self,
         wholes: [Option<Geometry<'a, N, D>>; 2],

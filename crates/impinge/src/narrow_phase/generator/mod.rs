@@ -1,4 +1,4 @@
-//! The library's own contact algorithm as an object, for use alone.
+//! The library's own contact algorithm as an object, for use without a world.
 
 mod contacts;
 mod kept;
@@ -25,16 +25,16 @@ use crate::math::{Mapped, Pose, Real, Space};
 use crate::query::ContactManifold;
 use crate::shape::{Geometry, Shape};
 
-/// How many points a manifold is reduced to unless more are asked for: what it takes to delimit an
-/// area, two in 2D and four in 3D.
+/// Returns the default maximum number of points of a manifold, enough to span the overlap: two in
+/// 2D and four in 3D.
 pub(crate) const fn conforming_points<const D: usize>() -> usize {
     1 << (D - 1)
 }
 
-/// Contacts of any two built-in solids, composites among them.
+/// Computes contacts of any two built-in solids, composites included.
 ///
-/// One type serves all pairs: it looks the algorithm up by the kinds of the solids at each update,
-/// so it may even be given other solids from one update to the next.
+/// One type serves all pairs: it selects the algorithm by the kinds of the solids at each update,
+/// so even the solids may change from one update to the next.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -58,38 +58,39 @@ pub(crate) const fn conforming_points<const D: usize>() -> usize {
 #[derive(Clone)]
 pub struct PairManifoldGenerator<N: Real, const D: usize> {
     max_points: usize,
-    /// The number that names the pair, once it has one.
+    /// Number of the pair, once it has one.
     number: Option<u64>,
-    /// Of the last update; `None` for one that cannot be known again.
+    /// Copies of the shapes at the last update; `None` for shapes that cannot be recognised.
     shapes: [Option<KeptShape<N, D>>; 2],
-    /// What the contacts of a composite lie on, in their order.
+    /// The solids that the contacts of a composite lie on, in order of contacts.
     touched: Vec<KeptTouch<N, D>>,
-    /// All that contacts are read by is kept: they can be read later.
+    /// All data for reading the contacts later is kept.
     is_readable: bool,
-    /// The contacts are those of the two isometries with these numbers, and of this request.
+    /// The contacts are those of `numbers` and `request`.
     is_current: bool,
+    /// The numbers of both isometries at the last update.
     numbers: [[N; 7]; 2],
     request: ManifoldRequest<N>,
-    /// Of the last update; what readers place contacts by.
+    /// Poses at the last update, by which contacts are read.
     poses: [Pose<N, D>; 2],
     contacts: PairContacts<N, D>,
-    /// Where contacts are kept while the solids hardly move.
+    /// State of contact reuse, if it is enabled.
     reuse: Option<Box<PairReuse<N, D>>>,
     view: ContactView<Vec<ContactManifold<N, D>>>,
 }
 
-/// What it takes to keep the contacts of a pair.
+/// State of contact reuse for one pair.
 #[derive(Clone)]
 struct PairReuse<N: Real, const D: usize> {
     tolerance: N,
-    /// See [`ReachBounds::reach`].
+    /// Bounding radii; see [`ReachBounds::reach`].
     reaches: [N; 2],
     reference: Reference<N, D>,
 }
 
 impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
-    /// A generator that holds no contact; manifolds are reduced to at most `max_points` points,
-    /// but never to fewer than one.
+    /// Creates a generator without contacts, whose manifolds have at most `max_points` points, but
+    /// at least one.
     #[must_use]
     pub fn new(max_points: usize) -> Self {
         Self {
@@ -108,7 +109,7 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// The same, but contacts are kept while the solids hardly move; see [`Self::try_reusing`].
+    /// Enables contact reuse with this tolerance; see [`Self::try_reusing`].
     ///
     /// # Panics
     /// If the tolerance is negative or not finite; [`Self::try_reusing`] returns that.
@@ -121,13 +122,14 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// The same, but contacts are kept while the solids hardly move, as
-    /// [`DefaultNarrowPhase::try_reusing`](super::DefaultNarrowPhase::try_reusing) has it: while no point of the
-    /// smaller solid has moved farther than `tolerance` beside the other since they were last computed, contacts stay
-    /// fixed to the solids, and only their depths are measured anew.
+    /// Returns the generator with contact reuse, as
+    /// [`DefaultNarrowPhase::try_reusing`](super::DefaultNarrowPhase::try_reusing) describes it.
+    /// While no point of the smaller solid has moved farther than `tolerance` relative to the other
+    /// since the last computation, contacts stay fixed to the solids, and only their depths are
+    /// measured again.
     ///
-    /// Pairs of a ball and another ball, a box, a segment or a capsule are computed anew, which is as quick, and so are
-    /// shapes of your own, which may have changed.
+    /// Pairs of a ball and another ball, a box, a segment or a capsule are always computed, which
+    /// is as fast. So are custom shapes, which may have changed.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -163,7 +165,7 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
-    /// Brings the contacts up to date.
+    /// Updates the contacts.
     pub(crate) fn refresh(
         &mut self,
         isometries: [&N::Isometry; 2],
@@ -201,17 +203,17 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
             self.compute(shapes, is_beyond);
         }
         if !self.is_readable && self.contacts.len() > 0 {
-            // What cannot be kept until somebody reads is read at once.
+            // If the shapes cannot be kept for a later reader, the manifolds are built now.
             let placed = placed(&self.poses, shapes);
             self.view.manifolds(|old| self.contacts.manifolds(&placed, number, old));
         }
     }
 
-    /// There are no contacts, of two convex solids.
+    /// Removes all contacts; the pair is one of two convex solids.
     fn clear(&mut self) {
         match &mut self.contacts {
             PairContacts::Convex(state) => state.clear(),
-            // Those of shapes that were others.
+            // This state belongs to earlier shapes.
             PairContacts::Composite(_) => {
                 (self.number, self.shapes) = (None, [None, None]);
                 self.contacts = PairContacts::new(false);
@@ -219,7 +221,7 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Computes the contacts; there are none if the shapes are beyond the prediction.
+    /// Computes the contacts; with `are_beyond` there are none.
     fn compute(&mut self, shapes: [Geometry<'_, N, D>; 2], are_beyond: bool) {
         if are_beyond {
             self.clear();
@@ -236,14 +238,15 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// A ball and a solid of few numbers: to compute their contacts is as quick as to move them along.
+    /// Returns `true` for a ball and another small solid: computing contacts is then as fast as
+    /// reusing them.
     fn has_closed_form(&self) -> bool {
         let solids = self.shapes.each_ref().mapped(|shape| shape.as_ref()?.solid());
         let is_ball = |solid: &Option<&Solid<N, D>>| matches!(solid, Some(Solid::Ball(_)));
         solids.iter().all(Option::is_some) && solids.iter().any(is_ball)
     }
 
-    /// Moves the contacts along, if the solids have moved so little that this will do.
+    /// Moves the contacts along and returns `true`, if the solids have moved little enough.
     fn keeps_contacts(&mut self) -> bool {
         let Some(reuse) = &mut self.reuse else { return false };
         let is_swapped = self.contacts.is_swapped();
@@ -252,7 +255,7 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         reuse.reference.keeps(&mut self.contacts, pose21, limits)
     }
 
-    /// The shapes are those of the last update, unchanged.
+    /// Returns `true` if the shapes are those of the last update, unchanged.
     fn are_kept(&self, shapes: &[Geometry<'_, N, D>; 2]) -> bool {
         let is_kept = |(kept, shape): (&Option<KeptShape<N, D>>, &Geometry<'_, N, D>)| {
             kept.as_ref().is_some_and(|kept| kept.is(*shape))
@@ -260,14 +263,14 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         self.shapes.iter().zip(shapes).all(is_kept)
     }
 
-    /// The shapes are these from now on.
+    /// Replaces the shapes.
     fn meet(&mut self, given: [&dyn Shape<N, D>; 2], shapes: [Geometry<'_, N, D>; 2]) {
         let has_composite = shapes.iter().any(|shape| shape.as_composite().is_some());
         match &mut self.contacts {
             PairContacts::Convex(_) if !has_composite => {}
             PairContacts::Composite(state) if has_composite => state.forget_shapes(),
             _ => {
-                // Contacts of the other sort have their own numbers: the pair gets a new name.
+                // The other kind of contacts counts ids from the start: the pair gets a new number.
                 self.number = None;
                 self.contacts = PairContacts::new(has_composite);
             }
@@ -280,7 +283,8 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Keeps what the contacts, which were computed just now, lie on; answers whether all of it can be kept.
+    /// Keeps the solids that the contacts, which were just computed, lie on. Returns `false` if one
+    /// cannot be kept.
     fn keep_touched(&mut self, shapes: [Geometry<'_, N, D>; 2]) -> bool {
         let are_whole = self.wholes().mapped(|whole| whole.is_some());
         let PairContacts::Composite(state) = &self.contacts else { return are_whole == [true; 2] };
@@ -292,12 +296,12 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         touched.len() == state.len()
     }
 
-    /// The convex solids among the shapes, where they are kept.
+    /// Returns the convex solids among the shapes, if they are kept.
     fn wholes(&self) -> [Option<Geometry<'_, N, D>>; 2] {
         self.shapes.each_ref().mapped(|shape| shape.as_ref()?.geometry())
     }
 
-    /// The manifolds, as of the last update, by what is kept; in the memory of old ones.
+    /// Returns the manifolds as of the last update, from the kept shapes, in the memory of `old`.
     pub(crate) fn read(&self, old: Vec<ContactManifold<N, D>>) -> Vec<ContactManifold<N, D>> {
         let (wholes, number) = (self.wholes(), self.number.unwrap_or_default());
         match (&self.contacts, wholes) {
@@ -314,7 +318,7 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// The manifolds that hold a contact, made when they are read first.
+    /// Returns the manifolds that hold a contact, built on first access.
     fn manifolds(&self) -> &[ContactManifold<N, D>] {
         if self.contacts.len() == 0 {
             return &[];
@@ -392,13 +396,13 @@ pub struct DefaultContactDispatcher<const D: usize> {
 }
 
 impl<const D: usize> DefaultContactDispatcher<D> {
-    /// Manifolds of at most two points in 2D and four in 3D.
+    /// Creates a dispatcher for manifolds of at most two points in 2D and four in 3D.
     #[must_use]
     pub const fn new() -> Self {
         Self { max_points: conforming_points::<D>() }
     }
 
-    /// Manifolds of at most `max_points` points (at least one).
+    /// Creates a dispatcher for manifolds of at most `max_points` points, but at least one.
     #[must_use]
     pub const fn with_max_points(max_points: usize) -> Self {
         Self { max_points: if max_points == 0 { 1 } else { max_points } }

@@ -1,4 +1,4 @@
-//! Contacts of pairs that are kept alone.
+//! Tests of contacts kept for a single pair.
 
 use super::*;
 use crate::math::Isometry2;
@@ -18,7 +18,7 @@ impl Asker {
         Self { generator: PairManifoldGenerator::default(), ids: IdAllocator::new() }
     }
 
-    /// The manifolds of two solids, the second of which stands at `x`.
+    /// Returns the manifolds of two solids, the first at the origin, the second at `(x, 0)`.
     fn manifolds(
         &mut self,
         first: &dyn Shape<f64, 2>,
@@ -51,7 +51,7 @@ impl Asker {
         manifolds.into_iter().cloned().collect()
     }
 
-    /// The depths of the contacts in [`Self::manifolds`].
+    /// Returns the depths of the contacts of [`Self::manifolds`].
     fn depths(
         &mut self,
         first: &dyn Shape<f64, 2>,
@@ -64,7 +64,7 @@ impl Asker {
     }
 }
 
-/// A square with half sides of the given size.
+/// Returns a square with half side `size`.
 fn square(size: f64) -> ConvexPolygon<f64> {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     ConvexPolygon::new(&corners.map(|(x, y)| Point::<f64, 2>::new(x, y) * size))
@@ -85,7 +85,7 @@ fn an_update_without_motion_keeps_contacts_and_ids() {
     }
 }
 
-/// A line from low to high, beside the solids.
+/// Returns a vertical line of two segments at `x`, local to the line.
 fn wall(x: f64) -> Polyline<f64, 2> {
     Polyline::open([-2.0, 0.0, 2.0].map(|y| Point::<f64, 2>::new(x, y)).to_vec())
 }

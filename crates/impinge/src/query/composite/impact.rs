@@ -1,4 +1,4 @@
-//! When a moving composite first touches another shape: when the first of its parts does.
+//! The first touch of a moving composite: the first touch of its parts.
 
 use core::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -14,23 +14,26 @@ use crate::math::{Real, Space, Vector};
 use crate::query::impact::{Arrival, Beginning, Path, begin, size};
 use crate::shape::{CompositeShape, FeatureId};
 
-/// The arrival of one part at another, and which parts they are.
+/// The arrival of one part at another, with their numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartArrival<N: Real, const D: usize> {
-    /// Its separation is in the frame of the first part, or of the first shape if it is a contact of the whole.
+    /// Its separation is in the frame of the first part, or of the first shape if it is a contact
+    /// of the whole.
     pub(crate) arrival: Arrival<N, D>,
     pub(crate) parts: [u32; 2],
     pub(crate) is_of_whole: bool,
 }
 
-/// The first arrival of two parts; of several at one time that of the first parts by number.
+/// Returns the first arrival of two parts; of several at one time that with the lowest part
+/// numbers.
 ///
-/// Whether a contact at the start counts is asked of the contacts of the whole. If there is one that does not, they are
-/// asked about each arrival as well: a solid that is below a surface of many parts meets their inner edges.
+/// The contacts of the whole shape decide whether a contact at the start counts. If one does not,
+/// they also decide about each later arrival: a solid below a surface of many parts hits their
+/// inner edges.
 ///
-/// Cost: each part of the first shape, or of the second if that has fewer, searches the other on its
-/// way; ways end at the first arrival found so far. From a start in contact each part that is met costs the contacts of
-/// the whole there.
+/// Cost: each part of the first shape, or of the second if that has fewer, searches the other on
+/// its path; paths end at the first arrival found so far. After a start in contact each part that
+/// is hit costs the contacts of the whole there.
 pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     path: &Path<N, D>,
@@ -39,14 +42,14 @@ pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     let mut search = PartImpactSearch { between, path, first: None, start, is_early: false };
     search.run();
     if search.is_early && search.start == WholeContact::Free {
-        // What was met before that was known has not been asked of the whole.
+        // Earlier hits were not checked against the contacts of the whole.
         search.first = None;
         search.run();
     }
     search.first
 }
 
-/// Two parts that are not at each other before a time, zero or more.
+/// Two parts that certainly do not touch before the time `earliest`, zero or more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LaterPair<N> {
     earliest: N,
@@ -57,32 +60,33 @@ struct PartImpactSearch<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     path: &'a Path<N, D>,
     first: Option<PartArrival<N, D>>,
-    /// What the contacts of the whole at the start say.
+    /// The result of the contacts of the whole at the start.
     start: WholeContact,
-    /// Something was met before that was known.
+    /// Whether an arrival was found before `start` was known.
     is_early: bool,
 }
 
-/// What the contacts of the whole at a time say.
+/// The result of the contacts of the whole at a time.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum WholeContact {
-    /// They have not been asked.
+    /// Not computed.
     Unknown,
     /// One counts.
     Hit,
-    /// None counts.
+    /// There are some, none of which counts.
     Free,
-    /// There is none, though parts are in contact: each two parts count by themselves.
+    /// There is none, though parts are in contact: each two parts count on their own.
     Nothing,
 }
 
-/// The depth of a contact of the whole is known up to this many rounding units.
+/// The tolerance of the depth of a contact of the whole, in rounding units.
 const ROUNDING: f64 = 64.0;
 
-/// Normals that differ by less, as vectors, are one.
+/// Normals whose difference has at most this length count as equal.
 const SAME: f64 = 1.0 / 1024.0;
 
 impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
+    /// Searches all pairs of parts.
     fn run(&mut self) {
         self.begin_inside();
         match self.between.composites() {
@@ -96,6 +100,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
+    /// Casts the parts of the composite with fewer of them against the other.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let aabb = self.grown(&self.between.whole_in_other(1 - which));
@@ -106,8 +111,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         });
     }
 
-    /// A half-space comes nearer to all parts alike, so that the nearest is the first: unless there are some that
-    /// it touches from the start, of which each counts for itself.
+    /// A half-space approaches all parts alike, so the nearest is hit first, unless it touches some
+    /// from the start: then each of those counts on its own.
     fn of_half_space(&mut self, others: &dyn CompositeShape<N, D>) {
         let nearest = nearest_between(self.between, N::INFINITY, Wanted::Deepest, None);
         let Some(nearest) = nearest else { return };
@@ -117,8 +122,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// One part of one shape and those of the other that its box meets: those that it can be at earlier first, as
-    /// far as the boxes' times tell that there are no others.
+    /// Tests one part of one shape against the parts of the other whose boxes it hits, in the order
+    /// of their earliest possible times, as far as the search's times exclude others.
     fn each_on_way(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let aabb = self.grown(&self.between.aabb_in_other(which, part));
         let (velocity, end) = (self.velocity(which), self.end());
@@ -141,7 +146,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         self.hold_until(N::INFINITY, &mut waiting);
     }
 
-    /// Holds what waits and can meet by a time.
+    /// Tests the waiting pairs that can touch by a time.
     fn hold_until(&mut self, time: N, waiting: &mut BinaryHeap<Reverse<LaterPair<N>>>) {
         while let Some(Reverse(next)) = waiting.peek().copied()
             && next.earliest <= time
@@ -153,8 +158,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// The convex algorithm for two parts, which are not at each other before a time. Parts of indistinguishable
-    /// shapes are so themselves if their numbers agree.
+    /// Runs the convex algorithm for two parts, which do not touch before `earliest`. Parts of
+    /// indistinguishable shapes are indistinguishable if their numbers are equal.
     fn hold(&mut self, parts: [u32; 2], earliest: N) {
         if self.start == WholeContact::Hit {
             return;
@@ -180,7 +185,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         self.first = found.or(self.first);
     }
 
-    /// What is inside of a body at the start touches no part, but is in contact.
+    /// A solid inside a body at the start touches no part, but is in contact.
     fn begin_inside(&mut self) {
         if self.start == WholeContact::Unknown && self.between.has_bodies() {
             let mut inside = held_pieces(self.between);
@@ -191,7 +196,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Asks the contacts of the whole whether the start counts; once.
+    /// Computes, once, whether the contacts of the whole count at the start.
     fn begin_in_contact(&mut self, tolerance: N) {
         if self.start == WholeContact::Unknown {
             let whole = WholeQuestion { between: *self.between, path: self.path, along: N::ZERO };
@@ -201,8 +206,9 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// What two parts say of an arrival after a start in contact that does not count, if the whole says so too: with
-    /// one of the normals that it has there.
+    /// Checks an arrival of two parts after a start in contact that does not count. `None` if the
+    /// whole shape has contacts there, none of which counts; the arrival of the whole if one counts,
+    /// but none with the normal of the parts.
     fn confirmed(
         &self,
         found: PartArrival<N, D>,
@@ -225,18 +231,21 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// How a shape moves in the frame of the other.
+    /// The velocity of a shape in the frame of the other.
     fn velocity(&self, which: usize) -> Vector<N, D> {
         let velocity = &self.path.velocity;
         if which == 1 { *velocity } else { -self.between.pose21.vector(velocity) }
     }
 
-    /// A box that meets another when the solids in them are as near as they shall come.
+    /// A box loosened by the target distance, so that it overlaps whatever comes within that
+    /// distance.
     fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         let grown = aabb.loosened(self.path.target);
         Aabb::try_new(*grown.mins(), *grown.maxs()).unwrap_or_else(|_| Aabb::unbounded())
     }
 
+    /// The latest time that still matters; negative once a contact of the whole is a hit at the
+    /// start.
     fn end(&self) -> N {
         if self.start == WholeContact::Hit {
             return -N::ONE;
@@ -246,7 +255,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 }
 
-/// Asks which contacts the whole has at a time, as the two lie then.
+/// The contacts of the whole shapes at a time, in their configuration then.
 struct WholeQuestion<'p, 'a, N: Real, const D: usize> {
     between: Between<'a, N, D>,
     path: &'p Path<N, D>,
@@ -254,8 +263,8 @@ struct WholeQuestion<'p, 'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
-    /// What the contacts within the target distance, and `tolerance` beyond, say, and the deepest that counts. Calls
-    /// `visit` with the normals of those that count.
+    /// Returns the result of the contacts within the target distance plus `tolerance`, and the
+    /// deepest that counts. Calls `visit` with the normals of those that count.
     fn ask(
         &self,
         tolerance: N,
@@ -291,18 +300,19 @@ impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
     }
 }
 
-/// The gap of two parts that does not count as apart.
+/// The largest gap of two parts that counts as contact.
 fn rounding<N: Real, const D: usize>(placed: &PartPair<'_, N, D>) -> N {
     N::lit(ROUNDING) * N::EPSILON * size(&placed.pair())
 }
 
-/// A path in the frame of the first shape, in that of its part.
+/// Converts a path from the frame of the first shape to that of its part.
 fn seen_by<N: Real, const D: usize>(placed: &PartPair<'_, N, D>, path: &Path<N, D>) -> Path<N, D> {
     Path { velocity: placed.to_first_part(&path.velocity), ..*path }
 }
 
 impl<N: Space<D>, const D: usize> PartArrival<N, D> {
-    /// How the parts lie when they touch, in the frame of the first shape, and what touches.
+    /// The separation of the parts when they touch, in the frame of the first shape, and the
+    /// features.
     pub(crate) fn seen_from(
         &self,
         between: &Between<'_, N, D>,
@@ -319,7 +329,7 @@ impl<N: Space<D>, const D: usize> PartArrival<N, D> {
 }
 
 impl<N: Real, const D: usize> PartArrival<N, D> {
-    /// Earlier, or at the same time and earlier by number.
+    /// Whether it is earlier, or at the same time with lower part numbers.
     fn is_before(&self, other: &Self) -> bool {
         let (along, others) = (self.arrival.along, other.arrival.along);
         along < others || (along == others && self.parts < other.parts)

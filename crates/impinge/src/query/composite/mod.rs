@@ -1,7 +1,7 @@
-//! Questions about composites: each is one about the parts, which are found by their boxes.
+//! Queries of composites: each is a query of the parts, which are found by their boxes.
 //!
-//! Which part answers never depends on the order in which a search proposes them: of equal answers the one with the
-//! lowest numbers counts.
+//! The result never depends on the order in which a search proposes the parts: of equal answers the
+//! one with the lowest part numbers wins.
 
 mod impact;
 mod mover;

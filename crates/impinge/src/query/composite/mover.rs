@@ -1,4 +1,4 @@
-//! When a convex solid on a straight path can first be as near to parts as it is asked to come.
+//! Lower bounds of the time at which a convex solid on a straight path reaches parts.
 
 use crate::bounding_volume::Aabb;
 use crate::collide::parts::between::Between;
@@ -7,31 +7,32 @@ use crate::collide::parts::slabs::{across, corners, range};
 use crate::math::{Mapped, Pose, Real, Space, Vector, max, max_component, min};
 use crate::shape::{Geometry, Part, SupportMap};
 
-/// Gaps are loosened by so many rounding units of all lengths.
+/// Gaps are loosened by this many rounding units of all lengths.
 const ROUNDING: f64 = 128.0;
 
-/// A convex solid that moves in the frame of a composite. While an axis parts it from a part of that, they do not
-/// touch; times are bounded by the axes of both frames and those across the sides and the plane of the part.
+/// A convex solid that moves in the frame of a composite. While an axis separates it from a part,
+/// they do not touch. The axes are those of both frames, and those across the sides and the plane
+/// of the part.
 pub(super) struct Mover<'a, N: Real, const D: usize> {
     map: &'a dyn SupportMap<N, D>,
-    /// Boxes around it in its own frame and in that of the composite.
+    /// Boxes around it in its own frame and in the composite's.
     boxes: [Aabb<N, D>; 2],
     pose: Pose<N, D>,
     velocity: Vector<N, D>,
-    /// How near counts.
+    /// The distance that counts as touching.
     target: N,
 }
 
-/// The times at which no axis so far parts the two.
+/// The times at which none of the axes tested so far separates the two.
 struct MeetingSpan<N> {
     enter: N,
     leave: N,
-    /// How far apart along an axis does not count as parted.
+    /// The largest distance along an axis that does not count as separated.
     slack: N,
 }
 
 impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
-    /// The first shape, if it is convex, and its velocity in the frame of the second.
+    /// The first shape, if it is convex, with its velocity in the frame of the second.
     pub(super) fn of_first(
         between: &Between<'a, N, D>,
         velocity: Vector<N, D>,
@@ -43,8 +44,9 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
         Some(Self { map, boxes, pose, velocity, target })
     }
 
-    /// A time, zero or more, before which the solid is certainly not at a part; `None` if that is so up to `end`.
-    /// It depends on nothing else, so that no answer depends on the search.
+    /// Returns a time, zero or more, before which the solid certainly does not touch a part; `None`
+    /// if it does not up to `end`. It depends only on the solid and the part, so that no result
+    /// depends on the search.
     pub(super) fn earliest(&self, part: &Part<'_, N, D>, end: N) -> Option<N> {
         let Some(corners) = corners(&part.solid, &part.pose) else { return Some(N::ZERO) };
         let seen = corners.mapped(|corner| corner - self.pose.translation);
@@ -78,17 +80,17 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
 }
 
 impl<N: Real> MeetingSpan<N> {
-    /// Takes into account how the two lie along an axis at time zero, from the lowest to the highest point, and how fast
-    /// the first moves along it. NaN says nothing.
+    /// Intersects the span with the times at which two intervals `[low, high]` along an axis
+    /// overlap; `speed` is that of the first. NaN has no effect.
     fn cut(&mut self, own: [N; 2], other: [N; 2], speed: N) {
         let ([low, high], [bottom, top]) = (own, other);
         let (down, up) = (bottom - high - self.slack, top - low + self.slack);
         if speed == N::ZERO {
-            // Parted for good: a span that is empty.
+            // Separated for good: the span becomes empty.
             self.leave = if down > N::ZERO || up < N::ZERO { -N::ONE } else { self.leave };
             return;
         }
-        // The quotients round by less than this.
+        // The rounding error of the quotients is below this.
         let room = N::lit(4.0) * N::EPSILON;
         let (one, other) = (down / speed, up / speed);
         let (enter, leave) = (min(one, other), max(one, other));

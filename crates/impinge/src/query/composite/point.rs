@@ -1,4 +1,4 @@
-//! Where a point lies to a composite: as it lies to the nearest part.
+//! The nearest point of a composite: that of its nearest part.
 
 use crate::collide::parts::between::recentred;
 use crate::collide::parts::bounds::{around_point, loosened};
@@ -7,26 +7,26 @@ use crate::query::point::{SurfacePoint, length};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Part, PartSolid};
 use crate::tables::ByDimension;
 
-/// A point as the nearest part of a composite sees it.
+/// The result of a point query on the nearest part of a composite.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartPoint<N: Real, const D: usize> {
-    /// Zero or negative inside and on the boundary. More exact than the distance of the two points,
-    /// whose coordinates may be large.
+    /// Signed: zero or negative inside and on the boundary. More accurate than the distance of the
+    /// two points, whose coordinates may be large.
     pub(crate) distance: N,
     /// The nearest point of the part's boundary, in the frame of the composite.
     pub(crate) point: Point<N, D>,
     pub(crate) feature: FeatureId,
     pub(crate) part: u32,
-    /// The nearest point, in the frame that the part was seen in: [`Near`].
+    /// The nearest point, in the frame of [`Near`].
     pub(crate) local: Point<N, D>,
 }
 
-/// A part seen from close by: what comes in the frame of the composite is moved so that the point that
-/// is asked about is the origin.
+/// A part in a frame near the query point: a part in the composite's frame is translated so that
+/// the query point is the origin.
 pub(crate) struct Near<'a, N: Real, const D: usize> {
     part: Part<'a, N, D>,
     moved: Vector<N, D>,
-    /// The point that is asked about.
+    /// The query point in that frame.
     pub(crate) asked: Point<N, D>,
 }
 
@@ -46,17 +46,16 @@ impl<'a, N: Real, const D: usize> Near<'a, N, D> {
         &self.part.solid
     }
 
-    /// A point of the frame that the part is seen in, in that of the composite.
+    /// Converts a point of that frame to the composite's.
     fn outer(&self, local: &Point<N, D>) -> Point<N, D> {
         self.part.pose.point(&(local + self.moved))
     }
 }
 
 impl<N: Real, const D: usize> Near<'_, N, D> {
-    /// The part is certainly farther than `distance`: it lies beyond a plane across the way to its middle. Said of
-    /// triangles and segments in the frame of the composite alone.
-    ///
-    /// With m the sum of the corners c, seen from the point that is asked about, the plane is min(m · c) / |m| away.
+    /// Whether the part is certainly farther than `distance`, by a plane perpendicular to the
+    /// direction of its centre. Tests triangles and segments without a pose only. With m the sum of
+    /// the corners c relative to the query point, the plane is at the distance min(m · c) / |m|.
     fn is_beyond(&self, distance: N) -> bool {
         let corners: [Vector<N, D>; 3] = match self.solid() {
             _ if self.asked != Point::origin() => return false,
@@ -72,8 +71,8 @@ impl<N: Real, const D: usize> Near<'_, N, D> {
         let (heights, squares) =
             (corners.mapped(|corner| way.dot(&corner)), corners.mapped(|v| v.norm_squared()));
         let square = way.norm_squared();
-        // What the products lose to rounding, 16 units of the sum of all squares, and a thousandth of the distance:
-        // parts that are as near but for rounding are looked at.
+        // The rounding error of the products, 16 units of the sum of all squares, and a thousandth
+        // of the distance: parts that are equally near up to rounding are still tested.
         let noise = N::lit(16.0) * N::EPSILON * (square + squares[0] + squares[1] + squares[2]);
         let lowest = min(min(heights[0], heights[1]), heights[2]) - noise;
         let limit = distance * distance * square * N::lit(1.0 + 1.0 / 512.0);
@@ -82,7 +81,7 @@ impl<N: Real, const D: usize> Near<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Near<'_, N, D> {
-    /// The nearest point of the part; `None` if there is none, or the numbers end.
+    /// The nearest point of the part; `None` if there is none, or on overflow.
     fn nearest(&self, number: u32, point: &Point<N, D>) -> Option<PartPoint<N, D>> {
         let Geometry(kind) = self.part.solid.geometry();
         let found = <N::Algorithms>::surface_point(kind, &self.asked);
@@ -97,8 +96,8 @@ impl<N: Space<D>, const D: usize> Near<'_, N, D> {
     }
 }
 
-/// The nearest point of the boundary of the part that is nearest, or that the point lies deepest in;
-/// of several parts that of the first. With `touching`, any part that holds the point will do.
+/// Returns the nearest point of the boundary of the part that is nearest, or in which the point is
+/// deepest; of several parts the first. With `touching`, any part that contains the point will do.
 ///
 /// `None` if there are no parts, or if the point is not finite.
 pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
@@ -127,8 +126,8 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
     if parts.has_bodies() { deepest_within(parts, point, best) } else { best }
 }
 
-/// Where a point lies to a composite with bodies: of what is said of the nearest of all parts, and for each body that
-/// holds the point of the nearest part of its boundary, the deepest.
+/// The result for a composite with bodies: the deepest of the nearest part and, for each body that
+/// contains the point, the nearest part of its boundary.
 fn deepest_within<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
@@ -159,14 +158,14 @@ fn deepest_within<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PartPoint<N, D> {
-    /// Nearer or deeper, or as near and earlier by number.
+    /// Whether it is nearer or deeper, or equal with a lower part number.
     fn is_before(&self, other: &Self) -> bool {
         self.distance < other.distance
             || (self.distance == other.distance && self.part < other.part)
     }
 }
 
-/// The entry of the table of shapes.
+/// The composite's entry in the table of shapes.
 pub(crate) fn surface_point<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
@@ -186,7 +185,8 @@ mod tests {
     use crate::math::noise::Noise;
     use crate::shape::{Segment, Triangle};
 
-    /// Parts that are said to be beyond a distance are, whatever their size and place; most that are, are said to be.
+    /// Parts reported as beyond a distance are, whatever their size and position; most that are,
+    /// are reported.
     fn parts_beyond<N: Space<3>>() {
         let noise = &mut Noise(7);
         let (mut beyond, mut said) = (0, 0);

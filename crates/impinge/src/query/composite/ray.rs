@@ -1,8 +1,8 @@
-//! Where a ray meets a composite: where it meets its parts.
+//! Hits of a ray on a composite: the hits on its parts.
 //!
-//! Parts with common corners leave no gap: the triangle algorithms decide by signs that are exact but
-//! for zero, which counts for both sides (see `triangle3`), and the search is asked with a box around
-//! the ray's origin that holds what rounding makes of times and boxes.
+//! Parts with common corners leave no gap: the triangle algorithms decide by signs that are exact
+//! except for zero, which counts for both sides (see `triangle3`), and the search uses a box around
+//! the ray's origin that contains the rounding errors of times and boxes.
 
 use super::point::nearest_part;
 use crate::bounding_volume::Ray;
@@ -12,7 +12,7 @@ use crate::query::ray::at_start;
 use crate::query::{RayCast, RayIntersection};
 use crate::shape::CompositeShape;
 
-/// What is asked about a ray, in the frame of the composite.
+/// A ray query in the frame of the composite.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayQuestion<N: Real, const D: usize> {
     pub(crate) ray: Ray<N, D>,
@@ -21,8 +21,8 @@ pub(crate) struct RayQuestion<N: Real, const D: usize> {
     pub(crate) solid: bool,
 }
 
-/// Calls `visit` with the first hit on each part that is hit by the time asked for. It returns the new
-/// time, which never grows; a negative one ends the search. No order is promised.
+/// Calls `visit` with the first hit on each part that is hit up to `max_time`. It returns the new
+/// limit, which never grows; a negative one ends the search. No order is promised.
 pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     question: &RayQuestion<N, D>,
@@ -31,7 +31,7 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     let RayQuestion { ray, max_time, solid } = question;
     let mut latest = *max_time;
     let Some(start) = around_point(&ray.origin, &parts.search().bounds()) else { return };
-    // Written so that a time that is not a number is before the start.
+    // Written so that NaN counts as before the start.
     let asks = latest >= N::ZERO && ray.dir.iter().all(|x| x.is_finite_number());
     if !asks {
         return;
@@ -59,7 +59,7 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     });
 }
 
-/// The hit of a ray that starts in a body: at once, on the part of the boundary that is nearest.
+/// The hit of a ray that starts in a body: at time zero, on the nearest part of the boundary.
 fn start_inside<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     ray: &Ray<N, D>,
@@ -70,7 +70,7 @@ fn start_inside<N: Space<D>, const D: usize>(
     Some(RayIntersection { part: nearest.part, ..at_start(nearest.feature) })
 }
 
-/// A ray meets a composite by a time.
+/// Whether a ray hits a composite up to a time.
 pub(crate) fn is_crossed<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     ray: &Ray<N, D>,

@@ -1,4 +1,4 @@
-//! The contacts of composites as users see them.
+//! The contacts of composites in the public interface.
 
 use crate::collide::mesh::{Patch, PatchPoint};
 use crate::collide::pair::pose_between;
@@ -10,11 +10,11 @@ use crate::query::{ContactId, ContactManifold, ManifoldView, PairRef, Placement}
 use crate::shape::{Geometry, Kind, Part, PartSolid};
 use crate::tables::ByDimension;
 
-/// Normals that differ by no more than so many rounding units are the same.
+/// Normals that differ by at most this many rounding units are equal.
 const ROUNDING: f64 = 64.0;
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// One of the manifolds, read in place; `None` behind the last.
+    /// One of the manifolds, read in place; `None` beyond the last.
     #[inline]
     pub(crate) fn view<'a>(
         &'a self,
@@ -25,8 +25,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         Some(ManifoldView::of_patch(self.patches().get(patch)?, placement, pair))
     }
 
-    /// One manifold for each patch; `pair` is that of the last update. They are written over the
-    /// memory of old ones.
+    /// Returns one manifold for each patch; `pair` is that of the last update. Reuses the memory of
+    /// old ones.
     pub(crate) fn manifolds(
         &self,
         pair: &Pair<'_, N, D>,
@@ -41,7 +41,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         old
     }
 
-    /// [`Self::manifolds`] of shapes at some poses of which, of each contact in its turn, `next` tells what it lies on.
+    /// [`Self::manifolds`] for shapes at given poses; `next` returns the solids of each contact, in
+    /// order.
     pub(crate) fn manifolds_on<'a>(
         &self,
         poses: [&Pose<N, D>; 2],
@@ -61,7 +62,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     }
 }
 
-/// One contact in the world.
+/// Converts one contact to the world.
 pub(in crate::query) fn tracked<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     patch: &Patch<N, D>,
@@ -71,19 +72,20 @@ pub(in crate::query) fn tracked<N: Space<D>, const D: usize>(
     touched(pair, patch, point, |touched| touched.tracked(&pair.pose12, patch, point, placement))
 }
 
-/// What a contact lies on: all that its kinematic takes of the shapes.
+/// The solids of a contact: the data of the shapes that its kinematic needs.
 pub(crate) struct Touched<'a, N: Real, const D: usize> {
     /// A part of each shape, or all of it.
     pub(crate) solids: [Kind<'a, N, D>; 2],
-    /// How they lie in the frames of the shapes.
+    /// Their poses in the frames of the shapes.
     pub(crate) poses: [Pose<N, D>; 2],
-    /// See [`Geometry::turns`], of the shapes.
+    /// [`Geometry::turns`] of the shapes.
     pub(crate) turns: [bool; 2],
-    /// The normal turns with the second shape, whose face has it, or with the first; `None` if it is that of no face.
+    /// Whether the normal rotates with the second shape, whose face has it, or with the first;
+    /// `None` if no face has it.
     pub(crate) turns_with_second: Option<bool>,
 }
 
-/// Calls with what a contact lies on.
+/// Calls `read` with the solids of a contact.
 pub(crate) fn touched<N: Space<D>, R, const D: usize>(
     pair: &Pair<'_, N, D>,
     patch: &Patch<N, D>,
@@ -104,7 +106,7 @@ pub(crate) fn touched<N: Space<D>, R, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
-    /// The contact in the world; `pose12` is that of the shapes.
+    /// Converts the contact to the world; `pose12` is that of the shapes.
     pub(crate) fn tracked(
         &self,
         pose12: &Pose<N, D>,
@@ -121,7 +123,7 @@ impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
         if placement.is_swapped { tracked.flipped() } else { tracked }
     }
 
-    /// How the contact moves: as one of its two solids, seen from the frames of the shapes.
+    /// The kinematic of the contact: that of its two solids, in the frames of the shapes.
     fn kinematic(
         &self,
         pose12: &Pose<N, D>,
@@ -142,7 +144,8 @@ impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
     }
 }
 
-/// Whether the normal is that of the second surface's face, or of the first's; `None` if of neither.
+/// Whether the normal belongs to a face of the second surface, or of the first; `None` if to
+/// neither.
 fn turning<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     patch: &Patch<N, D>,
@@ -157,7 +160,7 @@ fn turning<N: Space<D>, const D: usize>(
     is_face_normal(pair.first, part1, &outward1).then_some(false)
 }
 
-/// A surface has the normal, up to rounding, on a face. A line in 3D has no face.
+/// Whether the normal is that of the surface on a face, up to rounding. A line in 3D has no face.
 fn is_face_normal<N: Space<D>, const D: usize>(
     kind: Kind<'_, N, D>,
     part: u32,
@@ -171,7 +174,7 @@ fn is_face_normal<N: Space<D>, const D: usize>(
     face.is_some_and(|face| !is_line && (face - outward).norm() <= room)
 }
 
-/// The part of a shape that a number names; `None` of a shape that is its own part.
+/// The part of a composite with this number; `None` for a shape that is its own part.
 fn part_of<N: Space<D>, const D: usize>(kind: Kind<'_, N, D>, part: u32) -> Option<Part<'_, N, D>> {
     Geometry(kind).as_composite().map(|composite| composite.part(part))
 }

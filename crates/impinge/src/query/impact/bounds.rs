@@ -1,9 +1,9 @@
-//! How long two bodies that move and turn certainly stay apart.
+//! Lower bounds of the time for which two bodies that move and rotate stay apart.
 //!
-//! Everything is seen along one direction, the normal: it separates the bodies by some gap, and goes
-//! on to separate them for as long as their points have not moved towards each other along it by as
-//! much. The direction is fixed in the world, or, where one of the bodies is a half-space that turns,
-//! in that body.
+//! All bounds are along one direction, the normal. It separates the bodies by some gap, and
+//! continues to separate them until their points have approached along it by that gap. The
+//! direction is fixed in the world, or, if one of the bodies is a half-space that rotates, in that
+//! body.
 
 use super::{ConstantVelocities, RigidMotion};
 use crate::bounding_volume::Aabb;
@@ -11,21 +11,22 @@ use crate::collide::parts::{PartPair, PartSweep};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, min, unit};
 use crate::shape::{Geometry, Shape};
 
-/// At most so many spans are tried to find how far a bound carries.
+/// The maximum number of spans tried to find how long a bound holds.
 const MAX_SPANS: usize = 64;
 
-/// A body and how large it is, seen from the centre of its motion.
+/// A body and its extents about the centre of its motion.
 #[derive(Clone, Copy)]
 pub(super) struct MovingBody<'a, N: Space<D>, const D: usize> {
     pub(super) motion: &'a dyn RigidMotion<N, D>,
     pub(super) shape: Geometry<'a, N, D>,
     center: Point<N, D>,
-    /// No point of the core is farther from the centre; infinite for half-spaces and what is made of
-    /// them.
+    /// Upper bound of the distance of the core's points from the centre; infinite for half-spaces
+    /// and composites that contain one.
     reach: N,
-    /// No point of the core is farther from the axis that the body turns about with a constant velocity.
+    /// Upper bound of the distance of the core's points from the axis of rotation, for constant
+    /// velocities.
     arm: N,
-    /// No point of the body is farther from the centre.
+    /// Upper bound of the distance of the body's points from the centre.
     radius: N,
 }
 
@@ -48,7 +49,7 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
         Self { motion, shape: geometry, center, reach: reach * slack, arm: arm * slack, radius }
     }
 
-    /// What one solid of the body would be by itself: `pose` is that of the solid and `center` the
+    /// A solid of the body as a body of its own: `pose` is the pose of the solid, `center` the
     /// centre of the motion, which stays that of the body.
     fn part<'p>(
         &self,
@@ -70,12 +71,12 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
         MovingBody { motion: self.motion, shape: solid, center: local, reach, arm, radius }
     }
 
-    /// A length of the body for tolerances; zero for what is unbounded.
+    /// A length of the body for tolerances; zero for an unbounded body.
     pub(super) fn size(&self) -> N {
         if self.radius.is_finite_number() { self.radius } else { N::ZERO }
     }
 
-    /// No point of the body is farther from the centre of its motion.
+    /// Upper bound of the distance of the body's points from the centre of its motion.
     pub(super) fn radius(&self) -> N {
         self.radius
     }
@@ -104,7 +105,7 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
 /// Two bodies at one time.
 pub(super) struct Moment<'b, 'a, N: Space<D>, const D: usize> {
     pub(super) bodies: [&'b MovingBody<'a, N, D>; 2],
-    /// The point of the world that all places are seen from.
+    /// The point of the world that all positions are relative to.
     pub(super) origin: Vector<N, D>,
     pub(super) poses: [Pose<N, D>; 2],
     /// The centres of their motions.
@@ -120,7 +121,7 @@ pub(super) struct ImpactParts<'p, N: Space<D>, const D: usize> {
     poses: [Pose<N, D>; 2],
 }
 
-/// An upper bound of the way made in a time `h`: `speed · h + bend · h²`.
+/// An upper bound of the distance moved in a time `h`: `speed · h + bend · h²`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rate<N> {
     speed: N,
@@ -129,12 +130,12 @@ pub(super) struct Rate<N> {
 }
 
 impl<N: Real> Rate<N> {
-    /// The way made in a time, at most.
+    /// The distance moved in a time, at most.
     pub(super) fn way(&self, time: N) -> N {
         product(max(self.speed, N::ZERO), time) + product(product(self.bend, time), time)
     }
 
-    /// How long it takes to use up a gap; infinite if that never happens.
+    /// The time in which a gap is used up; infinite if that never happens.
     pub(super) fn time_for(&self, gap: N) -> N {
         if !(self.speed <= N::INFINITY && self.bend <= N::INFINITY) {
             return N::ZERO;
@@ -154,9 +155,10 @@ impl<N: Real> Rate<N> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
-    /// For how long the bodies certainly do not come nearer than by `gap` from where they are, at
-    /// most `remaining`, or longer if nothing ever brings them nearer. `apart` is how far they have to
-    /// come to be as near as counts, by the spheres around them; negative where that says nothing.
+    /// Returns a time in which the bodies certainly do not approach by more than `gap`, at most
+    /// `remaining`, or longer if they never approach. `apart` is the distance between the spheres
+    /// around the bodies less the distance that counts as touching; negative if the spheres give no
+    /// bound.
     pub(super) fn safe_time(&self, gap: N, apart: N, remaining: N) -> N {
         let safe = |span: N| self.safe_within(gap, apart, self.time + span);
         let all = safe(remaining);
@@ -176,7 +178,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         span
     }
 
-    /// One part of each body as bodies of their own. `frame` is the one that the parts are placed in.
+    /// One part of each body as bodies of their own. `frame` is the frame in which the parts are
+    /// placed.
     pub(super) fn parts<'p>(
         &self,
         parts: &'p PartPair<'_, N, D>,
@@ -192,7 +195,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         ImpactParts { bodies: [part1, part2], poses }
     }
 
-    /// [`Self::safe_time`] of parts of the bodies, for bodies that both have constant velocities. `normal` is from
+    /// [`Self::safe_time`] for parts of bodies that both have constant velocities. `normal` is from
     /// part to part in the frame of the first.
     pub(super) fn safe_time_of(
         &self,
@@ -208,7 +211,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Moment { bodies, origin, poses, centers, time, normal }.safe_within(gap, -N::ONE, to)
     }
 
-    /// How fast parts of the bodies approach in any direction, at most.
+    /// The largest speed at which parts of the bodies approach in any direction.
     pub(super) fn rate_of(&self, parts: &ImpactParts<'_, N, D>, to: N) -> Rate<N> {
         let swings = [0, 1].mapped(|index| {
             product(self.bodies[index].turn_bound(self.time, to), parts.bodies[index].arm)
@@ -216,11 +219,12 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed: self.drift(None, to) + swings[0] + swings[1], bend: N::ZERO }
     }
 
-    /// Where the points of a body go in a time, in the frame of the other, for constant velocities. `rate` bounds how
-    /// fast any two points approach.
+    /// The motion of a body's points during `span`, in the frame of the other, for constant
+    /// velocities. `rate` bounds the approach of any two points.
     ///
-    /// A point that is at `u` from the other body's centre has the velocity `u' - S u` in the frame of that body,
-    /// which turns by `S`: a linear function of its place. Its derivative, `u'' - 2 S u' + S² u`, bends the way.
+    /// A point at `u` from the other body's centre has the velocity `u' - S u` in the frame of that
+    /// body, which rotates by `S`: a linear function of its position. Its derivative,
+    /// `u'' - 2 S u' + S² u`, bends the path.
     pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> PartSweep<N, D> {
         let way = rate.way(span);
         let [body, other] = [which, 1 - which].mapped(|index| self.bodies[index]);
@@ -251,14 +255,15 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         PartSweep::anywhere(way)
     }
 
-    /// The parts of the bodies go their own ways, and it is known how they do.
+    /// Whether the parts of the bodies can be advanced separately: one is a composite, and both
+    /// have constant velocities.
     pub(super) fn has_parts_on_known_ways(&self) -> bool {
         let is_known = self.bodies.iter().all(|body| body.constant().is_some());
         is_known && self.bodies.iter().any(|body| body.shape.as_composite().is_some())
     }
 
-    /// A span that a bound over it carries through, of any order of magnitude, for bounds that are
-    /// infinite over all that remains; zero if there is none.
+    /// A span that a bound over it covers, of any order of magnitude, for bounds that are infinite
+    /// over all the remaining time; zero if there is none.
     fn first_span(&self, remaining: N, safe: &dyn Fn(N) -> N) -> N {
         let (mut low, mut high) = (N::MIN_POSITIVE, min(remaining, N::MAX));
         // The exponents of numbers are an interval of at most 2^11.
@@ -269,7 +274,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         if safe(low) >= low { low } else { N::ZERO }
     }
 
-    /// As [`Self::safe_time`], by the bounds from now to the time `to`, and valid up to then.
+    /// [`Self::safe_time`] by the bounds from now to the time `to`, valid up to then.
     fn safe_within(&self, gap: N, apart: N, to: N) -> N {
         let first = self.first_order(to).time_for(gap);
         let second = self.second_order(to).map_or(N::ZERO, |rate| rate.time_for(gap));
@@ -278,7 +283,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         if longest >= N::ZERO { longest } else { N::ZERO }
     }
 
-    /// The time in which the spheres around the bodies use up what they are apart.
+    /// The time in which the spheres around the bodies use up the distance `apart`.
     fn spheres(&self, apart: N, to: N) -> N {
         let is_apart = apart > N::ZERO;
         if !is_apart {
@@ -289,7 +294,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         })
     }
 
-    /// By the largest speed that a point of either body can have at any time.
+    /// The rate from the largest speed that a point of either body can have at any time.
     pub(super) fn first_order(&self, to: N) -> Rate<N> {
         for (index, body) in self.bodies.iter().enumerate() {
             if !body.reach.is_finite_number() && self.swing(index, N::ONE, to) > N::ZERO {
@@ -301,17 +306,19 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed, bend: N::ZERO }
     }
 
-    /// The direction that separates the bodies; `None` if another one separates other parts of them.
+    /// The direction that separates the bodies; `None` if other parts of them are separated by
+    /// another one.
     fn direction(&self) -> Option<&Vector<N, D>> {
         let flat = self.bodies.iter().any(|body| body.is_half_space());
         let whole = self.bodies.iter().all(|body| body.shape.as_composite().is_none());
         (flat || whole).then_some(&self.normal)
     }
 
-    /// By the speeds that points have now, and how fast these can change; for constant velocities.
+    /// The rate from the present speeds of points and their largest change; for constant
+    /// velocities.
     ///
-    /// The farther a point is from the centre, the faster it moves and the more its path bends: of
-    /// all points of a convex core, the fastest along the normal is a support point.
+    /// A point farther from the centre moves faster and its path bends more: of all points of a
+    /// convex core, the fastest along the normal is a support point.
     fn second_order(&self, to: N) -> Option<Rate<N>> {
         let (mut speed, mut bend) = (self.drift(Some(self.direction()?), to), N::ZERO);
         for (index, body) in self.bodies.iter().enumerate() {
@@ -328,10 +335,10 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Some(Rate { speed, bend })
     }
 
-    /// By the turning of an unbounded body, in whose frame the normal is fixed.
+    /// The rate from the rotation of an unbounded body, in whose frame the normal is fixed.
     ///
-    /// The other body is met the sooner the farther it is from the centre of the turn; that distance
-    /// may grow on the way, and the normal may turn towards where the other body goes.
+    /// The speed of approach grows with the other body's distance from the centre of rotation; that
+    /// distance may grow on the way, and the normal may rotate towards the other body's motion.
     fn about_unbounded(&self, index: usize, to: N) -> Rate<N> {
         let other = self.bodies[1 - index];
         let turn = self.swing(index, N::ONE, to);
@@ -341,8 +348,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed: along + swing + product(turn, distance), bend: product(turn, all) }
     }
 
-    /// At least how fast the centres approach along a unit vector from the first to the second; with
-    /// none, in any direction. Rounding is taken for nothing.
+    /// An upper bound of the speed at which the centres approach along a unit vector from the first
+    /// to the second, or in any direction if `None`. Speeds within rounding error count as zero.
     fn drift(&self, direction: Option<&Vector<N, D>>, to: N) -> N {
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let relative = motion1.linear - motion2.linear;
@@ -360,7 +367,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         speed(0, N::ONE) + speed(1, -N::ONE)
     }
 
-    /// At least the speed along the normal that turning gives a point at a distance from the centre.
+    /// An upper bound of the speed along the normal that rotation gives a point at a distance from
+    /// the centre.
     fn swing(&self, index: usize, distance: N, to: N) -> N {
         let turn = match (self.slope(index), self.direction()) {
             (Some(slope), Some(_)) => length(&slope),
@@ -369,9 +377,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         product(turn, distance)
     }
 
-    /// How the speed of a body's points towards the other depends on where they are: along this
-    /// vector it grows, by its length per length. For constant velocities; rounding is taken for
-    /// nothing, so that what spins about the normal stays as far as it is.
+    /// The gradient, by position, of the speed of a body's points towards the other. For constant
+    /// velocities; rounding error counts as zero, so that a body spinning about the normal does not
+    /// approach.
     fn slope(&self, index: usize) -> Option<Vector<N, D>> {
         let motion = self.bodies[index].constant()?;
         let toward = if index == 0 { self.normal } else { -self.normal };
@@ -380,8 +388,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Some(if max_component(&slope) <= noise { Vector::<N, D>::zeros() } else { slope })
     }
 
-    /// How fast a point of the first body and one of the second approach along the normal, and how
-    /// much of that rounding can make.
+    /// The speed at which a point of the first body and one of the second approach along the
+    /// normal, and a bound of its rounding error.
     pub(super) fn closing(&self, points: &[Vector<N, D>; 2], size: N) -> (N, N) {
         let arms = [0, 1].mapped(|index| points[index] - self.centers[index]);
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
@@ -394,7 +402,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         self.closing_observed(points, &arms, size)
     }
 
-    /// The same from where the points are a short time later.
+    /// [`Self::closing`] from the positions of the points a short time later.
     fn closing_observed(
         &self,
         points: &[Vector<N, D>; 2],
@@ -415,7 +423,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         (self.normal.dot(&(moved[0] - moved[1])) / span, N::lit(8.0) * root * speed)
     }
 
-    /// By how much a point of a body moves in a time.
+    /// The displacement of a point of a body in a time.
     fn moved(&self, index: usize, point: &Vector<N, D>, span: N) -> Vector<N, D> {
         let (body, pose) = (self.bodies[index], &self.poses[index]);
         let local = pose.inverse_point(&Point::from(*point));
@@ -424,7 +432,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     }
 }
 
-/// How far the corners of a box of a body are from the axis that this turns about, at most.
+/// The largest distance of the corners of a body's box from its axis of rotation.
 fn arm_of_box<N: Space<D>, const D: usize>(
     aabb: &Aabb<N, D>,
     center: &Point<N, D>,
@@ -439,17 +447,17 @@ fn arm_of_box<N: Space<D>, const D: usize>(
     })
 }
 
-/// A product in which nothing times infinity is nothing.
+/// A product in which zero times infinity is zero.
 fn product<N: Real>(a: N, b: N) -> N {
     if a == N::ZERO || b == N::ZERO { N::ZERO } else { a * b }
 }
 
-/// A bound; infinite if it is none.
+/// A bound; infinite if it is negative or NaN.
 fn usable<N: Real>(bound: N) -> N {
     if bound >= N::ZERO { bound } else { N::INFINITY }
 }
 
-/// The length of a vector, without overflow on the way.
+/// The length of a vector, without overflow in between.
 pub(super) fn length<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     unit(v).map_or_else(|| max_component(v), |(_, length)| length)
 }

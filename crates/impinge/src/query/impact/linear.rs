@@ -1,8 +1,9 @@
-//! The first touch of two solids that do not turn: the kernel, on one pair.
+//! The first touch of two solids that do not rotate: the kernel, on one pair.
 //!
-//! Balls that are apart meet where a quadratic equation says and their separation then proves it; a half-space is
-//! met after one step; all other pairs advance by what certainly separates them. The last step may be told by a
-//! point that touches, where that proves it and the normal has not turned on the way.
+//! Two separated balls meet at the root of a quadratic equation, which their separation then
+//! proves. A half-space is hit after one step. All other pairs advance by the gap that certainly
+//! separates them. The last step may be proved by a touching point instead of a separation, if the
+//! normal has not changed on the way.
 
 use super::ImpactStatus;
 use crate::collide::Pair;
@@ -12,48 +13,49 @@ use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
 use crate::shape::{FeatureId, Geometry, Kind};
 use crate::tables::ByDimension;
 
-/// At most so many steps are made.
+/// The maximum number of steps.
 const MAX_STEPS: usize = 128;
 
-/// How the second solid of a pair moves in the frame of the first.
+/// The motion of the second solid of a pair in the frame of the first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Path<N: Real, const D: usize> {
-    /// Its way per unit of time; no component exceeds two.
+    /// The displacement per unit of time; no component exceeds two.
     pub(crate) velocity: Vector<N, D>,
-    /// The last time that counts.
+    /// The latest time that counts, inclusive.
     pub(crate) end: N,
     /// The distance at which the solids touch; zero or more.
     pub(crate) target: N,
     /// A contact at the start counts, whatever the velocity.
     pub(crate) contact_at_start: bool,
-    /// The solids are the same at the same place: every normal is as good as its opposite.
+    /// The solids are the same at the same pose: every normal is as good as its opposite.
     pub(crate) mirrored: bool,
 }
 
-/// Where the path of a pair comes to its end.
+/// The end of the path of a pair.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival<N: Real, const D: usize> {
     /// The time, in the unit of the path.
     pub(crate) along: N,
-    /// How the solids lie then, in the frame of the first.
+    /// The separation at that time, in the frame of the first.
     pub(crate) separation: Separation<N, D>,
     pub(crate) status: ImpactStatus,
 }
 
 impl<N: Real, const D: usize> Path<N, D> {
-    /// Where the second solid of the pair that begins so is at a later time.
+    /// The position of the second solid at a later time, for a pair that starts at `start`.
     #[inline]
     fn place(&self, start: &Pair<'_, N, D>, along: N) -> Vector<N, D> {
         start.pose12.translation + self.velocity * along
     }
 
-    /// The pair that begins so, at a later time.
+    /// The pair `start` at a later time.
     pub(crate) fn moved<'a>(&self, start: &Pair<'a, N, D>, along: N) -> Pair<'a, N, D> {
         let pose12 = Pose { translation: self.place(start, along), ..start.pose12 };
         Pair { pose12, ..*start }
     }
 
-    /// The largest distance at a time from which the solids may still come as near as the target.
+    /// The largest distance, at the time `along`, from which the solids may still come within the
+    /// target.
     fn limit(&self, along: N, tolerance: N) -> N {
         if !self.end.is_finite_number() {
             return N::INFINITY;
@@ -61,13 +63,13 @@ impl<N: Real, const D: usize> Path<N, D> {
         self.target + self.velocity.norm() * (self.end - along) + tolerance
     }
 
-    /// How fast the solids approach along a normal.
+    /// The speed at which the solids approach along a normal.
     fn closing(&self, normal: &Vector<N, D>) -> N {
         let closing = -normal.dot(&self.velocity);
         if self.mirrored { -closing.abs() } else { closing }
     }
 
-    /// The speed along a normal that rounding makes of none.
+    /// The largest speed along a normal that counts as rounding error.
     fn noise(&self) -> N {
         N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
     }
@@ -83,7 +85,8 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
         Self { along, separation, status: ImpactStatus::Reached }
     }
 
-    /// The arrival of solids that are in contact at a time, with this gap, of which up to the tolerance counts as none.
+    /// The arrival of solids in contact at a time; a `gap` within the tolerance of zero counts as
+    /// touching.
     pub(crate) fn in_contact(along: N, separation: Separation<N, D>, gap: N, tolerance: N) -> Self {
         let is_start = along <= N::ZERO;
         let at_start = ImpactStatus::at_start(gap, tolerance);
@@ -91,36 +94,37 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
         Self { along, separation, status }
     }
 
-    /// What the points of the pair that begins so lie on when it arrives.
+    /// The features on which the points of the pair lie at its arrival.
     pub(crate) fn features(&self, start: &Pair<'_, N, D>, path: &Path<N, D>) -> [FeatureId; 2] {
         <N::Algorithms>::witness_features(&path.moved(start, self.along), &self.separation)
     }
 }
 
-/// Whether a contact at the start is a hit that is not asked for: one that gets deeper is; one that is neither deep
-/// nor gets deeper, or gets less deep, is none. What overlaps without bound is never parted.
+/// Whether a contact at the start is a hit without
+/// [`ImpactOptions::contact_at_start`](super::ImpactOptions): one that gets deeper is, a deep one
+/// that does not separate is, any other is not. An unbounded overlap always is.
 ///
-/// Up to the tolerance the gap, and up to the noise the speed at which it closes, is none.
+/// A gap within the tolerance and a closing speed within the noise count as zero.
 pub(super) fn is_hit_at_start<N: Real>(gap: N, closing: N, tolerance: N, noise: N) -> bool {
     let deep = gap < -tolerance;
     closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
 }
 
-/// How the path of two solids begins.
+/// The start of the path of two solids.
 pub(crate) enum Beginning<N: Real, const D: usize> {
-    /// They are in contact at the start. `counts` says whether that is a hit by the normal of the two.
+    /// They are in contact at the start; `counts` is whether their normal makes that a hit.
     InContact { arrival: Arrival<N, D>, counts: bool },
-    /// They are apart, and arrive there, if they do.
+    /// They are apart; the arrival, if there is one.
     Apart(Option<Arrival<N, D>>),
 }
 
-/// The first time on a path at which two solids are at the target distance.
+/// Returns the first time on a path at which two solids are at the target distance.
 ///
-/// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996): with the gap along
-/// the normal between the nearest points, and the speed at which that normal sees it closing, the
-/// solids stay apart until the gap is used up. If the normal does not see it closing, they stay apart
-/// for ever. The signed distance of convex solids is a convex function of the time, and this is
-/// Newton's method on it, from the left: it never passes the first touch.
+/// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996): the solids stay
+/// apart at least until the gap along the normal between the nearest points is used up at the speed
+/// of approach along that normal. If they do not approach along it, they stay apart for ever. The
+/// signed distance of convex solids is a convex function of time, and this is Newton's method on
+/// it, from the left: it never passes the first touch.
 pub(crate) fn advance<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
@@ -131,15 +135,15 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     }
 }
 
-/// [`advance`] of solids that certainly do not meet before a time, which does not decide about a contact at the
-/// start.
+/// [`advance`] for solids that certainly do not meet before the time `earliest`; reports a contact
+/// at the start without deciding whether it counts.
 pub(crate) fn begin<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
     earliest: N,
 ) -> Beginning<N, D> {
     let tolerance = N::lit(8.0) * N::EPSILON * size(start);
-    // What is apart by rounding alone says nothing of a contact at the start.
+    // A bound within rounding error does not exclude a contact at the start.
     let is_apart = earliest * max_component(&path.velocity) > tolerance;
     let from = if is_apart { earliest - earliest * N::lit(8.0) * N::EPSILON } else { N::ZERO };
     let limit = path.limit(from, tolerance);
@@ -159,7 +163,7 @@ pub(crate) fn begin<N: Space<D>, const D: usize>(
     Beginning::Apart(by_steps(start, path, from, found, tolerance))
 }
 
-/// The arrival by steps from where the solids lie at a time.
+/// Conservative advancement from the configuration at time `along`.
 fn by_steps<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
@@ -192,11 +196,12 @@ fn by_steps<N: Space<D>, const D: usize>(
     Some(Arrival { along, separation: found, status: ImpactStatus::StepsSpent })
 }
 
-/// When two balls meet that are apart, by a quadratic equation: where it is proved by their separation then. What
-/// rounding decides is left to the steps.
+/// The time at which two separated balls meet, from a quadratic equation and proved by their
+/// separation then. `None` leaves the decision to the steps.
 ///
-/// The way of the second middle has a foot, which is nearest to the first: from there it is the leg of a right
-/// triangle back to where they meet. Lengths are divided by a power of two, so that squares are numbers.
+/// The foot is the point of the second centre's path nearest to the first centre: a right triangle
+/// leads from it back to the point of contact. Lengths are divided by a power of two, so that
+/// squares neither overflow nor underflow.
 fn meeting_of_balls<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
@@ -211,7 +216,7 @@ fn meeting_of_balls<N: Space<D>, const D: usize>(
     let across = middle + velocity * foot;
     let leg = ((reach * reach - across.norm_squared()) / squared).sqrt();
     let along = (foot - leg) * scale;
-    // Written so that NaN, as of balls that pass each other, is left to the steps too.
+    // Written so that NaN, from balls that pass each other, is left to the steps too.
     let is_way = along > N::ZERO && along <= path.end;
     if !is_way {
         return None;
@@ -221,14 +226,14 @@ fn meeting_of_balls<N: Space<D>, const D: usize>(
     is_there.then(|| Arrival::reached(along, found))
 }
 
-/// The separation at the end of a step which used up the gap along the normal of its beginning, where it has
-/// that normal still and one of the nearest points from then proves it; `None` says nothing.
+/// The separation at the end of a step that used up the gap along the normal at its beginning, if
+/// that still is the normal and one of the nearest points from then proves it; else `None`.
 ///
-/// Planes across that normal still hold the solids apart by the target distance. So they are that far from
-/// each other if the point of one, on its plane, is that far from the other solid; and the normal is that of
-/// now if it is also the one that the other solid has towards that point. Of curved solids it has turned on
-/// the way, by about the square root of the error that the step removed. The plane of a half-space needs no
-/// proof.
+/// Planes across that normal still separate the solids by the target distance. So this is their
+/// distance if the point of one, on its plane, has that distance from the other solid; and the
+/// normal is unchanged if the other solid has the same normal towards that point. For curved solids
+/// it has rotated on the way, by about the square root of the error that the step removed. The
+/// plane of a half-space needs no proof.
 fn touching<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     before: &Separation<N, D>,
@@ -246,7 +251,7 @@ fn touching<N: Space<D>, const D: usize>(
         let point1 = point2 - normal * target;
         return Some(Separation { distance: target, normal, point1, point2 });
     }
-    // Of balls the separation costs no more, and the points of others are hardly ever the same.
+    // For balls the separation costs no more, and the nearest points of support maps rarely stay.
     if let Kind::Ball(_) | Kind::SupportMap(_) = first {
         return None;
     }
@@ -266,7 +271,7 @@ fn touching<N: Space<D>, const D: usize>(
     is_proved.then_some(Separation { distance: seen.distance, normal, point1, point2 })
 }
 
-/// The length that tolerances are in proportion to: the sizes of the solids and how far they are.
+/// The length that tolerances are proportional to: the sizes of the solids plus their distance.
 pub(crate) fn size<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let reach = |geometry: Geometry<'_, N, D>| {
         geometry.as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
@@ -281,7 +286,8 @@ mod tests {
     use crate::collide::separation::hulls::tests::Random;
     use crate::shape::{Ball, Shape};
 
-    /// Balls that fly past each other at all distances: those that meet do when steps find that they do.
+    /// Balls that fly past each other at all distances: the equation finds a hit exactly when steps
+    /// do.
     fn fly<N: Space<3>>(size: f64) {
         let random = &mut Random(3);
         let (mut met, mut count) = (0, 0);
@@ -314,7 +320,7 @@ mod tests {
             let Some(arrival) = meeting_of_balls(&start, &path, tolerance) else { continue };
             met += 1;
             let expected = expected.expect("they meet by steps too");
-            // Where they graze each other, when they are near enough is a longer while.
+            // If they graze each other, they are within the tolerance for a longer time.
             let closing = path.closing(&arrival.separation.normal);
             let late = (arrival.along - expected.along) * closing;
             assert!(late.abs() <= N::lit(4.0) * tolerance, "{late} late in round {round}");

@@ -1,12 +1,12 @@
-//! When two moving solids first touch.
+//! The first touch of two moving shapes.
 //!
-//! [`linear`] serves solids that do not turn: the front here brings the pair into its canonical order
-//! and takes the answer back to the world; the kernel there sees one pair of solids and a straight
-//! path. [`nonlinear`] serves bodies that turn: it knows no more of a pair than its separation, and of
-//! a motion than where it is and how fast it can be ([`motion`], [`velocities`], [`bounds`]).
+//! [`linear`] is for solids that do not rotate: this file brings the pair into its canonical order
+//! and maps the result back to the world; the kernel there handles one pair of solids on a straight
+//! path. [`nonlinear`] is for bodies that rotate: of a pair it uses only the separation, of a
+//! motion only poses and bounds of the speed ([`motion`], [`velocities`], [`bounds`]).
 //!
-//! An impact is never late: a step goes as far as the solids certainly stay apart. Every loop has a cap, and the
-//! status says when it was reached.
+//! An impact is never late: each step is no longer than the solids certainly stay apart. Every loop
+//! has a cap, and the status reports when it was reached.
 
 mod bounds;
 mod linear;
@@ -32,7 +32,7 @@ use crate::math::{
 };
 use crate::shape::{FeatureId, Shape};
 
-/// A solid that moves along a straight line, with the same velocity at all times, and does not turn.
+/// A solid that moves along a straight line with constant velocity and does not rotate.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -51,7 +51,7 @@ pub struct Moving<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
-    /// The shape that stands at `position` at time zero and moves by `velocity`, in the world frame,
+    /// The shape that is at `position` at time zero and moves by `velocity`, in the world frame,
     /// per unit of time.
     #[must_use]
     pub fn new<R: AbstractRotation<N, D>>(
@@ -72,7 +72,7 @@ impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
         Self { placed: Placed::new(position, shape.geometry()), velocity: *velocity }
     }
 
-    /// The shape that stays at `position`.
+    /// The shape at rest at `position`.
     #[must_use]
     pub fn still<R: AbstractRotation<N, D>>(
         position: &Isometry<N, R, D>,
@@ -82,7 +82,7 @@ impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
     }
 }
 
-/// What counts as an impact.
+/// Options of an impact query.
 ///
 /// ```
 /// use impinge::query::ImpactOptions;
@@ -94,23 +94,23 @@ impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ImpactOptions<N: Real> {
-    /// No impact after this time is reported, one at this time is. There is none at all if it is
+    /// The latest time of an impact that is reported, inclusive. No impact is reported if it is
     /// negative or NaN. Infinite by default.
     pub max_time: N,
-    /// The solids count as touching when they are so far apart. Zero by default; negative and NaN
-    /// count as zero. At an infinite distance everything touches at time zero.
+    /// The distance at which the solids count as touching. Zero by default; negative and NaN count
+    /// as zero. At an infinite distance everything touches at time zero.
     pub target_distance: N,
-    /// How far from the target distance solids that turn may be when they count as touching: a
-    /// length. The search ends there, which saves steps; the time found is the earlier for it, and never
-    /// late. Negative and NaN count as zero, and less than rounding, 8 epsilon times the sizes and the
-    /// distance of the bodies, as that.
+    /// The largest difference from the target distance, a length, at which solids that rotate count
+    /// as touching. The search ends there, which saves steps; the time found is then earlier, and
+    /// never late. Negative and NaN count as zero; values below the rounding error, 8 epsilon times
+    /// the sizes and the distance of the bodies, are raised to it.
     ///
-    /// `None` by default: up to rounding, or, where 256 more steps do not lead there, as for surfaces that slide
-    /// on each other, within a millionth of the sizes and the distance: 2⁻²⁰, in `f32` 2⁻¹⁷. Straight paths are
-    /// always followed up to rounding.
+    /// `None` by default: up to rounding, or, if 256 more steps do not reach that, as for surfaces
+    /// that slide on each other, within a millionth of the sizes and the distance: 2⁻²⁰, in `f32`
+    /// 2⁻¹⁷. Straight paths are always followed up to rounding.
     pub tolerance: Option<N>,
-    /// Solids that touch or overlap at time zero are an impact then, whatever their velocities; false by
-    /// default, when those that part, and those that touch and slide, are none.
+    /// Solids that touch or overlap at time zero are an impact then, whatever their velocities.
+    /// False by default: solids that separate, and those that touch and slide, are none.
     pub contact_at_start: bool,
 }
 
@@ -126,25 +126,25 @@ impl<N: Real> ImpactOptions<N> {
         }
     }
 
-    /// The same with another [`Self::max_time`].
+    /// Returns the options with another [`Self::max_time`].
     #[must_use]
     pub const fn with_max_time(self, max_time: N) -> Self {
         Self { max_time, ..self }
     }
 
-    /// The same with another [`Self::target_distance`].
+    /// Returns the options with another [`Self::target_distance`].
     #[must_use]
     pub const fn with_target_distance(self, target_distance: N) -> Self {
         Self { target_distance, ..self }
     }
 
-    /// The same with another [`Self::tolerance`].
+    /// Returns the options with another [`Self::tolerance`].
     #[must_use]
     pub const fn with_tolerance(self, tolerance: N) -> Self {
         Self { tolerance: Some(tolerance), ..self }
     }
 
-    /// The same with another [`Self::contact_at_start`].
+    /// Returns the options with another [`Self::contact_at_start`].
     #[must_use]
     pub const fn with_contact_at_start(self, contact_at_start: bool) -> Self {
         Self { contact_at_start, ..self }
@@ -157,10 +157,10 @@ impl<N: Real> Default for ImpactOptions<N> {
     }
 }
 
-/// How an impact came about, and how sure it is.
+/// The kind of an impact, and its certainty.
 ///
-/// "At the start" is at time zero, and is said of the two parts that the impact is about. Solids whose start
-/// in contact does not count (see [`impact()`]) and that touch again later have the status of that later touch.
+/// "At the start" is at time zero, for the two parts of the impact. If a start in contact does not
+/// count (see [`impact()`]), the status is that of the later touch.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -183,31 +183,30 @@ pub enum ImpactStatus {
     Reached,
     /// The time is zero: the solids touch at the start, or are at the target distance, up to rounding.
     TouchingAtStart,
-    /// The time is zero: the solids overlap at the start, or are nearer than the target distance. Their nearest
-    /// points then differ by the depth.
+    /// The time is zero: the solids overlap at the start, or are nearer than the target distance.
+    /// Their nearest points then differ by the depth.
     PenetratingAtStart,
-    /// All steps were spent on the way: the solids certainly do not touch before that time, and what
-    /// follows is not known.
+    /// All steps were spent: the solids certainly do not touch before that time; later is unknown.
     StepsSpent,
 }
 
 impl ImpactStatus {
-    /// The solids touched or overlapped at time zero, or were within the target distance.
+    /// Whether the solids touched or overlapped at time zero, or were within the target distance.
     #[must_use]
     pub const fn is_at_start(self) -> bool {
         matches!(self, Self::TouchingAtStart | Self::PenetratingAtStart)
     }
 
-    /// The status of an impact at the start with this gap, of which up to the tolerance counts as none.
+    /// The status of an impact at the start; a gap within the tolerance counts as zero.
     fn at_start<N: Real>(gap: N, tolerance: N) -> Self {
         if gap < -tolerance { Self::PenetratingAtStart } else { Self::TouchingAtStart }
     }
 }
 
-/// When two moving solids first touch, and where.
+/// The first touch of two moving solids: its time and geometry.
 ///
-/// The points and the normal are in the world frame, at the time of impact: for solids that stand
-/// where they have moved to.
+/// The points and the normal are in the world frame, at the time of impact: for the solids at their
+/// positions then.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -222,11 +221,11 @@ impl ImpactStatus {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact<N: Real, const D: usize> {
-    /// The time of impact: zero or more, at most the longest time asked for.
+    /// The time of impact: zero or more, at most [`ImpactOptions::max_time`].
     pub toi: N,
     /// The point on the surface of the first solid.
     pub world1: Point<N, D>,
-    /// The point on the surface of the second solid: where the first is, up to the target distance
+    /// The point on the surface of the second solid: equal to the first, up to the target distance
     /// and rounding, unless the solids overlap from the start.
     pub world2: Point<N, D>,
     /// The unit vector from the first solid to the second.
@@ -235,17 +234,17 @@ pub struct Impact<N: Real, const D: usize> {
     pub part1: u32,
     /// The number of the part of the second shape that touches; zero for a shape of one part.
     pub part2: u32,
-    /// The feature of that part of the first shape that touches, named as in a
+    /// The feature of that part of the first shape that touches, with the id as in a
     /// [`Witness`](super::Witness): on the core of a rounded solid.
     pub feature1: FeatureId,
     /// The feature of that part of the second shape that touches.
     pub feature2: FeatureId,
-    /// Whether the solids touch then for certain, and whether they did so at the start.
+    /// Whether the touch is certain, and whether it was at the start.
     pub status: ImpactStatus,
 }
 
 impl<N: Real, const D: usize> Impact<N, D> {
-    /// The same impact with the solids swapped.
+    /// Returns the impact with the solids swapped.
     #[must_use]
     pub fn flipped(&self) -> Self {
         Self {
@@ -261,50 +260,52 @@ impl<N: Real, const D: usize> Impact<N, D> {
     }
 }
 
-/// The first impact of two solids that move with constant velocities and do not turn.
+/// Returns the first impact of two solids that move with constant velocities and do not rotate.
 ///
-/// `None` if they never come within the target distance by the longest time asked for, and if a
-/// pose, a velocity or the difference of the velocities is not finite. Swapping the solids gives the
-/// same bits. The unit of time is the one that velocities are lengths per.
+/// `None` if they never come within the target distance up to the latest time, and if a pose, a
+/// velocity or the difference of the velocities is not finite. Swapping the solids gives the same
+/// bits. The unit of time is that of the velocities.
 ///
-/// At the time found the solids are at the target distance, up to the rounding of their sizes and of
-/// their initial distance, and before that time they were not nearer by more: it is never late, and
-/// solids that pass each other that closely may count as touching.
+/// At the returned time the solids are at the target distance, up to the rounding error of their
+/// sizes and of their initial distance, and before that time they were not nearer by more: the time
+/// is never late, and solids that pass each other that closely may count as touching.
 ///
-/// The impact of composites is the first impact of two of their parts, of several at one time that of the
-/// first by number. So a shape that slides along some parts still meets others, and a surface is met from both
-/// sides.
+/// The impact of composites is the first impact of two of their parts; of several at one time that
+/// with the lowest part numbers. So a shape that slides along some parts still hits others, and a
+/// surface is hit from both sides.
 ///
 /// # Starts in contact
 ///
-/// A contact at time zero counts by what the velocities do to it along its normal:
+/// A contact at time zero counts according to the velocities along its normal:
 ///
 /// | at time zero the solids | approaching | sliding or at rest | separating |
 /// |---|---|---|---|
 /// | overlap, or are nearer than the target distance | impact at zero | impact at zero | `None` |
 /// | just touch, or are at the target distance, up to rounding | impact at zero | `None` | `None` |
 ///
-/// Of composites the contacts of the whole count, as [`contact`](super::contact()) and worlds have them: one along
-/// each normal of a surface, none with the edges inside of a floor, and for shapes without a surface that of
-/// each two parts. The impact at zero is the deepest contact that counts. If none counts, parts that are in contact
-/// at the start are not met later, and other parts where the whole has a contact that counts by then. So a box
-/// that has sunk into a floor of many parts can be moved out of it. Parts that overlap without a contact of the
-/// whole, as behind a surface with one side, count by their own normal.
+/// For composites the contacts of the whole shape count, as in [`contact`](super::contact()) and in
+/// worlds: one along each normal of a surface, none with the inner edges of a floor, and for shapes
+/// without a surface that of each two parts. The impact at zero is the deepest contact that counts.
+/// If none counts, parts in contact at the start are not hit later; other parts are if the whole
+/// shape then has a contact that counts. So a box that has sunk into a floor of many parts can be
+/// moved out of it. Parts that overlap without a contact of the whole shape, as behind a surface
+/// with one side, count by their own normal.
 ///
-/// With [`ImpactOptions::contact_at_start`] every entry of the table is an impact at zero: ncollide and,
-/// by default, parry answer so. [`Impact::status`] says which row an impact at zero is from.
+/// With [`ImpactOptions::contact_at_start`] every entry of the table is an impact at zero, as in
+/// ncollide and, by default, parry. [`Impact::status`] distinguishes the rows of the table.
 ///
-/// Convex solids that do not approach each other never will, so `None` is the end of it. A box that
-/// slides along the floor it stands on does not hit the floor; one that has sunk into it does, until it
-/// is moved out. Slower than 8 epsilon times the relative speed counts as no approach. Half-spaces that
-/// overlap without bound are never parted: an impact at zero, whose points are their origins.
+/// Convex solids that do not approach each other never will, so `None` is final for them. A box
+/// that slides along the floor under it does not hit the floor; one that has sunk into it does,
+/// until it is moved out. A speed of approach below 8 epsilon times the relative speed counts as
+/// zero. Half-spaces that overlap without bound never separate: an impact at zero, whose points are
+/// their origins.
 ///
 /// # Cost
 ///
-/// A few computations of the distance, at most 128. Each step goes as far as the solids certainly
-/// stay apart (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996): Newton's
-/// method on a convex function, which squares the error where they meet head on and halves it where
-/// they graze. A composite is searched for the parts on the way; of two composites each part of the one
+/// A few distance computations, at most 128. Each step is as long as the solids certainly stay
+/// apart (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996): Newton's
+/// method on a convex function, which squares the error at a head-on hit and halves it at a grazing
+/// one. A composite is searched for the parts on the way; of two composites each part of the one
 /// with fewer searches the other.
 ///
 /// ```
@@ -332,11 +333,11 @@ pub fn impact<N: Space<D>, const D: usize>(
     entries::impact(moving1, moving2, options)
 }
 
-/// The first time, zero or more, at which two solids touch that move with constant velocities and
-/// do not turn; `None` if they never do.
+/// Returns the first time, zero or more, at which two solids touch that move with constant
+/// velocities and do not rotate; `None` if they never do.
 ///
-/// The time of [`impact`] with the options left as they are: see there for starts in contact, the
-/// accuracy and the cost.
+/// It is the time of [`impact`] with default options; see there for starts in contact, the accuracy
+/// and the cost.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -374,7 +375,7 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     Some(if course.ordered.swapped { found.flipped() } else { found })
 }
 
-/// The time in [`impact_of_pair`], without asking what touches.
+/// The time in [`impact_of_pair`], without computing the parts and features.
 pub(crate) fn time_of_pair<N: Space<D>, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,
@@ -383,10 +384,10 @@ pub(crate) fn time_of_pair<N: Space<D>, const D: usize>(
     Course::new(moving1, moving2, options)?.touch().map(|(_, toi)| toi)
 }
 
-/// Two solids in canonical order, of which the second moves in the frame of the first.
+/// Two solids in canonical order, with the motion of the second in the frame of the first.
 ///
-/// The relative velocity is divided by a power of two, which makes its largest component one to two:
-/// then nothing overflows on the way, and the unit of time drops out exactly.
+/// The relative velocity is divided by a power of two, which brings its largest component between
+/// one and two: then nothing overflows, and the result is exactly independent of the unit of time.
 struct Course<'m, 'a, N: Real, const D: usize> {
     first: &'m Moving<'a, N, D>,
     ordered: Ordered<'m, 'a, N, D>,
@@ -397,14 +398,14 @@ struct Course<'m, 'a, N: Real, const D: usize> {
 }
 
 impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
-    /// `None` if there is no time, the solids certainly stay apart, or something is not finite.
+    /// `None` if the latest time is negative, the solids stay apart, or something is not finite.
     #[inline(always)]
     fn new(
         moving1: &'m Moving<'a, N, D>,
         moving2: &'m Moving<'a, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Self> {
-        // Not left to the end of the path: the product of a time and a speed may be zero.
+        // Tested here, since the product of a time and a speed may be zero.
         let has_time = options.max_time >= N::ZERO;
         if !has_time || are_parted(moving1, moving2, options) {
             return None;
@@ -429,7 +430,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         Some(Self { first, ordered, pair, path, scale })
     }
 
-    /// The first touch, in the frame of the first part, and when that is.
+    /// The first touch, in the frame of the first part, and its time.
     #[inline(always)]
     fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
         let found = if self.ordered.has_composite() {
@@ -445,7 +446,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         toi.is_finite_number().then_some((found, toi))
     }
 
-    /// A touch seen from the world, for the solids in their canonical order.
+    /// Converts a touch to the world, for the solids in canonical order.
     #[inline(always)]
     fn impact(&self, touch: &PartArrival<N, D>, toi: N) -> Impact<N, D> {
         let (found, features) = if self.ordered.has_composite() {
@@ -468,7 +469,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
     }
 }
 
-/// The solids are certainly farther apart than the target distance, all the way.
+/// Whether bounding balls prove that the solids stay beyond the target distance.
 fn are_parted<N: Real, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,
@@ -484,7 +485,7 @@ fn are_parted<N: Real, const D: usize>(
     apart.stays_beyond(options.target_distance, &velocity, options.max_time)
 }
 
-/// Of two that nothing else distinguishes: the first comes after the second by its velocity.
+/// Whether the first of two otherwise equal solids comes after the second, by its velocity.
 fn is_later<N: Real, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,

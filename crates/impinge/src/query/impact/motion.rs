@@ -1,4 +1,4 @@
-//! How a rigid body moves: where it is at each time, and how fast it can be.
+//! Motions of rigid bodies: poses over time, and bounds of the speed.
 
 use super::ConstantVelocities;
 use crate::math::{Point, Pose, Space, Vector};
@@ -6,9 +6,8 @@ use crate::math::{Point, Pose, Space, Vector};
 /// The motion of a rigid body.
 ///
 /// Times count from zero, in any unit; the frame is the world's. Speeds are bounded, not given: a
-/// bound that is too high costs steps, one that is too low may miss an impact. The bounds are about
-/// one point of the body, [`Self::local_center`], and about how fast the body turns, whatever its
-/// shape.
+/// bound that is too high costs steps, one that is too low may miss an impact. The bounds are for
+/// one point of the body, [`Self::local_center`], and for the angular speed, whatever the shape.
 ///
 /// A pendulum of length 2 that swings about the origin with the angle `cos t`:
 ///
@@ -43,33 +42,33 @@ use crate::math::{Point, Pose, Space, Vector};
 /// assert!((toi - angle.acos()).abs() < 1e-9);
 /// ```
 pub trait RigidMotion<N: Space<D>, const D: usize> {
-    /// Where the body is at a time, zero or more.
+    /// Returns the position of the body at a time, zero or more.
     fn position_at(&self, time: N) -> N::Isometry;
 
-    /// At least the speed of the point [`Self::local_center`] at all times between `from` and `to`,
-    /// the latter of which may be infinite. Infinite if there is no bound; then shorter spans are
-    /// asked about. A negative number or NaN counts as infinite.
+    /// An upper bound of the speed of the point [`Self::local_center`] at all times between `from`
+    /// and `to`, the latter of which may be infinite. Infinite if there is no bound; then shorter
+    /// spans are queried. A negative number or NaN counts as infinite.
     fn speed_bound(&self, from: N, to: N) -> N;
 
-    /// At least how fast the body turns, in radians per unit of time, at all times between `from` and
-    /// `to`; as [`Self::speed_bound`].
+    /// An upper bound of the angular speed, in radians per unit of time, at all times between
+    /// `from` and `to`; with the conventions of [`Self::speed_bound`].
     fn turn_bound(&self, from: N, to: N) -> N;
 
-    /// The point of the body, in its local frame, whose speed is bounded. The origin by default; the
-    /// middle of the shape, or the point that the body turns about, saves steps.
+    /// The point of the body, in its local frame, whose speed is bounded. The origin by default;
+    /// the centre of the shape, or the fixed point of the rotation, saves steps.
     fn local_center(&self) -> Point<N, D> {
         Point::origin()
     }
 
-    /// [`Self::position_at`] as a pose in the frame of the world moved to `origin`. Far from the
-    /// world's origin it keeps digits to override this: what is asked about are differences.
+    /// [`Self::position_at`] as a pose in the world frame moved to `origin`. Overriding it keeps
+    /// digits far from the world's origin: the algorithms use differences of positions only.
     fn pose_about(&self, origin: &Vector<N, D>, time: N) -> Pose<N, D> {
         let pose = N::pose(&self.position_at(time));
         Pose { rotation: pose.rotation, translation: pose.translation - origin }
     }
 
-    /// The motion, if it is one with constant velocities: then the body's speed is known in each
-    /// direction, which saves steps. For wrappers; nothing is lost by the default.
+    /// The motion, if it has constant velocities: then the body's speed is known in each direction,
+    /// which saves steps. For wrappers; `None` (the default) is always right.
     fn constant_velocities(&self) -> Option<&ConstantVelocities<N, D>> {
         None
     }

@@ -1,4 +1,4 @@
-//! The first touch of two bodies that move and turn.
+//! The first touch of two bodies that move and rotate.
 
 use super::bounds::{Moment, MovingBody, Rate, length};
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion, is_hit_at_start};
@@ -16,57 +16,62 @@ use crate::collide::separation::separation;
 use crate::math::{Mapped, Pose, Space, Unit, Vector, max, max_component, min};
 use crate::shape::Shape;
 
-/// At most so many steps are made.
+/// The maximum number of steps.
 const MAX_STEPS: usize = 1024;
 
-/// At most so many steps of two parts are made by themselves before all are looked at.
+/// The maximum number of steps of two parts on their own, before all parts are tested again.
 const MAX_PART_STEPS: usize = 64;
 
-/// At most so many steps in a row are made while the bodies are so near that it would do, without a tolerance.
+/// The maximum number of consecutive steps within the `NEAR` distance, without a tolerance.
 const MAX_NEAR_STEPS: usize = 256;
 
-/// It does when the gap is that much of the sizes and the distance, 2^-20, or so many epsilon of them.
+/// Near: the gap is at most this fraction of the sizes and the distance, 2^-20, or this many
+/// epsilon of them.
 const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 
-/// Parts of composites are looked at one by one where they are apart by that much of the sizes at most.
+/// Parts of composites are advanced one by one if they are at most this fraction of the sizes
+/// apart.
 const PARTS_WITHIN: f64 = 1.0 / 128.0;
 
-/// They are advanced by themselves for as long as no point moves by more than that much of the sizes.
+/// They are advanced on their own while no point moves by more than this fraction of the sizes.
 const PARTS_WAY: f64 = 1.0 / 32.0;
 
-/// The first impact of two bodies that move and turn.
+/// Returns the first impact of two bodies that move and rotate.
 ///
-/// `None` if they never come within the target distance by the longest time asked for, and if a pose
-/// at time zero is not finite. Swapping the bodies gives the same bits.
+/// `None` if they never come within the target distance up to the latest time, and if a pose at
+/// time zero is not finite. Swapping the bodies gives the same bits.
 ///
-/// *Never late.* The time found is at most that of the first touch, up to the rounding of the bodies'
-/// places and sizes: whatever turns fast or is thin is not missed. *Hardly early.* With
+/// *Never late.* The time is at most that of the first touch, up to the rounding error of the
+/// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Hardly early.* With
 /// [`ImpactStatus::Reached`] the bodies are then within [`ImpactOptions::tolerance`] of the target
-/// distance, or so near that their motion in the smallest step of the time covers the
-/// rest. With [`ImpactStatus::StepsSpent`] 1024 steps did not settle the matter: nothing touches before
-/// that time, and what follows is not known. That happens to bodies that stay in
-/// contact while they turn, to motions that go round for ever without a hit and without a longest
-/// time, and to bounds far above the true speeds; ask again from there, or for less time.
+/// distance, or so near that their motion in the smallest step of the time covers the rest. With
+/// [`ImpactStatus::StepsSpent`] 1024 steps gave no decision: nothing touches before that time, and
+/// later is unknown. That happens to bodies that stay in contact while they rotate, to motions that
+/// repeat for ever without a hit and without a latest time, and to bounds far above the true
+/// speeds; query again from there, or for less time.
 ///
 /// # Starts in contact
 ///
-/// The table of [`impact`](super::impact) holds, for the velocities of the nearest points. But what
-/// turns may come back, so a start that does not count is not the end of it: the bodies hit where they
-/// touch again after they have parted, or where they get deeper than they were, by more than 1024
-/// epsilon times their sizes. Of composites, what counts is the parts that are deepest in each other.
+/// The table of [`impact`](super::impact) holds, for the velocities of the nearest points. But a
+/// rotating body may come back, so a start that does not count is not final: the bodies hit where
+/// they touch again after they have separated, or where they get deeper than they were, by more
+/// than 1024 epsilon times their sizes. For composites the parts that are deepest in each other
+/// count.
 ///
 /// # Cost
 ///
-/// A computation of the distance for each step: of convex solids typically 15 for motions with constant
-/// velocities, 40 for others, several times as many where the bodies graze each other or turn fast. Each step goes as
-/// far as no point of the bodies can have used up the gap (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996), by the speed along the
-/// normal (Zhang, Lee and Kim, "Interactive continuous collision detection for non-convex polyhedra",
-/// 2006) of the fastest point of the shape and by how much its path can bend, or by spheres around the
-/// bodies while these are apart. A half-space that turns is fastest far out: its speed counts there
-/// where the other body can be. Composites are seen as a whole, by their largest speed, until they are within 1/128 of
-/// their sizes; then, for constant velocities, each two of their parts whose ways can cross are advanced by themselves,
-/// by a normal and a speed of their own, until the first two touch. So all parts are searched twice for each 1/32 of
-/// the sizes that the fastest point moves by, however many steps those take that slide on each other.
+/// One distance computation per step: for convex solids typically 15 for motions with constant
+/// velocities, 40 for others, several times as many if the bodies graze each other or rotate fast.
+/// Each step is as long as no point of the bodies can have used up the gap (conservative
+/// advancement: Mirtich, "Impulse-based dynamic simulation", 1996). The bound is the speed along
+/// the normal (Zhang, Lee and Kim, "Interactive continuous collision detection for non-convex
+/// polyhedra", 2006) of the fastest point of the shape plus the largest bend of its path, or
+/// spheres around the bodies while these are apart. A rotating half-space is fastest far out: its
+/// speed counts where the other body can be. Composites are bounded as a whole, by their largest
+/// speed, until they are within 1/128 of their sizes; then, for constant velocities, each two of
+/// their parts whose paths can cross are advanced separately, by a normal and a speed of their own,
+/// until the first two touch. So all parts are searched twice for each 1/32 of the sizes that the
+/// fastest point moves by, however many steps sliding parts take.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -101,7 +106,7 @@ pub(crate) struct Flight<'a, N: Space<D>, const D: usize> {
     shapes: [&'a dyn Shape<N, D>; 2],
 }
 
-/// The answer to [`nonlinear_time_of_impact`]: the search, in the canonical order.
+/// Runs [`nonlinear_time_of_impact`] in the canonical order.
 pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     flight: &Flight<'_, N, D>,
     options: &ImpactOptions<N>,
@@ -131,8 +136,9 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     Some(if swapped { found.flipped() } else { found })
 }
 
-/// Of two bodies that are the same at time zero, the second comes first, by where they are when they
-/// differ: at the longest time or, where that tells nothing, at one of the times 1, 2¹⁶, 2³², ….
+/// Whether the second of two bodies that are equal at time zero comes first, by their positions
+/// when they differ: at the latest time or, if these are equal too, at one of the times 1, 2¹⁶,
+/// 2³², ….
 fn two_leads<N: Space<D>, const D: usize>(
     one: &MovingBody<'_, N, D>,
     two: &MovingBody<'_, N, D>,
@@ -140,7 +146,7 @@ fn two_leads<N: Space<D>, const D: usize>(
 ) -> bool {
     let world = Vector::<N, D>::zeros();
     let later = |time| [one, two].mapped(|body| body.placed(&world, time));
-    // 64 times at most, when the numbers end.
+    // At most 64 times, up to the largest number.
     let times = iter::successors(Some(N::ONE), |time| Some(*time * N::lit(65536.0)));
     let times = times.take_while(|time| time.is_finite_number());
     let longest = Some(options.max_time).filter(|time| time.is_finite_number());
@@ -150,7 +156,7 @@ fn two_leads<N: Space<D>, const D: usize>(
 }
 
 impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
-    /// The body at a time, seen from a point of the world.
+    /// The body at a time, relative to a point of the world.
     fn placed(&self, origin: &Vector<N, D>, time: N) -> Placed<'a, N, D> {
         Placed::of_pose(&self.motion.pose_about(origin, time), self.shape)
     }
@@ -159,51 +165,53 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
 /// The search for an impact of two bodies in canonical order.
 struct ImpactSearch<'a, N: Space<D>, const D: usize> {
     bodies: [MovingBody<'a, N, D>; 2],
-    /// The point of the world that all places are seen from: near the bodies, to keep digits.
+    /// The point of the world that all positions are relative to: near the bodies, to keep digits.
     origin: Vector<N, D>,
     end: N,
     target: N,
-    /// How far from the target distance the bodies may be; zero or more.
+    /// The largest difference from the target distance; zero or more.
     tolerance: Option<N>,
-    /// A contact at time zero counts, whatever the velocities.
+    /// Whether a contact at time zero counts, whatever the velocities.
     contact_at_start: bool,
-    /// The bodies are the same at time zero.
+    /// Whether the bodies are equal at time zero.
     mirrored: bool,
 }
 
-/// Where the bodies are at a time.
+/// The poses of the bodies at a time.
 struct BodyPoses<'b, 'a, N: Space<D>, const D: usize> {
-    /// Without a normal as long as none is known.
+    /// Its normal is zero as long as none is known.
     moment: Moment<'b, 'a, N, D>,
-    /// The pose of the first body in canonical order; of a ball without its rotation.
+    /// The pose of the first body in canonical order; without its rotation for a ball.
     pose1: Pose<N, D>,
     between: Between<'a, N, D>,
 }
 
-/// How the bodies lie at a time.
+/// The contact configuration of the bodies at a time.
 struct Configuration<'b, 'a, N: Space<D>, const D: usize> {
     poses: BodyPoses<'b, 'a, N, D>,
     found: PartSeparation<N, D>,
-    /// The nearest points, seen from the origin of the search.
+    /// The nearest points, relative to the origin of the search.
     points: [Vector<N, D>; 2],
-    /// The distance less the target distance.
+    /// The distance minus the target distance.
     gap: N,
-    /// A length in proportion to the bodies and their distance.
+    /// A length proportional to the bodies and their distance.
     size: N,
-    /// How much of a gap counts as none.
+    /// A gap up to this counts as zero.
     tolerance: N,
 }
 
-/// What the gap is measured from.
+/// The reference of the gap.
 #[derive(Clone, Copy, Debug)]
 enum Mode<N> {
     /// The bodies have been apart: they touch when the gap is used up.
     Apart,
-    /// They have been in contact since the start, when the gap was this: it counts if it gets deeper.
+    /// They have been in contact since the start, when the gap was this: it counts if it gets
+    /// deeper.
     Contact(N),
 }
 
 impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
+    /// Steps to the first impact; `None` if there is none up to `end`.
     fn run(&self) -> Option<Impact<N, D>> {
         let mut configuration = self.look(N::ZERO, None)?;
         let starts = self.end >= N::ZERO;
@@ -233,7 +241,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             }
             let later = time + step.time;
             if later <= time {
-                // A speed without bound carries nowhere; any other is smaller than time can tell.
+                // An unbounded speed allows no step; any other step is smaller than the resolution
+                // of the time.
                 let is_small = step.time > N::ZERO;
                 let status =
                     if is_small { ImpactStatus::Reached } else { ImpactStatus::StepsSpent };
@@ -248,7 +257,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         Some(self.impact(&configuration, ImpactStatus::StepsSpent))
     }
 
-    /// For how long nothing can happen.
+    /// Returns a step in which nothing can happen.
     fn step(&self, configuration: &Configuration<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
         let moment = &configuration.poses.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
@@ -271,7 +280,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             rate,
             step: Step { time: longest, near_steps: 0 },
         };
-        // The nearest are likely to end the step: what the others do later is then not asked.
+        // The nearest parts are likely to end the step, which shortens the search of the others.
         parts.visit(configuration.found.parts);
         visit_near_pairs(&configuration.poses.between, &mut parts);
         if parts.step.time > whole.time { parts.step } else { whole }
@@ -299,8 +308,9 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         })
     }
 
-    /// How the bodies lie at a time; `None` if a pose is not finite, and for composites without parts. What was
-    /// nearest before is so still, or bounds the search.
+    /// The configuration of the bodies at a time; `None` if a pose is not finite, and for
+    /// composites without parts. The parts that were nearest before are tested first, to bound the
+    /// search.
     fn look(
         &self,
         time: N,
@@ -333,7 +343,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             || is_hit_at_start(configuration.gap, closing, configuration.tolerance, noise)
     }
 
-    /// The impact at a moment, seen from the world.
+    /// Converts the configuration to an impact in the world.
     fn impact(
         &self,
         configuration: &Configuration<'_, '_, N, D>,
@@ -357,27 +367,28 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
-    /// By how much a contact may get deeper, or bodies part, and still count as resting.
+    /// The amount by which a contact may get deeper, or bodies separate, and still count as
+    /// resting.
     fn slack(&self) -> N {
         N::lit(1024.0) * N::EPSILON * self.size
     }
 
-    /// What the gap is measured from, now that the bodies may have parted.
+    /// The mode after a step: `Apart` once the bodies have separated.
     fn mode_after(&self, mode: Mode<N>) -> Mode<N> {
         if self.gap > self.tolerance + self.slack() { Mode::Apart } else { mode }
     }
 
-    /// How near will do if more steps bring the bodies no nearer.
+    /// The gap that is accepted if more steps bring the bodies no nearer.
     fn near(&self) -> N {
         max(N::lit(NEAR[0]), N::lit(NEAR[1]) * N::EPSILON) * self.size
     }
 
-    /// The bodies have been apart and are so near that it does if more steps bring them no nearer.
+    /// Whether the bodies have been apart and their gap is within [`Self::near`].
     fn is_near(&self, mode: Mode<N>) -> bool {
         matches!(mode, Mode::Apart) && self.gap <= self.near()
     }
 
-    /// How far the bodies may come nearer before it counts.
+    /// The distance by which the bodies may approach before it counts.
     fn excess(&self, mode: Mode<N>) -> N {
         match mode {
             Mode::Apart => self.gap,
@@ -385,7 +396,7 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         }
     }
 
-    /// The excess is used up.
+    /// Whether the excess is used up.
     fn is_hit(&self, mode: Mode<N>) -> bool {
         match mode {
             Mode::Apart => self.gap <= self.tolerance,
@@ -394,30 +405,31 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
     }
 }
 
-/// The largest step in which no two parts use up the excess: each two are advanced by themselves, until they do or
-/// others have done so earlier.
+/// The largest step in which no two parts use up the excess: each two are advanced separately,
+/// until they use it up or the step has ended earlier.
 struct PartSteps<'s, 'b, 'a, N: Space<D>, const D: usize> {
     search: &'s ImpactSearch<'a, N, D>,
     configuration: &'s Configuration<'b, 'a, N, D>,
     mode: Mode<N>,
     /// The distance of parts at which the excess is used up.
     spent: N,
-    /// How fast any two parts can approach.
+    /// Bounds the approach of any two parts.
     rate: Rate<N>,
     step: Step<N>,
 }
 
-/// For how long nothing can happen.
+/// A step in which nothing can happen.
 #[derive(Clone, Copy, Debug)]
 struct Step<N> {
     time: N,
-    /// How many steps in a row the parts were near that end it.
+    /// The number of consecutive near steps of the parts that end it.
     near_steps: usize,
 }
 
 impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
-    /// By how much two parts may come nearer at some poses, and for how long they certainly do not; `None` if they cannot
-    /// in the time that is left, by their largest speed in any direction.
+    /// The distance by which two parts may approach at some poses, and a time in which they
+    /// certainly do not; `None` if they cannot in the time `left`, by their largest speed in any
+    /// direction.
     fn alone(&self, poses: &BodyPoses<'_, 'a, N, D>, parts: [u32; 2], left: N) -> Option<(N, N)> {
         let (moment, end) = (&poses.moment, self.search.end);
         let placed = poses.between.parts(parts);
@@ -444,7 +456,8 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for PartSteps<'_, '_, '_, N,
             return;
         };
         let mut near_steps = 0;
-        // What is in contact may part and come back: all parts are looked at after each of its steps.
+        // Parts in contact may separate and come back: all parts are tested after each of their
+        // steps.
         let tries = if matches!(self.mode, Mode::Apart) { MAX_PART_STEPS } else { 0 };
         for _ in 0..tries {
             if time >= longest {

@@ -8,12 +8,13 @@ use crate::math::{
     Isometry2, Isometry3, Matrix, Point, Pose, Real, Space, Vector, max_component, na, unit,
 };
 
-/// A body that moves with constant velocities: a point of it along a straight line, the body turning
-/// about that point.
+/// A body that moves with constant velocities: one point of it along a straight line, with the body
+/// rotating about that point.
 ///
-/// At its start time, zero by default, it stands at the position given; before that time it moves with
-/// the same velocities. Angles are exact up to the rounding of the angular velocity times the time since
-/// the start: about that many radians times epsilon. If the start time is not finite, no position is.
+/// At its start time, zero by default, it is at the given position; before that time it moves with
+/// the same velocities. Angles are exact up to the rounding of the angular velocity times the time
+/// since the start: about that many radians times epsilon. If the start time is not finite, no
+/// position is.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -31,9 +32,9 @@ pub struct ConstantVelocities<N: Space<D>, const D: usize> {
     start_time: N,
     local_center: Point<N, D>,
     pub(super) linear: Vector<N, D>,
-    /// The velocity of a point of the body, seen from the centre, is this matrix times its place.
+    /// Maps the position of a point of the body, relative to the centre, to its velocity.
     pub(super) spin: Matrix<N, D>,
-    /// The same for a turn by one radian per unit of time.
+    /// [`Self::spin`] for a rotation by one radian per unit of time.
     unit_spin: Matrix<N, D>,
     /// Radians per unit of time; not negative.
     turn: N,
@@ -52,27 +53,28 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ConstantVelocities<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
-    /// A body that stays where it is.
+    /// A body at rest.
     #[must_use]
     pub fn still(position: N::Isometry) -> Self {
         Self::straight(position, Vector::<N, D>::zeros())
     }
 
-    /// A body that moves without turning.
+    /// A body that moves without rotating.
     #[must_use]
     pub fn straight(position: N::Isometry, linear: Vector<N, D>) -> Self {
         let none = Matrix::<N, D>::zeros();
         Self::spinning(position, linear, none, N::ZERO)
     }
 
-    /// The same velocities for a body that turns about another point of its own: this point, in the
-    /// local frame, moves along a straight line.
+    /// Returns the velocities for a body that rotates about another point of its own:
+    /// `local_center`, in the local frame, moves along a straight line.
     #[must_use]
     pub const fn with_local_center(self, local_center: Point<N, D>) -> Self {
         Self { local_center, ..self }
     }
 
-    /// The same velocities for a body that stands at its position at the time `start_time` instead of zero.
+    /// Returns the velocities for a body that is at its position at the time `start_time` instead
+    /// of zero.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -88,7 +90,7 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Self { start_time, ..self }
     }
 
-    /// Where the body is at its start time.
+    /// The position of the body at its start time.
     #[must_use]
     pub const fn start(&self) -> &N::Isometry {
         &self.start
@@ -106,6 +108,8 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         &self.linear
     }
 
+    /// A motion with the generator `unit_spin` and `turn` radians per unit of time, starting at
+    /// time zero.
     fn spinning(
         start: N::Isometry,
         linear: Vector<N, D>,
@@ -117,14 +121,14 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Self { start, start_time, local_center, linear, spin, unit_spin, turn }
     }
 
-    /// The rotation in the time since the start, by the formula of Rodrigues, which in 2D says the same.
+    /// The rotation in the time since the start, by Rodrigues' formula, which also holds in 2D.
     fn turned(&self, since: N) -> Matrix<N, D> {
         let (sine, cosine) = (self.turn * since).sine_cosine();
         let squared = self.unit_spin * self.unit_spin;
         Matrix::<N, D>::identity() + self.unit_spin * sine + squared * (N::ONE - cosine)
     }
 
-    /// Where the local origin is, seen from `origin`, once the body has got the given rotation.
+    /// The position of the local origin relative to `origin`, once the body has the given rotation.
     fn translation(
         &self,
         origin: &Vector<N, D>,
@@ -142,13 +146,13 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Pose { rotation, translation: self.translation(origin, since, &rotation) }
     }
 
-    /// How far a point of the body is from the axis that it turns about, by its place seen from the centre, along
-    /// the world's axes.
+    /// The distance of a point of the body from the axis of rotation; `place` is its position
+    /// relative to the centre, in the world's axes.
     pub(super) fn across(&self, place: &Vector<N, D>) -> N {
         length(&(self.unit_spin * place))
     }
 
-    /// The same by its place along the local axes.
+    /// [`Self::across`] for a position in the local axes.
     pub(super) fn across_local(&self, place: &Vector<N, D>) -> N {
         self.across(&(N::pose(&self.start).rotation * place))
     }
@@ -161,8 +165,8 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
 }
 
 impl<N: Real> ConstantVelocities<N, 2> {
-    /// A body that stands at `position` at time zero, whose local origin moves by `linear` per unit of
-    /// time, and that turns by `angular` radians, counter-clockwise, per unit of time.
+    /// A body that is at `position` at time zero, whose local origin moves by `linear` per unit of
+    /// time, and that rotates by `angular` radians, counter-clockwise, per unit of time.
     #[must_use]
     pub fn new(position: Isometry2<N>, linear: Vector<N, 2>, angular: N) -> Self {
         let side = if angular < N::ZERO { -N::ONE } else { N::ONE };
@@ -176,7 +180,7 @@ impl<N: Real> ConstantVelocities<N, 2> {
         self.spin[(1, 0)]
     }
 
-    /// The motion seen from outside of a frame that stands at `isometry` in the outer frame: at each time
+    /// The motion in an outer frame, in which the present frame is at `isometry`: at each time
     /// `isometry * position_at(time)`.
     ///
     /// ```
@@ -197,9 +201,9 @@ impl<N: Real> ConstantVelocities<N, 2> {
         Self { start: isometry * self.start, linear, ..*self }
     }
 
-    /// The motion of what is fixed to the body at `isometry` in the body's frame: at each time
-    /// `position_at(time) * isometry`. Velocities, and the point that moves along a straight line, are those
-    /// of the body.
+    /// The motion of a body fixed to this one at `isometry` in its frame: at each time
+    /// `position_at(time) * isometry`. The velocities, and the point that moves along a straight
+    /// line, are those of this body.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -220,13 +224,13 @@ impl<N: Real> ConstantVelocities<N, 2> {
 }
 
 impl<N: Real> ConstantVelocities<N, 3> {
-    /// A body that stands at `position` at time zero, whose local origin moves by `linear` per unit of
-    /// time, and that turns about the world direction of `angular`, by its length in radians per unit
-    /// of time.
+    /// A body that is at `position` at time zero, whose local origin moves by `linear` per unit of
+    /// time, and that rotates about the world direction of `angular`, by its length in radians per
+    /// unit of time.
     #[must_use]
     pub fn new(position: Isometry3<N>, linear: Vector<N, 3>, angular: Vector<N, 3>) -> Self {
         let usable = angular.iter().all(|x| x.is_finite_number());
-        // Angular velocities that are not finite make poses that are not.
+        // Angular velocities that are not finite give poses that are not.
         let none = if usable { N::ZERO } else { N::INFINITY };
         let (axis, turn) = unit(&angular).unwrap_or((Vector::<N, 3>::zeros(), none));
         Self::spinning(position, linear, axis.cross_matrix(), turn)
@@ -239,13 +243,13 @@ impl<N: Real> ConstantVelocities<N, 3> {
         self.axis() * self.turn
     }
 
-    /// The unit vector along the axis; zero if the body does not turn.
+    /// The unit vector along the axis; zero if the body does not rotate.
     fn axis(&self) -> Vector<N, 3> {
         let spin = &self.unit_spin;
         Vector::<N, 3>::new(spin[(2, 1)], spin[(0, 2)], spin[(1, 0)])
     }
 
-    /// The motion seen from outside of a frame that stands at `isometry` in the outer frame: at each time
+    /// The motion in an outer frame, in which the present frame is at `isometry`: at each time
     /// `isometry * position_at(time)`.
     ///
     /// ```
@@ -264,16 +268,16 @@ impl<N: Real> ConstantVelocities<N, 3> {
     #[must_use]
     pub fn append_transformation(&self, isometry: &Isometry3<N>) -> Self {
         let linear = isometry.rotation * self.linear;
-        // Turned and unit again: rounding must not make the axis longer with each frame.
+        // Rotated and normalised: rounding must not lengthen the axis with each frame.
         let axis = isometry.rotation * self.axis();
         let axis = unit(&axis).map_or(axis, |(axis, _)| axis);
         let turned = Self::spinning(isometry * self.start, linear, axis.cross_matrix(), self.turn);
         turned.with_start_time(self.start_time).with_local_center(self.local_center)
     }
 
-    /// The motion of what is fixed to the body at `isometry` in the body's frame: at each time
-    /// `position_at(time) * isometry`. Velocities, and the point that moves along a straight line, are those
-    /// of the body.
+    /// The motion of a body fixed to this one at `isometry` in its frame: at each time
+    /// `position_at(time) * isometry`. The velocities, and the point that moves along a straight
+    /// line, are those of this body.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};

@@ -1,11 +1,11 @@
-//! Kinematics of contacts that an algorithm of the user's own has found.
+//! Kinematics of contacts that a user's algorithm has found.
 
 use super::{ContactKinematic, NeighborhoodGeometry, NormalRule};
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Vector};
 use crate::query::Contact;
 use crate::shape::FeatureId;
 
-/// One solid's share of a contact that an algorithm of one's own has found.
+/// One solid's part in a contact that a user's algorithm has found.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Unit, Vector};
@@ -23,16 +23,16 @@ use crate::shape::FeatureId;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSide<N: Real, const D: usize> {
-    /// What touches.
+    /// The feature that touches.
     pub feature: FeatureId,
-    /// What the solid's core looks like there, in its local frame.
+    /// The local geometry of the solid's core there, in its local frame.
     pub geometry: NeighborhoodGeometry<N, D>,
-    /// The radius by which the core is inflated: that of a ball, whose core is a point.
+    /// The radius by which the core is inflated; for a ball, whose core is a point, its radius.
     pub rounding: N,
 }
 
 impl<N: Real, const D: usize> ContactSide<N, D> {
-    /// A corner, or a small piece of a surface that is curved: the point stays with its solid.
+    /// A corner, or a small piece of a curved surface: the point moves with its solid.
     #[must_use]
     pub fn point(feature: FeatureId) -> Self {
         Self { feature, geometry: NeighborhoodGeometry::Point, rounding: N::ZERO }
@@ -40,13 +40,13 @@ impl<N: Real, const D: usize> ContactSide<N, D> {
 }
 
 impl<N: Real, const D: usize> ContactKinematic<N, D> {
-    /// The kinematic of a contact of one's own, given in the world frame; `m1` and `m2` are the poses
-    /// of the solids that it was found for.
+    /// Builds the kinematic of a user's contact, given in the world frame; `m1` and `m2` are the
+    /// poses of the solids for which it was found.
     ///
-    /// For these poses [`Self::contact`] gives the contact back, up to rounding. For others its
-    /// normal turns with the solid whose side is flat (of two, the one whose normal is nearer to the
-    /// contact's). Where no side is flat, the normal is that of the shortest connection of the cores,
-    /// if that is the contact's normal now; else it turns with the first solid.
+    /// For these poses [`Self::contact`] returns the contact, up to rounding. For others its normal
+    /// rotates with the solid whose side is flat (of two, the one whose normal is nearer to the
+    /// contact's). If no side is flat, the normal is that of the shortest connection of the cores,
+    /// provided that this is the contact's normal now; else it rotates with the first solid.
     #[must_use]
     pub fn from_contact<R: AbstractRotation<N, D>>(
         contact: &Contact<N, D>,
@@ -79,7 +79,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 }
 
-/// The direction out of a solid and the point of its core below a point of its surface, in its frame.
+/// The outward direction and the core point below a surface point, in the solid's frame.
 fn core<N: Real, const D: usize>(
     pose: &Pose<N, D>,
     surface: &Point<N, D>,
@@ -90,8 +90,8 @@ fn core<N: Real, const D: usize>(
     (outward, pose.inverse_point(surface) - outward * rounding)
 }
 
-/// How much a flat side leans: the length of the difference of its normal and `outward`; more than
-/// any lean for a side that is not flat.
+/// The tilt of a flat side: the length of the difference of its normal and `outward`; 4, above
+/// every tilt, for a side that is not flat.
 fn lean<N: Real, const D: usize>(
     geometry: &NeighborhoodGeometry<N, D>,
     outward: &Vector<N, D>,

@@ -1,13 +1,14 @@
-//! One solid's share of a contact's kinematic.
+//! One solid's part in the kinematics of a manifold.
 
 use super::NeighborhoodGeometry;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::{Cylinder, FacingPart, Feature, FeatureId, Geometry, Kind, SupportMap};
 
-/// A cylinder that leans by no more than this sine touches along its side: its axis is the core.
+/// A cylinder whose axis has at most this sine with the contact plane touches along its side: its
+/// axis is the core.
 const LYING_SINE: f64 = 0.05;
 
-/// One solid's share in all contacts of a manifold, in its local frame.
+/// One solid's part in all contacts of a manifold, in its local frame.
 pub(super) struct KinematicSide<N: Real, const D: usize> {
     pub(super) rounding: N,
     /// The manifold's normal away from the solid.
@@ -15,7 +16,7 @@ pub(super) struct KinematicSide<N: Real, const D: usize> {
     facing: SideFacing<N, D>,
 }
 
-/// What of a solid faces the other one.
+/// The supporting feature of a solid towards the other one.
 enum SideFacing<N: Real, const D: usize> {
     /// A half-space, with its outward normal.
     Boundary(Vector<N, D>),
@@ -25,8 +26,8 @@ enum SideFacing<N: Real, const D: usize> {
     Axis,
     /// A part of a box.
     Part(FacingPart<N, D>),
-    /// The general case: the feature that faces the other solid is asked for once more and the named
-    /// part is looked up in it. A curved face counts as its tangent plane.
+    /// The generic case: the supporting feature, in which the feature of a contact is looked up by
+    /// its id. A curved face is represented by its tangent plane.
     Feature(Feature<N, D>),
 }
 
@@ -65,7 +66,7 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
         surface - self.outward * self.rounding
     }
 
-    /// What the core looks like at the feature `id`.
+    /// The local geometry of the core at the feature `id`.
     pub(super) fn geometry(&self, id: FeatureId) -> NeighborhoodGeometry<N, D> {
         match (&self.facing, id) {
             (SideFacing::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),
@@ -91,8 +92,8 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
         }
     }
 
-    /// How much the flat face that faces the other solid leans: the length of the difference of its
-    /// normal and the contact's. 2, the most there is, without such a face.
+    /// The tilt of the supporting face: the length of the difference of its normal and the
+    /// contact's; 2, the maximum, without such a face.
     pub(super) fn lean(&self) -> N {
         let normal = match &self.facing {
             SideFacing::Boundary(normal) => Some(*normal),
@@ -103,7 +104,7 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
         normal.map_or(N::TWO, |normal| (normal - self.outward).norm())
     }
 
-    /// An edge of what faces the other solid that is perpendicular to the contact's normal.
+    /// An edge of the supporting feature that is perpendicular to the contact's normal.
     pub(super) fn level_edge(&self) -> Option<Vector<N, D>> {
         match &self.facing {
             SideFacing::Part(part) => {
@@ -115,7 +116,8 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
     }
 }
 
-/// The side of a feature that is most nearly perpendicular to a direction, if it is up to rounding.
+/// The side of a feature that is most nearly perpendicular to a direction; `None` if it is not so
+/// up to rounding.
 fn level_edge<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     outward: &Vector<N, D>,
@@ -126,7 +128,7 @@ fn level_edge<N: Real, const D: usize>(
     level.filter(|side| is_level(side, outward))
 }
 
-/// Perpendicular up to rounding.
+/// Whether two unit vectors are perpendicular up to rounding.
 fn is_level<N: Real, const D: usize>(side: &Vector<N, D>, outward: &Vector<N, D>) -> bool {
     side.dot(outward).abs() <= super::least_angle()
 }
@@ -137,7 +139,7 @@ fn along<N: Real, const D: usize>(feature: &Feature<N, D>, index: usize) -> Opti
     unit(&(feature.vertices[next] - feature.vertices[index])).map(|(along, _)| along)
 }
 
-/// A cylinder of some radius, touched from the side.
+/// Whether a cylinder with a radius is touched from the side.
 fn is_lying<N: Real, const D: usize>(cylinder: &Cylinder<N>, outward: &Vector<N, D>) -> bool {
     outward[1].abs() <= N::lit(LYING_SINE) && cylinder.radius() > N::ZERO
 }
@@ -155,7 +157,7 @@ fn line<N: Real, const D: usize>(
     id: FeatureId,
 ) -> NeighborhoodGeometry<N, D> {
     let mut named = feature.side_ids.iter().enumerate().filter(|&(_, &side)| side == id);
-    // A cap that is round is given as a polygon all of whose sides bear the name of the rim.
+    // A round cap is represented by a polygon whose sides all have the id of the rim.
     let (Some((index, _)), None) = (named.next(), named.next()) else {
         return NeighborhoodGeometry::Point;
     };

@@ -1,4 +1,4 @@
-//! A predicted contact against the contact that a new query finds.
+//! Predicted contacts compared with the contacts of a new query.
 
 use super::ContactKinematic;
 use crate::collide::manifold::tests::scene::{
@@ -43,12 +43,12 @@ fn unmoved_solids_give_the_contact_itself() {
     reproduces::<f64, 3>(1e-12);
 }
 
-/// Two solids, how the second lies, and the features whose contact is followed.
+/// Two solids, the pose of the second, and the features whose contact is followed.
 struct Case<'a, const D: usize> {
     solids: [&'a dyn Shape<f64, D>; 2],
     pose12: Pose<f64, D>,
     followed: [FeatureId; 2],
-    /// How much errors of the place count, besides those of distance and normal.
+    /// The weight of errors of the position, besides those of distance and normal.
     place_weight: f64,
 }
 
@@ -69,7 +69,7 @@ where
             .unwrap_or_else(|| panic!("{:?} in {raw:?}", self.followed))
     }
 
-    /// How wrong the prediction is after a motion of size `step`.
+    /// The error of the prediction after a motion of size `step`.
     fn error(&self, kinematic: &ContactKinematic<f64, D>, motion: &Motion<D>, step: f64) -> f64 {
         let turn = motion.turn.map(|angle| angle * step);
         let moved = f64::pose(motion.shift * step, turn).compose(&self.pose12);
@@ -80,7 +80,7 @@ where
             + (predicted.normal - raw.normal).norm()
     }
 
-    /// Halving small motions divides the error by three at least, until only rounding is left.
+    /// Halving small motions divides the error by at least three, until only rounding is left.
     fn check(&self) {
         let pair = self.pair(self.pose12);
         let (_, raw) = manifold(&pair, &request(0.1, 0.0));
@@ -106,7 +106,7 @@ fn at(x: f64, y: f64, z: f64, turn: [f64; 3]) -> Pose<f64, 3> {
     f64::pose(Vector::<f64, 3>::new(x, y, z), turn)
 }
 
-/// The part of a solid that touches, whatever its number: found by a query.
+/// The features of the first contact that a query finds.
 fn first_features<const D: usize>(
     solids: [&dyn Shape<f64, D>; 2],
     pose12: Pose<f64, D>,
@@ -214,7 +214,7 @@ fn capsules_segments_and_cylinders() {
     Case { solids, pose12, followed, place_weight: 0.0 }.check();
 }
 
-/// The end of a contact after both solids went the same way is where the contact itself went.
+/// After a common motion of both solids, the contact has moved with them.
 #[test]
 fn common_motion_carries_the_contact_along() {
     let cuboid = Cuboid::new(Vector::<f64, 3>::new(0.5, 0.5, 0.5));
@@ -248,7 +248,7 @@ fn common_motion_carries_the_contact_along() {
     assert_eq!(straight.contacts()[straight.deepest_contact_id()].contact.depth, deepest, "same");
 }
 
-/// Nothing is left of the direction between two points that meet: the old normal moves along.
+/// If two points meet, their connection has no direction: the old normal moves along.
 #[test]
 fn a_vanishing_connection_keeps_the_normal() {
     let ball = Ball::new(0.0_f64);

@@ -1,4 +1,4 @@
-//! Integrals over shapes that differ by dimension.
+//! The dispatch of mass integrals by dimension.
 
 use super::enclosed::{enclosed2, enclosed3};
 use super::outline::{self, round_polygon};
@@ -10,22 +10,22 @@ use crate::math::{Point, Real, Vector};
 use crate::shape::{MassError, Moments, Polytope, Shape, SupportMap};
 use crate::tables::Here;
 
-/// The integrals that differ by dimension.
+/// Integrals that differ by dimension, at density one.
 #[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
 pub trait MassByDimension<N: Real, const D: usize> {
-    /// The points within a radius of a polytope.
+    /// The set of points within a radius of a polytope.
     fn round_polytope(polytope: &Polytope<N, D>, radius: N) -> Moments<D>;
 
-    /// The points within a radius of a triangle.
+    /// The set of points within a radius of a triangle.
     fn round_triangle(corners: &[Point<N, D>; 3], radius: N) -> Moments<D>;
 
-    /// The points within a positive radius of an ellipsoid.
+    /// The set of points within a positive radius of an ellipsoid.
     fn round_ellipsoid(half_axes: &Vector<N, D>, radius: N) -> Moments<D>;
 
-    /// A convex solid that is known by its support points.
+    /// A convex solid from its support points.
     fn by_support(solid: &dyn SupportMap<N, D>) -> Result<Moments<D>, MassError>;
 
-    /// The inside of a composite of the library's that is no compound.
+    /// The interior of a composite of the library that is no compound.
     fn enclosed(shape: &dyn Shape<N, D>) -> Result<Moments<D>, MassError>;
 }
 

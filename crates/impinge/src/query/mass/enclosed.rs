@@ -1,4 +1,4 @@
-//! What meshes and lines enclose, and filled meshes of the plane.
+//! Mass of closed meshes and lines, and of filled meshes in 2D.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::outline::crossed;
@@ -7,13 +7,13 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{EdgeNeighbor, MassError, Moments, Polyline, Shape, TriMesh};
 
-/// A volume below so many epsilon of what it is the sum of is none.
+/// A volume at most this fraction of the sum of its terms' magnitudes counts as zero.
 const NONE: f64 = 1024.0 * f64::EPSILON;
 
-/// A sum of cones, positive where they are seen from inside.
+/// A sum of signed cones with their tips at the origin, positive if it lies behind their base.
 struct Cones<const D: usize> {
     sum: Integrals<D>,
-    /// The sum of the measures of all cones.
+    /// The sum of the magnitudes of all cones.
     total: f64,
 }
 
@@ -22,14 +22,14 @@ impl<const D: usize> Cones<D> {
         Self { sum: Integrals::none(), total: 0.0 }
     }
 
-    /// Adds to the sum, and the measure of what was added to the total.
+    /// Runs `add` on the sum, and adds the magnitude of the change to the total.
     fn add(&mut self, add: impl FnOnce(&mut Integrals<D>)) {
         let before = self.sum.mass;
         add(&mut self.sum);
         self.total += (self.sum.mass - before).abs();
     }
 
-    /// The body, whichever way round its surface is.
+    /// The body, whatever the orientation of its surface.
     fn moments(&self) -> Moments<D> {
         if self.sum.mass.abs() <= NONE * self.total {
             return Integrals::none().moments();
@@ -38,7 +38,7 @@ impl<const D: usize> Cones<D> {
     }
 }
 
-/// The area of a composite of the library's in the plane that is no compound.
+/// The area of a composite of the library in 2D that is no compound.
 pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, MassError> {
     let mut cones = Cones::none();
     let units = if let Some(mesh) = shape.as_shape::<TriMesh<N, 2>>() {
@@ -67,7 +67,7 @@ pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// The volume that a composite of the library's encloses that is no compound.
+/// The volume that a composite of the library encloses, if it is no compound.
 pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, MassError> {
     let Some(mesh) = shape.as_shape::<TriMesh<N, 3>>() else {
         return Err(MassError::NotClosed { part: 0 });
@@ -83,14 +83,15 @@ pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// The units of what has these bounds.
+/// The units for a shape with these bounds.
 fn units<N: Real, const D: usize>(bounds: Option<&Aabb<N, D>>) -> LocalUnits<D> {
     let origin = Point::<N, D>::origin();
     let [low, high] = bounds.map_or([&origin; 2], |bounds| [bounds.mins(), bounds.maxs()]);
     LocalUnits::around([low, high], N::ZERO)
 }
 
-/// The first triangle with a side that has no neighbour, several, or one that runs the same way; 0 for none.
+/// The first triangle with a side that has no neighbour, several, or one in the same direction; 0
+/// if there is none.
 fn opening<N: Real>(mesh: &TriMesh<N, 3>) -> u32 {
     let is_open = |triangle: u32| {
         let corners = *mesh.triangle(triangle).corners();

@@ -1,12 +1,14 @@
-//! Sums of what pieces of a body add to its mass and its moments.
+//! Integrals over a body as sums over its pieces.
 
 use crate::math::{Matrix, Point, Real, Vector, f64_power_of_two_below};
 use crate::shape::Moments;
 
-/// The frame in which a shape is integrated: in doubles, about its middle, in units of about its size.
+/// The frame in which a shape is integrated: in doubles, about its centre, in units of about its
+/// size.
 ///
-/// Nothing is lost by being far from the origin, and no power of a length leaves the range of the numbers. The unit is a
-/// power of two, so that scaling the shape by one scales the answer exactly.
+/// A large distance from the origin costs no digits, and no power of a length overflows or
+/// underflows. The unit is a power of two, so that scaling the shape by one scales the answer
+/// exactly.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalUnits<const D: usize> {
     pub(super) origin: Vector<f64, D>,
@@ -14,7 +16,7 @@ pub(super) struct LocalUnits<const D: usize> {
 }
 
 impl<const D: usize> LocalUnits<D> {
-    /// Around some points and all within `radius` of them.
+    /// Units around some points inflated by `radius`.
     pub(super) fn around<'p, N: Real>(
         points: impl IntoIterator<Item = &'p Point<N, D>>,
         radius: N,
@@ -31,7 +33,7 @@ impl<const D: usize> LocalUnits<D> {
         Self { origin: mins * 0.5 + maxs * 0.5, scale: f64_power_of_two_below(size) }
     }
 
-    /// About the origin of the shape's frame, for a shape of a given size.
+    /// Units about the origin of the shape's frame, for a shape of the given size.
     pub(super) fn about_origin(size: f64) -> Self {
         Self { origin: Vector::<f64, D>::zeros(), scale: f64_power_of_two_below(size) }
     }
@@ -48,7 +50,7 @@ impl<const D: usize> LocalUnits<D> {
         (point.coords.map(N::as_f64) - self.origin) / self.scale
     }
 
-    /// The body in the frame of the shape.
+    /// Converts the body to the frame of the shape.
     pub(super) fn grown(&self, moments: &Moments<D>) -> Moments<D> {
         moments.grown(self.scale, &self.origin)
     }
@@ -68,7 +70,7 @@ impl<const D: usize> Integrals<D> {
         Self { mass: 0.0, first, second }
     }
 
-    /// Adds a simplex of this measure with a corner at the origin; `corners` are the others.
+    /// Adds a simplex of this measure with one corner at the origin; `corners` are the others.
     ///
     /// The matrix of second moments of a simplex in D dimensions, about any point, is its measure over
     /// (D + 1)(D + 2) times the sum of the products of its corners and of the product of their sum.
@@ -84,14 +86,14 @@ impl<const D: usize> Integrals<D> {
         self.second += (products + sum * sum.transpose()) * (share / (D as f64 + 2.0));
     }
 
-    /// Adds a piece of which the matrix of second moments about its own centre is known.
+    /// Adds a piece with a known matrix of second moments about its own centre.
     pub(super) fn add(&mut self, mass: f64, center: &Vector<f64, D>, second: &Matrix<f64, D>) {
         self.mass += mass;
         self.first += center * mass;
         self.second += second + center * center.transpose() * mass;
     }
 
-    /// Adds a piece of which the integrals are known about a point.
+    /// Adds a piece with known integrals about a point.
     pub(super) fn add_about(&mut self, point: &Vector<f64, D>, piece: &Self) {
         let moved = point * piece.first.transpose();
         self.mass += piece.mass;
@@ -100,7 +102,7 @@ impl<const D: usize> Integrals<D> {
             piece.second + moved + moved.transpose() + point * point.transpose() * piece.mass;
     }
 
-    /// The same body turned inside out.
+    /// The body with reversed orientation: all signs change.
     pub(super) fn negated(&self) -> Self {
         Self { mass: -self.mass, first: -self.first, second: -self.second }
     }

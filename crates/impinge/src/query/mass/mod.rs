@@ -1,7 +1,8 @@
 //! Mass, centre of mass and inertia of shapes.
 //!
-//! Shapes are integrated in doubles, about their middle and in units of their size ([`integrals`]), whatever the
-//! scalar. What there is a closed form for has it; the rest is [`round_ellipsoid`], [`support2`] and [`support3`].
+//! Shapes are integrated in doubles, about their centre and in units of their size ([`integrals`]),
+//! whatever the scalar. Closed forms are used where they exist; the rest is [`round_ellipsoid`],
+//! [`support2`] and [`support3`].
 
 mod by_dimension;
 mod enclosed;
@@ -23,38 +24,40 @@ use crate::shape::{
     amount,
 };
 
-/// The mass, centre of mass and inertia of a shape of one density, in the frame of the shape.
+/// Returns the mass, centre of mass and inertia of a shape of uniform density, in the frame of the
+/// shape.
 ///
 /// | shape | its mass |
 /// |---|---|
 /// | ball, cuboid, ellipsoid, capsule, tapered capsule, cylinder, cone, convex polygon and hull, tetrahedron, triangle in 2D | density × area in 2D, × volume in 3D |
-/// | any of them [`Rounded`](crate::shape::Rounded), and a rounded segment or triangle | the same |
-/// | segment; triangle in 3D | density × length; density × area: a thin rod, a thin plate |
-/// | closed triangle mesh in 3D, closed polyline in 2D | density × what it encloses |
+/// | any of them [`Rounded`](crate::shape::Rounded), and a rounded segment or triangle | density × area in 2D, × volume in 3D |
+/// | segment; triangle in 3D | density × length; density × area |
+/// | closed triangle mesh in 3D, closed polyline in 2D | density × the enclosed volume or area |
 /// | triangle mesh in 2D | density × the areas of its triangles |
-/// | compound; composite of the user's own that is no surface | the sum of its children; of its parts |
+/// | compound; user's composite that is no surface | the sum of its children; of its parts |
 /// | half-space; open mesh, other polylines, height field | an error |
-/// | convex shape of the user's own | [`Shape::unit_mass_properties`], else by its support points |
+/// | user's convex shape | [`Shape::unit_mass_properties`], else by its support points |
 ///
-/// Where children, parts or triangles overlap, the mass is there twice. What a mesh or polyline encloses is counted as
-/// often as the mesh winds around it: inner surfaces that are turned inside out are cavities. A mesh that is inside
-/// out as a whole counts as if it were not. A shape of a size of zero has no mass; neither has a rounded one with a
-/// radius of zero around a segment or a flat triangle.
+/// Overlaps of children, parts or triangles count twice. The region inside a mesh or polyline
+/// counts as often as the mesh winds around it: inner surfaces with reversed orientation are
+/// cavities. The orientation of the whole mesh does not matter. A shape of size zero has no mass;
+/// neither has a rounded segment or flat triangle with a radius of zero.
 ///
 /// # Accuracy
 ///
-/// Closed forms, right to the last digits of the scalar: in `f32` usually the nearest number. Distances from the origin
-/// cost nothing. By quadrature: rounded ellipsoids, and ellipses, up to about 1e-8; a convex shape of the user's own up to
-/// about 1e-8 in 2D and 1e-4 in 3D, a flat tetrahedron that is rounded as well. Volumes of closed meshes lose as many
-/// digits as the sheets between their surfaces are thinner than the whole. Scaling a shape by a power of two scales the
+/// Closed forms are right to the last digits of the scalar: in `f32` usually the nearest number.
+/// Distances from the origin cost no digits. Quadrature is used for rounded ellipsoids and
+/// ellipses, accurate to about 1e-8; for a user's convex shape to about 1e-8 in 2D and 1e-4 in 3D,
+/// as for a rounded flat tetrahedron. Volumes of closed meshes lose as many digits as the gap
+/// between their surfaces is thinner than the whole. Scaling a shape by a power of two scales the
 /// answer exactly.
 ///
 /// # Errors
-/// If the density is negative or not finite; if the shape, or a part of a compound, is a half-space or a surface
-/// that is not closed; if the mass or a moment is beyond the range of the scalar.
+/// If the density is negative or not finite; if the shape, or a part of a compound, is a half-space
+/// or a surface that is not closed; if the mass or a moment is beyond the range of the scalar.
 ///
 /// # Cost
-/// O(1), and O(n) for n vertices, triangles or children. In 3D a convex shape of the user's own takes some
+/// O(1), and O(n) for n vertices, triangles or children. In 3D a user's convex shape takes some
 /// milliseconds, a rounded ellipsoid one. So compute them once for each shape.
 ///
 /// ```
@@ -87,14 +90,15 @@ pub fn mass_properties<N: Space<D>, const D: usize>(
     mass_properties_with(shape, &mut |_| density)
 }
 
-/// [`mass_properties`] of a compound whose children have densities of their own.
+/// [`mass_properties`] of a compound whose children have different densities.
 ///
-/// `density` is asked once for each child, in their order, by its path: the index of the child, of its child in a
-/// nested compound, and so on, as in [`PartPath`]. A mesh is one child, as is any other shape but a compound; the parts of
-/// a composite of the user's own are asked about one by one. A shape that is no compound has the empty path.
+/// `density` is called once for each child, in order, with its path: the index of the child, of its
+/// child in a nested compound, and so on, as in [`PartPath`]. A mesh is one child, as is any other
+/// shape but a compound; for a user's composite it is called for each part. A shape that is no
+/// compound has the empty path.
 ///
 /// # Errors
-/// As [`mass_properties`].
+/// As for [`mass_properties`].
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -120,15 +124,16 @@ pub fn mass_properties_with<N: Space<D>, const D: usize>(
     MassProperties::try_of_moments(&weighing.of_shape(shape)?)
 }
 
-/// A shape on the way through its children.
+/// The traversal of a shape and its children.
 struct Weighing<'d, N> {
     density: &'d mut dyn FnMut(&[u32]) -> N,
     path: PartPath,
-    /// The number of the first part of the child that is looked at.
+    /// The number of the first part of the present child.
     first: u32,
 }
 
 impl<N: Real> Weighing<'_, N> {
+    /// The moments of a shape, with the density of its path.
     fn of_shape<const D: usize>(&mut self, shape: &dyn Shape<N, D>) -> Result<Moments<D>, MassError>
     where
         N: Space<D>,
@@ -159,6 +164,7 @@ impl<N: Real> Weighing<'_, N> {
         Ok(found.of_density(self.density()?))
     }
 
+    /// The sum of the children of a compound, in its frame.
     fn of_children<const D: usize>(
         &mut self,
         compound: &Compound<N, D>,
@@ -178,7 +184,7 @@ impl<N: Real> Weighing<'_, N> {
         Ok(all.unwrap_or_else(|| Moments::massless(Vector::<f64, D>::zeros())))
     }
 
-    /// The parts of a composite of the user's, if they are solids side by side.
+    /// The sum of the parts of a user's composite, if they are solids side by side.
     fn of_parts<const D: usize>(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
@@ -202,12 +208,12 @@ impl<N: Real> Weighing<'_, N> {
         Ok(all.unwrap_or_else(|| Moments::massless(Vector::<f64, D>::zeros())))
     }
 
-    /// The density of the child that is looked at.
+    /// The density of the present child.
     fn density(&mut self) -> Result<f64, MassError> {
         amount("the density", (self.density)(&self.path).as_f64())
     }
 
-    /// An error about a child in terms of the whole shape.
+    /// Converts part numbers of an error about a child to those of the whole shape.
     fn placed(&self, error: MassError) -> MassError {
         match error {
             MassError::Unbounded { part } => MassError::Unbounded { part: self.first + part },
@@ -217,7 +223,7 @@ impl<N: Real> Weighing<'_, N> {
     }
 }
 
-/// Adds a body at a pose to those so far.
+/// Adds a body at a pose to the sum.
 fn add_placed<N: Real, const D: usize>(
     all: &mut Option<Moments<D>>,
     pose: &Pose<N, D>,
@@ -227,7 +233,7 @@ fn add_placed<N: Real, const D: usize>(
     *all = Some(all.map_or(placed, |all| all.plus(&placed)));
 }
 
-/// A solid of density one: a volume, or a rod or a plate of its own measure.
+/// A solid of density one: a volume, or a segment or flat triangle with its own measure.
 fn of_solid<N: Space<D>, const D: usize>(
     solid: Geometry<'_, N, D>,
 ) -> Result<Moments<D>, MassError> {
@@ -247,7 +253,7 @@ fn of_solid<N: Space<D>, const D: usize>(
     }
 }
 
-/// The volume of all points within `radius` of a solid that there is a formula for.
+/// The volume of all points within `radius` of a solid with a closed form.
 fn rounded<N: Space<D>, const D: usize>(core: Geometry<'_, N, D>, radius: N) -> Moments<D> {
     match core.0 {
         Kind::Ball(ball) => solids::round_box(&Vector::<N, D>::zeros(), ball.radius() + radius),

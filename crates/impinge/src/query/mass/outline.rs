@@ -1,4 +1,4 @@
-//! Polygons in 2D, and the points within a radius of them.
+//! Polygons in 2D, and the sets of points within a radius of them.
 
 use super::integrals::{Integrals, LocalUnits};
 use crate::math::{Matrix, Point, Real, Vector};
@@ -6,8 +6,8 @@ use crate::shape::{Moments, Polytope};
 
 type V2 = Vector<f64, 2>;
 
-/// A sector of a disk: its area, and about its corner its moment along the bisector, and its second moments along
-/// and across that.
+/// A sector of a disk: its area, the first moment along the bisector about its corner, and the
+/// second moments along and across the bisector.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wedge {
     pub(super) area: f64,
@@ -29,25 +29,25 @@ impl Wedge {
     }
 }
 
-/// The points within `radius` of a convex polygon.
+/// The set of points within `radius` of a convex polygon.
 pub(super) fn round_polygon<N: Real>(polygon: &Polytope<N, 2>, radius: N) -> Moments<2> {
     round_points(polygon.vertices(), radius)
 }
 
-/// The points within `radius` of a triangle, which may be clockwise and without area.
+/// The set of points within `radius` of a triangle, which may be clockwise and without area.
 pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 2>; 3], radius: N) -> Moments<2> {
     round_points(corners, radius)
 }
 
-/// The points within `radius` of the polygon with convex corners in either order.
+/// The set of points within `radius` of the polygon with convex corners in either order.
 fn round_points<N: Real>(corners: &[Point<N, 2>], radius: N) -> Moments<2> {
     let units = LocalUnits::around(corners, radius);
     let ring: Vec<V2> = corners.iter().map(|corner| units.point(corner)).collect();
     units.grown(&round_ring(ring, units.length(radius)).moments())
 }
 
-/// The points between the corners of a ring and those within `radius` of them: the polygon, a rectangle beside each
-/// side, and a sector at each corner by which the outline turns there.
+/// The integrals over a ring's polygon inflated by `radius`: the polygon, a rectangle along each
+/// side, and at each corner a sector with the angle by which the outline turns there.
 fn round_ring(mut ring: Vec<V2>, radius: f64) -> Integrals<2> {
     let mut sum = Integrals::none();
     for (a, b) in sides(&ring) {
@@ -72,7 +72,7 @@ pub(super) fn sides<P: Copy>(ring: &[P]) -> impl Iterator<Item = (P, P)> {
     ring.iter().copied().zip(ring.iter().copied().cycle().skip(1))
 }
 
-/// Adds what is within `radius` of a counter-clockwise outline of different points, outside of it.
+/// Adds the border of width `radius` outside a counter-clockwise outline of distinct points.
 fn add_border(ring: &[V2], radius: f64, sum: &mut Integrals<2>) {
     if let [point] = ring {
         let area = core::f64::consts::PI * radius * radius;
@@ -92,9 +92,10 @@ fn add_border(ring: &[V2], radius: f64, sum: &mut Integrals<2>) {
     }
 }
 
-/// Adds the sector at a corner where the outward normal turns counter-clockwise from one to another.
+/// Adds the sector at a corner where the outward normal rotates counter-clockwise from one to
+/// another.
 fn add_corner(corner: &V2, [from, to]: [&V2; 2], radius: f64, sum: &mut Integrals<2>) {
-    // The turn is at most a half; where it is one, rounding has no say in which way round.
+    // The turn is at most 180°; for exactly 180°, rounding must not decide its direction.
     let angle = libm::atan2(crossed(from, to), from.dot(to)).abs();
     let (sine, cosine) = libm::sincos(angle * 0.5);
     let along = from * cosine + quarter_turn(from) * sine;
@@ -111,13 +112,13 @@ fn outward(a: &V2, b: &V2) -> V2 {
     V2::new(side.y, -side.x) / side.norm()
 }
 
-/// The area of the parallelogram, positive if `b` lies counter-clockwise of `a`. Doubles are no scalar of the library
-/// without the feature `f64`.
+/// The signed area of the parallelogram, positive if `b` lies counter-clockwise of `a`.
+/// `math::cross2` needs a [`Real`], which `f64` is only with the feature `f64`.
 pub(super) fn crossed(a: &V2, b: &V2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// The vector turned by a quarter, counter-clockwise.
+/// The vector rotated by 90° counter-clockwise.
 fn quarter_turn(v: &V2) -> V2 {
     V2::new(-v.y, v.x)
 }

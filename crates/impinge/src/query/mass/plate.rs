@@ -1,4 +1,4 @@
-//! Flat polygons in 3D, and the points within a radius of a triangle.
+//! Flat polygons in 3D, and the set of points within a radius of a triangle.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::outline::{Wedge, sides};
@@ -8,19 +8,20 @@ use crate::shape::Moments;
 type V3 = Vector<f64, 3>;
 type M3 = Matrix<f64, 3>;
 
-/// A flat polygon: the integrals over its area.
+/// The integrals over the area of a flat polygon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plate {
     pub(super) area: f64,
     pub(super) center: V3,
-    /// About the centre.
+    /// The second moments about the centre.
     second: M3,
-    /// Out of the side from which the corners run counter-clockwise; `None` without area.
+    /// The unit normal on the side from which the corners run counter-clockwise; `None` without
+    /// area.
     pub(super) normal: Option<V3>,
 }
 
 impl Plate {
-    /// The polygon with these corners, of which none is needed.
+    /// The polygon with these corners, which may be empty.
     pub(super) fn new(corners: &[V3]) -> Self {
         let start = corners.first().copied().unwrap_or_else(V3::zeros);
         let (mut area_vector, mut first, mut second) = (V3::zeros(), V3::zeros(), M3::zeros());
@@ -44,7 +45,8 @@ impl Plate {
 
     /// Adds the prism on the front of the plate, or a part of it.
     ///
-    /// The prism is `height` high; `share` of its mass is there, with its centre at `level` above the plate.
+    /// The prism has the height `height`; `share` of its mass is added, with its centre at `level`
+    /// above the plate.
     pub(super) fn add_prism(
         &self,
         [height, share, level]: [f64; 3],
@@ -61,7 +63,7 @@ impl Plate {
     }
 }
 
-/// A piece of a cylinder along an edge: of its radius, between two normals of a given angle to each other.
+/// A sector of a cylinder along an edge, between two normals with the given angle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EdgeWedge {
     pub(super) ends: [V3; 2],
@@ -71,6 +73,7 @@ pub(super) struct EdgeWedge {
 }
 
 impl EdgeWedge {
+    /// Adds the sector with the given radius; nothing for an edge without length.
     pub(super) fn add(&self, radius: f64, sum: &mut Integrals<3>) {
         let [a, b] = &self.ends;
         let (edge, wedge) = (b - a, Wedge::new(radius, self.angle));
@@ -89,7 +92,7 @@ impl EdgeWedge {
     }
 }
 
-/// The points within `radius` of a flat triangle, which may be without area or extent.
+/// The set of points within `radius` of a flat triangle, which may be without area or extent.
 pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 3>; 3], radius: N) -> Moments<3> {
     let units = LocalUnits::around(corners, radius);
     let mut ring = corners.each_ref().map(|corner| units.point(corner)).to_vec();
@@ -105,7 +108,7 @@ pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 3>; 3], radius: N) -> 
     units.grown(&sum.moments())
 }
 
-/// A unit vector across points on a line.
+/// A unit vector perpendicular to collinear points.
 fn across_all(ring: &[V3]) -> V3 {
     let mut longest = V3::zeros();
     for (a, b) in sides(ring) {
@@ -115,15 +118,15 @@ fn across_all(ring: &[V3]) -> V3 {
     across(&longest)
 }
 
-/// A unit vector across a vector of any length.
+/// A unit vector perpendicular to a vector of any length.
 fn across(v: &V3) -> V3 {
     let mut least = V3::zeros();
     least[v.iamin()] = 1.0;
     v.cross(&least).try_normalize(0.0).unwrap_or(least)
 }
 
-/// Adds what is beside a flat ring of different points: half a cylinder along each side, and at each corner the lune
-/// of a ball by which the outline turns there.
+/// Adds the border of a flat ring of distinct points: half a cylinder along each side, and at each
+/// corner a lune of a ball with the angle by which the outline turns there.
 fn add_rim(ring: &[V3], normal: &V3, radius: f64, sum: &mut Integrals<3>) {
     let [.., last] = ring else { return };
     if ring.len() == 1 {
@@ -140,8 +143,8 @@ fn add_rim(ring: &[V3], normal: &V3, radius: f64, sum: &mut Integrals<3>) {
     }
 }
 
-/// Adds a lune of a ball: what a half-disk sweeps that turns by an angle about `axis`, counter-clockwise from the
-/// unit vector `from`.
+/// Adds a lune of a ball: the region swept by a half-disk that rotates by `angle` about `axis`,
+/// counter-clockwise from the unit vector `from`.
 fn add_lune(corner: &V3, [axis, from]: [&V3; 2], angle: f64, radius: f64, sum: &mut Integrals<3>) {
     let (sine, cosine) = libm::sincos(angle * 0.5);
     let middle = from * cosine + axis.cross(from) * sine;

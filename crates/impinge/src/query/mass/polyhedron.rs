@@ -1,8 +1,9 @@
-//! Convex polyhedra, and the points within a radius of them.
+//! Convex polyhedra, and the sets of points within a radius of them.
 //!
-//! By Steiner's decomposition a rounded polyhedron is the polyhedron, a prism on each face, a piece of a cylinder
-//! along each edge between the normals of its two faces, and at each vertex a sector of a ball: the directions in
-//! which that vertex is the support point. The integrals of the sectors follow from their sides by Stokes' theorem.
+//! By Steiner's decomposition a rounded polyhedron is the polyhedron, a prism on each face, a
+//! sector of a cylinder along each edge between the normals of its two faces, and at each vertex a
+//! sector of a ball: the directions for which that vertex is the support point. The integrals of
+//! the ball sectors follow from their sides by Stokes' theorem.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::plate::{EdgeWedge, Plate, radial};
@@ -11,7 +12,7 @@ use crate::shape::{Moments, Polytope};
 
 type V3 = Vector<f64, 3>;
 
-/// The points within `radius` of a convex polyhedron.
+/// The set of points within `radius` of a convex polyhedron.
 pub(super) fn round_polyhedron<N: Real>(solid: &Polytope<N, 3>, radius: N) -> Moments<3> {
     let units = LocalUnits::around(solid.vertices(), radius);
     let vertices: Vec<V3> = solid.vertices().iter().map(|vertex| units.point(vertex)).collect();
@@ -37,7 +38,8 @@ pub(super) fn round_polyhedron<N: Real>(solid: &Polytope<N, 3>, radius: N) -> Mo
     units.grown(&sum.moments())
 }
 
-/// Adds the tetrahedra between the origin and a face, counter-clockwise seen from outside.
+/// Adds the tetrahedra between the origin and a face, whose corners are counter-clockwise seen from
+/// outside.
 pub(super) fn add_cones(corners: &[V3], sum: &mut Integrals<3>) {
     for pair in corners.windows(2).skip(1) {
         let [a, b, c] = [&corners[0], &pair[0], &pair[1]];
@@ -62,10 +64,10 @@ impl Ridge {
     }
 }
 
-/// Adds the pieces of cylinders along all edges and the sectors of balls at all vertices.
+/// Adds the cylinder sectors of all edges and the ball sectors of all vertices.
 fn add_ridges(ridges: &[Ridge], vertices: usize, radius: f64, sum: &mut Integrals<3>) {
     let wedges: Vec<EdgeWedge> = ridges.iter().map(Ridge::wedge).collect();
-    // A direction within the cone of normals at each vertex.
+    // A direction within the normal cone of each vertex.
     let mut inner = vec![V3::zeros(); vertices];
     for (ridge, wedge) in ridges.iter().zip(&wedges) {
         for vertex in ridge.vertices {
@@ -84,14 +86,14 @@ fn add_ridges(ridges: &[Ridge], vertices: usize, radius: f64, sum: &mut Integral
     }
 }
 
-/// What one edge adds to the sector of a ball at one of its ends: the side of the sector that is the arc between the
-/// normals of the two faces, and the triangle from that arc to a direction within the sector.
+/// The contribution of one edge to the ball sector at one of its ends: the arc between the normals
+/// of the two faces, and the triangle from that arc to a direction within the sector.
 struct SectorSide<'a> {
     ridge: &'a Ridge,
     wedge: &'a EdgeWedge,
     /// A direction within the sector, of any length.
     inner: V3,
-    /// The unit vector across the arc, out of the sector: along the edge, away from the vertex.
+    /// The unit normal of the arc, out of the sector: along the edge, away from the vertex.
     outward: V3,
 }
 
@@ -113,7 +115,8 @@ impl SectorSide<'_> {
         }
     }
 
-    /// The solid angle between the arc and the direction within, in two halves: neither has a side of half a turn.
+    /// The solid angle between the arc and the inner direction, in two halves: neither has a side
+    /// of 180°.
     fn solid_angle(&self) -> f64 {
         let middle = &self.wedge.middle;
         let [one, other] = &self.ridge.normals;

@@ -1,8 +1,8 @@
 //! Bodies of revolution: integrals of their slices across the axis.
 //!
-//! A slice at z is a ball of D − 1 dimensions whose radius the profile gives: a disk in 3D, in 2D a segment. The
-//! profile consists of lines and arcs. Integrals of lines are polynomials, those of arcs trigonometric ones; sixteen
-//! nodes of Gauss and Legendre give both to the last digits.
+//! A slice at z is a ball of D − 1 dimensions with the radius of the profile: a disk in 3D, in 2D a
+//! segment. The profile consists of lines and arcs. Their integrals are polynomials and
+//! trigonometric functions; sixteen nodes of Gauss and Legendre give both to the last digits.
 
 use super::integrals::LocalUnits;
 use super::solids::{UNIT_BALL, round_box};
@@ -23,8 +23,8 @@ pub(super) const NODES: [[f64; 2]; 8] = [
     [0.095_012_509_837_637_44, 0.189_450_610_455_068_5],
 ];
 
-/// The integrals of slices along z: of their measure times 1, z and z², and of their second moment along an axis
-/// across.
+/// The integrals of slices along z: of their measure times 1, z and z², and of their second moment
+/// along one transverse axis.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slices<const D: usize> {
     mass: f64,
@@ -34,8 +34,8 @@ struct Slices<const D: usize> {
 }
 
 impl<const D: usize> Slices<D> {
-    /// Adds the slices on a piece of the profile: the place, the radius, and the derivative of the place, each by the
-    /// parameter from `from` to `to`.
+    /// Adds the slices on a piece of the profile. `at` returns the position z, the radius, and the
+    /// derivative of z for a parameter from `from` to `to`.
     fn add(&mut self, [from, to]: [f64; 2], at: impl Fn(f64) -> [f64; 3]) {
         let (middle, half) = (from * 0.5 + to * 0.5, to * 0.5 - from * 0.5);
         for [node, weight] in NODES {
@@ -51,12 +51,14 @@ impl<const D: usize> Slices<D> {
         }
     }
 
-    /// The slices between two points of the profile, each a place along the axis and a radius.
+    /// Adds the slices between two points of the profile, each a position along the axis and a
+    /// radius.
     fn add_line(&mut self, [z0, r0]: [f64; 2], [z1, r1]: [f64; 2]) {
         self.add([0.0, 1.0], |t| [z0 + (z1 - z0) * t, r0 + (r1 - r0) * t, z1 - z0]);
     }
 
-    /// The slices under an arc about a point of the profile, between two angles from the direction across.
+    /// Adds the slices under an arc about a point of the profile, between two angles from the
+    /// transverse direction.
     fn add_arc(&mut self, [z, aside]: [f64; 2], radius: f64, angles: [f64; 2]) {
         self.add(angles, |angle| {
             let (sine, cosine) = libm::sincos(angle);
@@ -76,7 +78,7 @@ impl<const D: usize> Slices<D> {
     }
 }
 
-/// The rotation that takes the y axis to a unit vector, or to its opposite, by the shorter way.
+/// The rotation that maps the y axis to a unit vector or its opposite, whichever is nearer.
 fn turned_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
     let mut y = Vector::<f64, D>::zeros();
     y[1] = 1.0;
@@ -86,7 +88,7 @@ fn turned_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
     Matrix::<f64, D>::identity() - mirrored + axis * y.transpose() * 2.0
 }
 
-/// The convex hull of two balls; of equal ones a capsule.
+/// The convex hull of two balls; a capsule if their radii are equal.
 pub(super) fn two_balls<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     radii: [N; 2],
@@ -100,7 +102,7 @@ pub(super) fn two_balls<N: Real, const D: usize>(
         let ball = round_box(&Vector::<N, D>::zeros(), radii[larger]);
         return Moments { center: ends[larger].coords.map(N::as_f64), ..ball };
     }
-    // The normal of the side leans by this sine along the axis.
+    // The sine of the side's normal along the axis.
     let sine = (r1 - r2) / length;
     let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
     let (half, lean) = (length * 0.5, libm::atan2(sine, cosine));
@@ -112,7 +114,7 @@ pub(super) fn two_balls<N: Real, const D: usize>(
     units.grown(&Moments { center: body.center + (a + b) * 0.5, ..body })
 }
 
-/// The points within `rounding` of a cylinder about the y axis.
+/// The set of points within `rounding` of a cylinder about the y axis.
 pub(super) fn round_cylinder<N: Real, const D: usize>(
     [half_height, radius]: [N; 2],
     rounding: N,
@@ -126,14 +128,15 @@ pub(super) fn round_cylinder<N: Real, const D: usize>(
     units.grown(&slices.moments(&y_axis()))
 }
 
-/// The points within `rounding` of a cone about the y axis, with its apex on the positive side.
+/// The set of points within `rounding` of a cone about the y axis, with its apex on the positive
+/// side.
 pub(super) fn round_cone<N: Real, const D: usize>(
     [half_height, radius]: [N; 2],
     rounding: N,
 ) -> Moments<D> {
     let units = LocalUnits::about_origin(max(max(half_height, radius), rounding).as_f64());
     let [h, aside, r] = [half_height, radius, rounding].map(|length| units.length(length));
-    // The normal of the side, across and along the axis; of a point any will do.
+    // The normal of the side, across and along the axis; arbitrary for a point.
     let side = [2.0 * h, aside];
     let length = (side[0] * side[0] + side[1] * side[1]).sqrt();
     let [cosine, sine] = if length > 0.0 { side.map(|x| x / length) } else { [1.0, 0.0] };

@@ -1,29 +1,32 @@
-//! The points within a radius of an ellipsoid, which have no closed form: a quadrature over directions.
+//! The set of points within a radius of an ellipsoid, which has no closed form: a quadrature over
+//! directions.
 //!
-//! The support point of the direction u is `y = A² u / h + r u` with `h = |A u|`, and a piece of the surface has the
-//! area of the directions times the product of the principal radii there, each larger by r than that of the
-//! ellipsoid. Mass and moments follow from the surface by the divergence theorem. Directions are taken as
-//! `A^(−1/2) v`, half way between those of the normals and of the points, and v by angles from the axes, whose
-//! logarithms are evenly spaced: the curvature of needles and plates is all near the axes.
+//! The support point of the direction u is `y = A² u / h + r u` with `h = |A u|`. A surface element
+//! has the area of its directions times the product of the principal radii there, each larger by r
+//! than that of the ellipsoid. Mass and moments follow from the surface by the divergence theorem.
+//! Directions are sampled as `A^(−1/2) v`, between those of the normals and of the points, and v by
+//! angles from the axes with evenly spaced logarithms: the curvature of needles and plates is
+//! concentrated near the axes.
 
 use super::integrals::LocalUnits;
 use crate::math::{Mapped, Matrix, Real, Vector, max, max_component};
 use crate::shape::Moments;
 
-/// The step of the logarithms of angles, and how far they go to both sides.
+/// The step of the logarithms of angles, and the number of steps to both sides.
 const STEP: f64 = 0.4;
 const STEPS: i32 = 80;
 
-/// Half axes are at least so much of the radius.
+/// Half axes are raised to this fraction of the radius.
 const THIN: f64 = 1e-9;
 
-/// The sine and the cosine of an angle up to a quarter of a turn, and its weight.
+/// The sine and the cosine of an angle up to 90°, and its weight.
 type AngleNode = [f64; 3];
 
+/// The angles and weights of the quadrature, from near zero to near 90°.
 fn nodes() -> Vec<AngleNode> {
     let node = |step: i32| {
         let growth = libm::exp(STEP * f64::from(step));
-        // Both are exact near their end, where the other is a quarter up to rounding.
+        // Each is exact near its own end, where the other is 90° up to rounding.
         let [from_zero, from_quarter] =
             [growth, 1.0 / growth].mapped(|x| core::f64::consts::FRAC_PI_2 * x / (1.0 + x));
         let weight = STEP * from_zero * from_quarter * core::f64::consts::FRAC_2_PI;
@@ -32,7 +35,7 @@ fn nodes() -> Vec<AngleNode> {
     (-STEPS..=STEPS).map(node).collect()
 }
 
-/// Sums over directions of the volume and the second moments that the surface there adds.
+/// Sums of the volume and the second moments over directions of the surface.
 struct Shell<const D: usize> {
     half_axes: Vector<f64, D>,
     radius: f64,
@@ -49,8 +52,8 @@ impl<const D: usize> Shell<D> {
         (Self { half_axes, radius, mass: 0.0, seconds: Vector::<f64, D>::zeros() }, units)
     }
 
-    /// Adds the directions about one, in terms of the unit vector v; `radii` gives the product of the principal radii
-    /// by the length h, the inner support point, and the product of the half axes.
+    /// Adds the directions about the unit vector v. `radii` returns the product of the principal
+    /// radii from the length h, the inner support point, and the product of the half axes.
     fn add(
         &mut self,
         v: &Vector<f64, D>,
@@ -71,7 +74,7 @@ impl<const D: usize> Shell<D> {
         self.seconds += outer.component_mul(&outer) * measure;
     }
 
-    /// The body, of which the directions between the positive axes were added.
+    /// The body, after the directions between the positive axes were added.
     fn moments(&self) -> Moments<D> {
         let parts = f64::from(1_u8 << D);
         let (mass, seconds) =
@@ -81,7 +84,7 @@ impl<const D: usize> Shell<D> {
     }
 }
 
-/// The points within a positive `radius` of an ellipse.
+/// The set of points within a positive `radius` of an ellipse.
 pub(super) fn round_ellipse<N: Real>(half_axes: &Vector<N, 2>, radius: N) -> Moments<2> {
     let (mut shell, units) = Shell::new(half_axes, radius);
     let radius = shell.radius;
@@ -93,7 +96,7 @@ pub(super) fn round_ellipse<N: Real>(half_axes: &Vector<N, 2>, radius: N) -> Mom
     units.grown(&shell.moments())
 }
 
-/// The points within a positive `radius` of an ellipsoid.
+/// The set of points within a positive `radius` of an ellipsoid.
 pub(super) fn round_ellipsoid<N: Real>(half_axes: &Vector<N, 3>, radius: N) -> Moments<3> {
     let (mut shell, units) = Shell::new(half_axes, radius);
     let (radius, squared, nodes) = (shell.radius, shell.half_axes.norm_squared(), nodes());

@@ -1,4 +1,5 @@
-//! Mass and moments in closed form: boxes, balls, ellipsoids, simplices; in 2D and 3D by one formula each.
+//! Mass and moments in closed form: boxes, balls, ellipsoids, simplices; one formula each for 2D
+//! and 3D.
 
 use super::integrals::LocalUnits;
 use crate::math::{Matrix, Point, Real, Vector, max, max_component};
@@ -9,18 +10,18 @@ const PI: f64 = core::f64::consts::PI;
 /// The measure of the unit ball in 0, 1, 2 and 3 dimensions.
 pub(super) const UNIT_BALL: [f64; 4] = [1.0, 2.0, PI, 4.0 / 3.0 * PI];
 
-/// The mean of |x| over it.
+/// The mean of |x| over the unit ball in 0, 1, 2 and 3 dimensions.
 const MEAN_ASIDE: [f64; 4] = [0.0, 0.5, 4.0 / 3.0 / PI, 0.375];
 
-/// The measure of a ball of some dimensions.
+/// The measure of a ball in `dimensions` dimensions.
 fn ball_measure(dimensions: usize, radius: f64) -> f64 {
     (0..dimensions).fold(UNIT_BALL[dimensions], |measure, _| measure * radius)
 }
 
-/// The points within `radius` of a box about the origin: a ball for a box without extent.
+/// The set of points within `radius` of a box about the origin: a ball for a box without extent.
 ///
-/// It falls into products: along some axes the box, along the others the parts of a ball of as many dimensions,
-/// moved apart to the corners of the box.
+/// It decomposes into products: the box along some axes, and along the others the parts of a ball
+/// of that dimension, moved to the corners of the box.
 pub(super) fn round_box<N: Real, const D: usize>(
     half_extents: &Vector<N, D>,
     radius: N,
@@ -61,7 +62,7 @@ pub(super) fn ellipsoid<N: Real, const D: usize>(half_axes: &Vector<N, D>) -> Mo
     units.grown(&Moments::along_axes(mass, center, axes, &seconds))
 }
 
-/// A segment or a triangle of the mass 1 per unit of its own measure, its length or its area.
+/// A segment or a triangle with the density 1 per unit of length or area.
 pub(super) fn simplex<N: Real, const D: usize, const CORNERS: usize>(
     corners: &[Point<N, D>; CORNERS],
 ) -> Moments<D> {
@@ -78,7 +79,7 @@ pub(super) fn simplex<N: Real, const D: usize, const CORNERS: usize>(
     let products = corners.map(|corner| (corner - center) * (corner - center).transpose());
     let second = products.iter().sum::<Matrix<f64, D>>() * (measure / (count * (count + 1.0)));
     let body = Moments::of_seconds(measure, center, &second);
-    // The measure grows by the dimension of the simplex, not by that of the space around it.
+    // The measure scales with the dimension of the simplex, not of the space around it.
     let spare = (CORNERS..=D).fold(1.0, |spare, _| spare / units.scale);
     units.grown(&body).of_density(spare)
 }

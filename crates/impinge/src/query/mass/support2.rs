@@ -1,4 +1,4 @@
-//! Convex solids in 2D that are known by their support points alone.
+//! Mass of convex solids in 2D, from support points alone.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::outline::crossed;
@@ -7,10 +7,10 @@ use crate::shape::{MassError, Moments, SupportMap, finite};
 
 type V2 = Vector<f64, 2>;
 
-/// An arc is halved so often at most, of the quarters between the axes.
+/// The maximum number of times that an arc is halved, from the quarters between the axes.
 const DEPTH: u32 = 9;
 
-/// An arc that is no higher than so many epsilon of the size of the solid is a segment.
+/// An arc with a height of at most this many epsilon of the solid's size is a segment.
 const FLAT: f64 = 64.0;
 
 /// The mass and moments of a convex solid by its support points, up to about 1e-9; polygons are exact.
@@ -30,19 +30,20 @@ pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 2>) -> Result<Moments<
     Ok(units.grown(&tracing.sum.moments()))
 }
 
-/// An outline that is followed by its support points.
+/// A trace of an outline by its support points.
 ///
-/// Each arc between two support points is halved at the support point across its chord, until it is flat or short;
-/// what is left between the chord and the arc is taken for a piece of a parabola.
+/// Each arc between two support points is split at the support point across its chord, until it is
+/// flat or short; the rest between the chord and the arc is approximated by a parabola.
 pub(super) struct Tracing<'s> {
     support: &'s dyn Fn(&V2) -> V2,
-    /// How high an arc is that is none.
+    /// The height up to which an arc is flat.
     flat: f64,
     pub(super) sum: Integrals<2>,
 }
 
 impl<'s> Tracing<'s> {
-    /// `support` gives a support point for a unit vector; an arc of a height of at most `flat` is a segment.
+    /// `support` returns a support point for a unit vector; an arc of a height of at most `flat` is
+    /// a segment.
     pub(super) fn new(support: &'s dyn Fn(&V2) -> V2, flat: f64) -> Self {
         Self { support, flat, sum: Integrals::none() }
     }
@@ -56,7 +57,8 @@ impl<'s> Tracing<'s> {
         }
     }
 
-    /// Adds what is between the origin and the arc from one support point to another, counter-clockwise.
+    /// Adds the region between the origin and the arc from one support point to another,
+    /// counter-clockwise.
     fn follow(&mut self, a: &V2, b: &V2, depth: u32) {
         let chord = b - a;
         let length = chord.norm();
@@ -74,7 +76,8 @@ impl<'s> Tracing<'s> {
         }
         self.sum.add_cone(crossed(a, b) * 0.5, &[a, b]);
         if is_curved {
-            // A parabola over the chord: two thirds of the rectangle, its centre at two fifths of the height.
+            // A parabola over the chord: two thirds of the rectangle, its centre at two fifths of
+            // the height.
             let center = (a + b) * 0.5 + outward * (height * 0.4);
             let area = length * height * (2.0 / 3.0);
             self.sum.add(area, &center, &(chord * chord.transpose() * (area / 20.0)));

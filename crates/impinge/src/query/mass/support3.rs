@@ -1,8 +1,9 @@
-//! Convex solids in 3D that are known by their support points alone.
+//! Mass of convex solids in 3D, from support points alone.
 //!
-//! The solid is brought to the proportions of a ball by a linear map and cut into slices across its z axis. A slice is a
-//! convex solid in 2D. Its support point in a direction follows from those of the solid: the outline of the solid, seen
-//! across the direction and the z axis, is narrowed down to the height of the slice.
+//! A linear map gives the solid the proportions of a ball; then it is cut into slices across its z
+//! axis. A slice is a convex solid in 2D. Its support point in a direction follows from those of
+//! the solid: on the outline of the solid, projected along the normal of the direction and the z
+//! axis, an interval is narrowed to the height of the slice.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::revolution::NODES;
@@ -15,29 +16,33 @@ type V2 = Vector<f64, 2>;
 type V3 = Vector<f64, 3>;
 type M3 = Matrix<f64, 3>;
 
-/// How often the proportions are estimated: each estimate gives the next one better directions.
+/// The number of times that the proportions are estimated: each estimate improves the directions of
+/// the next.
 const ROUNDS: usize = 3;
 
-/// Axes shorter than this share of the longest one, or than `THIN_EPSILON` epsilon of it, are treated as that long.
+/// Axes shorter than this fraction of the longest one, or than `THIN_EPSILON` epsilon of it, are
+/// raised to it.
 const THIN: f64 = 1e-8;
 const THIN_EPSILON: f64 = 64.0;
 
-/// The most often that a group of slices is halved.
+/// The maximum number of times that a group of slices is halved.
 const HALVINGS: u32 = 6;
 
-/// A group is not halved if the sum of its halves differs by less than this, of a mass and moments of about 1.
+/// A group is not halved if the sum of its halves differs by less than this; mass and moments are
+/// about 1.
 const ENOUGH: f64 = 1e-5;
 
-/// Each quarter of the outline of a slice has up to two to this power of arcs.
+/// Each quarter of a slice's outline has up to two to this power of arcs.
 const DEPTH: u32 = 3;
 
-/// The height above its chord up to which an arc is flat; points of the solid are about 1 from its middle.
+/// The height above its chord up to which an arc is flat; points of the solid are about 1 from its
+/// centre.
 const FLAT: f64 = 1e-5;
 
-/// A cap on the steps that narrow an outline down; ten are usual.
+/// The maximum number of steps that narrow an outline; ten are usual.
 const MAX_STEPS: usize = 40;
 
-/// A solid of the proportions of a ball with less volume than this has none.
+/// A solid with the proportions of a ball counts as without volume up to this.
 const NOTHING: f64 = 1e-6;
 
 /// The mass and moments of a convex solid by its support points, up to about 1e-4.
@@ -52,7 +57,8 @@ pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 3>) -> Result<Moments<
     Ok(solid.round.grown(&solid.integrals()))
 }
 
-/// Adds the support points in 98 directions, which are spread evenly in the frame in which the solid is round.
+/// Adds the support points in 98 directions, spread evenly in the frame in which the solid is
+/// round.
 fn sow<N: Real>(
     map: &dyn SupportMap<N, 3>,
     round: &RoundFrame,
@@ -71,8 +77,8 @@ fn sow<N: Real>(
     Ok(())
 }
 
-/// The frame in which a solid has the proportions of a ball: `x = center + axes · (widths × y)` takes y, a point in it,
-/// to a point in units.
+/// The frame in which a solid has the proportions of a ball: `x = center + axes · (widths × y)`
+/// maps a point y of this frame to a point in units.
 #[derive(Clone, Copy, Debug)]
 struct RoundFrame {
     units: LocalUnits<3>,
@@ -86,7 +92,7 @@ impl RoundFrame {
         Self { units, center: V3::zeros(), axes: M3::identity(), widths: V3::repeat(1.0) }
     }
 
-    /// That of a solid with these points on its surface.
+    /// The frame of a solid with these points on its surface.
     fn of_points<N: Real>(points: &[Point<N, 3>]) -> Self {
         let units = LocalUnits::around(points, N::ZERO);
         let mut sum = Integrals::none();
@@ -100,23 +106,24 @@ impl RoundFrame {
         let longest = values.amax().sqrt();
         let least = longest * thin;
         let width = |value: f64| if value > least * least { value.sqrt() } else { least };
-        // Of a single point there is no proportion.
+        // A single point has no proportions.
         let widths = if longest > 0.0 { values.map(width) } else { V3::repeat(1.0) };
         Self { units, center, axes, widths }
     }
 
-    /// The direction in which the solid's support point is that of the round solid in a given direction: a unit vector.
+    /// The unit direction of the solid whose support point corresponds to a direction of the round
+    /// frame.
     fn direction(&self, round: &V3) -> V3 {
         let direction = self.axes * round.component_div(&self.widths);
         direction.try_normalize(0.0).unwrap_or_else(V3::y)
     }
 
-    /// A point of the solid in the frame in which it is round.
+    /// Converts a point of the solid to the round frame.
     fn point<N: Real>(&self, point: &Point<N, 3>) -> V3 {
         self.axes.tr_mul(&(self.units.point(point) - self.center)).component_div(&self.widths)
     }
 
-    /// The solid as it is.
+    /// Converts the integrals to the solid's own frame.
     fn grown(&self, round: &Integrals<3>) -> Moments<3> {
         let has_volume = round.mass > NOTHING;
         let map = self.axes * M3::from_diagonal(&self.widths);
@@ -133,7 +140,7 @@ impl RoundFrame {
     }
 }
 
-/// A solid that is cut into slices where it is round.
+/// A solid to be cut into slices in its round frame.
 struct Sliced<'m, N: Real> {
     map: &'m dyn SupportMap<N, 3>,
     round: RoundFrame,
@@ -145,6 +152,7 @@ impl<N: Real> Sliced<'_, N> {
         self.round.point(&self.map.support_point(&toward.map(N::lit)))
     }
 
+    /// The integrals over the solid in its round frame.
     fn integrals(&self) -> Integrals<3> {
         let [bottom, top] = [-V3::z(), V3::z()].map(|direction| self.support(&direction));
         let quarter = core::f64::consts::FRAC_PI_2;
@@ -154,7 +162,7 @@ impl<N: Real> Sliced<'_, N> {
         sum
     }
 
-    /// Adds the slices between two angles, whose sum as one group is known.
+    /// Adds the slices between two angles; `whole` is their sum as one group.
     fn halve(
         &self,
         ends: [V3; 2],
@@ -177,8 +185,9 @@ impl<N: Real> Sliced<'_, N> {
         }
     }
 
-    /// Slices at the nodes of Gauss and Legendre between two of the angles at which a ball would have them: the area
-    /// of a slice is then smooth up to the ends of solids that are round there.
+    /// Sums slices at the nodes of Gauss and Legendre between two angles. The angles are those of a
+    /// ball's slices, so that the area of a slice is smooth up to the ends of a solid that is round
+    /// there.
     fn group(&self, ends: [V3; 2], [from, to]: [f64; 2]) -> Integrals<3> {
         let (center, half) = ((ends[0].z + ends[1].z) * 0.5, (ends[1].z - ends[0].z) * 0.5);
         let (middle, step, mut sum) = ((from + to) * 0.5, (to - from) * 0.5, Integrals::none());
@@ -212,14 +221,14 @@ impl<N: Real> Sliced<'_, N> {
         ) * weight;
     }
 
-    /// The support point of the slice at a height: on the outline of the solid in the plane of the direction and the
-    /// axis, between two of its points below and above. What is between their chord and the outline, at last, is
-    /// taken for a piece of a parabola.
+    /// The support point of the slice at a height: on the outline of the solid in the plane of the
+    /// direction and the axis, between two of its points below and above. The final rest between
+    /// their chord and the outline is approximated by a parabola.
     fn slice_support(&self, [mut below, mut above]: [V3; 2], z: f64, direction: &V2) -> V2 {
         let outward = V3::new(direction.x, direction.y, 0.0);
         for _ in 0..MAX_STEPS {
             let chord = above - below;
-            // Across the chord, out of the solid.
+            // The normal of the chord, out of the solid.
             let across = outward * chord.z - V3::z() * chord.dot(&outward);
             let length = across.norm();
             if chord.z <= 0.0 || length <= 0.0 {

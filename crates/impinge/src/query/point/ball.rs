@@ -4,7 +4,7 @@ use super::SurfacePoint;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::FeatureId;
 
-/// On the ray from the centre through the point; from the centre itself, along the first axis.
+/// On the ray from the centre through the point; for the centre itself along the first axis.
 pub(super) fn surface_point<N: Real, const D: usize>(
     radius: N,
     point: &Point<N, D>,

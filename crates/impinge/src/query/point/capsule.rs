@@ -5,7 +5,8 @@ use super::{SurfacePoint, length};
 use crate::math::{Point, Real, Vector, unit_or};
 use crate::shape::{Capsule, FeatureId};
 
-/// Beyond the nearest point of the segment in the middle. A capsule of no radius is that segment.
+/// At the distance of the radius from the nearest point of the core segment. A capsule without
+/// radius is that segment.
 pub(super) fn surface_point<N: Real, const D: usize>(
     capsule: &Capsule<N, D>,
     point: &Point<N, D>,
@@ -24,7 +25,7 @@ pub(super) fn surface_point<N: Real, const D: usize>(
     }
 }
 
-/// A unit vector perpendicular to `axis`: the part across it of the coordinate axis that is least
+/// A unit vector perpendicular to `axis`: the projection of the coordinate axis that is least
 /// aligned with it, the first of equals. The first coordinate axis for zero.
 fn aside<N: Real, const D: usize>(axis: &Vector<N, D>) -> Vector<N, D> {
     let mut least = 0;

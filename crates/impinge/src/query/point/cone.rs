@@ -1,4 +1,4 @@
-//! The nearest point of the surface of a cone, in its half-plane through the axis.
+//! The nearest point of the surface of a cone, in the half-plane of the point through the axis.
 
 use super::SurfacePoint;
 use super::cylinder::Meridian;
@@ -6,7 +6,7 @@ use super::segment::nearest;
 use crate::math::{Point, Real};
 use crate::shape::{Cone, FeatureId};
 
-/// The base and the slanted side are two segments of the half-plane; the nearer one answers.
+/// The base and the slanted side are two segments of the half-plane; the nearer one wins.
 pub(super) fn surface_point<N: Real>(cone: &Cone<N>, point: &Point<N, 3>) -> SurfacePoint<N, 3> {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     let meridian = Meridian::of(point);
@@ -30,7 +30,7 @@ pub(super) fn surface_point<N: Real>(cone: &Cone<N>, point: &Point<N, 3>) -> Sur
     }
 }
 
-/// `flat` is (distance from the axis, height).
+/// Whether the cone contains a point; `flat` is (distance from the axis, height).
 fn contains<N: Real>(cone: &Cone<N>, flat: &Point<N, 2>) -> bool {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     flat.y.abs() <= half_height

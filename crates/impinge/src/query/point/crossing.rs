@@ -1,18 +1,18 @@
-//! How often a ray along an axis crosses what is around a point: once, exactly.
+//! Exact crossings of an axis-parallel ray with a closed line or surface.
 //!
-//! The winding number of a closed line or surface around a point is the number of times that a ray from
-//! the point leaves it less the times it enters. Whether it does at a segment or triangle is read off
-//! exact signs. Ties, where the ray meets corners or sides, are settled as if the point were moved by an
-//! infinitesimal step across the ray, the same for all parts (Edelsbrunner and Mücke, "Simulation of
-//! Simplicity", 1990; in 2D this is the half-open rule): so what one part leaves out its
-//! neighbour counts, and no direction of the ray can be unlucky.
+//! The winding number of a closed line or surface around a point is the number of times that a ray
+//! from the point leaves it minus the number of times that it enters. Exact signs decide whether
+//! the ray crosses a segment or triangle. Ties, where the ray meets corners or sides, are resolved
+//! as if the point were moved by an infinitesimal step across the ray, the same for all parts
+//! (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990; in 2D this is the half-open rule). So
+//! a crossing that one part misses its neighbour counts, and no direction of the ray is degenerate.
 
 use core::cmp::Ordering;
 
 use crate::math::exact::{area, volume};
 use crate::math::{Mapped, Point};
 
-/// A ray from a point to infinity.
+/// The direction of a ray from a point to infinity, along an axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayWay {
     pub(super) axis: usize,
@@ -20,7 +20,7 @@ pub(super) struct RayWay {
     pub(super) is_ascending: bool,
 }
 
-/// What one part adds to the winding number; `None` if the point lies on it.
+/// The contribution of one part to the winding number; `None` if the point lies on it.
 type Added = Option<i64>;
 
 /// The sign of a determinant as a count.
@@ -32,8 +32,8 @@ fn sign(determinant: f64) -> i64 {
     }
 }
 
-/// Of a segment of the plane, whose left is inside. The point may lie on a segment across the ray
-/// unnoticed; then its winding number is that of a point beside it.
+/// The contribution of a segment in 2D, whose left is inside. A point on a segment across the ray
+/// may go undetected; then its winding number is that of a point beside it.
 pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: RayWay) -> Added {
     let across = 1 - way.axis;
     let at = point[across];
@@ -43,8 +43,8 @@ pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: R
         return Some(0);
     }
     let side = sign(area(&ends[0], &ends[1], point));
-    // Rising on the side of larger x the segment has the point on its left; with x and y exchanged,
-    // left is right.
+    // If the segment rises on the side of larger x, the point is on its left; exchanging x and y
+    // exchanges left and right.
     let is_above = (rises == (side > 0)) == (way.axis == 0);
     match side {
         0 => None,
@@ -53,8 +53,8 @@ pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: R
     }
 }
 
-/// Of a triangle in 3D, whose front is outside. The point may lie on a triangle along the ray
-/// unnoticed; then its winding number is that of a point beside it.
+/// The contribution of a triangle in 3D, whose front is outside. A point on a triangle parallel to
+/// the ray may go undetected; then its winding number is that of a point beside it.
 pub(super) fn of_triangle(
     corners: [Point<f64, 3>; 3],
     point: &Point<f64, 3>,
@@ -67,7 +67,7 @@ pub(super) fn of_triangle(
         return Some(0);
     }
     let side = sign(volume(&corners[0], &corners[1], &corners[2], point));
-    // A triangle that is seen counter-clockwise against the axis has its back to what is below.
+    // A triangle that appears counter-clockwise against the axis has its back towards points below.
     let is_above = side * around < 0;
     match side {
         0 => None,
@@ -76,8 +76,8 @@ pub(super) fn of_triangle(
     }
 }
 
-/// How often three sides run around a point of the plane: 0, or the sign of their turn. On a side the
-/// point counts as moved by (ε, ε²).
+/// The winding of three sides around a point in 2D: 0, or the sign of their turn. A point on a side
+/// counts as moved by (ε, ε²).
 fn around_seen(corners: &[Point<f64, 2>; 3], point: &Point<f64, 2>) -> i64 {
     let one = |at: usize| {
         let (a, b) = (&corners[at], &corners[(at + 1) % 3]);
@@ -119,7 +119,7 @@ mod tests {
         }
     }
 
-    /// The same for the surface of a cube with its corners, the middles of its sides and of its faces.
+    /// The eight corners, the edge midpoints and the face centres of a cube, as a surface.
     #[test]
     fn a_surface_along_the_ray() {
         let mut triangles = Vec::new();

@@ -1,11 +1,11 @@
-//! The nearest point of the surface of a cylinder, in its half-plane through the axis.
+//! The nearest point of the surface of a cylinder, in the half-plane of the point through the axis.
 
 use super::SurfacePoint;
 use crate::math::{Point, Real, Vector, max, min, unit};
 use crate::shape::{Cylinder, FeatureId};
 
-/// A point of space as a distance from the y axis, a height, and the direction away from the axis
-/// (the x axis for a point on the axis): solids of revolution are flat problems in the first two.
+/// A 3D point as a distance from the y axis, a height, and the direction away from the axis (the x
+/// axis for a point on the axis). It reduces solids of revolution to 2D.
 pub(super) struct Meridian<N: Real> {
     pub(super) flat: Point<N, 2>,
     away: Vector<N, 2>,
@@ -19,7 +19,7 @@ impl<N: Real> Meridian<N> {
         Self { flat: Point::<N, 2>::new(distance, point.y), away }
     }
 
-    /// A point of the flat problem, back in 3D.
+    /// Converts a point of the half-plane to 3D.
     pub(super) fn lift(&self, flat: &Point<N, 2>) -> Point<N, 3> {
         Point::<N, 3>::new(self.away.x * flat.x, flat.y, self.away.y * flat.x)
     }

@@ -5,7 +5,8 @@ use crate::collide::separation::balls::ball_ellipsoid::project;
 use crate::math::{Point, Real};
 use crate::shape::{Ellipsoid, FeatureId, SupportMap};
 
-/// What a ball of no radius there would touch. One without thickness is the set it is flattened to.
+/// The point from the separation of a ball of radius zero. An ellipsoid without thickness is a flat
+/// set.
 pub(super) fn surface_point<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,

@@ -1,9 +1,9 @@
-//! Closed surfaces and lines as what they enclose.
+//! Signed distance and containment of closed meshes and polylines.
 //!
 //! The sign of a distance is that of the winding number, which [`crossing`](super::crossing) counts
-//! exactly. Signs from the normal at the nearest feature (Bærentzen and Aanæs, "Signed distance computation
-//! using the angle weighted pseudonormal", 2005) need a manifold, and in floating point fail at needles;
-//! the tests hold the two against each other.
+//! exactly. Signs from the normal at the nearest feature (Bærentzen and Aanæs, "Signed distance
+//! computation using the angle weighted pseudonormal", 2005) need a manifold, and in floating point
+//! fail at needles; the tests compare the two.
 
 use super::crossing::{RayWay, of_segment, of_triangle};
 use crate::bounding_volume::Aabb;
@@ -13,11 +13,11 @@ use crate::shape::{CompositeShape, Polyline, TriMesh};
 use crate::tables::entries;
 
 impl<N: Real> TriMesh<N, 3> {
-    /// The point, in the frame of the mesh, lies in the volume that the mesh bounds, or on the mesh;
-    /// `None` if the mesh [bounds none](Self::is_volume).
+    /// Whether the point, in the frame of the mesh, lies in the volume that the mesh bounds, or on
+    /// the mesh; `None` if the mesh [bounds none](Self::is_volume).
     ///
-    /// [`Self::signed_distance`] is then zero or negative, and says what inside means. A point that is
-    /// not finite lies in nothing. Cost: O(log n) and the triangles over the point along one axis.
+    /// [`Self::signed_distance`] is then zero or negative, and defines the inside. A point that is
+    /// not finite is never inside. Cost: O(log n) and the triangles over the point along one axis.
     #[must_use]
     pub fn encloses(&self, point: &Point<N, 3>) -> Option<bool> {
         self.is_volume().then(|| {
@@ -26,19 +26,20 @@ impl<N: Real> TriMesh<N, 3> {
         })
     }
 
-    /// The distance from the point, in the frame of the mesh, to the nearest triangle: negative in the
-    /// volume that the mesh bounds, zero on the mesh; `None` if the mesh [bounds none](Self::is_volume).
+    /// Returns the distance from the point, in the frame of the mesh, to the nearest triangle:
+    /// negative in the volume that the mesh bounds, zero on the mesh; `None` if the mesh [bounds
+    /// none](Self::is_volume).
     ///
-    /// Inside are the points around which the mesh winds, whichever way: where bodies overlap it is inside
-    /// of both, in the cavity that an inner surface turned inside out leaves it is outside. This decides
-    /// about the sign and is exact for the coordinates as given: no crack, needle or corner that the point is
-    /// in line with makes it wrong. (It assumes that the coordinates are within a factor of 1e90 of each
-    /// other.) As for all sets without thickness, a point within rounding of a triangle lies on it.
+    /// The inside is the set of points around which the mesh winds, in either direction: an overlap
+    /// of bodies is inside both, the cavity within a reversed inner surface is outside. The winding
+    /// number decides the sign and is exact for the given coordinates: no crack, needle or corner
+    /// in line with the point makes it wrong. (It assumes that the coordinates are within a factor
+    /// of 1e90 of each other.) As for all sets without thickness, a point within rounding of a
+    /// triangle lies on it.
     ///
-    /// All other queries, also those of [`PointQuery`](crate::query::PointQuery), see the mesh as a surface, unless it
-    /// is [solid](Self::solid).
-    /// A point that is not finite is infinitely far away. Cost: a search of the nearest triangle, and of
-    /// those over the point along one axis.
+    /// All other queries, also those of [`PointQuery`](crate::query::PointQuery), treat the mesh as
+    /// a surface, unless it is [solid](Self::solid). A point that is not finite is infinitely far
+    /// away. Cost: a search of the nearest triangle, and of those over the point along one axis.
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -56,12 +57,12 @@ impl<N: Real> TriMesh<N, 3> {
         self.is_volume().then(|| signed(self, point, || self.winding(point)))
     }
 
-    /// How often the mesh winds around the point; `None` if the point lies on it.
+    /// The winding number of the mesh around the point; `None` if the point lies on it.
     fn winding(&self, point: &Point<N, 3>) -> Option<i64> {
         self.winding_of(point, |_| true)
     }
 
-    /// [`Self::winding`] of those triangles that count.
+    /// [`Self::winding`] of the triangles for which `counts` is true.
     pub(crate) fn winding_of(
         &self,
         point: &Point<N, 3>,
@@ -79,11 +80,11 @@ impl<N: Real> TriMesh<N, 3> {
 }
 
 impl<N: Real> Polyline<N, 2> {
-    /// The point, in the frame of the line, lies in the area that the line bounds, or on the line; `None`
-    /// if the line [bounds none](Self::is_outline).
+    /// Whether the point, in the frame of the line, lies in the area that the line bounds, or on
+    /// the line; `None` if the line [bounds none](Self::is_outline).
     ///
-    /// [`Self::signed_distance`] is then zero or negative, and says what inside means. A point that is
-    /// not finite lies in nothing. Cost: O(log n) and the segments beside the point along one axis.
+    /// [`Self::signed_distance`] is then zero or negative, and defines the inside. A point that is
+    /// not finite is never inside. Cost: O(log n) and the segments beside the point along one axis.
     #[must_use]
     pub fn encloses(&self, point: &Point<N, 2>) -> Option<bool> {
         self.is_outline().then(|| {
@@ -92,11 +93,12 @@ impl<N: Real> Polyline<N, 2> {
         })
     }
 
-    /// The distance from the point, in the frame of the line, to the nearest segment: negative in the area
-    /// that the line bounds, zero on the line; `None` if the line [bounds none](Self::is_outline).
+    /// Returns the distance from the point, in the frame of the line, to the nearest segment:
+    /// negative in the area that the line bounds, zero on the line; `None` if the line [bounds
+    /// none](Self::is_outline).
     ///
-    /// As for closed meshes in 3D ([`TriMesh::signed_distance`]): inside are the points around which the
-    /// line winds, whichever way, and that is decided exactly.
+    /// As for closed meshes in 3D ([`TriMesh::signed_distance`]), the inside is the set of points
+    /// around which the line winds, in either direction, and is decided exactly.
     ///
     /// ```
     /// use impinge::dim2::math::Point;
@@ -112,12 +114,12 @@ impl<N: Real> Polyline<N, 2> {
         self.is_outline().then(|| signed(self, point, || self.winding(point)))
     }
 
-    /// How often the line winds around the point; `None` if the point lies on it.
+    /// The winding number of the line around the point; `None` if the point lies on it.
     fn winding(&self, point: &Point<N, 2>) -> Option<i64> {
         self.winding_of(point, |_| true)
     }
 
-    /// [`Self::winding`] of those segments that count.
+    /// [`Self::winding`] of the segments for which `counts` is true.
     pub(crate) fn winding_of(
         &self,
         point: &Point<N, 2>,
@@ -142,7 +144,7 @@ fn touches<N: Space<D>, const D: usize>(
     entries::nearest_part(parts, point, true).is_some()
 }
 
-/// The distance to the nearest part with the sign that the winding number says.
+/// The distance to the nearest part, with the sign from the winding number.
 fn signed<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
@@ -151,7 +153,7 @@ fn signed<N: Space<D>, const D: usize>(
     let Some(nearest) = entries::nearest_part(parts, point, false) else {
         return N::INFINITY;
     };
-    // Parts are thin, and inside of a body distances are negative.
+    // Parts are thin; the distance is negative inside a body.
     let distance = nearest.distance.abs();
     match winding() {
         Some(0) => distance,
@@ -160,8 +162,8 @@ fn signed<N: Space<D>, const D: usize>(
     }
 }
 
-/// The sum of what the parts between a point and the nearest face of the box around all add; `None` if
-/// one says that the point lies on it.
+/// Sums the contributions of the parts between a point and the nearest face of the overall box;
+/// `None` if the point lies on one.
 fn winding<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,
@@ -178,8 +180,8 @@ fn winding<N: Space<D>, const D: usize>(
     sum
 }
 
-/// From a point in a box the shortest way out along an axis, as a thin box; `None` outside the box and
-/// for a point that is not finite.
+/// The shortest way out of a box along an axis, as a thin box; `None` for a point outside the box
+/// or not finite.
 fn way_out<N: Real, const D: usize>(
     bounds: &Aabb<N, D>,
     point: &Point<N, D>,
@@ -202,8 +204,8 @@ fn way_out<N: Real, const D: usize>(
     Some((way, Aabb::try_new(low, high).ok()?))
 }
 
-/// The power of two by which coordinates are divided, so that products of three are numbers, and the
-/// point divided by it.
+/// The power of two by which coordinates are divided, so that products of three neither overflow
+/// nor underflow, and the point divided by it.
 fn scaled<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,
@@ -214,7 +216,7 @@ fn scaled<N: Space<D>, const D: usize>(
     (scale, lifted(point, scale))
 }
 
-/// A point in doubles, divided by a power of two: exact, but where numbers are lost to underflow.
+/// A point in doubles, divided by a power of two: exact unless a coordinate underflows.
 fn lifted<N: Real, const D: usize>(point: &Point<N, D>, scale: f64) -> Point<f64, D> {
     Point::from(point.coords.map(|x| x.as_f64() / scale))
 }

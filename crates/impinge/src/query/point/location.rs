@@ -1,11 +1,11 @@
-//! Where on a shape a point lies: which part, which feature, and by which weights of its corners.
+//! The location of a projected point on a shape: part, feature, and barycentric coordinates.
 
 use super::nearest_on_segment;
 use super::triangle::{nearest, on_side};
 use crate::math::{Point, Real, filled};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Triangle};
 
-/// Where on a shape a projected point lies.
+/// The location of a projected point on a shape.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -20,17 +20,18 @@ use crate::shape::{FeatureId, Geometry, Kind, Segment, Triangle};
 pub struct PointLocation<N: Real> {
     /// The part of a composite; 0 for a convex solid.
     pub part: u32,
-    /// The feature of that part that the nearest point of its boundary lies on.
+    /// The feature of that part that contains the nearest point of its boundary.
     pub feature: FeatureId,
-    /// The projected point by the corners of the part.
+    /// The barycentric coordinates of the projected point in the part.
     pub barycentric: Barycentric<N>,
 }
 
-/// A point as the mean of corners with these weights: none is negative, and they sum to one up to
-/// rounding. On a side or at a corner the others' weights are exactly zero.
+/// A point as the weighted mean of corners: no weight is negative, and they sum to one up to
+/// rounding. On a side or at a corner the other weights are exactly zero.
 ///
-/// What lies beside a triangle by rounding counts as the nearest point of it. The weights reproduce the
-/// point up to rounding of the part's size, however thin the triangle.
+/// A point that lies beside a triangle by rounding is replaced by the nearest point of the
+/// triangle. The weights reproduce the point up to rounding of the part's size, however thin the
+/// triangle.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -55,7 +56,7 @@ pub enum Barycentric<N: Real> {
 }
 
 impl<N: Real> Barycentric<N> {
-    /// The weights of a point of a solid. `feature` is that of the boundary that the point lies on;
+    /// The weights of a point of a solid. `feature` is the boundary feature that the point lies on;
     /// `None` if it may lie inside.
     pub(crate) fn of<const D: usize>(
         solid: Geometry<'_, N, D>,
@@ -75,6 +76,7 @@ fn of_segment<N: Real, const D: usize>(segment: &Segment<N, D>, point: &Point<N,
     [N::ONE - fraction, fraction]
 }
 
+/// The weights of a point of a triangle; exactly zero for corners outside of `feature`.
 fn of_triangle<N: Real, const D: usize>(
     triangle: &Triangle<N, D>,
     point: &Point<N, D>,

@@ -1,6 +1,6 @@
-//! Where a point lies to one solid: inside or not, how far, and the nearest point of the surface.
+//! Point queries: containment, distance, and the nearest point of the surface.
 //!
-//! Every answer derives from one local fact, the nearest point of the boundary, found by closed
+//! Every answer derives from the nearest point of the boundary in the local frame, found by closed
 //! forms: one file per shape, and one table per dimension (`point2`, `point3`).
 
 mod ball;
@@ -51,33 +51,34 @@ use crate::tables::entries;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointProjection<N: Real, const D: usize> {
-    /// The given point lies in the solid or on its surface.
+    /// Whether the given point lies in the solid or on its surface.
     pub is_inside: bool,
-    /// The nearest point, in the frame that the question was asked in.
+    /// The nearest point, in the frame of the query.
     pub point: Point<N, D>,
 }
 
-/// Questions about a point and a solid; implemented for every [`Shape`].
+/// Queries of a point and a solid; implemented for every [`Shape`].
 ///
 /// A `solid` is the set with its interior; without `solid` only its boundary counts. A point on the
-/// boundary is inside. Sets without thickness (segments; triangles in 3D) hold the points that
+/// boundary is inside. Sets without thickness (segments; triangles in 3D) contain the points that
 /// lie on them within rounding, which is a few units in the last place of the largest coordinate.
 ///
-/// Where several points are equally near, the answer is fixed: the feature of lowest number wins
-/// among faces, and a direction that is not defined (from the centre of a ball, from the axis of a
-/// capsule, cylinder or cone) is the first coordinate axis that will do.
+/// If several points are equally near, the answer is deterministic: among faces the lowest number
+/// wins, and an undefined direction (from the centre of a ball, from the axis of a capsule,
+/// cylinder or cone) is the first coordinate axis that is valid.
 ///
-/// `contains_point`, `project_point(…, true).is_inside` and `distance_to_point(…, true) == 0` always
-/// agree. A point that is not finite lies in nothing; its projection and distance mean nothing.
+/// `contains_point`, `project_point(…, true).is_inside` and `distance_to_point(…, true) == 0`
+/// always agree. A point that is not finite is never inside; its projection and distance are
+/// meaningless.
 ///
-/// A composite is the union of its parts: a point is inside if it is inside a part. Outside, the nearest
-/// part answers; inside, the part that the point lies deepest in, by the nearest point of that part's
-/// own boundary, which may lie inside another part. So the depth is at most the depth in the union, and
-/// equal to it where parts do not overlap. Of several parts the first by number answers. Triangles of
-/// space and segments are surfaces, which hold the points on them and enclose nothing (but closed meshes
-/// have [`signed_distance`](crate::shape::TriMesh::signed_distance)); distances from
-/// them are as exact where the mesh is far from its origin as where it is near. A composite without
-/// parts is infinitely far from everything.
+/// A composite is the union of its parts: a point is inside if it is inside a part. Outside, the
+/// nearest part counts; inside, the part in which the point is deepest, with the nearest point of
+/// that part's own boundary, which may lie inside another part. So the depth is at most the depth
+/// in the union, and equal to it where parts do not overlap. Of several parts the lowest number
+/// wins. Triangles in 3D and segments are surfaces, which contain the points on them and enclose
+/// nothing (but closed meshes have [`signed_distance`](crate::shape::TriMesh::signed_distance));
+/// distances from them are as accurate far from the mesh's origin as near it. A composite without
+/// parts is infinitely far from every point.
 ///
 /// Cost on a composite: a search of the parts near the point.
 ///
@@ -93,7 +94,8 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// assert_eq!(cube.distance_to_point(&place, &Point::new(10.5, 0.0, 0.0), false), -0.5, "inside");
 /// ```
 pub trait PointQuery<N: Space<D>, const D: usize> {
-    /// The nearest point of the boundary, and the feature that it lies on, in the local frame.
+    /// Returns the nearest point of the boundary, and the feature that it lies on, in the local
+    /// frame.
     ///
     /// The other methods derive from it. [`PointProjection::point`] is on the boundary even if the
     /// given point is inside.
@@ -101,8 +103,8 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
 
     /// [`Self::project_local_point`] with the part of a composite and the weights of its corners.
     ///
-    /// With `solid`, a point inside is its own projection, and the weights are those of itself; the
-    /// feature is that of the nearest point of the boundary all the same.
+    /// With `solid`, the projection of a point inside is the point itself, with its own weights;
+    /// the feature still is that of the nearest point of the boundary.
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -124,7 +126,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     /// The signed distance to the boundary in the local frame: negative inside.
     fn signed_distance_to_local_point(&self, point: &Point<N, D>) -> N;
 
-    /// The point of the local frame lies in the solid or on its boundary.
+    /// Whether the point of the local frame lies in the solid or on its boundary.
     fn contains_local_point(&self, point: &Point<N, D>) -> bool {
         self.project_local_point(point).0.is_inside
     }
@@ -155,11 +157,11 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     ) -> N {
         let local = entries::point_within(&R::view(m).pose(), point);
         let distance = self.signed_distance_to_local_point(&local);
-        // By comparison, so that the distance of nothing stays what it is.
+        // By comparison, so that NaN is kept.
         if solid && distance < N::ZERO { N::ZERO } else { distance }
     }
 
-    /// The point lies in the solid placed at `m`, or on its boundary.
+    /// Whether the point lies in the solid placed at `m`, or on its boundary.
     fn contains_point<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -180,8 +182,8 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
         (entries::placed_projection(&local, &pose, point, false), feature)
     }
 
-    /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame, and where
-    /// on the solid it lies: [`Self::project_local_point_with_location`].
+    /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame, and
+    /// its location on the solid: [`Self::project_local_point_with_location`].
     fn project_point_with_location<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -205,7 +207,7 @@ pub(crate) fn located_at<N: Space<D>, const D: usize>(
     (placed(&local, pose, point, solid), location)
 }
 
-/// The projection in the world frame.
+/// Converts a projection to the world frame.
 pub(crate) fn placed<N: Real, const D: usize>(
     local: &PointProjection<N, D>,
     pose: &Pose<N, D>,
@@ -215,8 +217,9 @@ pub(crate) fn placed<N: Real, const D: usize>(
     PointProjection { point: pose.point(&local.point), ..*local }.of_solid(point, solid)
 }
 
-/// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and how far
-/// it is: the size of what [`PointQuery::distance_to_point`] gives. `None` for a composite without parts.
+/// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and its
+/// distance: the magnitude of [`PointQuery::distance_to_point`]. `None` for a composite without
+/// parts.
 #[inline]
 pub(crate) fn project<N: Space<D>, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -236,8 +239,8 @@ pub(crate) fn project<N: Space<D>, const D: usize>(
     Some((placed(&nearest, pose, point, solid), if is_own { N::ZERO } else { distance }))
 }
 
-/// A ball or a box that does not hold the point is certainly farther from it, by more than rounding; false
-/// of other shapes. The point is in the local frame.
+/// Whether a ball or a box does not contain the point and is farther from it than `farthest` by
+/// more than rounding; false for other shapes. The point is in the local frame.
 #[inline(always)]
 pub(crate) fn is_surely_beyond<N: Real, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -261,7 +264,8 @@ pub(crate) fn is_surely_beyond<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PointProjection<N, D> {
-    /// The projection on the boundary, made that on the solid: a point inside is its own.
+    /// Converts a projection on the boundary to one on the solid: a point inside is its own
+    /// projection.
     fn of_solid(self, point: &Point<N, D>, solid: bool) -> Self {
         if solid && self.is_inside { Self { point: *point, ..self } } else { self }
     }
@@ -338,7 +342,7 @@ pub(crate) fn signed_distance_on<N: Space<D>, const D: usize>(
     }
     let (nearest, _) = project_on(shape, point);
     let distance = length(&(point - nearest.point));
-    // Subtracting from zero, so that the boundary is at plain zero.
+    // Subtracting from zero, so that the distance on the boundary is not −0.
     if nearest.is_inside { N::ZERO - distance } else { distance }
 }
 
@@ -354,7 +358,7 @@ pub(crate) fn holds<N: Space<D>, const D: usize>(
     }
 }
 
-/// The projection on nothing.
+/// The projection on a shape without points.
 fn nowhere<N: Real, const D: usize>(point: &Point<N, D>) -> PointProjection<N, D> {
     PointProjection { is_inside: false, point: *point }
 }
@@ -364,7 +368,7 @@ impl<N: Real, const D: usize> PartPoint<N, D> {
         PointProjection { is_inside: self.distance <= N::ZERO, point: self.point }
     }
 
-    /// Where on the part the projection of `point` lies.
+    /// The location on the part of the projection of `point`.
     fn location(
         &self,
         parts: &dyn CompositeShape<N, D>,

@@ -1,4 +1,4 @@
-//! The plane: which file answers for which solid.
+//! Nearest points in 2D: the algorithm of each kind of solid.
 
 use super::{
     SurfacePoint, ball, capsule, cuboid, ellipsoid, plane, polytope, rounded, segment, support_map,

@@ -1,4 +1,4 @@
-//! Space: which file answers for which solid.
+//! Nearest points in 3D: the algorithm of each kind of solid.
 
 use super::{
     SurfacePoint, ball, capsule, cone, cuboid, cylinder, ellipsoid, plane, polytope, rounded,

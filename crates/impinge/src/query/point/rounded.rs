@@ -7,7 +7,8 @@ use crate::math::{Point, Pose, Space};
 use crate::shape::{Ball, FeatureId, Geometry, Kind, Rounded, SupportMap};
 use crate::tables::ByDimension;
 
-/// Beyond the nearest point of what is rounded. A radius of zero changes nothing.
+/// At the distance of the radius from the nearest point of the inner shape. A radius of zero
+/// changes nothing.
 pub(super) fn surface_point<N: Space<D>, const D: usize>(
     solid: &Rounded<N, D>,
     point: &Point<N, D>,
@@ -16,8 +17,8 @@ pub(super) fn surface_point<N: Space<D>, const D: usize>(
     if radius == N::ZERO {
         return <N::Algorithms>::surface_point(inner.0, point);
     }
-    // As seen by a ball of no radius: near the surface and inside it knows the normal better than the
-    // difference of two points does.
+    // By the separation from a ball of radius zero: near the surface and inside, its normal is more
+    // accurate than the difference of two points.
     let ball = Ball::new(N::ZERO);
     let pose12 = Pose::from_translation(-point.coords);
     let pair = Pair { first: Kind::Ball(&ball), second: inner.0, pose12 };
@@ -33,7 +34,7 @@ pub(super) fn surface_point<N: Space<D>, const D: usize>(
     }
 }
 
-/// The part of what is rounded that lies below a point of the surface.
+/// The feature of the inner shape below a point of the surface.
 fn feature_below<N: Space<D>, const D: usize>(
     inner: Geometry<'_, N, D>,
     place: &Point<N, D>,

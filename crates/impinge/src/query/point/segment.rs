@@ -4,10 +4,10 @@ use super::SurfacePoint;
 use crate::math::{Mapped, Point, Real, Vector, max, max_component};
 use crate::shape::{FeatureId, Segment, SupportMap};
 
-/// The nearest point of the segment between `ends`, and where it is: 0 at the first end, 1 at the
-/// second, between them inside. Equal ends are a point.
+/// Returns the nearest point of the segment between `ends`, and its parameter: 0 at the first end,
+/// 1 at the second. Equal ends are a point.
 ///
-/// Measured from the nearer end, so that long segments lose nothing there.
+/// Measured from the nearer end, so that long segments lose no digits there.
 pub(crate) fn nearest<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     point: &Point<N, D>,
@@ -15,7 +15,7 @@ pub(crate) fn nearest<N: Real, const D: usize>(
     let [a, b] = ends;
     let along = b - a;
     let (from_a, to_b) = shares(&along, [&(point - a), &(b - point)]);
-    // Written so that NaN is at an end.
+    // Written so that NaN gives an end.
     if from_a > N::ZERO && to_b > N::ZERO {
         let whole = from_a + to_b;
         return if from_a < to_b {
@@ -29,14 +29,14 @@ pub(crate) fn nearest<N: Real, const D: usize>(
     if from_a > N::ZERO { (*b, N::ONE) } else { (*a, N::ZERO) }
 }
 
-/// How far two vectors whose sum is `along` lead along it, both in the same unit.
+/// The components along `along` of two vectors whose sum is `along`, both in the same unit.
 fn shares<N: Real, const D: usize>(along: &Vector<N, D>, parts: [&Vector<N, D>; 2]) -> (N, N) {
     let [from_a, to_b] = parts.mapped(|part| part.dot(along));
     let whole = from_a + to_b;
     if whole * N::EPSILON > N::MIN_POSITIVE && from_a.abs() + to_b.abs() < N::INFINITY {
         return (from_a, to_b);
     }
-    // Their squares are no numbers of the type, or lose digits.
+    // The squares overflow or underflow, or lose digits.
     let largest = parts.mapped(max_component);
     let scale = max(largest[0], largest[1]).power_of_two_below();
     let along = along / scale;
@@ -44,7 +44,7 @@ fn shares<N: Real, const D: usize>(along: &Vector<N, D>, parts: [&Vector<N, D>; 
     (from_a, to_b)
 }
 
-/// The name of a place on a segment: an end, or what lies between.
+/// The feature at a parameter of a segment: an end, or `between`.
 pub(crate) fn feature_at<N: Real>(fraction: N, ends: [u32; 2], between: FeatureId) -> FeatureId {
     if fraction <= N::ZERO {
         FeatureId::Vertex(ends[0])

@@ -1,13 +1,13 @@
-//! The nearest point of the surface of a convex solid known by its support points only.
+//! The nearest point of the surface of a convex solid given by support points alone.
 
 use super::SurfacePoint;
 use crate::convex::{Simplicial, separation};
 use crate::math::{Point, Pose};
 use crate::shape::{Ball, Feature, FeatureId, SupportMap};
 
-/// The separation of the solid and a point: a ball of no radius.
+/// From the separation of the solid and a ball of radius zero.
 ///
-/// As accurate as [`separation`] is; the feature is the one that faces the normal.
+/// As accurate as [`separation`]; the feature is the supporting feature for the normal.
 pub(super) fn surface_point<N: Simplicial<D>, const D: usize>(
     map: &dyn SupportMap<N, D>,
     point: &Point<N, D>,
@@ -20,7 +20,7 @@ pub(super) fn surface_point<N: Simplicial<D>, const D: usize>(
     let mut feature = Feature::default();
     map.core_feature(&found.normal, &mut feature);
     // From the point itself along the normal: on a round surface this is off by the square of the
-    // error of the normal, a mix of support points by the error.
+    // normal's error, a combination of support points by the error itself.
     let nearest = point - found.normal * found.distance;
     let is_inside = found.distance <= N::ZERO;
     SurfacePoint { point: nearest, feature: feature.id, is_inside }

@@ -1,34 +1,34 @@
-//! The nearest point of a boundary, and how it is settled whether the asking point is inside.
+//! The nearest point of a boundary, and the rules by which a query point counts as inside.
 
 use super::PointProjection;
 use crate::math::{Point, Real, Vector, max, max_component, unit};
 use crate::shape::FeatureId;
 
-/// The point of a solid's boundary that is nearest to some point, all in the local frame.
+/// The point of a solid's boundary that is nearest to a query point, in the local frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SurfacePoint<N: Real, const D: usize> {
     pub(crate) point: Point<N, D>,
     pub(crate) feature: FeatureId,
-    /// The asking point lies in the solid or on its boundary.
+    /// Whether the query point lies in the solid or on its boundary.
     pub(crate) is_inside: bool,
 }
 
 impl<N: Real, const D: usize> SurfacePoint<N, D> {
-    /// A nearest point of something that has no inside.
+    /// The nearest point of a set without interior.
     pub(super) const fn on(point: Point<N, D>, feature: FeatureId) -> Self {
         Self { point, feature, is_inside: false }
     }
 
-    /// Of two nearest points of parts, the one nearer to `asked`; the first where equal.
+    /// The one of two nearest points of parts that is nearer to `asked`; the first if equal.
     pub(super) fn nearer(self, other: Self, asked: &Point<N, D>) -> Self {
         if self.is_beaten_by(&other, asked) { other } else { self }
     }
 
-    /// Of two nearest points of parts, the other is nearer to `asked`.
+    /// Whether the other of two nearest points of parts is nearer to `asked`.
     pub(super) fn is_beaten_by(&self, other: &Self, asked: &Point<N, D>) -> bool {
         let (first, second) = (asked - self.point, asked - other.point);
         let (square1, square2) = (first.norm_squared(), second.norm_squared());
-        // Squares of large and of small lengths are no numbers of the type.
+        // Squares of large and of small lengths overflow and underflow.
         let usable = |square: N| square > N::MIN_POSITIVE && square < N::INFINITY;
         match usable(square1) && usable(square2) {
             true => square2 < square1,
@@ -36,18 +36,19 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
         }
     }
 
-    /// For a set without thickness: what lies on it within rounding is its own projection.
+    /// For a set without thickness: makes a query point that lies on it within rounding its own
+    /// projection.
     ///
-    /// `reach` is the largest distance of the set from the local origin: the rounding of coordinates
-    /// is in proportion to it and to those of the asking point.
+    /// `reach` is the largest distance of the set from the local origin: the rounding error of
+    /// coordinates is proportional to it and to those of the query point.
     pub(super) fn snapped(self, asked: &Point<N, D>, reach: N) -> Self {
         let scale = max(max_component(&asked.coords), reach);
         let near = length(&(asked - self.point)) <= N::lit(8.0) * N::EPSILON * scale;
         if near { Self { point: *asked, ..self } } else { self }
     }
 
-    /// The public form. A point that is its own projection is inside, whatever the arithmetic of
-    /// the shape has found: distance zero and being inside are one thing.
+    /// Converts to the public form. A point that is its own projection is inside, whatever the
+    /// arithmetic of the shape says: distance zero and being inside are equivalent.
     pub(crate) fn projection(self, asked: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
         let finite = asked.iter().all(|x| x.is_finite_number());
         let touches = self.is_inside || length(&(asked - self.point)) == N::ZERO;
@@ -56,7 +57,7 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
     }
 }
 
-/// The length of a vector, right also where its square is no number of the type; NaN for NaN.
+/// The length of a vector, right also if its square overflows or underflows; NaN for NaN.
 pub(crate) fn length<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     unit(v).map_or_else(|| v.norm(), |(_, length)| length)
 }

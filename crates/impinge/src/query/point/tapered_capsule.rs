@@ -6,7 +6,7 @@ use crate::collide::separation::balls::ball_tapered::project;
 use crate::math::{Point, Real};
 use crate::shape::TaperedCapsule;
 
-/// What a ball of no radius there would touch. Without any radius it is a segment.
+/// The point from the separation of a ball of radius zero. Without any radius it is a segment.
 pub(super) fn surface_point<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     point: &Point<N, D>,

@@ -5,29 +5,29 @@ use super::segment::{self, feature_at};
 use crate::math::{Mapped, Point, Real, max, max_component};
 use crate::shape::FeatureId;
 
-/// A point of a triangle that is near to another point.
+/// A point of a triangle that is near to a query point.
 #[derive(Clone, Copy)]
 pub(super) struct OnTriangle<N: Real, const D: usize> {
     pub(super) found: SurfacePoint<N, D>,
-    /// What the corners contribute to it: none is negative, and the sum is one up to rounding. Exactly
-    /// zero for the corners that it is not between.
+    /// The weights of the corners: none is negative, and the sum is one up to rounding. Exactly
+    /// zero for the corners outside of the point's feature.
     pub(super) weights: [N; 3],
 }
 
 impl<N: Real, const D: usize> OnTriangle<N, D> {
-    /// The one nearer to `asked`, the first where equal.
+    /// The one nearer to `asked`, the first if equal.
     fn nearer(self, other: Self, asked: &Point<N, D>) -> Self {
         if self.found.is_beaten_by(&other.found, asked) { other } else { self }
     }
 }
 
-/// The nearest point of the filled triangle, with `Face(0)` for what lies inside of its sides.
+/// Returns the nearest point of the filled triangle, with `Face(0)` for its interior.
 ///
-/// It is the nearest of four: one on each side and one on the [chord](on_chord) below `point`. Each is a
-/// mean of corners, so that it lies on the triangle up to rounding, and one of them is as near as any
-/// point is up to rounding: a few units of epsilon times the largest coordinate or distance, without any
-/// factor for the shape. No normal is made, nor a barycentric coordinate by areas, which on a triangle of
-/// length l and height h are off by l/h units.
+/// It is the nearest of four: one on each side and one on the [chord](on_chord) below `point`. Each
+/// is a weighted mean of corners, so that it lies on the triangle up to rounding. One of them is
+/// the nearest up to rounding: a few units of epsilon times the largest coordinate or distance,
+/// without a factor for the shape. Neither a normal nor barycentric coordinates by areas are used,
+/// which are off by l/h units on a triangle of length l and height h.
 pub(super) fn nearest<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
     point: &Point<N, D>,
@@ -56,13 +56,14 @@ pub(super) fn on_side<N: Real, const D: usize>(
     OnTriangle { found: SurfacePoint::on(place, feature), weights }
 }
 
-/// The nearest point of the chord across the longest side at the place of `point` along that side; `None`
-/// if it is an end of it, which lies on a side.
+/// The nearest point of the chord across the longest side at the projection of `point` on that
+/// side; `None` if it is an end of the chord, which lies on a side.
 ///
-/// If the perpendicular from `point` falls into the triangle, its foot lies on that chord. The place is off
-/// by rounding, d. The angles at the longest side are acute: the other two sides rise to the corner across
-/// and fall again, so that the height of the foot is met within d of it, on the chord or, where the chord
-/// ends too low, on the side that it ends on, however steep that is.
+/// If the perpendicular from `point` falls into the triangle, its foot lies on that chord. The
+/// position along the side is off by rounding, d. The angles at the longest side are acute: the
+/// other two sides rise to the opposite corner and fall again, so that the height of the foot is
+/// met within d of it, on the chord or, where the chord ends too low, on the side that it ends on,
+/// however steep that is.
 fn on_chord<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
     sides: &[OnTriangle<N, D>; 3],
@@ -73,7 +74,8 @@ fn on_chord<N: Real, const D: usize>(
     let base = &sides[from];
     let place = base.weights[to];
     let (_, peak) = segment::nearest([&corners[from], &corners[to]], &corners[top]);
-    // Of the other side that the chord ends on: where it starts, and the share of it below the end.
+    // On the side where the chord ends: the index of its base corner, and the fraction of it below
+    // the end.
     let (start, share) =
         if place <= peak { (from, place / peak) } else { (to, (N::ONE - place) / (N::ONE - peak)) };
     let end = corners[start] + (corners[top] - corners[start]) * share;
@@ -87,10 +89,10 @@ fn on_chord<N: Real, const D: usize>(
     })
 }
 
-/// The number of the longest side, the first of equals.
+/// The index of the longest side, the first of equals.
 fn longest_side<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> usize {
     let sides = [0, 1, 2].mapped(|side| corners[(side + 1) % 3] - corners[side]);
-    // Squares of large and of small lengths are no numbers of the type.
+    // Squares of large and of small lengths overflow and underflow.
     let scale = sides.iter().map(max_component).fold(N::ZERO, max).power_of_two_below();
     let squares = sides.mapped(|side| (side / scale).norm_squared());
     let longer = |a: usize, b: usize| if squares[b] > squares[a] { b } else { a };

@@ -1,4 +1,4 @@
-//! Points and bounding volumes, which need no pose.
+//! Point queries of bounding volumes, which need no pose.
 
 use super::{PointProjection, SurfacePoint, ball, cuboid};
 use crate::bounding_volume::{Aabb, BoundingSphere};
@@ -22,8 +22,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
 }
 
 impl<N: Real, const D: usize> BoundingSphere<N, D> {
-    /// The nearest point of the sphere's boundary, and `Face(0)`; not a number if the radius is
-    /// infinite.
+    /// The nearest point of the sphere's boundary, and `Face(0)`; NaN if the radius is infinite.
     pub fn project_point_with_feature(
         &self,
         point: &Point<N, D>,

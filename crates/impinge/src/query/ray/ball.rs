@@ -5,32 +5,32 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, max, min, unit_or};
 use crate::shape::FeatureId;
 
-/// The two times at which a line is at a given distance from the origin, and where.
+/// The two times at which a line is at a given distance from the origin, and the points there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Roots<N: Real, const D: usize> {
     pub(super) enter: N,
     pub(super) leave: N,
     /// The point of the line that is nearest to the origin.
     middle: Vector<N, D>,
-    /// From the middle to where the line leaves.
+    /// From the middle to the point of leaving.
     half_chord: Vector<N, D>,
 }
 
 impl<N: Real, const D: usize> Roots<N, D> {
-    /// The places of entering and leaving, found from the middle: accurate however far the line's
-    /// origin is.
+    /// The points of entering and leaving, computed from the middle: accurate however far the
+    /// line's origin is.
     pub(super) fn places(&self) -> [Vector<N, D>; 2] {
         [self.middle - self.half_chord, self.middle + self.half_chord]
     }
 
-    /// The line keeps one distance, and it is `radius`.
+    /// Whether the line stays at one distance, which is `radius`.
     pub(super) fn runs_at(&self, radius: N) -> bool {
         self.leave == N::INFINITY && self.middle.norm() == radius
     }
 }
 
-/// When `origin + t · dir` is within `radius` of zero; `None` if never. `dir` may be zero: then it is
-/// always or never.
+/// The times at which `origin + t · dir` is at the distance `radius` from zero; `None` if it never
+/// comes within. If `dir` is zero, it is within always or never.
 ///
 /// After Haines, Günther and Akenine-Möller, "Precision improvements for ray/sphere intersection",
 /// 2019: the discriminant from the point of the line nearest to the centre, the roots without
@@ -71,12 +71,12 @@ fn ordered_roots<N: Real>(toward: N, root: N, squared: N, product: N) -> (N, N) 
     (min(first, second), max(first, second))
 }
 
-/// The line inside the ball of `radius` around the local origin.
+/// The span of the line in the ball of `radius` around the local origin.
 pub(super) fn span<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> Option<Span<N, D>> {
     around(&Point::origin(), radius, FeatureId::Face(0), ray)
 }
 
-/// The line inside a ball around any center. An infinite ball holds all of it.
+/// The span of the line in a ball around any center. An infinite ball contains all of it.
 pub(super) fn around<N: Real, const D: usize>(
     center: &Point<N, D>,
     radius: N,
@@ -88,7 +88,7 @@ pub(super) fn around<N: Real, const D: usize>(
     }
     let found = roots(&(ray.origin - center), &ray.dir, radius)?;
     let [entry, exit] = found.places();
-    // A ball of no radius has no normal of its own: it faces the ray.
+    // A ball of radius zero has no normal of its own: it faces the ray.
     let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());
     let enter = Crossing::new(found.enter, unit_or(&entry, against), feature);
     let leave = Crossing::new(found.leave, unit_or(&exit, -against), feature);

@@ -1,4 +1,4 @@
-//! Many rays in one call.
+//! Batches of rays.
 
 use core::ops::{ControlFlow, Range};
 
@@ -7,7 +7,7 @@ use crate::bounding_volume::Ray;
 use crate::chunks::each_chunk;
 use crate::math::Real;
 
-/// Rays that are asked about together, with what all of them have in common.
+/// Rays that are cast together, with their common options.
 ///
 /// See [`RayCast::cast_local_rays`](super::RayCast::cast_local_rays).
 ///
@@ -32,25 +32,26 @@ pub struct RayBatch<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
-    /// Rays without an end, among solids.
+    /// Rays of unlimited length, against solids.
     #[must_use]
     pub const fn new(rays: &'a [Ray<N, D>]) -> Self {
         Self { rays, max_time: N::INFINITY, solid: true }
     }
 
-    /// The same rays up to a time.
+    /// Returns the rays with another [`Self::max_time`].
     #[must_use]
     pub const fn until(self, max_time: N) -> Self {
         Self { max_time, ..self }
     }
 
-    /// The same rays among boundaries: those that start inside a shape hit where they leave it.
+    /// Returns the rays against boundaries: those that start inside a shape hit where they leave
+    /// it.
     #[must_use]
     pub const fn hollow(self) -> Self {
         Self { solid: false, ..self }
     }
 
-    /// Writes the answer about each ray into the place with its index.
+    /// Writes the answer of each ray to the entry with its index.
     #[track_caller]
     pub(crate) fn each<A>(&self, answers: &mut [A], mut answer: impl FnMut(&Ray<N, D>) -> A) {
         self.check(answers.len());
@@ -59,7 +60,7 @@ impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
         }
     }
 
-    /// Asks for the answers chunk by chunk; with the feature `parallel` on several threads.
+    /// Computes the answers chunk by chunk; with the feature `parallel` on several threads.
     #[track_caller]
     pub(super) fn each_chunk(
         &self,

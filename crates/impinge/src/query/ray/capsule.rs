@@ -8,9 +8,10 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, max, min, unit, unit_or};
 use crate::shape::{Capsule, FeatureId};
 
-/// The union of two balls and of the round side between them, which is convex: first in, last out.
+/// The union of two balls and of the round side between them, which is convex: the first entry and
+/// the last exit.
 ///
-/// A capsule of no radius is a segment.
+/// A capsule without radius is a segment.
 pub(super) fn span<N: Real, const D: usize>(
     capsule: &Capsule<N, D>,
     ray: &Ray<N, D>,
@@ -24,10 +25,10 @@ pub(super) fn span<N: Real, const D: usize>(
     Span::union_of(side(capsule, ray), Span::union_of(at_a, at_b))
 }
 
-/// The solid cylinder around the segment, cut off flat at its ends.
+/// The span in the cylinder around the segment, cut off flat at its ends.
 ///
-/// The normal is the radial one at both ends of the span, also where the line passes through a cut:
-/// the cut lies inside the balls, and only its rim may come first, by rounding.
+/// The normal is radial at both ends of the span, even if the line passes through a flat end: that
+/// lies inside the balls, and only its rim may come first, by rounding.
 fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>> {
     let (a, b) = (capsule.segment().a(), capsule.segment().b());
     let (along, length) = unit(&(b - a))?;
@@ -57,7 +58,7 @@ fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Op
     in_order(&span).then_some(span)
 }
 
-/// The accurate normals where the line passes through the round side itself.
+/// Replaces the normals by accurate ones where the line passes through the round side itself.
 fn refined<N: Real, const D: usize>(
     places: &[Vector<N, D>; 2],
     normals: [Vector<N, D>; 2],

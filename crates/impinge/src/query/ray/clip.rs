@@ -1,4 +1,4 @@
-//! The span of an intersection of sets, found by clipping the line with one after the other.
+//! The span in an intersection of half-spaces, by clipping the line with one after the other.
 
 use super::span::{Crossing, Span};
 use crate::math::{Real, Vector, max};
@@ -9,18 +9,18 @@ use crate::shape::FeatureId;
 pub(super) struct HalfSpace<N: Real, const D: usize> {
     /// Unit.
     pub(super) normal: Vector<N, D>,
-    /// How far the line's origin lies below the boundary: `offset − normal · origin`.
+    /// The depth of the line's origin below the boundary: `offset − normal · origin`.
     pub(super) below: N,
-    /// How fast the line rises: `normal · dir`.
+    /// The rate at which the line rises: `normal · dir`.
     pub(super) rise: N,
     pub(super) feature: FeatureId,
 }
 
-/// Clips the line with all half-spaces (Cyrus and Beck 1978); `None` where nothing is left.
+/// Clips the line with all half-spaces (Cyrus and Beck 1978); `None` if nothing is left.
 ///
-/// A line that only touches the intersection may lose it to the rounding of two divisions, so a
+/// A line that only touches the intersection may lose it to the rounding of two divisions. So a
 /// crossing order that is wrong by a few units in the last place counts as touching (Ize, "Robust
-/// BVH Ray Traversal", 2013, bounds it the same way).
+/// BVH Ray Traversal", 2013, has the same bound).
 pub(super) fn clipped<N: Real, const D: usize>(
     mut span: Span<N, D>,
     half_spaces: impl IntoIterator<Item = HalfSpace<N, D>>,
@@ -31,7 +31,7 @@ pub(super) fn clipped<N: Real, const D: usize>(
             if below < N::ZERO {
                 return None;
             }
-            // A line in the plane of a face is on the boundary all along.
+            // A line in the plane of a face stays on the boundary.
             span.thin |= below == N::ZERO;
             continue;
         }
@@ -45,7 +45,7 @@ pub(super) fn clipped<N: Real, const D: usize>(
     in_order(&span).then_some(span)
 }
 
-/// Entering comes before leaving, up to rounding.
+/// Whether entering comes before leaving, up to rounding.
 pub(super) fn in_order<N: Real, const D: usize>(span: &Span<N, D>) -> bool {
     let (enter, leave) = (span.enter.t, span.leave.t);
     enter <= leave || enter - leave <= N::lit(8.0) * N::EPSILON * max(enter.abs(), leave.abs())

@@ -9,7 +9,7 @@ use crate::math::{Mapped, Point, Real, Vector, cross2, max, min, unit_or};
 use crate::shape::{Cone, Cylinder, FeatureId};
 
 /// The infinite double cone of the slanted side, one nappe of it, clipped by the base and at the
-/// apex. A cone of no height is a disk, one of no radius a segment.
+/// apex. A cone without height is a disk, one without radius a segment.
 pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     if half_height == N::ZERO {
@@ -34,7 +34,7 @@ struct Nappe<N: Real> {
     /// The origin, in the horizontal plane and in height over the apex.
     flat: Vector<N, 2>,
     height: N,
-    /// The direction, split the same way.
+    /// The direction, split in the same components.
     flat_dir: Vector<N, 2>,
     climb: N,
 }
@@ -58,14 +58,14 @@ impl<N: Real> Nappe<N> {
         (self.cosine * a - self.sine * b) * (self.cosine * a + self.sine * b)
     }
 
-    /// The span in this nappe; of the other nappe only the apex may be in it. May reach over the
-    /// apex by rounding, which clipping there mends.
+    /// The span in this nappe; of the other nappe at most the apex. It may extend beyond the apex
+    /// by rounding, which clipping there repairs.
     fn span(&self) -> Option<Span<N, 3>> {
         let quadratic = self.form(self.flat_dir.norm(), self.climb.abs());
         let constant = self.form(self.flat.norm(), self.height.abs());
         let linear = self.cosine * self.cosine * self.flat.dot(&self.flat_dir)
             - self.sine * self.sine * self.height * self.climb;
-        // The discriminant by the line's moment about the apex: a difference of two squares.
+        // The discriminant from the line's moment about the apex: a difference of two squares.
         let moment = (self.flat * self.climb - self.flat_dir * self.height).norm();
         let twist = cross2(&self.flat, &self.flat_dir).abs();
         let discriminant = -self.form(twist, moment);
@@ -78,11 +78,11 @@ impl<N: Real> Nappe<N> {
         Some(Span { enter: self.crossing(enter), leave: self.crossing(leave), thin: false })
     }
 
-    /// Where `quadratic · t² + 2 · linear · t + constant ≤ 0` below the apex, given
+    /// The interval where `quadratic · t² + 2 · linear · t + constant ≤ 0` below the apex, given
     /// `larger = −linear ∓ root`, the numerator of the root without cancellation.
     ///
-    /// A line steeper than the side (`quadratic < 0`) passes through both nappes, and is below the
-    /// apex at the end of time that it descends to.
+    /// A line steeper than the side (`quadratic < 0`) passes through both nappes; the part below
+    /// the apex is unbounded in the direction in which the line descends.
     fn piece(&self, quadratic: N, larger: N, constant: N) -> Option<(N, N)> {
         let (never_in, never_out) = (-N::INFINITY, N::INFINITY);
         if quadratic == N::ZERO {
@@ -105,13 +105,14 @@ impl<N: Real> Nappe<N> {
         })
     }
 
+    /// The crossing with the side at the time `t`.
     fn crossing(&self, t: N) -> Crossing<N, 3> {
         if !t.is_finite_number() {
             return Crossing::never(t);
         }
         let radial = unit_or(&(self.flat + self.flat_dir * t), Vector::<N, 2>::zeros());
         let normal = Vector::<N, 3>::new(self.cosine * radial.x, self.sine, self.cosine * radial.y);
-        // At the apex itself there is no radial part: straight up.
+        // At the apex itself there is no radial component: straight up.
         let normal = unit_or(&normal, Vector::<N, 3>::y());
         Crossing::new(t, normal, FeatureId::Face(1))
     }

@@ -8,7 +8,7 @@ use crate::shape::FeatureId;
 
 /// The slab test (Kay and Kajiya 1986), with the faces that are crossed; corners may be infinite.
 ///
-/// Of faces that are crossed at the same time, the first in the order of their numbers answers.
+/// If faces are crossed at the same time, the lowest number wins.
 pub(super) fn span<N: Real, const D: usize>(
     corners: [&Point<N, D>; 2],
     ray: &Ray<N, D>,

@@ -15,13 +15,13 @@ pub(super) fn span<N: Real>(cylinder: &Cylinder<N>, ray: &Ray<N, 3>) -> Option<S
     clipped(side, caps.mapped(|(sign, feature)| cap(half_height, sign, feature, ray)))
 }
 
-/// The line inside the infinite cylinder around the y axis.
+/// The span of the line in the infinite cylinder around the y axis.
 fn round_side<N: Real>(radius: N, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let flat = |v: &Vector<N, 3>| Vector::<N, 2>::new(v.x, v.z);
     let (origin, dir) = (flat(&ray.origin.coords), flat(&ray.dir));
     let found = roots(&origin, &dir, radius)?;
     let [entry, exit] = found.places();
-    // Around an axis of no thickness the normal faces the line.
+    // For a radius of zero the normal faces the line.
     let against = unit_or(&-dir, Vector::<N, 2>::zeros());
     let [enter, leave] = [(found.enter, entry, against), (found.leave, exit, -against)].mapped(
         |(t, place, fallback)| {
@@ -33,7 +33,7 @@ fn round_side<N: Real>(radius: N, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     Some(Span { enter, leave, thin: found.runs_at(radius) })
 }
 
-/// The half-space under a flat end: `sign · y ≤ half_height`.
+/// The half-space under a flat cap: `sign · y ≤ half_height`.
 pub(super) fn cap<N: Real>(
     half_height: N,
     sign: N,

@@ -7,8 +7,8 @@ use crate::collide::separation::balls::ball_ellipsoid::project;
 use crate::math::{Real, Vector, max, max_component, min, unit_or};
 use crate::shape::{Ellipsoid, FeatureId};
 
-/// In units of the half axes it is a ball. One without thickness is met in one point, unless the line
-/// runs in it.
+/// In units of the half axes it is a ball. An ellipsoid without thickness is hit in one point,
+/// unless the line lies in it.
 pub(super) fn span<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -26,9 +26,9 @@ pub(super) fn span<N: Real, const D: usize>(
     }
 }
 
-/// The line in units of the half axes; axes that are zero are left out.
+/// The origin and direction of the line in units of the half axes; zero on axes that are zero.
 ///
-/// Its direction is given in units of a power of two near its length, which is returned as well.
+/// The direction is divided by a power of two near its length, which is returned as well.
 fn squeezed<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -41,7 +41,7 @@ fn squeezed<N: Real, const D: usize>(
     (in_units(&ray.origin.coords), dir / speed, speed)
 }
 
-/// When the line is inside, as far as the axes that are not zero tell.
+/// The span inside, according to the axes that are not zero.
 fn inside<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -63,7 +63,7 @@ fn inside<N: Real, const D: usize>(
     Some(Span { enter, leave, thin: false })
 }
 
-/// A line that crosses the flat set along the zero axis `axis`.
+/// The crossing of a line with the flat set across the zero axis `axis`.
 fn through<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -84,7 +84,7 @@ fn through<N: Real, const D: usize>(
     Some(Span::thin(crossing, crossing))
 }
 
-/// A line that runs in the flat set.
+/// The span of a line that lies in the flat set.
 fn lengthwise<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -98,7 +98,7 @@ fn lengthwise<N: Real, const D: usize>(
     Some(Span { thin: true, ..span })
 }
 
-/// What arithmetic cannot resolve about places that far from the origin.
+/// The rounding error of positions at this distance from the origin.
 fn rounding<N: Real>(size: N) -> N {
     N::lit(8.0) * N::EPSILON * size
 }

@@ -1,7 +1,8 @@
-//! First hits of rays on a mesh in 3D: most triangles that are hit are hit clearly, on the inside.
+//! First hits of rays on a mesh in 3D, with a fast path for hits on the interior of a triangle.
 //!
-//! The answers are those of [`each_hit`](crate::query::composite::each_hit), to the bit. What differs is that the normal
-//! is computed once, at the end, that all is compiled in one piece, and that many rays go together.
+//! The answers equal those of [`each_hit`](crate::query::composite::each_hit), to the bit. The
+//! differences: the normal is computed once, at the end; all is compiled in one piece; and rays are
+//! traced in groups.
 
 use super::triangle3::{InnerHit, TriangleRay};
 use super::{Answers, RayBatch, RayCast, RayIntersection, first_that};
@@ -12,13 +13,13 @@ use crate::math::{Point, Pose, Real, Space, Vector, filled, max, min};
 use crate::query::composite::RayQuestion;
 use crate::shape::{CompositeShape, TriMesh, Triangle, box_of_corners};
 
-/// The first hit of one ray.
+/// Returns the first hit of one ray.
 pub(crate) fn first_on_mesh<N: Space<3>>(
     mesh: &TriMesh<N, 3>,
     question: &RayQuestion<N, 3>,
 ) -> Option<RayIntersection<N, 3>> {
     let RayQuestion { ray, max_time, solid } = question;
-    // In place: a cast that is moved is read before it is written through.
+    // In place: moving the cast would read it before it is written completely.
     let mut cast = MeshCast::new(mesh, ray, *max_time, *solid);
     let Some(cast) = &mut cast else {
         return first_that(mesh, question, |_| true);
@@ -31,7 +32,7 @@ pub(crate) fn first_on_mesh<N: Space<3>>(
     cast.first()
 }
 
-/// The first hit of each ray, in no particular order.
+/// Calls `answer` with the first hit of each ray, in no particular order.
 pub(crate) fn first_hits_on_mesh<N: Space<3>>(
     mesh: &TriMesh<N, 3>,
     batch: &RayBatch<'_, N, 3>,
@@ -60,7 +61,7 @@ pub(crate) fn first_hits_on_mesh<N: Space<3>>(
     }
 }
 
-/// Rays that go together.
+/// Rays that are traced together.
 struct Casts<'a, 'b, N: Real> {
     mesh: &'b TriMesh<N, 3>,
     casts: &'b mut [MeshCast<'a, N>],
@@ -80,15 +81,15 @@ impl<N: Space<3>> RayVisitor for Casts<'_, '_, N> {
     }
 }
 
-/// A ray on its way through a mesh.
+/// A ray that is traced through a mesh.
 struct MeshCast<'a, N: Real> {
     ray: &'a Ray<N, 3>,
     solid: bool,
     own: TriangleRay<N>,
-    /// Around its origin, with all that rounding makes of the place; and half of that.
+    /// A box around its origin with the rounding error, and half of that error.
     around: Aabb<N, 3>,
     blur: N,
-    /// The time of the first hit so far, or the longest that there may be.
+    /// The time of the first hit so far, or the latest time that counts.
     latest: N,
     first: Option<Met<N>>,
 }
@@ -98,13 +99,13 @@ struct MeshCast<'a, N: Real> {
 struct Met<N: Real> {
     corners: [Point<N, 3>; 3],
     part: u32,
-    /// None where the cast at a single triangle has to tell.
+    /// `None` if the cast of a single triangle has to decide.
     inner: Option<InnerHit<N>>,
 }
 
 impl<'a, N: Space<3>> MeshCast<'a, N> {
-    /// A ray that has not started; `None` where the mesh is a body to the question, and for rays without a direction or
-    /// that are not finite.
+    /// A ray that has not started; `None` if the mesh is a body for the query, and for a ray
+    /// without direction or that is not finite.
     #[inline(always)]
     fn new(mesh: &TriMesh<N, 3>, ray: &'a Ray<N, 3>, max_time: N, solid: bool) -> Option<Self> {
         let is_finite = filled(|axis| ray.dir[axis].is_finite_number()) == [true; 3];
@@ -122,13 +123,13 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         Some(cast)
     }
 
-    /// What boxes may be as far as.
+    /// The latest time at which boxes are searched: loosened by rounding.
     #[inline(always)]
     fn limit(&self) -> N {
         loosened(self.latest)
     }
 
-    /// Looks at a triangle.
+    /// Tests a triangle.
     #[inline(always)]
     fn propose(&mut self, part: u32, corners: &[Point<N, 3>; 3]) {
         let Some(inner) = self.own.inner_hit(corners) else {
@@ -141,7 +142,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         }
     }
 
-    /// A triangle that is not clearly hit on the inside: seldom at all.
+    /// Tests a triangle that is not clearly hit in its interior, which is rare.
     #[cold]
     fn propose_rim(&mut self, part: u32, corners: &[Point<N, 3>; 3]) {
         let hit = self.enters_box(corners).then(|| self.cast_alone(corners)).flatten();
@@ -158,15 +159,17 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         }
     }
 
-    /// The box of the triangle is entered in time: asked last, since where areas underflow their signs say nothing.
+    /// Whether the box of the triangle is entered in time. Tested last: where areas underflow,
+    /// their signs are meaningless.
     fn enters_box(&self, corners: &[Point<N, 3>; 3]) -> bool {
         let enter = box_of_corners(corners).sweep_interval(&self.around, &self.ray.dir);
         enter.is_some_and(|(enter, _)| enter <= self.limit())
     }
 
-    /// The same without a division, or no answer: at the time of the hit the ray is inside the box, or beside it by less
-    /// than half of what `around` allows for. That is eight rounding units of the coordinates; the place is off by three at
-    /// most, and the times in [`Self::enters_box`] by two.
+    /// A sufficient test for [`Self::enters_box`] without a division: at the time of the hit the
+    /// ray is inside the box, or beside it by less than half of the margin in `around`. That is
+    /// eight rounding units of the coordinates; the position is off by at most three, and the times
+    /// in [`Self::enters_box`] by two.
     #[inline(always)]
     fn is_surely_within(&self, corners: &[Point<N, 3>; 3], toi: N) -> bool {
         let (ray, [a, b, c]) = (self.ray, corners);
@@ -181,7 +184,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         is_within
     }
 
-    /// The answer, after all that may be hit.
+    /// The result, after all triangles that may be hit.
     fn first(&self) -> Option<RayIntersection<N, 3>> {
         let Met { corners, part, inner } = self.first?;
         let Some(inner) = inner else {
@@ -192,7 +195,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         Some(RayIntersection { toi: inner.toi, normal, feature, part })
     }
 
-    /// The hit on a triangle on its own.
+    /// The cast of a single triangle.
     fn cast_alone(&self, corners: &[Point<N, 3>; 3]) -> Option<RayIntersection<N, 3>> {
         let ray = self.ray.inverse_transformed_by(&Pose::identity());
         let hit = Triangle::of_finite(*corners).cast_local_ray(&ray, self.solid)?;
@@ -200,7 +203,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
     }
 }
 
-/// A direction as that of any part is turned into the frame of its composite: sums give zeros their sign.
+/// Rotates a normal like that of any part, into the frame of its composite: the sums determine the
+/// sign of zeros.
 fn as_part<N: Real>(normal: &Vector<N, 3>) -> Vector<N, 3> {
     Pose::<N, 3>::identity().vector(normal)
 }
@@ -212,7 +216,8 @@ mod tests {
     fn number(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963);
         let any = (*state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0;
-        // Every second one is a quarter, so that rays meet corners, sides and faces edge on.
+        // Every second number is a multiple of a quarter, so that rays meet corners, sides and
+        // faces edge-on.
         if *state >> 20 & 1 == 0 { (any * 4.0).round() / 4.0 } else { any }
     }
 
@@ -220,7 +225,7 @@ mod tests {
         [(); 3].map(|()| N::lit(number(state) * scale))
     }
 
-    /// Triangles at random, and pieces of a grid that share corners.
+    /// Random triangles, and pieces of a grid that share corners.
     fn soup<N: Space<3>>(state: &mut u64, count: u32, scale: f64) -> TriMesh<N, 3> {
         let vertices = (0..count + 2).map(|_| Point::from(numbers(state, scale))).collect();
         TriMesh::new(vertices, (0..count).map(|index| [index, index + 1, index + 2]).collect())
@@ -233,7 +238,7 @@ mod tests {
         })
     }
 
-    /// The answers about single rays and many are those of the parts one by one.
+    /// The answers for single rays and for many equal those of the parts one by one.
     fn agrees<N: Space<3>>(scale: f64, speed: f64) {
         let (state, mut hits) = (&mut 5, 0);
         for count in [1, 12, 300, 5000] {

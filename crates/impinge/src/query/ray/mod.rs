@@ -1,8 +1,8 @@
-//! Where a ray meets one solid.
+//! Ray queries.
 //!
 //! The solids are convex, so the line of a ray is inside during one span of time. Each shape's file
-//! finds that span in closed form; [`span`] turns it into the answer for a solid or a hollow shape.
-//! One table per dimension (`ray2`, `ray3`) says which file answers for which shape.
+//! computes that span in closed form; [`span`] converts it to the answer for a solid or a hollow
+//! shape. One table per dimension (`ray2`, `ray3`) has the algorithm of each shape.
 
 mod ball;
 mod batch;
@@ -42,7 +42,7 @@ use crate::bounding_volume::Ray;
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max_component};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
-/// Where and when a ray first meets a solid.
+/// The first hit of a ray on a solid: its time and geometry.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -59,39 +59,39 @@ pub struct RayIntersection<N: Real, const D: usize> {
     /// The time of impact, zero or more, in units of the length of the ray's direction: the point
     /// hit is `ray.point_at(toi)`.
     pub toi: N,
-    /// The unit vector out of the solid at the point hit, in the frame that the question was asked
-    /// in. It points out also where a ray leaves a hollow shape. On a set without thickness it
-    /// points against the ray.
+    /// The unit vector out of the solid at the point hit, in the frame of the query. It points out
+    /// also where a ray leaves a hollow shape. On a set without thickness it points against the
+    /// ray.
     ///
-    /// It is the zero vector where there is no surface to speak of: the ray of a solid query starts
-    /// inside, or on the boundary and leads out; or the ray has no direction.
+    /// It is the zero vector if the hit is not on a surface: the ray of a solid query starts
+    /// inside, or on the boundary and leads out; or the direction of the ray is zero.
     pub normal: Vector<N, D>,
-    /// The feature that was hit. A hit on a vertex or an edge may answer with one of the faces there;
-    /// a ray that starts inside a solid, with the nearer of the two features ahead and behind.
+    /// The feature that was hit. A hit on a vertex or an edge may have the id of one of the faces
+    /// there; a ray that starts inside a solid, the nearer of the two features ahead and behind.
     pub feature: FeatureId,
-    /// The part of a composite that was hit, which the feature is of; 0 for a convex solid.
+    /// The part of a composite that was hit, which has the feature; 0 for a convex solid.
     pub part: u32,
 }
 
-/// Questions about a ray and a solid; implemented for every [`Shape`].
+/// Queries of a ray and a solid; implemented for every [`Shape`].
 ///
 /// A `solid` is the set with its interior: a ray that starts inside or on the boundary hits at time
-/// zero. Without `solid` only the boundary counts, and a ray that starts inside hits where it leaves.
-/// A ray that only touches the boundary hits. A ray whose direction is zero is a point: it hits at
-/// time zero if that point is in the set. A ray that is not finite hits nothing.
+/// zero. Without `solid` only the boundary counts, and a ray that starts inside hits where it
+/// leaves. A ray that only touches the boundary hits. A ray whose direction is zero is a point: it
+/// hits at time zero if that point is in the set. A ray that is not finite hits nothing.
 ///
 /// Sets without thickness (segments; triangles in 3D) are hit where the ray meets them within
 /// rounding: a few units in the last place of the distances involved.
 ///
-/// A composite is the union of its parts, and each part is met as if it were alone. So a ray that starts
-/// in any part hits at time zero if `solid`; without, the boundaries of the parts count, also where
-/// they lie inside other parts. Of parts that are hit at one time the first by number answers. Parts
-/// that share corners to the bit, as those of a mesh or a height field do, leave no gap: a ray through
-/// a common side or corner hits at least one of them, however far from the origin (Woop, Benthin and
-/// Wald, "Watertight Ray/Triangle Intersection", 2013).
+/// A composite is the union of its parts, and each part is cast on its own. So a ray that starts in
+/// any part hits at time zero if `solid`; without it, the boundaries of the parts count, also where
+/// they lie inside other parts. Of parts that are hit at one time the lowest number wins. Parts
+/// that share corners to the bit, as those of a mesh or a height field do, leave no gap: a ray
+/// through a common side or corner hits at least one of them, however far from the origin (Woop,
+/// Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013).
 ///
-/// Cost on a composite: a search of the parts along the ray, up to the hit. [`Self::intersects_ray`]
-/// ends at any part that is hit.
+/// Cost on a composite: a search of the parts along the ray, up to the hit.
+/// [`Self::intersects_ray`] ends at any part that is hit.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -107,13 +107,13 @@ pub struct RayIntersection<N: Real, const D: usize> {
 /// assert_eq!(cube.toi_with_ray(&place, &inner, false), Some(1.0), "where it leaves");
 /// ```
 pub trait RayCast<N: Space<D>, const D: usize> {
-    /// The same as [`Self::cast_local_ray_until`] without a longest time.
+    /// [`Self::cast_local_ray_until`] without a latest time.
     fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>> {
         self.cast_local_ray_until(ray, N::INFINITY, solid)
     }
 
-    /// The first hit in the local frame, if it is at `max_time` or before; no hit is if that is negative
-    /// or NaN. The time is in units of the ray's direction.
+    /// Returns the first hit in the local frame, if it is at `max_time` or before; `None` if
+    /// `max_time` is negative or NaN. The time is in units of the ray's direction.
     ///
     /// The other methods agree with it.
     #[doc(alias = "cast_local_ray")]
@@ -124,8 +124,8 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         solid: bool,
     ) -> Option<RayIntersection<N, D>>;
 
-    /// [`Self::cast_local_ray_until`] for many rays: `hits[i]` becomes the answer about `batch.rays[i]`, to
-    /// the bit. With the feature `parallel` on several threads, with the same answers.
+    /// [`Self::cast_local_ray_until`] for many rays: `hits[i]` becomes the answer for
+    /// `batch.rays[i]`, to the bit, also on several threads with the feature `parallel`.
     ///
     /// ```
     /// use impinge::dim3::math::{Point, Vector};
@@ -142,7 +142,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     /// ```
     ///
     /// # Panics
-    /// If there are not as many places as rays.
+    /// If `hits` does not have as many entries as there are rays.
     #[track_caller]
     fn cast_local_rays(
         &self,
@@ -153,10 +153,10 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         batch.each(hits, |ray| self.cast_local_ray_until(ray, max_time, solid));
     }
 
-    /// [`Self::first_hit_with_ray`] for many rays, as [`Self::cast_local_rays`].
+    /// [`Self::first_hit_with_ray`] for many rays; see [`Self::cast_local_rays`].
     ///
     /// # Panics
-    /// If there are not as many places as rays.
+    /// If `hits` does not have as many entries as there are rays.
     #[track_caller]
     fn cast_rays<R: AbstractRotation<N, D>>(
         &self,
@@ -172,8 +172,8 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         }
     }
 
-    /// The first hits on each part of a composite by `max_time`, sorted by time and then by part, in the
-    /// local frame. Of a convex solid that is its first hit.
+    /// Returns the first hit on each part of a composite up to `max_time`, sorted by time and then
+    /// by part, in the local frame. For a convex solid that is its first hit.
     ///
     /// One hit for each part: where the ray enters it, or at time zero if it starts there; without
     /// `solid`, where it leaves a part that it starts in.
@@ -186,12 +186,12 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.cast_local_ray_until(ray, max_time, solid).into_iter().collect()
     }
 
-    /// The ray of the local frame meets the solid by `max_time`.
+    /// Whether the ray of the local frame hits the solid up to `max_time`.
     fn intersects_local_ray(&self, ray: &Ray<N, D>, max_time: N) -> bool {
         self.cast_local_ray_until(ray, max_time, true).is_some()
     }
 
-    /// The same as [`Self::first_hit_with_ray`] without a longest time.
+    /// [`Self::first_hit_with_ray`] without a latest time.
     fn toi_and_normal_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -201,8 +201,9 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.first_hit_with_ray(m, ray, N::INFINITY, solid)
     }
 
-    /// The first hit on the solid placed at `m`, with its normal in the world frame, if it is at `max_time`
-    /// or before; no hit is if that is negative or NaN. The time is in units of the ray's direction.
+    /// Returns the first hit up to `max_time` on the solid placed at `m`, with its normal in the
+    /// world frame; `None` if `max_time` is negative or NaN. The time is in units of the ray's
+    /// direction.
     #[doc(alias = "toi_and_normal_with_ray")]
     fn first_hit_with_ray<R: AbstractRotation<N, D>>(
         &self,
@@ -214,12 +215,13 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         cast_at(self, &R::view(m).pose(), ray, max_time, solid)
     }
 
-    /// The first hit by `max_time` that `counts`, on the shape placed at `m`; the others are passed by. Of a
-    /// composite the first hits on its parts are held out, each at most once and in no particular order, and of
-    /// a convex solid its first hit. The normals are in the world frame.
+    /// Returns the first hit up to `max_time` on the shape placed at `m` for which `counts` is
+    /// true. For a composite `counts` is called with the first hits on its parts, each at most once
+    /// and in no particular order; for a convex solid with its first hit. The normals are in the
+    /// world frame.
     ///
-    /// It culls back faces: a triangle in 3D is hit on its `Face(0)` from the front, where it is seen
-    /// counter-clockwise, and on its `Face(1)` from behind.
+    /// Use it to cull back faces: a triangle in 3D is hit on its `Face(0)` from the front, where
+    /// its corners appear counter-clockwise, and on its `Face(1)` from behind.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -277,7 +279,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         hits
     }
 
-    /// The time alone of [`Self::first_hit_with_ray`] without a longest time.
+    /// The time of [`Self::first_hit_with_ray`] without a latest time.
     fn toi_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -288,7 +290,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.cast_local_ray(&local, solid).map(|hit| hit.toi)
     }
 
-    /// The ray meets the solid placed at `m`.
+    /// Whether the ray hits the solid placed at `m`.
     fn intersects_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -412,7 +414,7 @@ pub(crate) fn cast_on<N: Space<D>, const D: usize>(
     hit.filter(|hit| hit.toi <= max_time)
 }
 
-/// What is done with the answer about the ray of a number.
+/// The callback for the answer of a ray, given its index.
 pub(crate) type Answers<'a, N, const D: usize> =
     &'a mut dyn FnMut(usize, Option<RayIntersection<N, D>>);
 
@@ -432,7 +434,7 @@ pub(crate) fn cast_many_on<N: Space<D>, const D: usize>(
     }
 }
 
-/// The first hit on a part that counts.
+/// The first hit on a part for which `counts` is true.
 #[inline]
 pub(crate) fn first_that<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
@@ -448,8 +450,8 @@ pub(crate) fn first_that<N: Space<D>, const D: usize>(
     first
 }
 
-/// Earlier, or at the same time on a part of lower number. No two hits are on one part, and no time is
-/// NaN.
+/// Whether a hit is earlier, or at the same time on a part of lower number. No two hits are on one
+/// part, and no time is NaN.
 fn is_before<N: Real, const D: usize>(
     a: &RayIntersection<N, D>,
     b: &RayIntersection<N, D>,
@@ -462,10 +464,12 @@ pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayInters
     RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature, part: 0 }
 }
 
-/// What all shapes have in common: rays that are no rays, and the length of the direction.
+/// The common part of all casts: rays that are not finite or have no direction, and the length of
+/// the direction.
 ///
-/// `project` is asked where a ray may start inside; `None` is far from that. `span` is asked for finite rays whose largest component of the direction is between 1 and 2: the
-/// direction is divided by a power of two, which loses nothing, so that its powers stay in range.
+/// `project` is called if a ray may start inside; it returns `None` if that is excluded. `span` is
+/// called for finite rays whose direction was divided by a power of two, so that its largest
+/// component is between 1 and 2 and its powers stay in range.
 fn cast<N: Real, const D: usize>(
     ray: &Ray<N, D>,
     solid: bool,

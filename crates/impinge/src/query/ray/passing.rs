@@ -1,16 +1,16 @@
-//! Rays that certainly pass a ball or a box, which are most of those that meet its box, and points that a solid
-//! certainly does not hold.
+//! Fast rejection: rays that certainly miss a ball or a box, as do most of those that hit its
+//! bounding box, and points that a solid certainly does not contain.
 
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, max, max_component, min};
 use crate::shape::{Geometry, Kind, Triangle};
 
-/// Rounding units, of products of coordinates and directions, by which a ray must pass a solid: several
-/// times what the exact test counts as touching.
+/// Rounding units, of products of coordinates and directions, by which a ray must miss a solid:
+/// several times the margin of the exact test.
 const SLACK: f64 = 64.0;
 
-/// The cast of a ray against a ball or a box certainly finds nothing, whatever it is asked for. Knows
-/// nothing of other shapes, and nothing where numbers are hardly numbers of the type any more.
+/// Whether the cast of a ray against a ball or a box certainly finds nothing, whatever its options.
+/// False for other shapes, and near overflow or underflow.
 #[inline(always)]
 pub(crate) fn surely_misses<N: Real, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -23,18 +23,18 @@ pub(crate) fn surely_misses<N: Real, const D: usize>(
     }
 }
 
-/// What is below this beside zero is lost in squares.
+/// Values below this, added to zero, are lost in squares.
 fn lost<N: Real>() -> N {
     N::MIN_POSITIVE / N::EPSILON
 }
 
-/// The first number is larger than the second by more than the slack, and both are numbers.
+/// Whether the first number is larger than the second by more than `slack`, and is finite.
 #[inline(always)]
 fn exceeds<N: Real>(first: N, second: N, slack: N) -> bool {
     first > second + slack && first < N::INFINITY
 }
 
-/// The ball is behind the ray, or off its line: the distance of that from the centre is by Pythagoras.
+/// Whether the ball is behind the ray, or off its line by the distance of the line from the centre.
 #[inline(always)]
 fn passes_ball<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> bool {
     let unit = N::lit(SLACK) * N::EPSILON;
@@ -52,8 +52,8 @@ fn passes_ball<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> bool {
     exceeds(apart - away * away, reach * squared, unit * apart + lost())
 }
 
-/// The separating axes of a line and a box, and those of a box that is behind the ray (Gottschalk, Lin
-/// and Manocha, "`OBBTree`", 1996).
+/// The separating axes of a line and a box, and those of a box behind the ray (Gottschalk, Lin and
+/// Manocha, "`OBBTree`", 1996).
 #[inline(always)]
 fn passes_box<N: Real, const D: usize>(half: &Vector<N, D>, ray: &Ray<N, D>) -> bool {
     let unit = N::lit(SLACK) * N::EPSILON;
@@ -69,7 +69,8 @@ fn passes_box<N: Real, const D: usize>(half: &Vector<N, D>, ray: &Ray<N, D>) -> 
     })
 }
 
-/// The products that the cross product of origin and direction is made of.
+/// The sum of the magnitudes of the two products in one component of the cross product of origin
+/// and direction.
 #[inline(always)]
 fn reaches<N: Real, const D: usize>(
     origin: &Point<N, D>,
@@ -80,7 +81,7 @@ fn reaches<N: Real, const D: usize>(
     (origin[axis] * dir[next]).abs() + (origin[next] * dir[axis]).abs()
 }
 
-/// The ray starts beside the box on an axis and does not come back.
+/// Whether the ray starts beside the box on an axis and does not come back.
 #[inline(always)]
 fn is_behind<N: Real, const D: usize>(
     half: &Vector<N, D>,
@@ -94,8 +95,8 @@ fn is_behind<N: Real, const D: usize>(
     goes_away && exceeds(distance, half[axis], unit * distance + lost())
 }
 
-/// False where a solid is certainly too far from a point to hold it: a quick look at the kinds of which
-/// there are most, since most rays that come near do not hit.
+/// False if a solid is certainly too far from a point to contain it: a fast test for the most
+/// frequent kinds, since most rays that come near miss.
 pub(super) fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Point<N, D>) -> bool {
     match kind {
         Kind::Triangle(triangle) => may_lie_on(triangle, point),
@@ -113,11 +114,12 @@ pub(super) fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Po
     }
 }
 
+/// Whether the box of a triangle, loosened by the rounding error of a thin set, contains a point.
 fn may_lie_on<N: Real, const D: usize>(triangle: &Triangle<N, D>, point: &Point<N, D>) -> bool {
     let [a, b, c] = triangle.corners();
     let largest = |corner: &Point<N, D>| max_component(&corner.coords);
     let scale = max(max(largest(a), largest(b)), max(largest(c), largest(point)));
-    // Twice what a point may be beside a thin set.
+    // Twice the distance within which a point counts as on a thin set.
     let slack = N::lit(16.0) * N::EPSILON * scale * N::TWO;
     (0..D).all(|axis| {
         let low = min(min(a[axis], b[axis]), c[axis]);
@@ -139,7 +141,7 @@ mod tests {
         *state >> 33
     }
 
-    /// A few numbers of each size, so that rays touch faces and edges, and any number.
+    /// Small integers, so that rays touch faces and edges, and arbitrary numbers.
     fn number<N: Real>(state: &mut u64) -> N {
         let small = bits(state) as f64 % 9.0 - 4.0;
         let any = bits(state) as f64 / f64::from(1_u32 << 30) - 1.0;
@@ -154,7 +156,7 @@ mod tests {
         Vector::<N, D>::from_fn(|_, _| number::<N>(state) * N::lit(scale))
     }
 
-    /// What is said to be missed is; and most of what is missed, at ordinary sizes.
+    /// A reported miss is a miss; and most misses are reported, at ordinary sizes.
     fn agrees_with_the_cast<N: Space<D>, const D: usize>(scale: f64, speed: f64) {
         let (mut state, mut missed, mut known) = (11, 0, 0);
         for _ in 0..20_000 {

@@ -6,7 +6,7 @@ use crate::bounding_volume::Ray;
 use crate::math::{Real, Vector, max, max_component};
 use crate::shape::{FeatureId, Polytope, PolytopeFace, SupportMap};
 
-/// The line clipped by the planes of all faces.
+/// The span of the line clipped by the planes of all faces.
 pub(super) fn span<N: Real, const D: usize>(
     solid: &Polytope<N, D>,
     ray: &Ray<N, D>,
@@ -18,9 +18,9 @@ pub(super) fn span<N: Real, const D: usize>(
 
 /// A face as a half-space.
 ///
-/// A line that runs along a face within rounding counts as parallel to it, and one that is parallel
-/// and within rounding of its plane as inside: else noise divided by noise would say when it crosses.
-/// `scale` is the largest length that enters the height.
+/// A line that is parallel to a face within rounding counts as parallel, and one that also is
+/// within rounding of its plane as inside: else the quotient of two rounding errors would be the
+/// time. `scale` is the largest length that enters the height.
 fn below<N: Real, const D: usize>(
     face: &PolytopeFace<N, D>,
     number: u32,

@@ -1,4 +1,4 @@
-//! The plane: which file answers for which solid.
+//! Ray casts in 2D: the algorithm of each kind of solid.
 
 use super::span::Span;
 use super::{
@@ -9,7 +9,7 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real};
 use crate::shape::Kind;
 
-/// When the line of the ray is inside the solid, in its local frame; `None` if never.
+/// Returns the span of the ray's line in the solid, in its local frame; `None` if it misses.
 pub(crate) fn span<N: Real>(kind: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
     match kind {
         Kind::Ball(solid) => ball::span(solid.radius(), ray),
@@ -30,7 +30,7 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Spa
         Kind::TaperedCapsule(solid) => tapered_capsule::span(solid, ray),
         Kind::Rounded(solid) => rounded::span(solid, ray),
         Kind::Plane(solid) => plane::span(solid, ray),
-        // Its parts are asked instead.
+        // Its parts are cast instead.
         Kind::Composite(_) => None,
     }
 }

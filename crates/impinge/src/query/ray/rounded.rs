@@ -9,7 +9,7 @@ use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{Ball, Geometry, Kind, Rounded, ShapeKind, SupportMap};
 use crate::tables::ByDimension;
 
-/// Searched by the distances of what is rounded; without a radius the line and that.
+/// A search by distances from the inner shape; without a radius the cast of the inner shape.
 pub(super) fn span<N: Space<D>, const D: usize>(
     solid: &Rounded<N, D>,
     ray: &Ray<N, D>,
@@ -32,7 +32,7 @@ pub(super) fn span<N: Space<D>, const D: usize>(
     RaySolid { see: &see, name: &name, radius, precision: precision(inner) }.span(ray)
 }
 
-/// How accurate the distances of points are, in parts of the size: closed forms are exact but for
+/// The accuracy of point distances, as a fraction of the size: closed forms are exact up to
 /// rounding.
 fn precision<N: Real, const D: usize>(inner: Geometry<'_, N, D>) -> N {
     let rounding = N::lit(16.0) * N::EPSILON;

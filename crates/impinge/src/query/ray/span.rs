@@ -4,7 +4,7 @@ use super::RayIntersection;
 use crate::math::{Real, Vector};
 use crate::shape::FeatureId;
 
-/// Where a line crosses a boundary: when, with which outward normal, on which feature.
+/// A crossing of a line with a boundary: time, outward normal and feature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crossing<N: Real, const D: usize> {
     /// May be negative (behind the origin) or infinite (never).
@@ -14,12 +14,12 @@ pub(crate) struct Crossing<N: Real, const D: usize> {
     pub(super) feature: FeatureId,
 }
 
-/// From entering to leaving: `enter.t ≤ leave.t` up to rounding.
+/// The span from entering to leaving: `enter.t ≤ leave.t` up to rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Span<N: Real, const D: usize> {
     pub(super) enter: Crossing<N, D>,
     pub(super) leave: Crossing<N, D>,
-    /// The line is on the boundary all along: a hollow query is the same as a solid one.
+    /// Whether the line stays on the boundary: then a hollow query equals a solid one.
     pub(super) thin: bool,
 }
 
@@ -35,7 +35,7 @@ impl<N: Real, const D: usize> Crossing<N, D> {
 
     fn hit(self) -> Option<RayIntersection<N, D>> {
         let Self { t, normal, feature } = self;
-        // Adding to zero, so that minus zero does not come out.
+        // Adding to zero turns −0 into 0.
         let toi = N::ZERO + t;
         toi.is_finite_number().then_some(RayIntersection { toi, normal, feature, part: 0 })
     }
@@ -51,7 +51,7 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
     }
 
-    /// One moment, or two, on a set without thickness.
+    /// One time, or two, on a set without thickness.
     pub(super) fn thin(enter: Crossing<N, D>, leave: Crossing<N, D>) -> Self {
         Self { enter, leave, thin: true }
     }
@@ -65,7 +65,7 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
     }
 
-    /// The union where either may be missing.
+    /// The union of two spans, either of which may be missing.
     pub(super) fn union_of(first: Option<Self>, second: Option<Self>) -> Option<Self> {
         match (first, second) {
             (Some(first), Some(second)) => Some(first.union(second)),

@@ -8,8 +8,8 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, max, min, unit_or};
 use crate::shape::{FeatureId, Taper, TaperedCapsule};
 
-/// The two balls, and the piece of a cone between the circles in which it touches them. Without any
-/// radius it is a segment.
+/// The two balls, and the frustum between the circles in which it touches them. Without any radius
+/// it is a segment.
 pub(super) fn span<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     ray: &Ray<N, D>,
@@ -28,25 +28,25 @@ pub(super) fn span<N: Real, const D: usize>(
     Span::union_of(side, Span::union_of(ball(0, 0), ball(1, 1)))
 }
 
-/// The solid between the two circles, and a line.
+/// The frustum between the two circles, and a line.
 ///
-/// A point at height `y` over the first end and `x` away from the axis is inside where
-/// `cosine · x ≤ radius1 − sine · y`, of which the right side is positive between the circles.
+/// A point at height `y` over the first end and at distance `x` from the axis is inside where
+/// `cosine · x ≤ radius1 − sine · y`; the right-hand side is positive between the circles.
 struct TaperedSide<'a, N: Real, const D: usize> {
     taper: &'a Taper<N, D>,
     /// The heights of the two circles.
     heights: [N; 2],
-    /// The time of the point of the line nearest to the middle: from there all else is measured, so
-    /// that the origin of the ray may be far away.
+    /// The time of the line's point nearest to the middle: all else is relative to it, so that the
+    /// origin of the ray may be far away.
     start: N,
     against: Vector<N, D>,
-    /// That point across the axis, and its height.
+    /// The components of that point across and along the axis.
     flat: Vector<N, D>,
     height: N,
-    /// The direction, split the same way.
+    /// The direction, split in the same components.
     flat_dir: Vector<N, D>,
     climb: N,
-    /// The right side there, and how it grows.
+    /// The right-hand side at that point, and its rate of change.
     room: N,
     widening: N,
 }
@@ -72,6 +72,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         }
     }
 
+    /// The span of the line in the frustum.
     fn span(&self) -> Option<Span<N, D>> {
         let (low, high) = self.between_circles()?;
         let (enter, leave) = self.in_cone()?;
@@ -86,7 +87,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         in_order(&span).then_some(span)
     }
 
-    /// When the line is between the planes of the circles.
+    /// The interval in which the line is between the planes of the circles.
     fn between_circles(&self) -> Option<(N, N)> {
         let [low, high] = self.heights.mapped(|height| height - self.height);
         if self.climb == N::ZERO {
@@ -97,10 +98,11 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         Some((min(first, second), max(first, second)))
     }
 
-    /// When the line is in the cone: in that half of it where there is room.
+    /// The interval in which the line is in the cone, on the side where the right-hand side is
+    /// positive.
     ///
-    /// The roots of `quadratic · t² + 2 · linear · t + constant`, each factor a difference of squares
-    /// that is not expanded.
+    /// The roots of `quadratic · t² + 2 · linear · t + constant`, each factor a difference of
+    /// squares that is not expanded.
     fn in_cone(&self) -> Option<(N, N)> {
         let (cosine, always) = (self.taper.cosine, (-N::INFINITY, N::INFINITY));
         let form = |a: N, b: N| (cosine * a - b) * (cosine * a + b);

@@ -5,17 +5,17 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, cross2, max, min, perp, unit_or};
 use crate::shape::{FeatureId, Triangle};
 
-/// A corner as the line sees it.
+/// A corner relative to the line.
 #[derive(Clone, Copy)]
 struct RayCorner<N: Real> {
-    /// When the line is nearest to it.
+    /// The time at which the line is nearest to it.
     t: N,
-    /// On which side of the line it lies, and how far, in units of the direction's length.
+    /// The signed distance from the line, positive on its left, in units of the direction's length.
     side: N,
 }
 
-/// The line enters through a side that leads from its left to its right (of a triangle that runs
-/// counter-clockwise) and leaves through one that leads back.
+/// For a counter-clockwise triangle, the line enters through a side that leads from its left to its
+/// right and leaves through one that leads back.
 ///
 /// Whether it hits depends on the three signs alone, and each is computed from one corner and the
 /// ray: triangles that share corners leave no gap.
@@ -51,14 +51,14 @@ fn seen<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> RayCorner<N> {
     RayCorner { t, side: cross2(&ray.dir, &to_corner) }
 }
 
-/// The side leads from the left of the line, or from it, to the right (`falling`) or back.
+/// Whether the side leads from the left of the line, or from it, to the right (`falling`) or back.
 fn crosses<N: Real>(corners: &[RayCorner<N>; 3], side: usize, falling: bool) -> bool {
     let (from, to) = (corners[side].side, corners[(side + 1) % 3].side);
     let (high, low) = if falling { (from, to) } else { (to, from) };
     high >= N::ZERO && low <= N::ZERO && high > low
 }
 
-/// Where the line crosses a side: between the times of its ends, in proportion to their distances.
+/// The crossing of the line with a side: the time is interpolated between those of its ends.
 fn crossing<N: Real>(
     triangle: &Triangle<N, 2>,
     corners: &[RayCorner<N>; 3],
@@ -75,8 +75,8 @@ fn crossing<N: Real>(
     Crossing::new(from.t + (to.t - from.t) * fraction, normal, FeatureId::Face(number))
 }
 
-/// The span, with the times exchanged where rounding has exchanged them: the sides are distinguished by
-/// the way they lead, and the times by themselves.
+/// The span, with the times swapped if rounding has swapped them: sides are classified by their
+/// direction, independently of the times.
 fn in_order<N: Real>(enter: Crossing<N, 2>, leave: Crossing<N, 2>) -> Span<N, 2> {
     let (first, last) = (min(enter.t, leave.t), max(enter.t, leave.t));
     Span {
@@ -86,7 +86,7 @@ fn in_order<N: Real>(enter: Crossing<N, 2>, leave: Crossing<N, 2>) -> Span<N, 2>
     }
 }
 
-/// All corners lie on the line: from the first to the last.
+/// The span if all corners lie on the line: from the first to the last.
 fn lengthwise<N: Real>(corners: &[RayCorner<N>; 3], against: Vector<N, 2>) -> Span<N, 2> {
     let (mut first, mut last) = (0, 0);
     for index in 1..3 {

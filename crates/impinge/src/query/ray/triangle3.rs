@@ -8,9 +8,10 @@ use crate::math::{
 };
 use crate::shape::{FeatureId, Triangle};
 
-/// Through the inside, else along the triangle: there the sides answer, each within rounding.
+/// A hit in the interior, or, if the line is parallel to the triangle, the hits on the sides, each
+/// within rounding.
 ///
-/// The same for both sides of the triangle, and for corners in one line.
+/// Valid for both sides of the triangle, and for collinear corners.
 pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let corners = triangle.corners();
     match through(&Shear::along(ray).of(corners)) {
@@ -28,15 +29,16 @@ pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Optio
     }
 }
 
-/// A ray that is held against many triangles one by one.
+/// A ray for casts against many triangles one by one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TriangleRay<N: Real> {
     shear: Shear<N>,
-    /// The power of two that its direction is divided by, as for all spans.
+    /// The power of two by which its direction is divided, as for all spans.
     unit: N,
 }
 
-/// Where a ray passes through a triangle, on the inside: when along the line, and when in units of the ray.
+/// A hit in the interior of a triangle: the time along the divided direction, and in units of the
+/// ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InnerHit<N: Real> {
     t: N,
@@ -55,7 +57,8 @@ impl<N: Real> TriangleRay<N> {
         Some(Self { shear: Shear::along(&Ray::new(ray.origin, ray.dir / unit)), unit })
     }
 
-    /// The answer of [`span`] to most triangles that are hit; `None` where more has to be looked at.
+    /// The result of [`span`] for most triangles that are hit; `None` if the full test has to
+    /// decide.
     #[inline(always)]
     pub(super) fn inner_hit(&self, corners: &[Point<N, 3>; 3]) -> Option<InnerHit<N>> {
         match through(&self.shear.of(corners)) {
@@ -88,7 +91,7 @@ struct Shear<N: Real> {
 struct Sheared<N: Real> {
     flat: Vector<N, 2>,
     t: N,
-    /// The magnitude of what `flat` is a difference of: its rounding is in proportion.
+    /// The magnitude of the terms of `flat`: its rounding error is proportional.
     size: N,
 }
 
@@ -99,7 +102,7 @@ impl<N: Real> Shear<N> {
         Self { origin: ray.origin, dir: ray.dir, axes: [(along + 1) % 3, (along + 2) % 3, along] }
     }
 
-    /// The corner alone decides where it is, so that triangles that share it agree.
+    /// Each corner is transformed on its own, so that triangles that share it agree.
     #[inline(always)]
     fn of(&self, corners: &[Point<N, 3>; 3]) -> [Sheared<N>; 3] {
         let [x, y, along] = self.axes;
@@ -131,7 +134,7 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     let [a, b, c] = corners;
     let areas = [cross2(&b.flat, &c.flat), cross2(&c.flat, &a.flat), cross2(&a.flat, &b.flat)];
     let total = areas[0] + areas[1] + areas[2];
-    // In one go: which sign decides is a coin toss that no processor foresees.
+    // Without branches: the deciding sign is unpredictable.
     let all = |is: [bool; 3]| is[0] & is[1] & is[2];
     let all_left = all(filled(|side| areas[side] >= N::ZERO));
     let all_right = all(filled(|side| areas[side] <= N::ZERO));
@@ -144,7 +147,7 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     if total.abs() <= rounding { Through::EdgeOn } else { Through::Miss }
 }
 
-/// The normal faces the ray; the face is the one that it comes to.
+/// The crossing; its normal faces the ray, and the face is the one on that side.
 fn crossing<N: Real>(corners: &[Point<N, 3>; 3], dir: &Vector<N, 3>, t: N) -> Crossing<N, 3> {
     let [a, b, c] = corners;
     let normal = cross(&(b - a), &(c - a));

@@ -1,4 +1,4 @@
-//! Rays and bounding volumes, which need no pose.
+//! Ray queries of bounding volumes, which need no pose.
 
 use super::{RayIntersection, ball, cast, cuboid};
 use crate::bounding_volume::{Aabb, BoundingSphere, Ray};

@@ -1,7 +1,7 @@
-//! Closed surfaces that are the boundary of a body, and the connected pieces of surfaces.
+//! Closed surfaces that bound a body, and the connected pieces of surfaces.
 //!
-//! To the searches of parts a closed surface is a skin. What lies wholly inside touches no part, so that the queries
-//! ask, beside the nearest parts, whether a body holds a point of each piece of the other shape.
+//! Part searches treat a closed surface as a skin. A solid wholly inside touches no part, so
+//! queries also test whether a body contains a point of each piece of the other shape.
 
 use core::ops::Range;
 
@@ -16,19 +16,20 @@ use crate::shape::CompositeShape;
 pub struct EnclosedBody<'a, N: Real, const D: usize> {
     /// Its boundary, in a frame of its own.
     boundary: &'a dyn CompositeShape<N, D>,
-    /// That frame in the frame of the composite.
+    /// The pose of the boundary in the frame of the composite.
     pose: Pose<N, D>,
     /// The number of the first part of the boundary among those of the composite.
     first: u32,
 }
 
 impl<'a, N: Space<D>, const D: usize> EnclosedBody<'a, N, D> {
-    /// A composite that is the boundary of a body as a whole.
+    /// The body that `boundary` bounds as a whole.
     pub(in crate::shape) fn within(boundary: &'a dyn CompositeShape<N, D>) -> Self {
         Self { boundary, pose: Pose::identity(), first: 0 }
     }
 
-    /// The body as one of a compound: of a child at a pose, whose first part has this number.
+    /// The body in the frame of a compound, for a child at `pose` whose first part has the number
+    /// `first`.
     pub(in crate::shape) fn of_child(&self, pose: &Pose<N, D>, first: u32) -> Self {
         Self { pose: pose.compose(&self.pose), first: first + self.first, ..*self }
     }
@@ -38,19 +39,21 @@ impl<'a, N: Space<D>, const D: usize> EnclosedBody<'a, N, D> {
         self.first..self.first + self.boundary.num_parts()
     }
 
-    /// The boundary winds around a point of the composite's frame.
+    /// Whether the body contains a point of the composite's frame.
     pub(crate) fn holds(&self, point: &Point<N, D>) -> bool {
         self.boundary.winds_around(&self.pose.inverse_point(point))
     }
 }
 
-/// By part, the first part of its piece: parts that share a vertex, by some number of it, are of one piece.
+/// Returns for each part the first part of its piece. Parts are connected if vertices of theirs
+/// have an equal `number`.
 pub(super) fn pieces<const K: usize>(
     parts: &[[u32; K]],
     vertices: usize,
     number: impl Fn(u32) -> u32,
 ) -> Vec<u32> {
-    // A forest over the vertices (Galler and Fischer, "An improved equivalence algorithm", 1964), roots lowest.
+    // Union-find over the vertices (Galler and Fischer, "An improved equivalence algorithm", 1964),
+    // lowest root.
     let mut above: Vec<u32> = (0..).take(vertices).collect();
     for part in parts {
         let roots = part.mapped(|vertex| root(&mut above, number(vertex)));
@@ -67,7 +70,7 @@ pub(super) fn pieces<const K: usize>(
     pieces
 }
 
-/// The root above a vertex; the way there is halved.
+/// Returns the root above a vertex, with path halving.
 fn root(above: &mut [u32], mut at: u32) -> u32 {
     while above[at as usize] != at {
         above[at as usize] = above[above[at as usize] as usize];
@@ -76,11 +79,11 @@ fn root(above: &mut [u32], mut at: u32) -> u32 {
     at
 }
 
-/// What the pieces of a closed surface enclose, each with a sign: negative where its front is inside. A piece that is
-/// negative beyond rounding has to be the wall of a cavity.
+/// Checks the orientation of the pieces of a closed surface by their signed contents: negative if
+/// the front is inside. A piece that is negative beyond rounding has to be the wall of a cavity.
 ///
-/// `cone` is the signed content of a part seen from a fixed point, `is_cavity` whether the other pieces wind around
-/// one.
+/// `cone` is the signed content between a part and a fixed point; `is_cavity` is whether the other
+/// pieces wind around a part.
 pub(super) fn check_fronts(
     pieces: &[u32],
     cone: impl Fn(u32) -> f64,
@@ -99,7 +102,7 @@ pub(super) fn check_fronts(
     Ok(())
 }
 
-/// A content below so much of what it is the sum of is none.
+/// A content at most this fraction of the sum of its terms' magnitudes counts as zero.
 const NONE: f64 = 1024.0 * f64::EPSILON;
 
 #[cfg(test)]

@@ -15,15 +15,16 @@ use crate::shape::{
 
 /// The union of shapes, its children, each placed in the compound's frame.
 ///
-/// Children may be of any kind: convex solids, half-spaces, meshes, height fields, compounds. Its parts
-/// are theirs, numbered in a row: first those of child 0, then those of child 1, … A child that is
-/// no composite is one part. The path to a part is the index of the child, then the child's own path.
+/// Children may be of any kind: convex solids, half-spaces, meshes, height fields, compounds. Its
+/// parts are theirs, numbered in order: first those of child 0, then those of child 1, … A child
+/// that is no composite is one part. The path to a part is the index of the child, then the child's
+/// own path.
 ///
-/// A child knows the seams of its own surface; children know nothing of each other. A search looks at
-/// the tree over the boxes of the children, then searches each composite among those it finds: parts
-/// of a child are found by their boxes in the frame of the child.
+/// Seams are handled within the surface of a child, not between children. A search uses the tree
+/// over the boxes of the children, then searches each composite that it finds: parts of a child are
+/// found by their boxes in the frame of the child.
 ///
-/// Compounds hold each other up to [`MAX_NESTING`](crate::shape::MAX_NESTING) deep.
+/// Compounds nest up to [`MAX_NESTING`](crate::shape::MAX_NESTING) deep.
 ///
 /// Cloning shares the shapes. Making it costs O(n log n) in the number of children.
 ///
@@ -50,27 +51,28 @@ use crate::shape::{
 pub struct Compound<N: Space<D>, const D: usize> {
     children: Vec<(N::Isometry, ShapeHandle<N, D>)>,
     pub(in crate::shape) poses: Vec<Pose<N, D>>,
-    /// The number of the first part of each child, and at last that of all parts.
+    /// The number of the first part of each child, then the number of all parts.
     pub(in crate::shape) firsts: Vec<u32>,
-    /// How deep the shapes are nested.
+    /// The nesting depth.
     depth: u32,
-    /// Around the boxes of the children.
+    /// The union of the boxes of the children.
     aabb: Aabb<N, D>,
-    /// Over these boxes, grown by what rounding may make of the children.
+    /// Over the boxes of the children, loosened by the rounding errors of placing them.
     pub(in crate::shape) tree: BoxTree<N, D>,
     sphere: BoundingSphere<N, D>,
-    /// A child has a surface that knows its seams.
+    /// Whether a child has a surface with seams.
     has_surface: bool,
-    /// A child is a body within a closed surface.
+    /// Whether a child has a body within a closed surface.
     has_bodies: bool,
     revision: Revision,
 }
 
-/// Up to this many children the box of a placed compound is made of the boxes of its children.
+/// Up to this many children, the box of a placed compound is the union of the boxes of its
+/// children.
 const FEW_CHILDREN: usize = 32;
 
 impl<N: Space<D>, const D: usize> Compound<N, D> {
-    /// The compound of some shapes, each with its position.
+    /// The compound of the given shapes at their positions.
     ///
     /// # Panics
     /// Where [`Self::try_new`] returns an error.
@@ -80,11 +82,12 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         or_panic(Self::try_new(children))
     }
 
-    /// The compound of some shapes, each with its position.
+    /// The compound of the given shapes at their positions.
     ///
     /// # Errors
-    /// If there is no shape, a position is not finite or has no rotation of length 1, the parts are more than 32
-    /// bits can number, or the children are nested as deep as [`MAX_NESTING`](crate::shape::MAX_NESTING) already.
+    /// If there is no shape, a position is not finite or its rotation has no length of 1, the parts
+    /// are more than 32 bits can number, or a child has the nesting depth
+    /// [`MAX_NESTING`](crate::shape::MAX_NESTING) already.
     pub fn try_new(children: Vec<(N::Isometry, ShapeHandle<N, D>)>) -> Result<Self, ShapeError> {
         if children.is_empty() {
             return Err(ShapeError::NoChildren);
@@ -131,7 +134,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         &self.children
     }
 
-    /// How many children there are: one at least.
+    /// The number of children, at least one.
     #[must_use]
     pub const fn num_children(&self) -> usize {
         self.children.len()
@@ -139,13 +142,13 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
 
     /// The compound scaled along the axes of its frame, about its origin; see [`Shape::scaled`].
     ///
-    /// Each child is scaled where it stands. With factors of one magnitude that asks nothing of its
-    /// position; otherwise its rotation must take axes to axes, or turn around an axis across which
-    /// the factors are of one magnitude: else it would be sheared.
+    /// Each child is scaled in place. Factors of one magnitude put no condition on its position;
+    /// otherwise its rotation must map axes to axes, or be about an axis across which the factors
+    /// have one magnitude: else the child would be sheared.
     ///
     /// # Errors
-    /// If a factor is zero or not finite, a child would be sheared or cannot be scaled so, or numbers
-    /// leave their range.
+    /// If a factor is zero or not finite, a child would be sheared or cannot be scaled by these
+    /// factors, or numbers leave their range.
     pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, ScaleError> {
         let scale = Scale::try_new(scale)?;
         let mut children = Vec::with_capacity(self.children.len());
@@ -163,32 +166,34 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         self.firsts[child as usize]
     }
 
-    /// The child that a part belongs to, and which of the child's parts it is.
+    /// Returns the child that a part belongs to, and the part's number within the child.
     ///
     /// # Panics
     /// If there is no such part.
     #[must_use]
     pub fn child_of_part(&self, part: u32) -> (usize, u32) {
         assert!(part < self.num_parts(), "there is no part {part}: they are {}", self.num_parts());
-        // A child may be without parts: the last one that starts here is meant.
+        // Children without parts share their start with the next: the last child that starts here
+        // owns the part.
         let child = self.firsts.partition_point(|&first| first <= part) - 1;
         (child, part - self.firsts[child])
     }
 
-    /// The child of this index as a composite, if it is one.
+    /// Child `child` as a composite, if it is one.
     pub(in crate::shape) fn composite(&self, child: usize) -> Option<&dyn CompositeShape<N, D>> {
         self.children[child].1.geometry().as_composite()
     }
 
-    /// The surface of the child that a part belongs to, how the child lies, and which of its parts it
-    /// is.
+    /// Returns the surface of the child that a part belongs to, the child's pose, and the part's
+    /// number within the child.
     fn surface_at(&self, part: u32) -> Option<(SurfaceAccess<'_, N, D>, &Pose<N, D>, u32)> {
         let (child, own) = self.child_of_part(part);
         Some((self.composite(child)?.surface_access()?, &self.poses[child], own))
     }
 }
 
-/// Where a child of a scaled compound lies, and its own scale; `None` if it would be sheared.
+/// Returns the pose of a child of a scaled compound, and its own factors; `None` if it would be
+/// sheared.
 ///
 /// With the signs M and the magnitudes P of the factors, rotation R:
 /// `M P R = (M R M) (M (Rᵀ P R))`, a rotation after a scale if `Rᵀ P R` is diagonal.
@@ -209,7 +214,7 @@ fn scaled_pose<N: Real, const D: usize>(
     Some((Pose { rotation, translation }, own.component_mul(&signs)))
 }
 
-/// The diagonal of `Rᵀ P R`, if nothing is beside it but rounding.
+/// Returns the diagonal of `Rᵀ P R`; `None` if an element off the diagonal exceeds rounding error.
 fn own_factors<N: Real, const D: usize>(
     rotation: &Matrix<N, D>,
     magnitudes: &Vector<N, D>,
@@ -238,7 +243,7 @@ fn first_parts<N: Space<D>, const D: usize>(
     Ok(firsts)
 }
 
-/// The box of a shape placed at `pose`; that of everything where arithmetic fails.
+/// The box of a shape placed at `pose`; unbounded if arithmetic overflows.
 pub(in crate::shape) fn boxed<N: Space<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
@@ -247,8 +252,8 @@ pub(in crate::shape) fn boxed<N: Space<D>, const D: usize>(
     Aabb::try_new(*aabb.mins(), *aabb.maxs()).unwrap_or_else(|_| Aabb::unbounded())
 }
 
-/// The sphere around the middle of a box that holds the spheres of the children; no larger than the box
-/// asks for.
+/// The sphere around the centre of the box that contains the spheres of the children; no larger
+/// than the sphere around the box.
 fn sphere_around<N: Space<D>, const D: usize>(
     aabb: &Aabb<N, D>,
     children: &[(N::Isometry, ShapeHandle<N, D>)],
@@ -272,7 +277,7 @@ fn surface_of<N: Space<D>, const D: usize>(
     shape.geometry().as_composite()?.surface()
 }
 
-/// A shape as a composite with bodies among its parts.
+/// A shape as a composite, if it has bodies among its parts.
 fn bodies_of<N: Space<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
 ) -> Option<&dyn CompositeShape<N, D>> {
@@ -312,7 +317,8 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
         Some(self.revision)
     }
 
-    /// Those of the innermost composite, with the number of its first part in the upper half.
+    /// Visits the corners of the innermost composite, with the number of its first part in the
+    /// upper 32 bits.
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         let (child, own) = self.child_of_part(part);
         if let Some(composite) = self.composite(child) {
@@ -357,7 +363,7 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
     }
 }
 
-/// A part of a child without a surface stands alone: it admits every normal.
+/// A part of a child without a surface is a solid of its own: it admits every normal.
 impl<N: Space<D>, const D: usize> Surface<N, D> for Compound<N, D> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
         self.surface_at(part).is_none_or(|(surface, pose, own)| {
@@ -404,16 +410,19 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         self.aabb
     }
 
-    /// Of many children the box is that of the box of all, turned, and so is that of a composite child.
+    /// With more than `FEW_CHILDREN` children the box is that of the rotated local box, as for a
+    /// composite child.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         if self.children.len() > FEW_CHILDREN {
             return self.local_aabb().transformed_by(pose);
         }
         let placed = self.children.iter().zip(&self.poses);
-        // A child is placed twice, which rounds twice: its place by the first pose is turned by the second.
+        // A child is placed twice, and rounded twice: its position by the first pose is rotated by
+        // the second.
         let turn = Pose { translation: Vector::<N, D>::zeros(), ..*pose };
         let boxes = placed.map(|((_, shape), own)| match shape.geometry().as_composite() {
-            // One level down is enough: compounds may be nested, and share what they are made of.
+            // No recursion into composites: nested compounds may share children, so the cost would
+            // multiply.
             Some(_) => shape.local_aabb().transformed_by(&turn.compose(own)),
             None => boxed(&**shape, &turn.compose(own)),
         });
@@ -422,11 +431,11 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         let (low, high) = (turned.mins().coords, turned.maxs().coords);
         let finite = |x: N| if x.is_finite_number() { x.abs() } else { N::ZERO };
         let extent = low.zip_map(&high, |low, high| max(finite(low), finite(high)));
-        // A child reaches from its own origin to that of the compound, and as far as the box.
+        // Rounding is proportional to the positions of the children and the extent of the box.
         Aabb::of_turned(low, high, N::TWO * arms + length_of(&extent), pose)
     }
 
-    /// Around the middle of the box; no larger than the box asks for.
+    /// About the centre of the box; no larger than the sphere around the box.
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         self.sphere
     }

@@ -1,6 +1,7 @@
-//! The search of a compound: first among the boxes of its children, then within each composite.
+//! The search of a compound: first among the boxes of its children, then within each composite
+//! child.
 //!
-//! The bounds that nested searches report stay bounds in the frame of the compound.
+//! Lower bounds that nested searches report remain lower bounds in the frame of the compound.
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::outward::slack_of;
@@ -68,7 +69,7 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for Compound<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Compound<N, D> {
-    /// A child that is a composite, and a box in its frame around what `aabb` holds.
+    /// Returns a child that is a composite, and a box in its frame around `aabb`.
     fn nested(
         &self,
         child: usize,
@@ -80,9 +81,9 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
     }
 }
 
-/// The box by which a search finds a child: around all that rounding makes of the child in the frames in which
-/// the pair algorithms place it. That is in proportion to the child's own coordinates and its position, which may
-/// cancel in the box.
+/// The box by which the search finds a child. It contains the rounding errors of the child in the
+/// frames in which the pair algorithms place it: these are proportional to the child's own
+/// coordinates and its position, which may cancel in the plain box.
 pub(in crate::shape) fn search_box<N: Space<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
@@ -96,10 +97,10 @@ pub(in crate::shape) fn search_box<N: Space<D>, const D: usize>(
     aabb.loosened(N::TWO * of_parts + rounding(largest(ends)))
 }
 
-/// The box in the frame that `pose` leads from around what `aabb` holds; grown by what rounding may
-/// take off where `aabb`, at rest or on its way, meets `own`.
+/// The box around `aabb` in the child's frame, loosened by the rounding error with which `aabb`, at
+/// rest or moving, meets the child's box `own`.
 ///
-/// A rotated point, or velocity times the time to meet `own`, is off by a few epsilons times the
+/// A rotated point, or the velocity times the time to meet `own`, is off by a few epsilon times the
 /// coordinates on the way.
 fn within<N: Real, const D: usize>(
     aabb: &Aabb<N, D>,
@@ -117,8 +118,8 @@ fn largest<'a, N: Real>(numbers: impl Iterator<Item = &'a N>) -> N {
     finite.fold(N::ZERO, |largest, x| max(largest, x.abs()))
 }
 
-/// By how much boxes grow whose coordinates are up to `size`: those of points that are turned into a frame, and back,
-/// by the search and by the pair algorithm.
+/// The amount by which boxes with coordinates up to `size` are loosened: covers points that the
+/// search and the pair algorithm transform into a frame and back.
 fn rounding<N: Real>(size: N) -> N {
     N::lit(4.0) * slack_of(size)
 }

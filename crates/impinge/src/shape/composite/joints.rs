@@ -1,16 +1,22 @@
-//! Where the parts of a surface meet: at equal positions, whatever the indices.
+//! Joints of a surface: where its parts meet, by equal positions, whatever the indices.
 
 use crate::math::{Mapped, Point, Real, filled};
 
 /// The points at which parts meet.
 ///
-/// Vertices at one position are one joint, named by the first of them: pieces that each bring
-/// vertices of their own, as exporters write them, hang together like pieces that share theirs.
+/// Vertices at one position form one joint, whose number is the first of them: pieces with vertices
+/// of their own, as exporters write them, join like pieces that share theirs.
+///
+/// ```text
+/// of_vertex[v]   joint of vertex v: the lowest vertex at its position
+/// starts[j]      start of joint j in `parts`; one more entry for the end
+/// parts          | parts at joint 0 | parts at joint 1 | …     ascending, each once per joint
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::shape) struct Joints {
-    /// By vertex: its joint.
+    /// The joint of each vertex.
     of_vertex: Vec<u32>,
-    /// By joint: where its parts start in the list; and the end of the last.
+    /// The start of each joint's parts in the list, then the end of the last.
     starts: Vec<u32>,
     /// The parts of each joint, ascending, each once.
     parts: Vec<u32>,
@@ -62,7 +68,7 @@ impl Joints {
         &self.parts[start..end]
     }
 
-    /// The vertices of each joint still lie at one position.
+    /// Whether the vertices of each joint still lie at one position.
     pub(in crate::shape) fn are_together<N: Real, const D: usize>(
         &self,
         vertices: &[Point<N, D>],
@@ -71,7 +77,7 @@ impl Joints {
     }
 }
 
-/// By vertex: the first one at the same position. Zeros of both signs are one position.
+/// Returns for each vertex the first one at the same position. Zeros of both signs are equal.
 fn welded<N: Real, const D: usize>(vertices: &[Point<N, D>]) -> Vec<u32> {
     let key = |vertex: u32| -> [u64; D] {
         filled(|axis| (vertices[vertex as usize][axis] + N::ZERO).bits())

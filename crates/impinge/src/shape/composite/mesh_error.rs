@@ -1,4 +1,4 @@
-//! Why vertices and indices make no mesh and no polyline.
+//! Errors of meshes and polylines.
 
 use core::fmt;
 
@@ -20,7 +20,7 @@ use crate::math::{Point, Real, Vector};
 pub enum MeshError {
     /// There is no part.
     Empty,
-    /// A line from vertex to vertex has fewer vertices than a segment.
+    /// A line through consecutive vertices has fewer than two.
     TooFewVertices {
         /// How many were given.
         given: usize,
@@ -30,11 +30,11 @@ pub enum MeshError {
         /// The index of the vertex.
         vertex: usize,
     },
-    /// A part names a vertex that does not exist.
+    /// A part refers to a vertex that does not exist.
     NoSuchVertex {
         /// The index of the part.
         part: usize,
-        /// The index it names.
+        /// The index that it refers to.
         vertex: u32,
         /// How many vertices there are.
         vertices: usize,
@@ -44,35 +44,37 @@ pub enum MeshError {
         /// How many were given.
         given: usize,
     },
-    /// A mesh keeps its number of vertices when they move.
+    /// The number of moved vertices differs from the mesh's.
     WrongCount {
         /// How many were given.
         given: usize,
         /// How many it has.
         needed: usize,
     },
-    /// A solid has a border: the edge of a triangle, or the end of a segment, whose other triangles or segments do
-    /// not continue it.
+    /// A solid has a border: the edge of a triangle, or the end of a segment, that no other
+    /// triangle or segment continues.
     NotClosed {
         /// The index of the part.
         part: usize,
         /// The vertices at the ends of the edge; the vertex twice where a line is open.
         edge: [u32; 2],
     },
-    /// The parts of a solid at an edge, or at a vertex of a line, do not agree on what is inside: as many have to
-    /// run along it, or start there, as run back or end.
+    /// The parts of a solid at an edge, or at a vertex of a line, disagree about the inside: as
+    /// many have to traverse the edge, or start at the vertex, as traverse it backwards, or end
+    /// there.
     NotOriented {
         /// The index of the part.
         part: usize,
         /// The vertices at the ends of the edge; the vertex twice in a line.
         edge: [u32; 2],
     },
-    /// The front of a closed surface is on its inside, and no other surface is around it whose cavity it could be.
+    /// The front of a closed surface is on its inside, and no other surface is around it whose
+    /// cavity it could be.
     InsideOut {
         /// The index of its first part.
         part: usize,
     },
-    /// A scale is zero, infinite or NaN: nothing with a surface would be left.
+    /// A scale is zero, infinite or NaN: no area or length would remain.
     BadScale {
         /// The axis: 0 for x.
         axis: usize,
@@ -128,11 +130,11 @@ impl fmt::Display for MeshError {
 
 impl std::error::Error for MeshError {}
 
-/// The most vertices and the most parts: the corners of all parts are numbered with 32 bits, and a
-/// few numbers are kept for other things.
+/// The maximum number of vertices and of parts: the corners of all parts are numbered with 32 bits,
+/// and a few numbers are reserved.
 const MAX: usize = (u32::MAX / 3 - 2) as usize;
 
-/// Vertices are finite and few enough.
+/// Checks that vertices are finite and at most [`MAX`].
 pub(in crate::shape) fn check_vertices<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
 ) -> Result<(), MeshError> {
@@ -144,7 +146,7 @@ pub(in crate::shape) fn check_vertices<N: Real, const D: usize>(
     }
 }
 
-/// There are parts, few enough, and they name vertices that exist.
+/// Checks that there are parts, at most [`MAX`], whose vertices exist.
 pub(in crate::shape) fn check_parts<const K: usize>(
     parts: &[[u32; K]],
     vertices: usize,
@@ -163,7 +165,7 @@ pub(in crate::shape) fn check_parts<const K: usize>(
     Ok(())
 }
 
-/// Moved vertices are as many as before, and usable.
+/// Checks that moved vertices are finite and `needed` in number.
 pub(in crate::shape) fn check_moved<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     needed: usize,
@@ -174,7 +176,7 @@ pub(in crate::shape) fn check_moved<N: Real, const D: usize>(
     check_vertices(vertices)
 }
 
-/// A scale along each axis: finite, and not zero.
+/// Checks that the scale along each axis is finite and not zero.
 pub(in crate::shape) fn check_scale<N: Real, const D: usize>(
     scale: &Vector<N, D>,
 ) -> Result<(), MeshError> {
@@ -185,7 +187,7 @@ pub(in crate::shape) fn check_scale<N: Real, const D: usize>(
     }
 }
 
-/// The mesh, or a panic with the error's text.
+/// Returns the mesh, or panics with the error's text.
 #[track_caller]
 pub(in crate::shape) fn or_panic<S>(result: Result<S, MeshError>) -> S {
     match result {

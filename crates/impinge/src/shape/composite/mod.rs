@@ -1,9 +1,9 @@
-//! Shapes made of parts: what a composite offers to the queries.
+//! Shapes made of parts: the interface of composites to the queries.
 //!
-//! Parts are numbered from 0, those of nested composites in a row, so that one number names a part
-//! however deep it lies; `path_to_part` on `dyn Shape` spells it out. Algorithms never see
-//! a composite as a whole: they ask for the parts that may matter ([`PartSearch`]) and treat each as
-//! a solid of its own.
+//! Parts are numbered from 0; those of nested composites follow each other, so that one number
+//! identifies a part at any depth, and `path_to_part` on `dyn Shape` converts it to a path.
+//! Algorithms never treat a composite as a whole: they search for the parts that may matter
+//! ([`PartSearch`]) and treat each as a solid of its own.
 
 pub(crate) mod body;
 pub(crate) mod compound;
@@ -25,7 +25,7 @@ use crate::shape::{
     EnclosedBody, FeatureId, Geometry, Revision, Segment, Shape, SurfaceAccess, TriMesh, Triangle,
 };
 
-/// The way to a part: the index of the child, of its child, … of the part in the last.
+/// The path to a part: the index of the child, of its child, …, of the part in the last.
 pub type PartPath = SmallVec<[u32; 4]>;
 
 /// A shape that is the union of simple solids, its parts.
@@ -54,21 +54,22 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// How many parts there are; they are numbered from 0.
     fn num_parts(&self) -> u32;
 
-    /// One part: a solid, itself not a composite, and where it lies.
+    /// Returns one part: a solid that is not a composite, and its pose.
     ///
     /// # Panics
     /// If there is no such part.
     fn part(&self, part: u32) -> Part<'_, N, D>;
 
-    /// Where to look for parts.
+    /// The search structure over the parts.
     fn search(&self) -> &dyn PartSearch<N, D>;
 
-    /// Calls `visit` with the parts that a ray may hit at or before the time `limit`, and their numbers:
-    /// none is left out that it hits, and each comes once at most. `visit` returns the new limit, which
-    /// never grows; a negative one ends the search. Near parts first is better, but no order is promised.
+    /// Calls `visit` with each part that a ray may hit at or before the time `limit`, and its
+    /// number: every part that it hits, each at most once. `visit` returns the new limit, which
+    /// never grows; a negative one ends the search. Near parts first is better, but no order is
+    /// promised.
     ///
-    /// `around` is a box around the ray's origin that holds what rounding has made of it. The default
-    /// asks [`Self::search`]; a composite that can tell more than by boxes may do so.
+    /// `around` is a box around the ray's origin that contains its rounding error. The default uses
+    /// [`Self::search`]; a composite with a sharper test than boxes may override it.
     fn parts_along(
         &self,
         ray: &Ray<N, D>,
@@ -79,31 +80,32 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         self.search().cast(around, &ray.dir, limit, &mut |part, _| visit(part, self.part(part)));
     }
 
-    /// What holds the parts together, where they are pieces of one surface: so that the seams
-    /// between them are not taken for edges. `None` for solids side by side.
+    /// The surface that the parts are pieces of, so that contacts do not catch on the seams between
+    /// them. `None` for solids side by side.
     fn surface(&self) -> Option<&dyn Surface<N, D>> {
         None
     }
 
-    /// The surface as the library's algorithms see it; the library's own composites give more of it.
+    /// The surface as the library's algorithms see it; the library's own composites provide more of
+    /// it.
     #[doc(hidden)]
     fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
         self.surface().map(SurfaceAccess::of_any)
     }
 
-    /// Calls `visit` with the number of each corner of a part that others may share: two parts are adjacent
-    /// if they have a number in common, which need not be that of a vertex. None, the default, of solids side
-    /// by side.
+    /// Calls `visit` with the number of each corner of a part that other parts may share: two parts
+    /// are adjacent if they have a number in common, which need not be a vertex index. The default
+    /// visits none, for solids side by side.
     ///
-    /// Of a triangle mesh or polyline these are its vertices, of which those at one position are one; of a
-    /// height field the points of its grid; of a compound those of its children, kept apart, where these are
-    /// below 2³².
+    /// In a triangle mesh or polyline the numbers are its vertices, with coinciding positions
+    /// merged; in a height field the points of its grid; in a compound those of its children, kept
+    /// apart as long as they are below 2³².
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         let _ = (part, visit);
     }
 
-    /// Two different parts share a corner, so that their touching says nothing: such parts are left
-    /// out when the shape is tested against itself. The default asks [`Self::each_corner`].
+    /// Whether two different parts share a corner, so that they touch trivially: such pairs are
+    /// skipped when the shape is tested against itself. The default uses [`Self::each_corner`].
     fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
         let (mut corners, mut is_shared) = (SmallVec::<[u64; 4]>::new(), false);
         self.each_corner(part1, &mut |corner| corners.push(corner));
@@ -111,50 +113,53 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         is_shared
     }
 
-    /// Appends the way to a part.
+    /// Appends the path to a part.
     fn extend_path(&self, part: u32, path: &mut PartPath) {
         path.push(part);
     }
 
-    /// The composite as a shape of the library, of which it is told what it encloses; `None` for one of the user's.
+    /// The composite as a shape of the library, which can compute what it encloses; `None` for a
+    /// user's composite.
     #[doc(hidden)]
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
         None
     }
 
-    /// The composite as a mesh.
+    /// The composite as a mesh, if it is one.
     #[doc(hidden)]
     fn as_mesh(&self) -> Option<&TriMesh<N, D>> {
         None
     }
 
-    /// Names the state of a composite of the library; `None` for one of the user's, which may change unnoticed.
+    /// The cache key of the composite's state; `None` for a user's composite, which may change
+    /// unnoticed.
     #[doc(hidden)]
     fn revision(&self) -> Option<Revision> {
         None
     }
 
-    /// Calls `visit` with each closed surface among the parts that is the boundary of a [`EnclosedBody`].
+    /// Calls `visit` with each closed surface among the parts that bounds an [`EnclosedBody`].
     #[doc(hidden)]
     fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {
         let _ = visit;
     }
 
-    /// [`Self::each_body`] visits any. O(1).
+    /// Whether [`Self::each_body`] visits any. O(1).
     #[doc(hidden)]
     fn has_bodies(&self) -> bool {
         false
     }
 
-    /// The composite as a boundary winds around a point; the point may count either way where it lies on a part.
+    /// Whether the composite, as a boundary, winds around a point; either result is allowed for a
+    /// point on a part.
     #[doc(hidden)]
     fn winds_around(&self, point: &Point<N, D>) -> bool {
         let _ = point;
         false
     }
 
-    /// The number of the connected piece that a part belongs to. The default takes a surface for one piece, and solids
-    /// side by side for one each.
+    /// The number of the connected piece that a part belongs to. By default a surface is one piece,
+    /// and each of the solids side by side is one.
     #[doc(hidden)]
     fn piece_of(&self, part: u32) -> u32 {
         if self.surface().is_some() { 0 } else { part }
@@ -175,13 +180,13 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Part<'a, N: Real, const D: usize> {
-    /// Where it lies in the frame of the composite.
+    /// Its pose in the frame of the composite.
     pub pose: Pose<N, D>,
-    /// What it is, in its own frame.
+    /// The solid, in its own frame.
     pub solid: PartSolid<'a, N, D>,
 }
 
-/// What a part is: made on the fly, or kept by the composite.
+/// The solid of a part: made on the fly, or stored in the composite.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -220,11 +225,11 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
     }
 }
 
-/// Finding the parts of a composite by their boxes.
+/// Searches of the parts of a composite by their boxes.
 ///
-/// Parts are proposed by their boxes, which may be larger than they are: whoever asks looks at each.
-/// Each part is proposed at most once; near ones first is better, but no order is promised. What is
-/// not finite, except for the faces of an unbounded box, is near nothing.
+/// A box may be larger than its part: callers test each proposed part. Each part is proposed at
+/// most once; near ones first is better, but no order is promised. Input that is not finite finds
+/// nothing, except for the infinite faces of an unbounded box.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -238,22 +243,22 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
 /// assert_eq!(found, [4]);
 /// ```
 pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
-    /// A box around all parts, as small as is cheap: it is asked for in every query.
+    /// A box around all parts, as small as is cheap: every query reads it.
     ///
-    /// The default is unbounded, which is always right; two composites are then held against each
-    /// other part by part of the smaller one, however far apart they are.
+    /// The default is unbounded, which is always right; two composites are then tested part by part
+    /// of the smaller one, however far apart they are.
     fn bounds(&self) -> Aabb<N, D> {
         Aabb::unbounded()
     }
 
-    /// The tree that the search is, where its boxes are those of the parts in the order of their numbers: two
-    /// composites that have one each are searched together, which is many times as fast as part by part. `None`,
-    /// the default, of all but [`BoxTree`].
+    /// The tree behind the search, if its boxes are those of the parts in the order of their
+    /// numbers. Two composites with a tree each are searched together, which is many times as fast
+    /// as part by part. `None` (the default) for every search but [`BoxTree`].
     fn as_tree(&self) -> Option<&BoxTree<N, D>> {
         None
     }
 
-    /// Calls `visit` with each part whose box meets or touches `aabb`.
+    /// Calls `visit` with each part whose box overlaps or touches `aabb`.
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32));
 
     /// Calls `visit` with each part whose box is at most `limit` from `aabb`, and a lower bound of
@@ -261,9 +266,9 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
     /// part so far, to find the nearest. A negative one ends the search.
     fn nearest(&self, aabb: &Aabb<N, D>, limit: N, visit: &mut dyn FnMut(u32, N) -> N);
 
-    /// Calls `visit` with each part whose box is met, at or before the time `limit`, by `aabb` moving
-    /// with `velocity`, and a lower bound of the time; as [`Self::nearest`]. A ray is a box of no
-    /// extent.
+    /// Calls `visit` with each part whose box is hit, at or before the time `limit`, by `aabb`
+    /// moving with `velocity`, and a lower bound of the time. `visit` returns the new limit, as for
+    /// [`Self::nearest`]. A ray is a box without extent.
     fn cast(
         &self,
         aabb: &Aabb<N, D>,
@@ -273,10 +278,10 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
     );
 }
 
-/// How the parts of one surface hang together: what contacts need to slide over seams.
+/// The normals that parts have as pieces of one surface, so that solids slide over seams.
 ///
-/// Seen one by one, triangles of a floor have edges that a sliding box would catch on. A surface
-/// knows which normals its parts have as pieces of the whole. All is in the frame of the composite.
+/// On their own, the triangles of a floor have edges that a sliding box would catch on. All is in
+/// the frame of the composite.
 ///
 /// ```
 /// use impinge::dim2::math::{Point, Vector};
@@ -290,18 +295,18 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
 /// assert_eq!(surface.snapped(0, &slanted), Some(Vector::y()));
 /// ```
 pub trait Surface<N: Real, const D: usize>: Send + Sync {
-    /// The unit vector `normal`, away from the part, is one that the whole surface has at the
-    /// feature of the part: the face's own; at a seam where the surface bends outwards, one between
-    /// those of the two faces; at a seam that is flat or bends inwards, none but the faces' own. With
-    /// a tolerance for rounding.
+    /// Whether the whole surface has the unit vector `normal`, away from the part, at the feature
+    /// of the part: at a face its own normal; at a convex seam a normal between those of the two
+    /// faces; at a flat or concave seam only the normals of the faces. Within a tolerance for
+    /// rounding.
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool;
 
-    /// The normal that the whole surface has on the part and that stands for `normal`, which it does
-    /// not admit: that of the face, on the side that `normal` points to for a surface with two
-    /// sides. `None` if the part has no surface of its own, as a piece inside a filled shape.
+    /// Returns the normal of the whole surface on the part that replaces `normal`, which
+    /// [`Self::admits`] rejected: the face's, on the side of `normal` if the surface has two sides.
+    /// `None` if the part is no border of the surface, such as a piece inside a filled shape.
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>>;
 
-    /// The part can touch a solid whose middle is `center`: false on the back of a surface with one
+    /// Whether the part can touch a solid whose centre is `center`: false behind a surface with one
     /// side.
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool;
 }

@@ -1,4 +1,4 @@
-//! The tree over boxes as the search of a composite.
+//! The box tree as the search of a composite.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Space, Vector};

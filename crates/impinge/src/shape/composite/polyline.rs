@@ -1,4 +1,4 @@
-//! Polylines: chains and nets of segments.
+//! Polylines: chains and networks of segments.
 
 use std::sync::OnceLock;
 
@@ -13,23 +13,24 @@ use crate::shape::composite::mesh_error::{
 use crate::shape::composite::polyline_parts;
 use crate::shape::{Revision, Segment};
 
-/// Segments that share ends: an open or closed line, or several of them, or a net.
+/// Segments that share ends: an open or closed line, several lines, or a network.
 ///
 /// Parts are the segments, in the order given, each with the vertices 0 and 1 and the edge 0 of
-/// [`Segment`]; all is in the frame of the line. Segments belong together by the positions of their
-/// ends, not by the indices.
+/// [`Segment`]; all is in the frame of the line. Segments join where the positions of their ends
+/// are equal, whatever the indices.
 ///
-/// **Sides.** A line is a skin and has no inside, but for `encloses` and `signed_distance` of one in 2D, unless `solid`
-/// makes a closed one a body. In 2D it has two sides, or one if asked by `one_sided`: then what is solid lies on its
-/// left, as for an outline that runs counter-clockwise, and nothing touches it from there.
+/// **Sides.** A line is a skin and has no inside, except in 2D for `encloses` and
+/// `signed_distance`, unless `solid` makes a closed one a body. In 2D it has two sides, or one
+/// after `one_sided`: then the solid side is its left, as for an outline that runs
+/// counter-clockwise, and nothing touches it from there.
 ///
-/// **Seams.** Contacts see the line as one (see [`Surface`](crate::shape::Surface)): at a joint only those
-/// normals count that the whole line has there, so that nothing catches on the joints of a floor.
+/// **Seams.** Contacts treat the line as one surface (see [`Surface`](crate::shape::Surface)): at a
+/// joint only normals of the whole line count, so that nothing catches on the joints of a floor.
 /// Segments that bend by less than 0.57 degrees (a sine of 0.01) count as straight.
 /// [`Self::with_internal_edges_kept`] switches this off.
 ///
-/// **Bad segments.** A segment without length is kept, so that parts keep their numbers: it acts as
-/// a point, and its neighbours join through it.
+/// **Bad segments.** A segment without length is kept, so that part numbers do not change: it acts
+/// as a point, and its neighbours join through it.
 ///
 /// Making a line costs O(n log n), a search O(log n + what it finds).
 ///
@@ -49,27 +50,28 @@ pub struct Polyline<N: Real, const D: usize> {
     pub(in crate::shape) segments: Vec<[u32; 2]>,
     pub(in crate::shape) joints: Joints,
     pub(in crate::shape) tree: BoxTree<N, D>,
-    /// As many segments start as end at each joint, and ends that belong together lie together.
+    /// Whether as many segments start as end at each joint, and the vertices of each joint still
+    /// coincide.
     is_cycle: bool,
-    /// The vertices are no longer those that the joints were made of.
+    /// Whether vertices have moved since the joints were computed.
     pub(in crate::shape) is_moved: bool,
-    /// The normal on the front of a segment from its direction, of a line with one side: known in
-    /// the plane only.
+    /// Maps the direction of a segment to the normal on its front, for a line with one side; `None`
+    /// in 3D.
     pub(in crate::shape) front: Option<Front<N, D>>,
-    /// It was made one, as long as it [`Self::is_cycle`].
+    /// Whether `solid` was called; valid while [`Self::is_cycle`].
     is_solid: bool,
     pub(in crate::shape) keeps_internal_edges: bool,
-    /// By segment: the first one of its piece.
+    /// The first segment of the piece of each segment.
     pieces: OnceLock<Vec<u32>>,
-    /// Without the options that are set later.
+    /// Without the options, which are set later.
     pub(in crate::shape) revision: Revision,
 }
 
-/// From the direction of a segment to the normal on its front.
+/// Maps the direction of a segment to the normal on its front.
 pub(in crate::shape) type Front<N, const D: usize> = fn(&Vector<N, D>) -> Vector<N, D>;
 
 impl<N: Space<D>, const D: usize> Polyline<N, D> {
-    /// The line from each vertex to the next.
+    /// The line through the vertices in order.
     ///
     /// # Panics
     /// Where [`Self::try_open`] returns an error.
@@ -79,7 +81,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         or_panic(Self::try_open(vertices))
     }
 
-    /// The line from each vertex to the next.
+    /// The line through the vertices in order.
     ///
     /// # Errors
     /// If a coordinate is not finite, there are fewer than two vertices, or more than 32 bits can
@@ -89,7 +91,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         Self::try_new(vertices, segments)
     }
 
-    /// The line from each vertex to the next, and from the last back to the first.
+    /// The line through the vertices in order, and from the last back to the first.
     ///
     /// # Panics
     /// Where [`Self::try_closed`] returns an error.
@@ -99,10 +101,10 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         or_panic(Self::try_closed(vertices))
     }
 
-    /// The line from each vertex to the next, and from the last back to the first.
+    /// The line through the vertices in order, and from the last back to the first.
     ///
     /// # Errors
-    /// As [`Self::try_open`].
+    /// As for [`Self::try_open`].
     pub fn try_closed(vertices: Vec<Point<N, D>>) -> Result<Self, MeshError> {
         let mut segments = chain(vertices.len())?;
         if let Some(&[_, last]) = segments.last() {
@@ -124,7 +126,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     /// The union of segments given by two vertices each, in any order.
     ///
     /// # Errors
-    /// If a coordinate is not finite, a segment names a vertex that does not exist, there is no
+    /// If a coordinate is not finite, a segment refers to a vertex that does not exist, there is no
     /// segment, or 32 bits cannot number the ends.
     pub fn try_new(vertices: Vec<Point<N, D>>, segments: Vec<[u32; 2]>) -> Result<Self, MeshError> {
         check_vertices(&vertices)?;
@@ -148,8 +150,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         })
     }
 
-    /// The line scaled along the axes of its frame, about its origin. Where that mirrors it, each
-    /// segment runs the other way, so that what is solid stays so.
+    /// The line scaled along the axes of its frame, about its origin. If the scale mirrors it, each
+    /// segment is reversed, so that its solid side stays solid.
     ///
     /// # Errors
     /// If a scale is zero or not finite, or a coordinate becomes infinite.
@@ -176,8 +178,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     /// Moves the vertices, for a line that deforms: all of them, in the order of
     /// [`Self::vertices`].
     ///
-    /// Segments that hung together still do, even if their ends lie apart now. The tree is refitted,
-    /// not built anew: O(n). On an error nothing has changed.
+    /// Segments that were joined stay joined, even if their ends are apart now. The tree is
+    /// refitted, not rebuilt: O(n). On an error nothing has changed.
     ///
     /// # Errors
     /// If a coordinate is not finite or the number of vertices differs.
@@ -223,7 +225,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         Segment::new(a, b)
     }
 
-    /// The segments that end where end 0 or 1 of a segment is, itself among them, ascending.
+    /// The segments joined to end 0 or 1 of a segment, including itself, ascending.
     ///
     /// # Panics
     /// If there is no such segment or end.
@@ -232,7 +234,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.joints.parts(self.joints.of(self.segments[segment as usize][end as usize]))
     }
 
-    /// No segment ends where no other one does. O(n).
+    /// Whether each end of a segment is joined to another segment. O(n).
     #[must_use]
     pub fn is_closed(&self) -> bool {
         let joint = |&vertex: &u32| self.joints.parts(self.joints.of(vertex));
@@ -245,20 +247,21 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         &self.tree
     }
 
-    /// Nothing touches the line from its left.
+    /// Whether nothing touches the line from its left.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         self.front.is_some()
     }
 
-    /// The line is a body, not a skin: `solid` made it one, and no vertices have been moved apart since. Always false
-    /// in 3D.
+    /// Whether the line is a body, not a skin: `solid` was called, and no joined vertices have been
+    /// moved apart since. Always false in 3D.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle
     }
 
-    /// By segment, the first one of its piece: segments that share ends are of one piece.
+    /// Returns for each segment the first one of its piece; segments that share ends are of one
+    /// piece.
     pub(in crate::shape) fn pieces(&self) -> &[u32] {
         self.pieces.get_or_init(|| {
             let are_together = !self.is_moved || self.joints.are_together(&self.vertices);
@@ -267,7 +270,7 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         })
     }
 
-    /// Contacts treat each segment on its own; see [`Self::with_internal_edges_kept`].
+    /// Whether contacts treat each segment on its own; see [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
         self.keeps_internal_edges
@@ -286,18 +289,18 @@ impl<N: Real, const D: usize> Polyline<N, D> {
 }
 
 impl<N: Real> Polyline<N, 2> {
-    /// The line is the outline of an area, or of several: at each joint as many segments end as start,
-    /// as in every [closed](Self::closed) one. O(1).
+    /// Whether the line is the outline of an area, or of several: at each joint as many segments
+    /// end as start, as in every [closed](Self::closed) one. O(1).
     ///
-    /// Vertices that [`Self::set_vertices`] moves apart, though they were at one position, open the line.
-    /// What lies inside say [`Self::encloses`] and [`Self::signed_distance`].
+    /// If [`Self::set_vertices`] moves vertices apart that were at one position, the line is open.
+    /// [`Self::encloses`] and [`Self::signed_distance`] answer what lies inside.
     #[must_use]
     pub const fn is_outline(&self) -> bool {
         self.is_cycle
     }
 
-    /// Lets nothing touch the line from its left: what is solid lies there, as for an outline that
-    /// runs counter-clockwise.
+    /// Makes the line one-sided: nothing touches it from its left, the solid side, as for an
+    /// outline that runs counter-clockwise.
     #[must_use]
     pub const fn one_sided(mut self) -> Self {
         self.front = Some(polyline_parts::right_of);
@@ -314,14 +317,16 @@ impl<N: Real> Polyline<N, 2> {
         or_panic(self.try_solid())
     }
 
-    /// Makes the line a body instead of a skin: all that it [encloses](Self::encloses) belongs to the shape.
+    /// Makes the line a body instead of a skin: the area that it [encloses](Self::encloses) belongs
+    /// to the shape.
     ///
-    /// What that means for each query is said of meshes in 3D: `TriMesh::try_solid`. The body lies on the left of its
-    /// segments; outlines that run clockwise are holes in others.
+    /// `TriMesh::try_solid` describes the meaning for each query, for meshes in 3D. The body lies
+    /// on the left of its segments; outlines that run clockwise are holes in others.
     ///
     /// # Errors
-    /// If the line is no [outline](Self::is_outline): the error names the first vertex at which it is open or its
-    /// segments disagree. If an outline runs clockwise and lies in no other one: the error names a segment of it.
+    /// If the line is no [outline](Self::is_outline): the error has the first vertex at which it is
+    /// open or its segments disagree. If an outline runs clockwise and lies in no other one: the
+    /// error has a segment of it.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -358,7 +363,7 @@ impl<N: Real> Polyline<N, 2> {
         Ok(self.one_sided())
     }
 
-    /// A power of two of the size of the line.
+    /// A power of two near the size of the line.
     fn scale(&self) -> f64 {
         let corners = self.tree.bounds().map(|bounds| [*bounds.mins(), *bounds.maxs()]);
         let largest = |corner: &Point<N, 2>| max_component(&corner.coords);
@@ -366,7 +371,7 @@ impl<N: Real> Polyline<N, 2> {
         size.power_of_two_below().as_f64()
     }
 
-    /// The first vertex at which not as many segments end as start.
+    /// The error for the first vertex at which the numbers of starting and ending segments differ.
     fn opening(&self) -> MeshError {
         let joints = Joints::new(&self.vertices, &self.segments);
         for (part, vertex) in
@@ -384,12 +389,13 @@ impl<N: Real> Polyline<N, 2> {
                 _ => return MeshError::NotOriented { part, edge: [vertex; 2] },
             }
         }
-        // Vertices that were moved together close nothing: segments belong together as they did at first.
+        // Vertices that were moved onto each other do not join: the joints stay as they were at
+        // first.
         MeshError::NotClosed { part: 0, edge: [self.segments[0][0]; 2] }
     }
 }
 
-/// As many segments end as start at each joint.
+/// Whether as many segments end as start at each joint.
 fn is_cycle(vertices: usize, segments: &[[u32; 2]], joints: &Joints) -> bool {
     let mut surplus = vec![0_i64; vertices];
     for &[from, to] in segments {
@@ -399,7 +405,7 @@ fn is_cycle(vertices: usize, segments: &[[u32; 2]], joints: &Joints) -> bool {
     surplus.iter().all(|&starts| starts == 0)
 }
 
-/// From each vertex to the next, of which there must be one; too many vertices are found later.
+/// The segments from each vertex to the next, at least one; too many vertices are rejected later.
 fn chain(vertices: usize) -> Result<Vec<[u32; 2]>, MeshError> {
     if vertices < 2 {
         return Err(MeshError::TooFewVertices { given: vertices });
@@ -407,6 +413,7 @@ fn chain(vertices: usize) -> Result<Vec<[u32; 2]>, MeshError> {
     Ok((1..).take(vertices - 1).map(|next| [next - 1, next]).collect())
 }
 
+/// The boxes of the segments, in their order.
 fn boxes_of<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     segments: &[[u32; 2]],
@@ -416,7 +423,8 @@ fn boxes_of<N: Real, const D: usize>(
     segments.iter().map(one).collect()
 }
 
-/// What the tree says of boxes around finite points, of which only the number can be wrong.
+/// Converts an error of the tree, whose boxes are around finite points, so that only their number
+/// can be wrong.
 pub(in crate::shape) fn refused(error: BoxTreeError) -> MeshError {
     match error {
         BoxTreeError::BadBox { index, .. } => MeshError::VertexNotFinite { vertex: index },

@@ -1,4 +1,4 @@
-//! A polyline as a shape: a union of segments that know their neighbours.
+//! A polyline as a composite shape: segments with the seams between them.
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, max_component, perp, unit};
@@ -16,8 +16,8 @@ pub(in crate::shape) fn right_of<N: Real>(along: &Vector<N, 2>) -> Vector<N, 2> 
     -perp(along)
 }
 
-/// The unit vector across a line that leads to the side that a vector of any length points to; `None` if what is
-/// left of that is rounding, which says nothing of the side.
+/// Returns the unit vector perpendicular to a line, towards the side of `vector`, which may have
+/// any length; `None` if the perpendicular component is only rounding error and gives no side.
 pub(in crate::shape) fn across<N: Real, const D: usize>(
     along: &Vector<N, D>,
     vector: &Vector<N, D>,
@@ -81,8 +81,7 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
     }
 }
 
-/// The own normals of a segment are all that are perpendicular to it: two in 2D, a circle
-/// of them in 3D.
+/// The normals of a segment itself are all its perpendiculars: two in 2D, a circle of them in 3D.
 impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
         if self.keeps_internal_edges {
@@ -123,19 +122,20 @@ impl<N: Real, const D: usize> OwnSurface<N, D> for Polyline<N, D> {
 }
 
 impl<N: Real, const D: usize> Polyline<N, D> {
-    /// Unit, along a segment; `None` without length.
+    /// The unit vector along a segment; `None` without length.
     fn along(&self, segment: u32) -> Option<Vector<N, D>> {
         let [a, b] = self.ends(segment);
         unit(&(b - a)).map(|(along, _)| along)
     }
 
-    /// How far a vector leads in front of a segment; zero where there is no front and back.
+    /// The component of a vector along the front of a segment; zero if the line has two sides.
     fn height_over(&self, segment: u32, vector: &Vector<N, D>) -> N {
         let front = self.front.zip(self.along(segment)).map(|(front, along)| front(&along));
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// No segment that leaves the joint rises along the normal, and they are not straight.
+    /// Whether no segment that leaves the joint rises along the normal, and the joint is not
+    /// straight.
     fn joint_admits(&self, part: u32, end: u32, normal: &Vector<N, D>) -> bool {
         let joint = self.joints.of(self.segments[part as usize][end as usize]);
         let own = self.along(part).unwrap_or_else(Vector::<N, D>::zeros);
@@ -155,18 +155,18 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Polyline<N, D> {
         Geometry(Kind::Composite(self))
     }
 
-    /// The smallest, in O(1).
+    /// The smallest box, in O(1).
     fn local_aabb(&self) -> Aabb<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    /// The smallest, up to rounding. O(log n) for a line that bulges, up to O(n) for one whose parts
-    /// reach almost equally far.
+    /// The smallest box, up to rounding. O(log n) for a convex-looking line, up to O(n) for one
+    /// whose parts extend almost equally far.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         aabb_at(pose, &self.segments, &self.vertices, &self.tree)
     }
 
-    /// The sphere around the middle of the box, through the farthest vertex: O(n).
+    /// The sphere about the centre of the box through the farthest vertex: O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         sphere_around(&self.local_aabb(), self.segments.as_flattened().iter(), &self.vertices)
     }

@@ -1,11 +1,11 @@
-//! Why there are no mass properties.
+//! Errors of mass properties.
 
 use core::fmt;
 
 /// Why a shape, or some numbers, have no mass properties. Values are given as `f64`, exactly.
 ///
-/// A part is the number that the queries give it: 0 for a shape of one part; `path_to_part` of the shape translates
-/// it for a nested compound.
+/// `part` is the part number that queries use: 0 for a shape of one part; `path_to_part` of the
+/// shape translates it for a nested compound.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -21,31 +21,31 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MassError {
-    /// A number that was given, or that would be the answer, is NaN or infinite. A mass or a moment is infinite if
-    /// it is beyond the range of the scalar.
+    /// An input, or a number of the result, is NaN or infinite. A mass or a moment is infinite if
+    /// it exceeds the range of the scalar.
     NotFinite {
         /// Which number.
         what: &'static str,
         /// The number.
         value: f64,
     },
-    /// A number that was given is below zero.
+    /// An input is below zero.
     Negative {
         /// Which number.
         what: &'static str,
         /// The number.
         value: f64,
     },
-    /// A half-space: its mass is infinite.
+    /// The shape is, or contains, a half-space: its mass is infinite.
     Unbounded {
-        /// The part that it is.
+        /// The part that is a half-space.
         part: u32,
     },
-    /// A surface or a line that bounds nothing: an open mesh, one whose triangles do not agree on a front, an open
-    /// polyline, one in 3D, a height field, a surface of the user's own.
+    /// A surface or line bounds no solid: an open mesh, a mesh whose triangles disagree about the
+    /// front, an open polyline, a polyline in 3D, a height field, a user's surface.
     NotClosed {
-        /// In a triangle mesh the first triangle with a side that is open or runs the wrong way, else the first
-        /// part.
+        /// In a triangle mesh the first triangle with an open side or a side in the wrong
+        /// direction, else the first part.
         part: u32,
     },
 }
@@ -67,12 +67,12 @@ impl fmt::Display for MassError {
 
 impl std::error::Error for MassError {}
 
-/// A number that is finite.
+/// Checks that a number is finite.
 pub(crate) fn finite(what: &'static str, value: f64) -> Result<f64, MassError> {
     if value.is_finite() { Ok(value) } else { Err(MassError::NotFinite { what, value }) }
 }
 
-/// A number that is finite and not below zero.
+/// Checks that a number is finite and not below zero.
 pub(crate) fn amount(what: &'static str, value: f64) -> Result<f64, MassError> {
     if value < 0.0 { Err(MassError::Negative { what, value }) } else { finite(what, value) }
 }

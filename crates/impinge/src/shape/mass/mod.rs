@@ -1,8 +1,9 @@
-//! Mass properties: what a solver needs to know of a rigid body.
+//! Mass properties of rigid bodies: mass, centre of mass, inertia.
 //!
-//! Here is the type and its arithmetic; [`crate::query::mass_properties`] computes them from shapes. Arithmetic is
-//! in double precision for both scalars, and rounded once. Principal moments are kept, not the tensor: beside a large
-//! moment a small one keeps its digits, and none ever becomes negative.
+//! This module has the type and its arithmetic; [`crate::query::mass_properties`] computes them
+//! from shapes. Arithmetic is in double precision for both scalars and is rounded once. Principal
+//! moments are stored instead of the tensor: a small moment keeps its digits beside a large one,
+//! and none ever becomes negative.
 
 mod error;
 mod moments;
@@ -20,18 +21,18 @@ use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Vector}
 
 /// The mass of a rigid body, its centre of mass, and its inertia about that centre.
 ///
-/// All is in the frame of the body. [`mass_properties`](crate::query::mass_properties) makes them from a shape and
-/// a density, `new` from numbers. The inertia is a number in 2D, about the centre and the axis out of the plane; in
-/// 3D a tensor, which is kept as its principal moments and axes.
+/// All is in the frame of the body. [`mass_properties`](crate::query::mass_properties) computes
+/// them from a shape and a density, `new` takes numbers. The inertia is a number in 2D, about the
+/// centre and the axis out of the plane; in 3D a tensor, stored as its principal moments and axes.
 ///
-/// `+` joins two bodies in one frame, by the parallel axis theorem; where they overlap the mass is there twice. `-`
-/// takes a part out of a body: a hollow ball is a ball less a smaller one. [`Self::transformed`] brings a body into
-/// another frame.
+/// `+` joins two bodies in one frame, by the parallel axis theorem; an overlap counts twice. `-`
+/// removes a part from a body: a hollow ball is a ball minus a smaller one. [`Self::transformed`]
+/// converts a body to another frame.
 ///
-/// **Inverses.** A solver multiplies impulses by the inverses of the mass and the inertia. The inverse of zero is
-/// taken as zero: a body without mass, and one without inertia about an axis, such as a rod about itself, is not
-/// moved or turned, like one that is infinitely heavy. For a body that shall not be turned, or not moved, put
-/// zeros in place of the inverses.
+/// **Inverses.** A solver multiplies impulses by the inverses of the mass and the inertia. The
+/// inverse of zero is defined as zero: a body without mass is not moved, and a body without inertia
+/// about an axis, such as a segment about itself, is not rotated about it, as if it were infinitely
+/// heavy. For a body that shall not rotate, or not move, use zeros in place of the inverses.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -57,7 +58,7 @@ pub struct MassProperties<N: Real, const D: usize> {
     center: Point<N, D>,
     /// A rotation whose columns are the principal axes.
     axes: Matrix<N, D>,
-    /// By axis; see [`Moments`].
+    /// By axis, as in [`Moments`].
     principal: Vector<N, D>,
 }
 
@@ -82,13 +83,14 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         inverse(self.mass)
     }
 
-    /// The centre of mass in the frame of the body. Of a shape without mass it is some point of the shape.
+    /// The centre of mass in the frame of the body; for a shape without mass some point of the
+    /// shape.
     #[must_use]
     pub const fn center_of_mass(&self) -> &Point<N, D> {
         &self.center
     }
 
-    /// The centre of mass in the world, of a body placed at `position`.
+    /// The centre of mass, in world coordinates, of a body placed at `position`.
     #[must_use]
     pub fn center_of_mass_at<R: AbstractRotation<N, D>>(
         &self,
@@ -97,7 +99,7 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         position.transform_point(&self.center)
     }
 
-    /// The body as it is seen from the frame in which it is placed at `position`.
+    /// The body in the frame in which it is placed at `position`.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -117,7 +119,8 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         Self::of_moments(&self.moments().placed(&rotation, &translation))
     }
 
-    /// The same body with another mass, and an inertia in proportion. A body without mass becomes a point mass.
+    /// Returns the body with another mass and a proportional inertia. A body without mass becomes a
+    /// point mass.
     ///
     /// # Errors
     /// If the mass is negative or not finite, or a moment is beyond the range of the scalar.
@@ -147,7 +150,7 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         }
     }
 
-    /// The properties, rounded.
+    /// The properties, rounded to the scalar.
     fn of_moments(moments: &Moments<D>) -> Self {
         Self {
             mass: N::lit(moments.mass),
@@ -157,7 +160,7 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         }
     }
 
-    /// The properties, rounded, if all are numbers of the scalar.
+    /// The properties, rounded to the scalar; an error if one is NaN or beyond its range.
     pub(crate) fn try_of_moments(moments: &Moments<D>) -> Result<Self, MassError> {
         let found = Self::of_moments(moments);
         finite("the mass", found.mass.as_f64())?;
@@ -171,13 +174,13 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
     }
 }
 
-/// 1 / x; zero for zero, and where the inverse is beyond the range of the scalar.
+/// 1 / x; zero if the result is infinite or NaN.
 fn inverse<N: Real>(x: N) -> N {
     let inverse = N::ONE / x;
     if inverse.is_finite_number() { inverse } else { N::ZERO }
 }
 
-/// Two bodies in one frame as one. A mass beyond the range of the scalar becomes infinite.
+/// Two bodies in one frame, as one. A mass beyond the range of the scalar becomes infinite.
 impl<N: Real, const D: usize> Add for MassProperties<N, D> {
     type Output = Self;
 
@@ -192,7 +195,8 @@ impl<N: Real, const D: usize> AddAssign for MassProperties<N, D> {
     }
 }
 
-/// A body without a part of it, in the same frame; without mass if the part weighs as much as the body.
+/// A body without a part of it, in the same frame; without mass if the part weighs at least as much
+/// as the body.
 impl<N: Real, const D: usize> Sub for MassProperties<N, D> {
     type Output = Self;
 
@@ -207,7 +211,7 @@ impl<N: Real, const D: usize> SubAssign for MassProperties<N, D> {
     }
 }
 
-/// All bodies in one frame as one, rounded once; the default for none.
+/// All bodies in one frame as one, rounded once; the default for an empty iterator.
 impl<N: Real, const D: usize> Sum for MassProperties<N, D> {
     fn sum<I: Iterator<Item = Self>>(bodies: I) -> Self {
         let all = bodies.map(|body| body.moments()).reduce(|all, body| all.plus(&body));

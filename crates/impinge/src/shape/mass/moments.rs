@@ -1,12 +1,12 @@
-//! Mass, centre and moments in double precision, whatever the scalar of the body.
+//! Mass, centre and moments in double precision, for every scalar of the body.
 
 use crate::math::eigen::symmetric_eigen;
 use crate::math::{Matrix, Vector};
 
-/// Moments below so much of the largest one are those of a line: rounding of the sums that they come from.
+/// Moments below `THIN` times the largest are set to zero: they are the rounding error of the sums.
 const THIN: f64 = 16.0 * f64::EPSILON;
 
-/// The mass of a body, its centre, and its principal moments, all in its own frame.
+/// The mass of a body, its centre, and its principal moments, in the body's frame.
 ///
 /// With the matrix `S = ∫ x xᵀ dm` about the centre, the tensor here is `tr(S) − S` in 2D and in 3D. In 3D it is
 /// the inertia tensor; in 2D it is the upper left block of the tensor of a thin plate, and its trace is the
@@ -26,8 +26,8 @@ fn about<const D: usize>(offset: &Vector<f64, D>) -> Matrix<f64, D> {
     tensor_of(&(offset * offset.transpose()))
 }
 
-/// The tensor `tr(S) − S` of a matrix of second moments, each element a sum of its own: what is small beside the
-/// trace keeps its digits.
+/// The tensor `tr(S) − S` of a matrix of second moments. Each element is a sum of its own, so that
+/// elements that are small beside the trace keep their digits.
 fn tensor_of<const D: usize>(second: &Matrix<f64, D>) -> Matrix<f64, D> {
     Matrix::<f64, D>::from_fn(|row, column| {
         if row != column {
@@ -44,7 +44,7 @@ impl<const D: usize> Moments<D> {
         Self { mass: 0.0, center, axes, principal }
     }
 
-    /// A body whose second moments along its principal axes are known.
+    /// A body from its second moments along its principal axes.
     pub(crate) fn along_axes(
         mass: f64,
         center: Vector<f64, D>,
@@ -55,12 +55,12 @@ impl<const D: usize> Moments<D> {
         Self { mass, center, axes, principal }
     }
 
-    /// A body whose matrix of second moments about the centre is known.
+    /// A body from its matrix of second moments about the centre.
     pub(crate) fn of_seconds(mass: f64, center: Vector<f64, D>, second: &Matrix<f64, D>) -> Self {
         Self::of_tensor(mass, center, &tensor_of(second))
     }
 
-    /// A body whose tensor is known. What rounding makes of moments that are none is none.
+    /// A body from its tensor. Moments at or below the rounding error of the tensor become zero.
     pub(crate) fn of_tensor(mass: f64, center: Vector<f64, D>, tensor: &Matrix<f64, D>) -> Self {
         let (principal, axes) = symmetric_eigen(tensor);
         let least = THIN * principal.amax();
@@ -68,23 +68,24 @@ impl<const D: usize> Moments<D> {
         Self { mass, center, axes, principal }
     }
 
-    /// The tensor about the centre, along the axes of the frame.
+    /// The tensor about the centre, in the axes of the frame.
     pub(crate) fn tensor(&self) -> Matrix<f64, D> {
         self.axes * Matrix::<f64, D>::from_diagonal(&self.principal) * self.axes.transpose()
     }
 
-    /// The body in the frame outside, which the pose takes it to.
+    /// The body in the frame that the pose maps to.
     pub(crate) fn placed(&self, rotation: &Matrix<f64, D>, translation: &Vector<f64, D>) -> Self {
         let center = rotation * self.center + translation;
         Self { center, axes: rotation * self.axes, ..*self }
     }
 
-    /// The body with a density that is so many times as large.
+    /// The body with all densities multiplied by `density`.
     pub(crate) fn of_density(&self, density: f64) -> Self {
         Self { mass: self.mass * density, principal: self.principal * density, ..*self }
     }
 
-    /// The body with all lengths multiplied by a power of two and moved to an origin; the density stays.
+    /// The body with all lengths multiplied by a power of two and moved to `origin`, at the same
+    /// density.
     pub(crate) fn grown(&self, scale: f64, origin: &Vector<f64, D>) -> Self {
         let measure = (0..D).fold(self.mass, |measure, _| measure * scale);
         let grown = |moment: f64| (0..D + 2).fold(moment, |moment, _| moment * scale);
@@ -92,11 +93,11 @@ impl<const D: usize> Moments<D> {
         Self { mass: measure, center, principal, ..*self }
     }
 
-    /// Both bodies as one. Without mass its centre is between theirs.
+    /// Both bodies as one. If the mass is zero, the centre is midway between theirs.
     pub(crate) fn plus(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         let offset = other.center - self.center;
-        // From the middle on: bodies at one place stay there, and the order changes nothing.
+        // Relative to the midpoint: equal centres stay equal, and the order does not matter.
         let lead = if mass > 0.0 { (other.mass - self.mass) / mass * 0.5 } else { 0.0 };
         let center = self.center * 0.5 + other.center * 0.5 + offset * lead;
         if mass <= 0.0 {
@@ -107,7 +108,7 @@ impl<const D: usize> Moments<D> {
         Self::of_tensor(mass, center, &tensor)
     }
 
-    /// What is left of the body without a part of it; without mass if that weighs as much.
+    /// The body without `part`; without mass if `part` weighs at least as much.
     pub(crate) fn minus(&self, part: &Self) -> Self {
         let mass = self.mass - part.mass;
         if mass <= 0.0 {

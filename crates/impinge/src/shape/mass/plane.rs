@@ -4,7 +4,7 @@ use super::{MassError, MassProperties, Moments, amount, finite, inverse};
 use crate::math::{Matrix, Point, Real, Vector};
 
 impl<N: Real> MassProperties<N, 2> {
-    /// A body of a given centre of mass, mass, and moment of inertia about that centre.
+    /// A body of the given centre of mass, mass, and moment of inertia about that centre.
     ///
     /// # Panics
     /// Where [`Self::try_new`] returns an error.
@@ -17,7 +17,7 @@ impl<N: Real> MassProperties<N, 2> {
         }
     }
 
-    /// A body of a given centre of mass, mass, and moment of inertia about that centre.
+    /// A body of the given centre of mass, mass, and moment of inertia about that centre.
     ///
     /// # Errors
     /// If a number is not finite, or the mass or the moment is negative.
@@ -34,7 +34,7 @@ impl<N: Real> MassProperties<N, 2> {
         })
     }
 
-    /// The moment of inertia about the centre of mass; zero or more.
+    /// The moment of inertia about the centre of mass; not negative.
     #[must_use]
     pub fn inertia(&self) -> N {
         self.principal.x + self.principal.y

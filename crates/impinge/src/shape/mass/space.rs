@@ -5,7 +5,8 @@ use crate::math::na::UnitQuaternion;
 use crate::math::{Isometry3, Matrix, Point, Pose, Real, Space, Vector};
 
 impl<N: Real> MassProperties<N, 3> {
-    /// A body of a given centre of mass, mass, and inertia tensor about that centre, along the axes of the frame.
+    /// A body of the given centre of mass, mass, and inertia tensor about that centre, in the axes
+    /// of the frame.
     ///
     /// # Panics
     /// Where [`Self::try_new`] returns an error.
@@ -18,10 +19,11 @@ impl<N: Real> MassProperties<N, 3> {
         }
     }
 
-    /// A body of a given centre of mass, mass, and inertia tensor about that centre, along the axes of the frame.
+    /// A body of the given centre of mass, mass, and inertia tensor about that centre, in the axes
+    /// of the frame.
     ///
-    /// Of a tensor that is not symmetric the symmetric part counts. Whether a body of that inertia can be built
-    /// (no principal moment is larger than the other two together) is not asked.
+    /// Only the symmetric part of the tensor is used. Whether a body of that inertia can be built
+    /// (no principal moment exceeds the sum of the other two) is not checked.
     ///
     /// # Errors
     /// If a number is not finite, or the mass or a principal moment is negative by more than rounding.
@@ -60,8 +62,8 @@ impl<N: Real> MassProperties<N, 3> {
         Self::try_of_moments(&Moments::of_tensor(mass, center, &symmetric))
     }
 
-    /// A body of a given centre of mass, mass, and principal moments of inertia about the axes that `frame` turns
-    /// the axes of the body's frame to.
+    /// A body of the given centre of mass, mass, and principal moments of inertia about the axes
+    /// that `frame` rotates the axes of the body's frame to.
     ///
     /// # Errors
     /// If a number is not finite, or the mass or a moment is negative.
@@ -95,35 +97,36 @@ impl<N: Real> MassProperties<N, 3> {
 
     /// The rotation from the axes of the body's frame to its principal axes.
     ///
-    /// It is the identity if the inertia tensor is diagonal, and for a shape whose axes are those of its frame: a
-    /// ball, a box, a cylinder.
+    /// The identity if the inertia tensor is diagonal, and for a shape whose principal axes are
+    /// those of its frame: a ball, a box, a cylinder.
     #[must_use]
     pub fn principal_frame(&self) -> UnitQuaternion<N> {
         let pose = Pose { rotation: self.axes, translation: Vector::<N, 3>::zeros() };
         <N as Space<3>>::isometry(&pose).rotation
     }
 
-    /// The inertia tensor about the centre of mass, along the axes of the body's frame.
+    /// The inertia tensor about the centre of mass, in the axes of the body's frame.
     #[must_use]
     pub fn inertia(&self) -> Matrix<N, 3> {
         self.along(&self.axes, &self.principal)
     }
 
-    /// The inverse of the inertia tensor about the centre of mass, along the axes of the body's frame. An axis
-    /// without inertia has none.
+    /// The inverse of the inertia tensor about the centre of mass, in the axes of the body's frame;
+    /// zero about an axis without inertia.
     #[must_use]
     pub fn inverse_inertia(&self) -> Matrix<N, 3> {
         self.along(&self.axes, &self.principal.map(inverse))
     }
 
-    /// The inertia tensor about the centre of mass along the world's axes, of a body placed at `position`.
+    /// The inertia tensor about the centre of mass, in the world's axes, of a body placed at
+    /// `position`.
     #[must_use]
     pub fn inertia_at(&self, position: &Isometry3<N>) -> Matrix<N, 3> {
         self.along(&self.turned(position), &self.principal)
     }
 
-    /// The inverse of [`Self::inertia_at`]: what a torque is multiplied by to give the angular acceleration. An axis
-    /// without inertia has none. Cost: two products of matrices.
+    /// The inverse of [`Self::inertia_at`]: times a torque it gives the angular acceleration. Zero
+    /// about an axis without inertia. Cost: two products of matrices.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -142,8 +145,8 @@ impl<N: Real> MassProperties<N, 3> {
         self.along(&self.turned(position), &self.principal.map(inverse))
     }
 
-    /// The inertia tensor about another point of the body's frame, along the axes of that frame, by the parallel
-    /// axis theorem.
+    /// The inertia tensor about another point of the body's frame, in the axes of that frame, by
+    /// the parallel axis theorem.
     #[must_use]
     pub fn inertia_about(&self, point: &Point<N, 3>) -> Matrix<N, 3> {
         let offset = point - self.center;
@@ -151,12 +154,13 @@ impl<N: Real> MassProperties<N, 3> {
         self.inertia() + (across - offset * offset.transpose()) * self.mass
     }
 
-    /// The principal axes along the world's axes.
+    /// The principal axes in the world's axes.
     fn turned(&self, position: &Isometry3<N>) -> Matrix<N, 3> {
         <N as Space<3>>::pose(position).rotation * self.axes
     }
 
-    /// The symmetric matrix with given eigenvalues along the columns of a rotation; exact along the axes.
+    /// The symmetric matrix with the given eigenvalues along the columns of a rotation; exact for
+    /// coordinate axes.
     fn along(&self, axes: &Matrix<N, 3>, values: &Vector<N, 3>) -> Matrix<N, 3> {
         Matrix::<N, 3>::from_fn(|row, column| {
             let product = |axis: usize| axes[(row, axis)] * axes[(column, axis)] * values[axis];

@@ -1,4 +1,4 @@
-//! How polytopes are put together from what is already known to be convex.
+//! Construction of polytopes from parts that are known to be convex.
 
 use smallvec::SmallVec;
 
@@ -6,7 +6,7 @@ use crate::math::{Point, Real, Vector, max, perp, unit};
 use crate::shape::polytope::{Twin, count32};
 use crate::shape::{Polytope, PolytopeEdge, PolytopeFace};
 
-/// The mean of some points, computed with doubles near 1, whose sum does not overflow.
+/// The mean of some points, computed in doubles scaled to about 1, whose sum does not overflow.
 fn center_of<N: Real, const D: usize>(points: &[Point<N, D>]) -> Point<N, D> {
     let largest = |size, p: &Point<N, D>| p.iter().fold(size, |size, x| max(size, x.abs()));
     let scale = points.iter().fold(N::ZERO, largest).power_of_two_below().as_f64();
@@ -16,13 +16,14 @@ fn center_of<N: Real, const D: usize>(points: &[Point<N, D>]) -> Point<N, D> {
     Point::from((sum / count).map(|x| N::lit(x * scale)))
 }
 
-/// Values by their owners, of which there are `count`: where those of each owner start, and at last where the last ones
-/// end; and the values. Those of one owner keep their order.
+/// Groups values by owner (a counting sort, stable): returns the start of each of the `count`
+/// groups followed by the end of the last, and the values.
 fn grouped<T: Copy + Default>(
     count: usize,
     owned: impl Iterator<Item = (u32, T)> + Clone,
 ) -> (Vec<u32>, Vec<T>) {
-    // Filling moves the start of an owner to that of the next, so each is kept one place further.
+    // Filling advances the start of an owner to that of the next, so each start is stored one entry
+    // later.
     let mut starts = vec![0; count + 2];
     owned.clone().for_each(|(owner, _)| starts[owner as usize + 2] += 1);
     for owner in 0..count {
@@ -39,6 +40,7 @@ fn grouped<T: Copy + Default>(
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
+    /// A polytope with vertices only; faces, edges and fans follow.
     fn from_vertices(vertices: Vec<Point<N, D>>) -> Self {
         Self {
             center: center_of(&vertices),
@@ -70,7 +72,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// For each vertex the edges (in 2D: the faces) that end at it.
+    /// Computes for each vertex the edges (in 2D: the faces) that end at it.
     fn collect_fans(&mut self) {
         let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
         let sides = (0_u32..).take(count);
@@ -88,7 +90,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 }
 
 impl<N: Real> Polytope<N, 2> {
-    /// The polygon with these corners, which are counter-clockwise and three at least.
+    /// The polygon with these corners, at least three, counter-clockwise.
     pub(in crate::shape) fn from_corners(corners: Vec<Point<N, 2>>) -> Self {
         let mut polygon = Self::from_vertices(corners);
         let count = count32(polygon.vertices.len());
@@ -108,8 +110,8 @@ impl<N: Real> Polytope<N, 2> {
 }
 
 impl<N: Real> Polytope<N, 3> {
-    /// The solid with these corners and faces, given by outward unit normals and loops of three
-    /// corners at least; `None` unless each side of a face is, backwards, a side of one other.
+    /// The solid with these corners and faces, given by outward unit normals and loops of at least
+    /// three corners; `None` unless each side of a face is, reversed, a side of exactly one other.
     pub(in crate::shape) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
         faces: impl Iterator<Item = (Vector<N, 3>, impl AsRef<[u32]>)>,
@@ -122,9 +124,9 @@ impl<N: Real> Polytope<N, 3> {
         Some(hull)
     }
 
-    /// Numbers the edges anew, and turns them round, so that edge `i` joins the given ends.
+    /// Renumbers and reorients the edges so that edge `i` joins `ends[i]`.
     ///
-    /// There are as many as there are edges, and each is one of them.
+    /// `ends` must have exactly one entry for each edge.
     pub(in crate::shape) fn name_edges(&mut self, ends: &[[u32; 2]]) {
         let place = |edge: &PolytopeEdge| {
             let [a, b] = edge.vertices;
@@ -146,7 +148,8 @@ impl<N: Real> Polytope<N, 3> {
         self.collect_fans();
     }
 
-    /// Finds the edges: numbered by the place in the loops where they are seen first.
+    /// Computes the edges, numbered by their first occurrence in the loops. `None` unless the sides
+    /// pair up.
     fn connect(&mut self) -> Option<()> {
         let sides = self.directed_sides();
         let twins = twins(self.vertices.len(), &sides);
@@ -168,7 +171,7 @@ impl<N: Real> Polytope<N, 3> {
         Some(())
     }
 
-    /// For each entry of the loops: the side to the next vertex.
+    /// Returns for each entry of the loops the side to the next vertex.
     fn directed_sides(&self) -> Vec<DirectedSide> {
         let mut sides = Vec::with_capacity(self.loops.len());
         for (face, of) in (0_u32..).zip(&self.faces) {
@@ -180,20 +183,21 @@ impl<N: Real> Polytope<N, 3> {
     }
 }
 
-/// No side.
+/// No twin.
 const NONE: u32 = u32::MAX;
 
-/// A side of a face, on its way round.
+/// A side of a face in the direction of the face's loop.
 struct DirectedSide {
     from: u32,
     to: u32,
     face: u32,
 }
 
-/// For each side one that runs backwards; [`NONE`] where there is none. Of sides that are there twice one is nobody's twin.
+/// Returns for each side one that runs in the opposite direction; [`NONE`] if there is none. If a
+/// side occurs twice, at least one of the two is not its twin's twin.
 ///
-/// It is looked for among the sides that leave the end where fewer do. On a closed surface this takes linear time: Chiba and
-/// Nishizeki, "Arboricity and Subgraph Listing Algorithms" (1985).
+/// Searches the sides that leave the end with fewer of them. On a closed surface this takes linear
+/// time: Chiba and Nishizeki, "Arboricity and Subgraph Listing Algorithms" (1985).
 fn twins(vertices: usize, sides: &[DirectedSide]) -> Vec<u32> {
     let leaving = (0..).zip(sides).map(|(place, side)| (side.from, [side.to, place]));
     let (starts, leaving) = grouped::<[u32; 2]>(vertices, leaving);

@@ -1,10 +1,10 @@
-//! Whether a polytope is what it says: for tests and for doubts.
+//! Consistency checks of polytopes, for tests and debugging.
 
 use crate::math::{Real, cross2};
 use crate::shape::Polytope;
 
-/// What rounding may put a vertex in front of a face, in units of `N::EPSILON · reach`: the
-/// tolerances of the hull, and the rounding of the plane.
+/// The largest height of a vertex above a face, in units of `N::EPSILON · reach`: the tolerances of
+/// the hull plus the rounding error of the plane.
 const SLACK: f64 = 48.0;
 
 impl<N: Real, const D: usize> Polytope<N, D> {
@@ -12,7 +12,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         N::lit(SLACK) * N::EPSILON * self.reach
     }
 
-    /// Normals are unit, no vertex is in front of a face, those of a face are in its plane.
+    /// Checks that normals are unit, no vertex is above a face, and a face's own vertices are in
+    /// its plane.
     fn validate_faces(&self) -> Result<(), &'static str> {
         for face in &self.faces {
             if (face.normal.norm() - N::ONE).abs() > N::lit(4.0) * N::EPSILON {
@@ -30,7 +31,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         Ok(())
     }
 
-    /// Each vertex knows the sides that end at it, and no others.
+    /// Checks that the fan of each vertex holds exactly the sides that end at it.
     fn validate_fans(&self) -> Result<(), &'static str> {
         for (index, at) in (0_u32..).zip(0..self.vertices.len()) {
             let fan = self.fan(at);
@@ -48,7 +49,7 @@ impl<N: Real> Polytope<N, 2> {
     /// 48 · `N::EPSILON` times the largest distance of a vertex from the origin. Quadratic time.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// Says what is wrong.
     pub fn validate(&self) -> Result<(), &'static str> {
         self.validate_faces()?;
         self.validate_fans()?;
@@ -59,7 +60,7 @@ impl<N: Real> Polytope<N, 2> {
                 return Err("a side leads elsewhere than to the next vertex");
             }
             let [a, b, c] = [at, at + 1, at + 2].map(|vertex| self.vertices[vertex % count]);
-            // In one scale with 1, so that areas neither overflow nor vanish.
+            // Scaled to about 1, so that areas neither overflow nor underflow.
             let scale = self.reach.power_of_two_below();
             let turn = cross2(&(b / scale - a / scale), &(c / scale - b / scale));
             if turn < -self.slack() / scale {
@@ -77,7 +78,7 @@ impl<N: Real> Polytope<N, 3> {
     /// distance of a vertex from the origin. Quadratic time.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// Says what is wrong.
     pub fn validate(&self) -> Result<(), &'static str> {
         self.validate_faces()?;
         self.validate_fans()?;

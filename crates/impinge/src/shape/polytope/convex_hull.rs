@@ -11,7 +11,7 @@ use crate::shape::{Geometry, Kind, Polytope, ScaleError, Shape, ShapeHandle};
 /// The convex hull of some points, with a volume.
 ///
 /// Vertices are in the order in which the points were given; faces are polygons, counter-clockwise
-/// seen from outside. Everything that can be asked of a [`Polytope`] can be asked of it.
+/// seen from outside. All methods of [`Polytope`] are available.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -37,8 +37,8 @@ impl<N: Real> ConvexHull<N> {
         or_panic(Self::try_from_points(points))
     }
 
-    /// The solid with these corners and faces, given by outward unit normals and loops of three
-    /// corners at least; `None` unless the faces close its surface.
+    /// The solid with these corners and faces, given by outward unit normals and loops of at least
+    /// three corners; `None` unless the faces close its surface.
     pub(crate) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
         faces: impl Iterator<Item = (Vector<N, 3>, impl AsRef<[u32]>)>,
@@ -46,7 +46,7 @@ impl<N: Real> ConvexHull<N> {
         Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, faces)? })
     }
 
-    /// The solid as vertices, edges, faces and what touches what.
+    /// The solid as vertices, edges, faces and their adjacency.
     #[must_use]
     pub const fn polytope(&self) -> &Polytope<N, 3> {
         &self.polytope

@@ -8,10 +8,10 @@ use crate::shape::error::or_panic;
 use crate::shape::scale::Scale;
 use crate::shape::{Geometry, Kind, Polytope, ScaleError, Shape, ShapeHandle};
 
-/// A convex polygon with three corners at least and an area.
+/// A convex polygon with at least three corners and an area.
 ///
-/// Vertices are counter-clockwise; `Face(i)` is the side from `Vertex(i)` to the next. Everything
-/// that can be asked of a [`Polytope`] can be asked of it.
+/// Vertices are counter-clockwise; `Face(i)` is the side from `Vertex(i)` to the next. All methods
+/// of [`Polytope`] are available.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -48,12 +48,12 @@ impl<N: Real> ConvexPolygon<N> {
         or_panic(Self::try_from_points(points))
     }
 
-    /// The polygon with these corners: counter-clockwise, convex, three at least.
+    /// The polygon with these corners: counter-clockwise, convex, at least three.
     pub(crate) fn from_corners(corners: Vec<Point<N, 2>>) -> Self {
         Self { polytope: Polytope::<N, 2>::from_corners(corners) }
     }
 
-    /// The polygon as vertices, sides and what touches what.
+    /// The polygon as vertices, sides and their adjacency.
     #[must_use]
     pub const fn polytope(&self) -> &Polytope<N, 2> {
         &self.polytope

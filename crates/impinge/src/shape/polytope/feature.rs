@@ -5,7 +5,7 @@ use crate::shape::polytope::count32;
 use crate::shape::tilt::Tilt;
 use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, Shown, SupportMap};
 
-/// What faces a direction: the indices of a face, a side or a vertex.
+/// The supporting feature for a direction: the index of a face, a side or a vertex.
 #[derive(Clone, Copy, Debug)]
 enum HullPart {
     Face(u32),
@@ -13,11 +13,11 @@ enum HullPart {
     Vertex(usize),
 }
 
-/// Two vertices with their names.
+/// Two vertices with their ids.
 type EdgeEnds<N, const D: usize> = [(FeatureId, Point<N, D>); 2];
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// The rule of [`SupportMap::core_feature`], with any limit.
+    /// The rule of [`SupportMap::core_feature`] with the limit `tilt`.
     fn part_toward(&self, direction: &Vector<N, D>, tilt: Tilt<N>) -> HullPart {
         let vertex = self.support_vertex(direction);
         let Some((side, slope)) = self.flattest_side(vertex, direction) else {
@@ -33,8 +33,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// The face, side or vertex that a point of the surface lies on, up to `noise`, of those that face
-    /// the unit vector `direction`.
+    /// Returns the vertex, side or face, within the supporting feature for the unit vector
+    /// `direction`, that a point of the surface lies on, up to `noise`.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
@@ -58,7 +58,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// The first of some vertices that a point coincides with.
+    /// Returns the first of `vertices` within `2 noise` of a point.
     fn end_at(&self, vertices: &[u32], point: &Point<N, D>, noise: N) -> Option<FeatureId> {
         let near = N::lit(4.0) * noise * noise;
         let is_near =
@@ -66,7 +66,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         vertices.iter().find(is_near).map(|&vertex| FeatureId::Vertex(vertex))
     }
 
-    /// Whether a point lies on the line of a side.
+    /// Whether a point lies within `noise` of the line of a side.
     fn is_on_side(&self, side: u32, point: &Point<N, D>, noise: N) -> bool {
         let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
         let (along, arm) = (b - a, point - a);
@@ -74,7 +74,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         aside.norm_squared() <= noise * noise
     }
 
-    /// The side at a vertex that leans least along a direction, and the sine by which it does.
+    /// Returns the side at a vertex with the smallest slope along a direction, and the sine of that
+    /// slope.
     fn flattest_side(&self, vertex: usize, direction: &Vector<N, D>) -> Option<(u32, N)> {
         let mut best: Option<(u32, N)> = None;
         for (side, along) in self.fan_along(vertex) {
@@ -86,12 +87,14 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         best
     }
 
-    /// The first of equals; face 0 of none.
+    /// Returns the face whose normal is most aligned with `direction`, the first of equals; 0 for
+    /// no face.
     fn most_aligned(&self, faces: impl Iterator<Item = u32>, direction: &Vector<N, D>) -> u32 {
         let along = |face: u32| self.faces[face as usize].normal.dot(direction);
         faces.reduce(|best, face| if along(face) > along(best) { face } else { best }).unwrap_or(0)
     }
 
+    /// Writes a part as a feature.
     fn fill(&self, part: HullPart, out: &mut Feature<N, D>) {
         match part {
             HullPart::Face(face) => self.fill_face(face, out),
@@ -102,6 +105,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
+    /// The id of a part.
     fn named(part: HullPart) -> FeatureId {
         match part {
             HullPart::Face(face) => FeatureId::Face(face),
@@ -110,6 +114,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
+    /// Writes face `index`; in 2D as a segment with a normal.
     fn fill_face(&self, index: u32, out: &mut Feature<N, D>) {
         let face = &self.faces[index as usize];
         out.clear();
@@ -118,7 +123,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             out.push(FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
         }
         let sides = self.face_sides(face);
-        // A side of the plane is one segment, not a loop of two.
+        // A side of a polygon in 2D is one segment, not a loop of two.
         let count = if sides.len() == 2 { 1 } else { sides.len() };
         for &side in &sides[..count] {
             out.side_ids.push(Self::side_id(side));
@@ -126,7 +131,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         out.normal = Some(face.normal);
     }
 
-    /// What [`Self::fill`] says of a part of no more than two vertices.
+    /// Returns the id and the ends of a part of two vertices; `None` for any other.
     fn ends_of(&self, part: HullPart) -> Option<(FeatureId, EdgeEnds<N, D>)> {
         match part {
             HullPart::Side(side) => Some((Self::side_id(side), self.ends(side))),
@@ -147,7 +152,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         ends.map(|vertex| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]))
     }
 
-    /// The unit vector along the sum of the normals of some faces, all of which meet at one place.
+    /// The unit vector along the sum of the normals of some faces; that of face 0 if the sum is
+    /// zero.
     fn mean_normal(&self, faces: impl Iterator<Item = u32>) -> Vector<N, D> {
         let normals = faces.map(|face| self.faces[face as usize].normal);
         let first = self.faces[0].normal;
@@ -186,8 +192,8 @@ impl<N: Real> Polytope<N, 2> {
         Shown::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
     }
 
-    /// The same of up to eight vertices, by their rows and those of the sides' normals: the rule of
-    /// [`Self::part_toward`] without a look at what is kept of the sides.
+    /// [`Self::shown`] for up to eight vertices, from the rows of the vertices and of the sides'
+    /// normals: the rule of [`Self::part_toward`] without access to the lists of sides.
     fn shown_of_few(
         &self,
         [xs, ys]: &[[N; 8]; 2],
@@ -211,7 +217,7 @@ impl<N: Real> Polytope<N, 2> {
             along.map_or(N::ONE, |(along, _)| along.dot(direction).abs())
         };
         let (slope_before, slope_after) = (slope(before, vertex), slope(vertex, after));
-        // Of equal sides that of the lower number counts.
+        // If both slopes are equal, the side of the lower index wins.
         let is_after =
             if vertex > 0 { slope_after < slope_before } else { slope_after <= slope_before };
         let (side, to) = if is_after { (vertex, after) } else { (before, vertex) };
@@ -228,13 +234,14 @@ impl<N: Real> Polytope<N, 2> {
 }
 
 impl<N: Real> Polytope<N, 3> {
-    /// The name of what [`SupportMap::core_feature`] answers.
+    /// The id of the [`SupportMap::core_feature`].
     #[inline]
     pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> FeatureId {
         Self::named(self.part_toward(direction, Tilt::usual()))
     }
 
-    /// Makes a blank ring the face with a number; answers whether it has few corners.
+    /// Fills a blank ring with face `index`. Returns false if the face has more corners than a ring
+    /// holds.
     pub(crate) fn fill_ring(&self, index: u32, ring: &mut FaceRing<N>) -> bool {
         let face = &self.faces[index as usize];
         let (vertices, sides) = (self.face_vertices(face), self.face_sides(face));

@@ -1,4 +1,14 @@
-//! The common core of convex polygons and convex hulls: vertices, faces, edges and who meets whom.
+//! The common core of convex polygons and convex hulls: vertices, faces, edges and their adjacency.
+//!
+//! ```text
+//! faces[f]       normal, offset, first, len
+//! loops          | v0 v2 v1 | v1 v2 v5 v4 | …      `len` vertices around a face, from `first`
+//! loop_sides     | e0 e1 e2 | e1 e3 e4 e5 | …      side (edge; in 2D face) from each to the next
+//! fan_starts[v]  | 0 | 3 | …                       one entry per vertex, then the end
+//! fans           | e0 e2 e6 | e2 e1 e5 | …         sides that end at each vertex
+//!
+//! blocks[b][axis][lane]    coordinate `axis` of vertex 8 b + lane; the last vertex fills the rest
+//! ```
 
 pub(crate) mod build;
 pub(crate) mod check;
@@ -24,8 +34,8 @@ use crate::shape::solids::segment::length_of;
 /// counter-clockwise, and there are no edges. In 3D the faces are polygons, counter-clockwise
 /// seen from outside, and each edge lies between two faces.
 ///
-/// Features are named by their place in [`Self::vertices`], [`Self::edges`] and [`Self::faces`].
-/// Finding a support point takes time in proportion to the number of vertices.
+/// The id of a feature is its index in [`Self::vertices`], [`Self::edges`] or [`Self::faces`].
+/// Finding a support point takes linear time in the number of vertices.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -38,21 +48,21 @@ use crate::shape::solids::segment::length_of;
 /// let corners = hull.face_vertices(top);
 /// assert!(corners.iter().all(|&corner| hull.vertices()[corner as usize].y == 1.0));
 /// ```
-// What questions about small solids read lies in front and in one piece: among thousands of solids each further
-// place is a wait for memory.
+// The fields that queries of small solids read come first and inline: among thousands of solids
+// each further allocation is a cache miss.
 #[derive(Clone, PartialEq)]
 #[repr(C)]
 pub struct Polytope<N: Real, const D: usize> {
     pub(in crate::shape) center: Point<N, D>,
     pub(in crate::shape) reach: N,
-    /// That of a ball about the middle which no face cuts.
+    /// The radius of a ball about `center` that no face cuts.
     pub(in crate::shape) inner_radius: N,
     pub(in crate::shape) vertices: Vec<Point<N, D>>,
-    /// The vertices again, eight at a time, coordinate by coordinate; the last one fills the rest.
+    /// The vertices in packets of eight, coordinate by coordinate; the last vertex fills the rest.
     pub(in crate::shape) blocks: Blocks<N, D>,
-    /// The planes of the faces again, as the vertices in `blocks`.
+    /// The planes of the faces in packets of eight; the last face fills the rest.
     pub(in crate::shape) planes: SmallVec<[Planes<N, D>; 1]>,
-    /// The vertices by four, for code without vectors.
+    /// The vertices in packets of four, for code without SIMD.
     pub(in crate::shape) quartets: Quartets<N, D>,
     pub(in crate::shape) faces: Vec<PolytopeFace<N, D>>,
     /// The vertices of all faces, one loop after the other.
@@ -63,35 +73,37 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(in crate::shape) edges: Vec<PolytopeEdge>,
     /// The edges (in 2D: the faces) at all vertices, one vertex after the other.
     pub(in crate::shape) fans: Vec<u32>,
-    /// Where the fan of each vertex starts, and at last where the last one ends.
+    /// The start of each vertex's fan, then the end of the last one.
     pub(in crate::shape) fan_starts: Vec<u32>,
-    /// For each entry of `fans` the unit vector along it, either way; `None` for one of no length.
+    /// The unit vector along each entry of `fans`, in either direction; `None` if its length is
+    /// zero.
     pub(in crate::shape) fan_directions: Vec<Option<Vector<N, D>>>,
     pub(in crate::shape) twin: Twin<N, D>,
 }
 
-/// A copy of a polytope that pairs share, which know the polytope again by it: made when the first of them asks.
+/// A copy of the polytope for caches of pairs, made on first use; clones of the polytope made after
+/// that share it, so that a pair recognizes the polytope by the pointer.
 #[derive(Clone, Default)]
 pub(in crate::shape) struct Twin<N: Real, const D: usize>(OnceLock<Arc<Polytope<N, D>>>);
 
-/// Whether a copy was asked for is no property of the solid.
+/// The copy is a cache, not a property of the solid.
 impl<N: Real, const D: usize> PartialEq for Twin<N, D> {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-/// How many vertices or faces are looked at side by side.
+/// Vertices or faces in a packet.
 pub(in crate::shape) const LANES: usize = 8;
-/// How many vertices code without vectors looks at: they fit in one register everywhere.
+/// Vertices in a packet for code without SIMD: they fit in one register on every target.
 pub(in crate::shape) const QUARTET: usize = 4;
 
-/// Vertices in packets of eight; those of a small solid within it.
+/// Vertices in packets of eight; one packet is stored inline.
 type Blocks<N, const D: usize> = SmallVec<[[[N; LANES]; D]; 1]>;
-/// Vertices by fours, likewise.
+/// Vertices in packets of four; two packets are stored inline.
 type Quartets<N, const D: usize> = SmallVec<[[[N; QUARTET]; D]; 2]>;
 
-/// The planes of some faces side by side, coordinate by coordinate.
+/// The planes of eight faces, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Planes<N: Real, const D: usize> {
     pub(crate) normals: [[N; LANES]; D],
@@ -120,7 +132,7 @@ pub struct PolytopeFace<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> PolytopeFace<N, D> {
-    /// How far a point lies above the face's plane.
+    /// Returns the signed distance of a point from the face's plane, positive outside.
     pub(crate) fn height_of(&self, point: &Point<N, D>) -> N {
         self.normal.dot(&point.coords) - self.offset
     }
@@ -146,7 +158,7 @@ pub struct PolytopeEdge {
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// A copy of the solid that its clones share.
+    /// Returns a copy of the solid that later clones share.
     pub(crate) fn twin(&self) -> &Arc<Self> {
         self.twin.0.get_or_init(|| Arc::new(self.clone()))
     }
@@ -176,18 +188,18 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         &self.loops[first..first + face.len as usize]
     }
 
-    /// The sides around a face: edges, in 2D the face itself.
+    /// The sides around a face: edges, or in 2D the face itself, once for each of its two vertices.
     pub(in crate::shape) fn face_sides(&self, face: &PolytopeFace<N, D>) -> &[u32] {
         let first = face.first as usize;
         &self.loop_sides[first..first + face.len as usize]
     }
 
-    /// The vertices, eight at a time, coordinate by coordinate; the last one fills the rest.
+    /// The vertices in packets of eight, coordinate by coordinate; the last vertex fills the rest.
     pub(crate) fn blocks(&self) -> &[[[N; LANES]; D]] {
         &self.blocks
     }
 
-    /// The planes of the faces, eight at a time; the last one fills the rest.
+    /// The planes of the faces in packets of eight; the last face fills the rest.
     pub(crate) fn planes(&self) -> &[Planes<N, D>] {
         &self.planes
     }
@@ -210,8 +222,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize
     }
 
-    /// An edge (in 2D: a face) with its ends and what lies beside it; a side of the plane lies
-    /// beside itself.
+    /// An edge with its ends and its two faces. In 2D a face with its ends; both entries of `faces`
+    /// are the face itself.
     pub(in crate::shape) fn side(&self, index: u32) -> PolytopeEdge {
         match self.edges.get(index as usize) {
             Some(edge) => *edge,
@@ -222,13 +234,13 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// The name of an edge (in 2D: of a face).
+    /// The id of an edge (in 2D: of a face).
     pub(in crate::shape) fn side_id(index: u32) -> FeatureId {
         FeatureId::flat::<D>(1, index)
     }
 
-    /// The index of the face that a point lies highest above, the first of equals, and how high: positive
-    /// exactly if the point is outside.
+    /// Returns the index of the face with the greatest signed height of `point`, the first of
+    /// equals, and that height: positive exactly if the point is outside.
     pub(crate) fn highest_face(&self, point: &Point<N, D>) -> (u32, N) {
         let highest = polytope_support::plane(Level::new(), &self.planes, point);
         (count32(highest), self.faces[highest].height_of(point))
@@ -243,9 +255,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// The same without vectors, which is as fast for few vertices.
+    /// [`Self::support_vertex`] without SIMD, which is as fast for few vertices.
     ///
-    /// Written for the compiler to keep each array in one register.
+    /// Written so that the compiler keeps each array in one register.
     fn support_vertex_of_few(&self, direction: &Vector<N, D>) -> usize {
         let (mut heights, mut places) = (heights(&self.quartets[0], direction), [0_u32; QUARTET]);
         for (place, quartet) in (1_u32..).zip(&self.quartets[1..]) {
@@ -265,7 +277,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             .1
     }
 
-    /// What [`Self::blocks`] and `quartets` hold.
+    /// Packs vertices as [`Self::blocks`] and `quartets` hold them.
     pub(in crate::shape) fn blocks_of<Blocks, const COUNT: usize>(
         vertices: &[Point<N, D>],
     ) -> Blocks
@@ -279,20 +291,21 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         vertices.chunks(COUNT).map(block).collect()
     }
 
-    /// The radius of a ball about the middle that is inside, up to rounding; zero where there is none.
+    /// The radius of a ball about the centre that lies inside, up to rounding; zero if there is
+    /// none.
     #[inline]
     pub(crate) fn inner_radius(&self) -> N {
         self.inner_radius
     }
 
-    /// Keeps what follows from the faces once all are known.
+    /// Computes `planes` and `inner_radius` from the finished faces.
     pub(in crate::shape) fn collect_planes(&mut self) {
         self.planes = Self::planes_of(&self.faces);
         let depths = self.faces.iter().map(|face| -face.height_of(&self.center));
         self.inner_radius = max(depths.fold(N::MAX, min), N::ZERO);
     }
 
-    /// What [`Self::planes`] holds.
+    /// Packs planes as [`Self::planes`] holds them.
     pub(in crate::shape) fn planes_of(faces: &[PolytopeFace<N, D>]) -> SmallVec<[Planes<N, D>; 1]> {
         let block = |some: &[PolytopeFace<N, D>]| {
             let last = some.len() - 1;
@@ -311,7 +324,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
-/// How far four vertices reach along a direction. (`map` of the standard library keeps the four in one register here.)
+/// The heights of four vertices along a direction. (`map` of the standard library keeps the four in
+/// one register here.)
 #[inline]
 fn heights<N: Real, const D: usize>(
     quartet: &[[N; QUARTET]; D],
@@ -326,7 +340,7 @@ fn heights<N: Real, const D: usize>(
     sums
 }
 
-/// A count of vertices, edges or faces as it is stored.
+/// Converts a count of vertices, edges or faces to its stored type.
 #[inline]
 pub(in crate::shape) fn count32(count: usize) -> u32 {
     u32::try_from(count).expect("a solid has fewer than 2³² parts")

@@ -1,12 +1,12 @@
-//! Support points of polytopes of more than a few vertices, and the faces that points lie highest above, by
-//! vectors.
+//! SIMD kernels of polytopes: the support vertex among more than a few vertices, and the face plane
+//! with the greatest height of a point.
 
 use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide};
 use crate::shape::polytope::{LANES, Planes};
 
-/// The index of a vertex farthest along a direction: the first of equals.
+/// Returns the index of the vertex farthest along a direction, the first of equals.
 pub(in crate::shape) fn vertex<N: Real, const D: usize>(
     level: Level,
     blocks: &[[[N; LANES]; D]],
@@ -15,7 +15,7 @@ pub(in crate::shape) fn vertex<N: Real, const D: usize>(
     with_lanes!(level, simd => vertex_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, direction))
 }
 
-/// The index of a plane that a point lies highest above: the first of equals.
+/// Returns the index of the plane with the greatest height of a point, the first of equals.
 pub(in crate::shape) fn plane<N: Real, const D: usize>(
     level: Level,
     planes: &[Planes<N, D>],
@@ -24,6 +24,7 @@ pub(in crate::shape) fn plane<N: Real, const D: usize>(
     with_lanes!(level, simd => plane_in_lanes::<_, N, N::Lanes<_>, D>(simd, planes, point))
 }
 
+/// [`vertex`] in lanes.
 #[inline(always)]
 fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -39,6 +40,7 @@ fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     )
 }
 
+/// [`plane`] in lanes.
 #[inline(always)]
 fn plane_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -57,7 +59,7 @@ fn plane_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     )
 }
 
-/// The place of the highest of the numbers that blocks have in their lanes: the first of equals.
+/// Returns the index of the greatest height over all lanes of all blocks, the first of equals.
 #[inline(always)]
 fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>, B>(
     simd: S,
@@ -65,7 +67,7 @@ fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>, B>(
     heights: impl Fn(&B) -> V,
 ) -> usize {
     let mut highest = heights(&blocks[0]);
-    // Numbers of blocks are few, so that they are exact as numbers of the type.
+    // Block numbers are small enough to be exact in the scalar type.
     let (mut places, mut place) = (V::all(simd, N::ZERO), N::ZERO);
     for block in &blocks[1..] {
         place += N::ONE;

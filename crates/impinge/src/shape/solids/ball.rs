@@ -10,8 +10,8 @@ use crate::shape::{
 
 /// The points within `radius` of the local origin.
 ///
-/// Radius zero is a point. Scaled by factors of different magnitudes it is an [`Ellipsoid`]. Its only
-/// feature is `Face(0)`.
+/// Radius zero is a point. Scaling by factors of different magnitudes gives an [`Ellipsoid`]. The
+/// only feature is `Face(0)`.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};
@@ -29,7 +29,7 @@ pub struct Ball<N: Real> {
 }
 
 impl<N: Real> Ball<N> {
-    /// The ball of a radius, zero or more.
+    /// The ball of the given radius, zero or more.
     ///
     /// # Panics
     /// If the radius is negative or not finite; [`Self::try_new`] returns these.
@@ -39,7 +39,7 @@ impl<N: Real> Ball<N> {
         or_panic(Self::try_new(radius))
     }
 
-    /// The ball of a radius, zero or more.
+    /// The ball of the given radius, zero or more.
     ///
     /// # Errors
     /// If the radius is negative or not finite.
@@ -47,7 +47,7 @@ impl<N: Real> Ball<N> {
         Ok(Self { radius: size("the radius", radius)? })
     }
 
-    /// A ball of a radius that was one of a ball before.
+    /// A ball whose radius comes from another ball, unchecked.
     pub(in crate::shape) const fn of_radius(radius: N) -> Self {
         Self { radius }
     }

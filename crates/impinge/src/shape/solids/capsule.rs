@@ -10,7 +10,7 @@ use crate::shape::{
 
 /// The points within `radius` of a segment.
 ///
-/// Radius and length may be zero: a capsule of no length is a ball, one of no radius a segment.
+/// Radius and length may be zero: a capsule without length is a ball, one without radius a segment.
 /// Vertices: 0 and 1 are the round ends; the round side is `Edge(0)`, in 2D too.
 ///
 /// ```
@@ -29,7 +29,7 @@ pub struct Capsule<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Capsule<N, D> {
-    /// The capsule along the local y axis: its segment reaches `half_height` to both sides.
+    /// The capsule along the local y axis; its segment extends `half_height` to both sides.
     ///
     /// # Panics
     /// If a size is negative or not finite; [`Self::try_new`] returns these.
@@ -39,7 +39,7 @@ impl<N: Real, const D: usize> Capsule<N, D> {
         or_panic(Self::try_new(half_height, radius))
     }
 
-    /// The capsule along the local y axis: its segment reaches `half_height` to both sides.
+    /// The capsule along the local y axis; its segment extends `half_height` to both sides.
     ///
     /// # Errors
     /// If a size is negative or not finite.
@@ -60,13 +60,13 @@ impl<N: Real, const D: usize> Capsule<N, D> {
         Ok(Self { segment: Segment::try_new(a, b)?, radius })
     }
 
-    /// Half of the length of the segment in the middle: what [`Self::new`] was given.
+    /// Half of the length of the core segment, as given to [`Self::new`].
     #[must_use]
     pub fn half_height(&self) -> N {
         self.segment.half_length()
     }
 
-    /// The segment in the middle.
+    /// The core segment.
     #[inline]
     #[must_use]
     pub const fn segment(&self) -> &Segment<N, D> {

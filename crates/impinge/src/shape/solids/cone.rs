@@ -18,9 +18,9 @@ use crate::shape::{
 /// Sizes may be zero: a disk, a segment, a point. `Vertex(0)` is the apex, `Face(0)` the base,
 /// `Face(1)` the round side, `Edge(0)` the rim.
 ///
-/// As features the base is an octagon inscribed in it, whose vertices and sides all bear the name of
-/// the rim; the round side is the segment on it that faces the direction, from the rim to the apex.
-/// A cone of no height is a disk: its upper side is the octagon turned over, named `Face(1)`.
+/// As a feature the base is an inscribed octagon whose vertices and sides all have the id of the
+/// rim; the round side is the segment on it that faces the direction, from the rim to the apex. A
+/// cone without height is a disk: its upper side is the octagon reversed, with the id `Face(1)`.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};
@@ -81,8 +81,8 @@ impl<N: Real> Cone<N> {
         Point::<N, 3>::new(N::ZERO, self.half_height, N::ZERO)
     }
 
-    /// How steeply the generating line that faces a unit vector leans along it: the sine, positive
-    /// if the apex lies farther along.
+    /// The sine of the slope, along a unit vector, of the generating line that faces it: positive
+    /// if the apex lies farther along. `None` for a point.
     fn lean(&self, direction: &Vector<N, 3>) -> Option<N> {
         let line = Vector::<N, 2>::new(-self.radius, N::TWO * self.half_height);
         let (line, _) = unit(&line)?;
@@ -91,8 +91,8 @@ impl<N: Real> Cone<N> {
 }
 
 impl<N: Real> Cone<N> {
-    /// The apex, base, rim or round side that a point of the surface lies on, up to `noise`; `None` for
-    /// a cone that is hardly thicker than the noise.
+    /// The apex, base, rim or round side that a point of the surface lies on, up to `noise`; `None`
+    /// for a cone with a half height or radius of at most `4 noise`.
     pub(crate) fn part_at<const D: usize>(
         &self,
         point: &Point<N, D>,
@@ -110,7 +110,8 @@ impl<N: Real> Cone<N> {
 }
 
 impl<N: Real> Cone<N> {
-    /// What it shows to a unit vector; `None` for the base, and for both sides of a cone of no height.
+    /// The supporting feature for a unit vector; `None` for the base, and for both sides of a cone
+    /// without height.
     pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
         let is_axial = Tilt::usual().admits(radial_of(direction).norm_squared());
         if is_axial && (direction.y < N::ZERO || self.half_height == N::ZERO) {

@@ -10,14 +10,14 @@ use crate::shape::{
     ShapeHandle, Shown, SupportMap, tilt::Tilt,
 };
 
-/// The points whose coordinate on each axis is within the half extent of zero.
+/// The points whose coordinate on each axis has a magnitude of at most the half extent.
 ///
 /// Half extents may be zero: the box is then flat, a segment or a point.
 ///
 /// Vertices: bit `i` of the number says that coordinate `i` is positive. Faces: `2 · axis` on the
 /// positive side of an axis, one more on the negative side. Edges (in 3D): `4 · axis` of the
-/// direction plus two bits, the signs on the next axis and the one after (x → y → z → x): 1 if the
-/// next coordinate is positive, 2 if the one after is.
+/// direction plus two bits for the signs on the next two axes (x → y → z → x): 1 if the next
+/// coordinate is positive, 2 if the one after is.
 ///
 /// Faces are given with their vertices counter-clockwise seen from outside (in 2D with the
 /// box on the left), so in 2D the outline counter-clockwise is faces 0, 2, 1, 3 and vertices
@@ -34,7 +34,7 @@ pub struct Cuboid<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
-    /// The box of given half extents, each zero or more.
+    /// The box with the given half extents, each zero or more.
     ///
     /// # Panics
     /// If a half extent is negative or not finite; [`Self::try_new`] returns these.
@@ -44,7 +44,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         or_panic(Self::try_new(half_extents))
     }
 
-    /// The box of given half extents, each zero or more.
+    /// The box with the given half extents, each zero or more.
     ///
     /// # Errors
     /// If a half extent is negative or not finite.
@@ -56,7 +56,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         Ok(Self { half_extents })
     }
 
-    /// A box of half extents that were those of a box before.
+    /// A box whose half extents come from another box, unchecked.
     pub(in crate::shape) const fn reaching(half_extents: Vector<N, D>) -> Self {
         Self { half_extents }
     }
@@ -85,8 +85,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
 }
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
-    /// The vertex, edge or face that a point of the surface lies on, up to `noise`; `None` for a point
-    /// inside, or of a box that is hardly thicker than the noise.
+    /// The vertex, edge or face that a point of the surface lies on, up to `noise`; `None` for a
+    /// point inside, and for a box with a half extent of at most `4 noise`.
     pub(crate) fn part_at(&self, point: &Point<N, D>, noise: N) -> Option<FeatureId> {
         let mut free = 0;
         for axis in 0..D {
@@ -100,16 +100,15 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         (free != CuboidPart::<D>::ALL).then(|| part.name())
     }
 
-    /// The name of a part of the surface by `D` bits that say along which axes it ranges and `D` more
-    /// that say along which of the others it is on the positive side.
+    /// The id of a part from `2 D` bits: its free axes, and above them its positive ones.
     #[inline]
     pub(crate) const fn part_named(bits: u8) -> FeatureId {
         CuboidPart::<D>::NAMES[bits as usize & ((1 << (2 * D)) - 1)]
     }
 }
 
-/// A vertex, edge or face: the points of the box whose coordinates on the `free` axes range, while
-/// the others are those of `corner`. Both are sets of axes as bits, `corner` of those with the
+/// A vertex, edge or face: the points of the box whose coordinates vary on the `free` axes and
+/// equal those of `corner` on the others. Both are bit sets of axes; `corner` holds those with a
 /// positive sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) struct CuboidPart<const D: usize> {
@@ -117,22 +116,22 @@ pub(in crate::shape) struct CuboidPart<const D: usize> {
     corner: u32,
 }
 
-/// The part of a box that faces some direction: a point, a segment or a flat face with sides.
+/// The supporting feature of a box: a point, a segment or a face with sides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FacingPart<N: Real, const D: usize> {
     part: CuboidPart<D>,
-    /// The outward normal of a face.
+    /// The outward normal; `None` if the part is no face.
     pub(crate) normal: Option<Vector<N, D>>,
 }
 
 impl<N: Real, const D: usize> FacingPart<N, D> {
-    /// The direction of an edge of boxes in 3D.
+    /// The direction of edge `index` of a box in 3D.
     pub(crate) fn edge_direction(index: u32) -> Vector<N, D> {
         axis_vector((index / 4) as usize)
     }
 
-    /// The direction of the side of the part that is most nearly perpendicular to a vector, the first
-    /// of equals; `None` of a point.
+    /// The direction of the side of the part that is most nearly perpendicular to a vector, the
+    /// first of equals; `None` for a point.
     pub(crate) fn most_level_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
         let first = if self.normal.is_some() { self.part.own_axis() + 1 } else { 0 };
         let axes =
@@ -155,7 +154,8 @@ const fn has(set: u32, axis: usize) -> bool {
 impl<const D: usize> CuboidPart<D> {
     const ALL: u32 = (1 << D) - 1;
 
-    /// The names of all parts, by [`Self::free`] and then [`Self::corner`]; in at most three dimensions.
+    /// The ids of all parts, by [`Self::free`] and then [`Self::corner`]; in at most three
+    /// dimensions.
     const NAMES: [FeatureId; 64] = {
         let mut names = [FeatureId::Vertex(0); 64];
         let mut bits = 0;
@@ -169,8 +169,9 @@ impl<const D: usize> CuboidPart<D> {
         names
     };
 
-    /// The part that faces a unit vector: as many axes as the tilt admits are free, the weakest
-    /// first, which is the rule for the flattest edge and the most aligned face beside it.
+    /// The supporting feature for a unit vector. Frees axes, the smallest component first, while
+    /// the tilt admits the sum of their squares; equals the rule for the flattest edge and its most
+    /// aligned face.
     pub(in crate::shape) fn facing<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
         let (mut free, mut leans) = (0, N::ZERO);
         for _ in 1..D {
@@ -195,12 +196,12 @@ impl<const D: usize> CuboidPart<D> {
         Self { free: Self::ALL & !(1 << strongest), corner: signs(direction) }
     }
 
-    /// The first axis that is not free: that of a face.
+    /// The first fixed axis: for a face the axis of its normal.
     const fn own_axis(self) -> usize {
         (!self.free & Self::ALL).trailing_zeros() as usize
     }
 
-    /// How many axes are free.
+    /// The number of free axes.
     const fn dimension(self) -> usize {
         let (mut axis, mut count) = (0, 0);
         while axis < D {
@@ -210,7 +211,7 @@ impl<const D: usize> CuboidPart<D> {
         count
     }
 
-    /// The number documented at [`Cuboid`].
+    /// The id by the numbering documented at [`Cuboid`].
     pub(in crate::shape) const fn name(self) -> FeatureId {
         let dimension = self.dimension();
         let index = if dimension == 0 {
@@ -226,7 +227,7 @@ impl<const D: usize> CuboidPart<D> {
         FeatureId::flat::<D>(dimension, index)
     }
 
-    /// The part of a name, if there is one.
+    /// The part with an id; `None` if the box has no such part.
     fn named(id: FeatureId) -> Option<Self> {
         let part = match id {
             FeatureId::Vertex(corner) => Self { free: 0, corner },
@@ -246,7 +247,7 @@ impl<const D: usize> CuboidPart<D> {
     }
 
     /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
-    /// changes one coordinate at a time. Taken in the cyclic order after a face's own axis it runs
+    /// changes one coordinate at a time. In the cyclic order after a face's own axis it runs
     /// counter-clockwise on the positive side if that order is an even permutation of the axes.
     const fn ring(self) -> CuboidRing {
         let own = self.own_axis();
@@ -264,7 +265,7 @@ impl<const D: usize> CuboidPart<D> {
         if is_face && is_odd == has(self.corner, own) { ring.reversed() } else { ring }
     }
 
-    /// The names of the sides of a ring. A point has no side, a segment one and a rectangle four.
+    /// The ids of the sides of a ring: none for a point, one for a segment, four for a rectangle.
     const fn side_ids(ring: &CuboidRing) -> [FeatureId; 4] {
         let (mut ids, mut at) = ([FeatureId::Vertex(0); 4], 0);
         while at < ring.count {
@@ -275,7 +276,7 @@ impl<const D: usize> CuboidPart<D> {
         ids
     }
 
-    /// The rings of all faces, in the order of their names, and the names of their sides.
+    /// The rings of all faces, by face number, and the ids of their sides.
     pub(in crate::shape) const FACES: [(CuboidRing, [FeatureId; 4]); 6] = {
         let (mut faces, mut index) =
             ([(CuboidRing::of_corner(0), [FeatureId::Vertex(0); 4]); 6], 0);
@@ -289,7 +290,7 @@ impl<const D: usize> CuboidPart<D> {
         faces
     };
 
-    /// The ends of all parts that are named as edges, in the order of their names.
+    /// The ends of all edges by edge number; `None` in 2D, where sides are faces.
     const EDGES: [Option<[u32; 2]>; 12] = {
         let (mut edges, mut axis) = ([None; 12], 0);
         while axis < D {
@@ -307,7 +308,7 @@ impl<const D: usize> CuboidPart<D> {
         edges
     };
 
-    /// The outward unit vector in the middle of the normals of the faces around the part.
+    /// The normalised sum of the normals of the faces around the part.
     #[inline]
     fn normal<N: Real>(self) -> Vector<N, D> {
         let mut normal = Vector::<N, D>::zeros();
@@ -316,12 +317,12 @@ impl<const D: usize> CuboidPart<D> {
                 normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
             }
         }
-        // That of a face has its length already.
+        // The sum is unit already for a face.
         if self.dimension() + 1 == D { normal } else { normal / normal.norm() }
     }
 }
 
-/// The corners of a part that is not the whole box, as sets of axes: four at most.
+/// The corners of a part that is not the whole box, as bit sets of axes: four at most.
 #[derive(Clone, Copy)]
 pub(in crate::shape) struct CuboidRing {
     pub(in crate::shape) corners: [u32; 4],
@@ -333,7 +334,7 @@ impl CuboidRing {
         Self { corners: [corner; 4], count: 1 }
     }
 
-    /// Appends the corners there are, moved to the positive side of an axis, the last one first.
+    /// Appends the corners in reverse order, moved to the positive side of an axis.
     const fn reflected(mut self, axis: u32) -> Self {
         let mut back = 0;
         while back < self.count {
@@ -354,12 +355,12 @@ impl CuboidRing {
     }
 }
 
-/// The axes along which a direction does not point to the negative side.
+/// The axes along which the component of a direction is not negative.
 fn signs<N: Real, const D: usize>(direction: &Vector<N, D>) -> u32 {
     (0..D).fold(0, |set, axis| if direction[axis] < N::ZERO { set } else { set | 1 << axis })
 }
 
-/// The axis, not yet taken, along which a direction has its least component.
+/// The axis outside `taken` along which a direction has its smallest component.
 fn weakest<N: Real, const D: usize>(direction: &Vector<N, D>, taken: u32) -> Option<usize> {
     let mut weakest = None;
     for axis in 0..D {
@@ -383,8 +384,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         point
     }
 
-    /// What [`SupportMap::core_feature`] answers, without its corners; `None` where the box is flat
-    /// along an edge of it.
+    /// The [`SupportMap::core_feature`] without corners; `None` if it is flat along a free axis.
     pub(crate) fn facing_part(&self, direction: &Vector<N, D>) -> Option<FacingPart<N, D>> {
         let part = CuboidPart::<D>::facing(direction, Tilt::usual());
         let is_flat = |axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO;
@@ -409,7 +409,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
             out.side_ids.push(id);
         }
         out.normal = matches!(out.id, FeatureId::Face(_)).then(|| part.normal());
-        // Only a box that is flat along a free axis has corners in one place.
+        // Corners coincide only if the box is flat along a free axis.
         if (0..D).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO) {
             out.drop_repeated();
         }
@@ -425,7 +425,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 }
 
 impl<N: Real> Cuboid<N, 2> {
-    /// See [`Shown::of`]; `None` where the box is flat along the side.
+    /// See [`Shown::of`]; `None` if the side has no length.
     pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
         let part = CuboidPart::<2>::facing(direction, Tilt::usual());
         let named = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));

@@ -18,8 +18,9 @@ use crate::shape::{
 /// `Face(1)` the one on the negative side, `Face(2)` the round side; the rims are `Edge(0)` and
 /// `Edge(1)`.
 ///
-/// As features the caps are octagons inscribed in them, whose vertices and sides all bear the name of
-/// the rim; the round side is the segment on it that faces the direction, its ends named as the rims.
+/// As features the caps are inscribed octagons whose vertices and sides all have the id of the rim;
+/// the round side is the segment on it that faces the direction, and its ends have the ids of the
+/// rims.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -79,7 +80,7 @@ impl<N: Real> Cylinder<N> {
 
 impl<N: Real> Cylinder<N> {
     /// The cap, rim or round side that a point of the surface lies on, up to `noise`; `None` for a
-    /// cylinder that is hardly thicker than the noise.
+    /// cylinder with a half height or radius of at most `4 noise`.
     pub(crate) fn part_at<const D: usize>(
         &self,
         point: &Point<N, D>,
@@ -97,12 +98,12 @@ impl<N: Real> Cylinder<N> {
 }
 
 impl<N: Real> Cylinder<N> {
-    /// The number and the height of the cap on the side that a direction leads to.
+    /// The number and the height of the cap on the side of a direction.
     fn end_toward(&self, direction: &Vector<N, 3>) -> (u32, N) {
         if direction.y < N::ZERO { (1, -self.half_height) } else { (0, self.half_height) }
     }
 
-    /// What it shows to a unit vector; `None` for a cap.
+    /// The supporting feature for a unit vector; `None` for a cap.
     pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
         if Tilt::usual().admits(radial_of(direction).norm_squared()) {
             return None;

@@ -10,11 +10,11 @@ use crate::shape::{
 };
 
 /// The points whose coordinates, divided by the half axes, are within the unit ball: an ellipse in
-/// the plane.
+/// 2D.
 ///
-/// Centred at the local origin, with its axes along the coordinate axes. Half axes may be zero: of
-/// what has none left along some axis, the flat rest remains, a disk, a segment or a point. The whole
-/// surface is `Face(0)`, which meets everything in one point.
+/// Centred at the local origin, with its axes along the coordinate axes. Half axes may be zero: the
+/// solid is then a flat disk, a segment or a point. The whole surface is `Face(0)`, whose
+/// supporting feature is always a point.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -31,7 +31,7 @@ pub struct Ellipsoid<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Ellipsoid<N, D> {
-    /// The ellipsoid that reaches this far to both sides along each axis.
+    /// The ellipsoid with the given half axes.
     ///
     /// # Panics
     /// If a half axis is negative or not finite; [`Self::try_new`] returns these.
@@ -41,7 +41,7 @@ impl<N: Real, const D: usize> Ellipsoid<N, D> {
         or_panic(Self::try_new(half_axes))
     }
 
-    /// The ellipsoid that reaches this far to both sides along each axis.
+    /// The ellipsoid with the given half axes.
     ///
     /// # Errors
     /// If a half axis is negative or not finite.
@@ -51,7 +51,7 @@ impl<N: Real, const D: usize> Ellipsoid<N, D> {
         Ok(Self { half_axes })
     }
 
-    /// How far it reaches to both sides along each axis.
+    /// The extent to both sides along each axis.
     #[inline]
     #[must_use]
     pub const fn half_axes(&self) -> &Vector<N, D> {
@@ -67,7 +67,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
         let on_sphere = if is_usual {
             stretched / squared.sqrt()
         } else {
-            // The same of numbers about 1 large, so that no product leaves the range of the numbers.
+            // Both factors are scaled to about 1, so that no product overflows or underflows.
             let near_one = |v: &Vector<N, D>| v / max_component(v).power_of_two_below();
             let stretched = near_one(direction).component_mul(&near_one(&self.half_axes));
             unit_or(&stretched, Vector::<N, D>::zeros())

@@ -1,4 +1,4 @@
-//! The convex solids, a file for each: what it is, how it is made and scaled, its support points, features and box.
+//! The convex solids, one file each: construction, scaling, support points, features and boxes.
 
 pub(crate) mod ball;
 pub(crate) mod capsule;

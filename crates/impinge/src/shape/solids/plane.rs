@@ -1,4 +1,4 @@
-//! Half-spaces (half-planes in 2D), which ncollide's guide calls planes.
+//! Half-spaces (half-planes in 2D), called planes in ncollide's guide.
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Pose, Real, Unit, Vector};
@@ -8,8 +8,8 @@ use crate::shape::{Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle};
 
 /// The half-space behind a plane through the local origin: solid where `normal · x ≤ 0`.
 ///
-/// [`HalfSpace`] is the name to use: the solid is not the plane, but all that is behind it. `Plane` is the
-/// same type under the name that it has in ncollide.
+/// Prefer the name [`HalfSpace`]: the solid is not the plane, but all points behind it. `Plane` is
+/// the same type under ncollide's name.
 ///
 /// Its only feature is `Face(0)`.
 ///
@@ -46,8 +46,8 @@ impl<N: Real, const D: usize> Plane<N, D> {
     /// The half-space that `normal` points out of.
     ///
     /// # Panics
-    /// If a coordinate of the normal is not finite, as of a zero vector that was normalized, or its length differs
-    /// from 1 by more than 0.8 %; [`Self::try_new`] returns these.
+    /// If a coordinate of the normal is not finite, as for a zero vector that was normalized, or
+    /// its length differs from 1 by more than 0.8 %; [`Self::try_new`] returns these.
     #[must_use]
     #[track_caller]
     pub fn new(normal: Unit<Vector<N, D>>) -> Self {
@@ -73,8 +73,8 @@ impl<N: Real, const D: usize> Plane<N, D> {
 
 impl<N: Real, const D: usize> Plane<N, D> {
     /// The box of the half-space whose outward normal is `normal` and whose boundary passes through
-    /// `point`: bounded on one side if the normal lies along an axis and the point is a number, else unbounded. A
-    /// normal that rounding alone has brought to an axis must not be given.
+    /// `point`: bounded on one side if the normal lies along an axis and `point` is not NaN, else
+    /// unbounded. A normal that only rounding brought onto an axis must not be given.
     fn aabb_of(normal: &Vector<N, D>, point: &Vector<N, D>) -> Aabb<N, D> {
         let (mut mins, mut maxs) = (*Aabb::unbounded().mins(), *Aabb::unbounded().maxs());
         for axis in 0..D {
@@ -99,7 +99,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Plane<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        // The product with an axis is a column of the rotation, exactly.
+        // The product of a rotation with an axis is a column of the rotation, exactly.
         let is_axis = self.normal.iter().filter(|&&x| x != N::ZERO).count() == 1;
         if is_axis || pose.is_aligned() {
             Self::aabb_of(&pose.vector(&self.normal), &pose.translation)

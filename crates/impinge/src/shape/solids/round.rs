@@ -1,18 +1,18 @@
-//! Disks across the y axis: the caps of cylinders and cones.
+//! Disks perpendicular to the y axis: the caps of cylinders and cones.
 
 use crate::math::{Matrix, Point, Real, Vector, unit};
 use crate::shape::solids::segment::length_of;
 use crate::shape::{CurvedSupport, Feature, FeatureId};
 
-/// How far a point lies along the y axis and from it.
+/// Returns the coordinate of a point along the y axis and its distance from that axis.
 fn axial<N: Real, const D: usize>(point: &Point<N, D>) -> (N, N) {
     let squares = (0..D).filter(|&axis| axis != 1).map(|axis| point[axis] * point[axis]);
     (point[1], squares.fold(N::ZERO, |sum, square| sum + square).sqrt())
 }
 
-/// Where a point of the surface of a solid about the y axis lies, as [`axial`] has it; `None` for a solid
-/// of this half height and radius that is hardly thicker than the noise, on which a point would lie on
-/// several parts at once.
+/// The coordinates of [`axial`] for a point of the surface of a solid about the y axis; `None` if
+/// `half_height` or `radius` is at most `4 noise`, where a point would lie on several parts at
+/// once.
 pub(in crate::shape) fn axial_on<N: Real, const D: usize>(
     point: &Point<N, D>,
     [half_height, radius]: [N; 2],
@@ -22,17 +22,17 @@ pub(in crate::shape) fn axial_on<N: Real, const D: usize>(
     (half_height > least && radius > least).then(|| axial(point))
 }
 
-/// What a cylinder or a cone shows to a direction, if that is no cap.
+/// The supporting feature of a cylinder or a cone, unless it is a cap.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum RoundPart<N: Real> {
     /// A point of a rim, or the apex.
     Point(FeatureId, Point<N, 3>),
-    /// The line of the side that faces the direction, and its ends.
+    /// The generating line of the side that faces the direction, and its ends.
     Line(FeatureId, [(FeatureId, Point<N, 3>); 2]),
 }
 
 impl<N: Real> RoundPart<N> {
-    /// Gives it as a feature.
+    /// Writes the part as a feature.
     pub(in crate::shape) fn fill(self, out: &mut Feature<N, 3>) {
         match self {
             Self::Point(id, point) => out.set_point(id, point),
@@ -48,19 +48,19 @@ pub(in crate::shape) struct Disk<N: Real> {
     pub(in crate::shape) y: N,
 }
 
-/// The part of a direction across the y axis, as (x, z).
+/// The component of a direction across the y axis, as (x, z).
 pub(in crate::shape) fn radial_of<N: Real>(direction: &Vector<N, 3>) -> Vector<N, 2> {
     Vector::<N, 2>::new(direction.x, direction.z)
 }
 
 impl<N: Real> Disk<N> {
-    /// The point of the rim farthest along `direction`; the middle for a direction along the axis.
+    /// The point of the rim farthest along `direction`; the centre for a direction along the axis.
     pub(in crate::shape) fn rim_toward(self, direction: &Vector<N, 3>) -> Point<N, 3> {
         self.at(unit(&radial_of(direction)).map_or_else(Vector::<N, 2>::zeros, |(along, _)| along))
     }
 
-    /// The point of the rim farthest along the unit vector `direction`, and how it moves; `None` along
-    /// the axis or so near to it that the digits of the direction across it do not suffice.
+    /// The point of the rim farthest along the unit vector `direction`, and its derivative; `None`
+    /// if the squared component across the axis is at most epsilon, too small to give a direction.
     pub(in crate::shape) fn curved_rim(
         self,
         direction: &Vector<N, 3>,
@@ -70,15 +70,16 @@ impl<N: Real> Disk<N> {
         if !resolved {
             return None;
         }
-        // Along the rim, by the radius for each radian around the axis.
+        // The point moves along the rim, by the radius per radian around the axis.
         let around = Vector::<N, 3>::new(-radial.y, N::ZERO, radial.x);
         let pace = self.radius / length;
         let bend = Matrix::<N, 3>::from_fn(|i, j| around[i] * around[j] * pace);
         Some(CurvedSupport { point: self.at(radial), bend })
     }
 
-    /// How far the disk, moved to the origin, reaches along each outer axis when it is turned: by the columns that
-    /// span it, since from its axis alone that would lose half of all digits where it hardly leans.
+    /// The extents, along each outer axis, of the disk about the origin under a rotation. Computed
+    /// from the columns that span the disk: from its axis alone a small tilt would lose half of all
+    /// digits.
     pub(in crate::shape) fn reach(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
         Vector::<N, 3>::from_fn(|axis, _| {
             let spans = Vector::<N, 2>::new(rotation[(axis, 0)], rotation[(axis, 2)]);
@@ -90,9 +91,9 @@ impl<N: Real> Disk<N> {
         Point::<N, 3>::new(radial.x * self.radius, self.y, radial.y * self.radius)
     }
 
-    /// Gives the disk as an inscribed octagon that faces the side of the axis on which `direction`
-    /// lies, with its first vertex towards `direction` (towards x where that is lost in rounding).
-    /// A disk of no radius is a point.
+    /// Writes the disk as an inscribed octagon that faces the side of the axis on which `direction`
+    /// lies, with its first vertex towards `direction` (towards x if that is lost in rounding). A
+    /// disk without radius is a point.
     pub(in crate::shape) fn fill_polygon(
         self,
         face: FeatureId,
@@ -127,7 +128,7 @@ fn first_sample<N: Real>(direction: &Vector<N, 3>) -> Vector<N, 2> {
     }
 }
 
-/// A vector of the plane turned by 45 degrees, counter-clockwise for `turn` 1, clockwise for −1.
+/// Rotates a 2D vector by 45 degrees, counter-clockwise for `turn` 1, clockwise for −1.
 fn eighth_turn<N: Real>(v: &Vector<N, 2>, turn: N) -> Vector<N, 2> {
     let cosine = N::lit(std::f64::consts::FRAC_1_SQRT_2);
     let sine = cosine * turn;

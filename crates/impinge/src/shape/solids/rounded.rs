@@ -14,8 +14,8 @@ use crate::shape::{
 ///
 /// The solid is *larger* than the shape by the radius on all sides. The radius may be zero. Its
 /// features are those of the shape: a point over `Edge(3)` of a box is on `Edge(3)` of the rounded
-/// box, which is a piece of a cylinder there. Every distance to it is that to the shape less the
-/// radius, also inside, and is as accurate.
+/// box, which is a piece of a cylinder there. Every distance to it, also inside, is the distance to
+/// the shape minus the radius, and is as accurate.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -32,7 +32,7 @@ use crate::shape::{
 pub struct Rounded<N: Real, const D: usize> {
     shape: ShapeHandle<N, D>,
     radius: N,
-    /// How deep rounded shapes are nested.
+    /// The nesting depth of rounded shapes.
     depth: u32,
 }
 
@@ -40,8 +40,9 @@ impl<N: Real, const D: usize> Rounded<N, D> {
     /// The points within `radius` of a convex shape.
     ///
     /// # Panics
-    /// If the radius is negative or not finite, the shape is not a bounded convex solid, or rounded shapes are
-    /// nested as deep as [`MAX_NESTING`](crate::shape::MAX_NESTING) already; [`Self::try_new`] returns these.
+    /// If the radius is negative or not finite, the shape is not a bounded convex solid, or the
+    /// shape has the nesting depth [`MAX_NESTING`](crate::shape::MAX_NESTING) already;
+    /// [`Self::try_new`] returns these.
     #[must_use]
     #[track_caller]
     pub fn new<S: Shape<N, D>>(shape: S, radius: N) -> Self {
@@ -51,16 +52,16 @@ impl<N: Real, const D: usize> Rounded<N, D> {
     /// The points within `radius` of a convex shape.
     ///
     /// # Errors
-    /// If the radius is negative or not finite, the shape is a half-space or a composite, or rounded shapes are
-    /// nested as deep as [`MAX_NESTING`](crate::shape::MAX_NESTING) already.
+    /// If the radius is negative or not finite, the shape is a half-space or a composite, or the
+    /// shape has the nesting depth [`MAX_NESTING`](crate::shape::MAX_NESTING) already.
     pub fn try_new<S: Shape<N, D>>(shape: S, radius: N) -> Result<Self, ShapeError> {
         Self::try_from_handle(ShapeHandle::new(shape), radius)
     }
 
-    /// The points within `radius` of a convex shape that is shared.
+    /// The points within `radius` of a shared convex shape.
     ///
     /// # Errors
-    /// As [`Self::try_new`].
+    /// As for [`Self::try_new`].
     pub fn try_from_handle(shape: ShapeHandle<N, D>, radius: N) -> Result<Self, ShapeError> {
         let radius = size("the radius", radius)?;
         let kind = shape.geometry().kind();
@@ -71,26 +72,26 @@ impl<N: Real, const D: usize> Rounded<N, D> {
         Ok(Self { shape, radius, depth })
     }
 
-    /// The shape in the middle.
+    /// The inner shape.
     #[inline]
     #[must_use]
     pub const fn shape(&self) -> &ShapeHandle<N, D> {
         &self.shape
     }
 
-    /// How far the solid reaches beyond the shape.
+    /// The distance by which the solid extends beyond the shape.
     #[inline]
     #[must_use]
     pub const fn radius(&self) -> N {
         self.radius
     }
 
-    /// Both round one shape, which they share, by one radius.
+    /// Whether both have the same shared inner shape and radius.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.shape.is_same(&other.shape) && self.radius == other.radius
     }
 
-    /// The shape in the middle as queries see it.
+    /// The inner shape as queries see it.
     pub(crate) fn inner(&self) -> Geometry<'_, N, D> {
         self.shape.geometry()
     }
@@ -159,7 +160,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Rounded<N, D> {
         self.depth
     }
 
-    /// With factors of one magnitude.
+    /// Needs factors of one magnitude.
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         let radius = self.radius * Scale::try_new(scale)?.uniform()?;
         Ok(ShapeHandle::new(Self::try_from_handle(self.shape.scaled(scale)?, radius)?))

@@ -74,10 +74,10 @@ impl<N: Real, const D: usize> Segment<N, D> {
     }
 }
 
-/// The length of a vector, however short or long: its square need not be a number of the type.
+/// The length of a vector, also if its square overflows or underflows.
 #[inline]
 pub(in crate::shape) fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
-    // As `unit` has it, without the direction.
+    // As in `unit`, without the direction.
     let squared = v.norm_squared();
     if squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt() {
         return squared.sqrt();
@@ -85,13 +85,13 @@ pub(in crate::shape) fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> 
     unit(v).map_or(N::ZERO, |(_, length)| length)
 }
 
-/// The larger of the distances of two points from the origin.
+/// The larger distance of two points from the origin.
 pub(in crate::shape) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>) -> N {
     max(length_of(&a.coords), length_of(&b.coords))
 }
 
-/// The box around a few points of a solid placed at `pose`; rounded outwards, and that of everything where the
-/// numbers end.
+/// The box around a few points of a solid placed at `pose`; rounded outwards, and unbounded on
+/// overflow.
 pub(in crate::shape) fn box_at<N: Real, const D: usize, const K: usize>(
     pose: &Pose<N, D>,
     points: [&Point<N, D>; K],
@@ -101,7 +101,7 @@ pub(in crate::shape) fn box_at<N: Real, const D: usize, const K: usize>(
     let mut high = -low;
     for point in points {
         let turned = pose.vector(&point.coords);
-        // No less than its distance from the origin, and without a root.
+        // The sum of magnitudes bounds the distance from the origin from above, without a root.
         size = max(point.iter().fold(N::ZERO, |sum, x| sum + x.abs()), size);
         for axis in 0..D {
             (low[axis], high[axis]) = (min(turned[axis], low[axis]), max(turned[axis], high[axis]));

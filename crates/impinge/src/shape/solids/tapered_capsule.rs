@@ -13,12 +13,13 @@ use crate::shape::{
 
 /// The convex hull of two balls around the ends of a segment.
 ///
-/// Radii and length may be zero, and one ball may hold the other: then the solid is that ball. With
-/// equal radii it is a capsule, with one radius of zero a cone with a round base, with two a segment.
-/// Vertices: 0 and 1 are the round ends; the side, part of a cone, is `Edge(0)`, in 2D too.
+/// Radii and length may be zero, and one ball may contain the other: then the solid is that ball.
+/// With equal radii it is a capsule, with one radius of zero a cone with a round base, with both a
+/// segment. Vertices: 0 and 1 are the round ends; the side, part of a cone, is `Edge(0)`, in 2D
+/// too.
 ///
-/// Its rounding is the smaller radius. Its core is the hull of a point and of a ball whose radius is
-/// the difference; as a feature the core shows the generating segment that faces the direction.
+/// Its rounding is the smaller radius. Its core is the hull of a point and of a ball whose radius
+/// is the difference; as a feature the side is the generating segment that faces the direction.
 ///
 /// ```
 /// use impinge::dim3::math::Isometry;
@@ -73,7 +74,7 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         Ok(Self { segment, radii })
     }
 
-    /// Half of the distance between the centres of the balls: what [`Self::new`] was given.
+    /// Half of the distance between the centres of the balls, as given to [`Self::new`].
     #[must_use]
     pub fn half_height(&self) -> N {
         self.segment.half_length()
@@ -93,7 +94,7 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         self.radii
     }
 
-    /// Where the side is and which way it faces; `None` if one ball holds the other.
+    /// The position and slope of the side; `None` if one ball contains the other.
     pub(crate) fn taper(&self) -> Option<Taper<N, D>> {
         let [radius1, radius2] = self.radii;
         let (along, length) = unit(&(self.segment.b() - self.segment.a()))?;
@@ -103,36 +104,38 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         has_side.then_some(Taper { along, length, sine, cosine })
     }
 
-    /// The number of the end with the larger ball: the first of equals.
+    /// The index of the end with the larger ball, the first of equals.
     pub(crate) fn larger_end(&self) -> usize {
         usize::from(self.radii[1] > self.radii[0])
     }
 
-    /// An end of the segment by its number.
+    /// An end of the segment by its index.
     pub(crate) fn end(&self, index: usize) -> &Point<N, D> {
         if index == 0 { self.segment.a() } else { self.segment.b() }
     }
 
-    /// The radii of the balls of the core: one of them is zero.
+    /// The radii of the balls of the core; one of them is zero.
     fn core_radii(&self) -> [N; 2] {
         self.radii.mapped(|radius| radius - self.rounding())
     }
 }
 
-/// The side of a tapered capsule: in every half-plane through the axis a line that touches both balls
-/// at the same normal, (`cosine` away from the axis, `sine` along it).
+/// The side of a tapered capsule: in every half-plane through the axis a line that touches both
+/// balls at the same unit normal, with component `cosine` away from the axis and `sine` along it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Taper<N: Real, const D: usize> {
     /// The unit vector from the first end to the second.
     pub(crate) along: Vector<N, D>,
-    /// Between the ends.
+    /// The distance between the ends.
     pub(crate) length: N,
     pub(crate) sine: N,
     pub(crate) cosine: N,
 }
 
 impl<N: Real, const D: usize> Taper<N, D> {
-    /// The unit vector away from the axis nearest to `direction`, and the length of that part of it.
+    /// The unit vector away from the axis nearest to `direction`, and the component of `direction`
+    /// along it. A perpendicular of the axis and zero if `direction` is along the axis, up to
+    /// rounding.
     fn away(&self, direction: &Vector<N, D>) -> (Vector<N, D>, N) {
         let radial = direction - self.along * direction.dot(&self.along);
         let known = unit(&radial).filter(|&(_, length)| length > N::lit(16.0) * N::EPSILON);
@@ -160,7 +163,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
     ) -> Option<CurvedSupport<N, D>> {
         let large = self.larger_end();
         let (center, radius) = (self.end(large), self.core_radii()[large]);
-        // The core of the smaller ball is its centre, a corner.
+        // The part of the core at the smaller ball is its centre, a corner.
         let to_corner = (point - self.end(1 - large)).norm();
         if to_corner < ((point - center).norm() - radius).abs() {
             return None;
@@ -191,15 +194,15 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
         };
         let (away, across) = taper.away(direction);
         let climb = direction.dot(&taper.along);
-        // Positive where the second end lies farther along the direction than the first.
+        // Positive if the second end lies farther along the direction than the first.
         let lean = taper.cosine * climb - taper.sine * across;
         let faces = taper.cosine * across + taper.sine * climb > N::ZERO;
         if !(faces && Tilt::usual().admits(lean * lean)) {
             let end = usize::from(lean > N::ZERO);
             return out.set_point(names[end], self.core_support(direction));
         }
-        // On the larger ball: the support point itself, or where the side ends if that is on the
-        // other one.
+        // On the larger ball: the support point itself, or the end of the side if the support point
+        // is on the smaller ball.
         let is_on_large = (lean > N::ZERO) == (large == 1);
         let side = away * taper.cosine + taper.along * taper.sine;
         let toward = if is_on_large { *direction } else { side };

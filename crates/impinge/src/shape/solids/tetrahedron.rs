@@ -11,26 +11,26 @@ use crate::shape::{
     ShapeHandle, SupportMap,
 };
 
-/// A tetrahedron whose least height is below so many epsilon of its size counts as flat.
+/// A tetrahedron is flat if its smallest height is at most `FLAT` epsilon times its size.
 const FLAT: f64 = 4096.0;
 
 /// The corners of the faces of a tetrahedron whose fourth corner sees the first three clockwise;
 /// `FACES[i]` leaves out corner `i`.
 const FACES: [[u32; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// The ends of the edges.
+/// The vertices of the edges, by edge number.
 pub(in crate::shape) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// The points between four corners, which may be given in any order and may coincide or lie on a line
-/// or in a plane.
+/// The points between four corners, which may be given in any order and may coincide or lie on a
+/// line or in a plane.
 ///
-/// Vertices: 0 to 3 are the corners as given. `Face(i)` is opposite to `Vertex(i)`. Edges: 0 to 5 join
-/// the vertices 0 1, 0 2, 0 3, 1 2, 1 3 and 2 3.
+/// Vertices: 0 to 3 are the corners as given. `Face(i)` is opposite to `Vertex(i)`. Edges: 0 to 5
+/// join the vertices 0 1, 0 2, 0 3, 1 2, 1 3 and 2 3.
 ///
-/// Without volume (a height below some thousand rounding units of its size) it is still the hull of
-/// its corners, and distances to it are as accurate; as a feature it then shows all of its flat side,
-/// named as one of the faces there, or one of the edges of its outline; on a line its longest edge,
-/// coincident its first vertex.
+/// Without volume (a height below 4096 rounding units of its size) it is still the hull of its
+/// corners, and distances to it are as accurate. Its features are then the whole flat side, with
+/// the id of one of the faces there, and the edges of its outline; the longest edge if the corners
+/// lie on a line; the first vertex if they coincide.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -44,9 +44,9 @@ pub(in crate::shape) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2
 #[derive(Clone, PartialEq)]
 pub struct Tetrahedron<N: Real> {
     corners: [Point<N, 3>; 4],
-    /// Of one without volume only the names in it are right.
+    /// If the tetrahedron is flat, only the vertices and ids are valid; the faces overlap.
     polytope: Polytope<N, 3>,
-    /// What is left of one without volume.
+    /// The outline, if the tetrahedron is flat.
     flat: Option<FlatOutline<N>>,
 }
 
@@ -95,13 +95,13 @@ impl<N: Real> Tetrahedron<N> {
     }
 }
 
-/// How thick four points are, in doubles near 1.
+/// Measures of four points, in doubles scaled to about 1.
 struct TetrahedronExtent {
     /// The fourth corner sees the first three counter-clockwise.
     is_mirrored: bool,
     /// The largest distance of a corner from the first.
     size: f64,
-    /// The least distance of a corner from the plane of the others.
+    /// The smallest distance of a corner from the plane of the others.
     height: f64,
 }
 
@@ -127,7 +127,7 @@ impl TetrahedronExtent {
 /// The corners as doubles, relative to the first, divided by a power of two near their size.
 pub(in crate::shape) fn scaled<N: Real>(corners: &[Point<N, 3>; 4]) -> [Vector<f64, 3>; 4] {
     let corners = corners.map(|corner| corner.coords.map(N::as_f64));
-    // Twice: the difference of two large ones may overflow, and of two near ones is small.
+    // Two steps: the difference of two large corners may overflow, and of two close ones is small.
     let unit = power_of_two_below(&corners) * 2.0;
     let from_first = corners.map(|corner| corner / unit - corners[0] / unit);
     let unit = power_of_two_below(&from_first);
@@ -141,20 +141,21 @@ fn doubles<N: Real>(corners: &[Point<N, 3>; 4]) -> [Point<f64, 3>; 4] {
     corners.map(|corner| Point::from(corner / unit))
 }
 
-/// A power of two near the largest coordinate. Doubles serve shapes of every scalar, also where they
-/// are no scalar themselves.
+/// A power of two near the largest coordinate. Doubles are used for both scalars, also if `f64` is
+/// not one of them.
 fn power_of_two_below(corners: &[Vector<f64, 3>; 4]) -> f64 {
     let largest = corners.iter().fold(0.0, |size: f64, corner| size.max(corner.amax()));
     f64::from_bits(largest.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE)
 }
 
-/// The vertices, edges and faces of four corners, whatever they span.
+/// The vertices, edges and faces of four corners in any position.
 fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N, 3> {
     let places = doubles(&corners);
     let faces = FACES.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });
     let faces = faces.into_iter().map(|face| {
         let [a, b, c] = face.map(|corner| &places[corner as usize]);
-        // A cross product of rounded sides would be off by rounding times length over height.
+        // The cross product of rounded sides would be off by the rounding error times length over
+        // height.
         let normal = area_vector(a, b, c).try_normalize(0.0);
         let normal = normal.unwrap_or_else(Vector::<f64, 3>::y).map(N::lit);
         (unit(&normal).map_or(normal, |(normal, _)| normal), face)
@@ -186,8 +187,8 @@ impl<N: Real> SupportMap<N, 3> for Tetrahedron<N> {
     }
 }
 
-/// The faces of a tetrahedron without volume are those of its corners: they overlap, and where one has
-/// no area its normal is some unit vector.
+/// The faces of a flat tetrahedron are the triangles of its corners: they overlap, and the normal
+/// of a face without area is an arbitrary unit vector.
 impl<N: Real> ConvexPolyhedron<N, 3> for Tetrahedron<N> {
     fn vertex(&self, id: FeatureId) -> Point<N, 3> {
         self.polytope.vertex(id)

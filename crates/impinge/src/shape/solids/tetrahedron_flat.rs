@@ -1,11 +1,11 @@
-//! What is left of a tetrahedron without volume: a polygon, a segment or a point.
+//! The outline of a tetrahedron without volume: a polygon, a segment or a point.
 
 use crate::math::{Mapped, Point, Real, Vector, unit};
 use crate::shape::solids::tetrahedron::{EDGES, scaled};
 use crate::shape::tilt::Tilt;
 use crate::shape::{Feature, FeatureId};
 
-/// Corners nearer to a line than so many epsilon of the size lie on it.
+/// Corners closer to a line than `STRAIGHT` epsilon times the size count as on it.
 const STRAIGHT: f64 = 4096.0;
 
 /// The corners of the outline, counter-clockwise seen from where the normal points; two for a segment,
@@ -14,7 +14,7 @@ const STRAIGHT: f64 = 4096.0;
 pub(in crate::shape) struct FlatOutline<N: Real> {
     ring: Vec<u32>,
     points: Vec<Point<N, 3>>,
-    /// Of no meaning for a segment or a point.
+    /// Meaningless for a segment or a point.
     normal: Vector<N, 3>,
 }
 
@@ -63,7 +63,7 @@ impl<N: Real> FlatOutline<N> {
         if index + 1 < self.ring.len() { index + 1 } else { 0 }
     }
 
-    /// The sine by which a side leans along a direction.
+    /// The sine of the slope of a side along a direction.
     fn slope(&self, side: usize, direction: &Vector<N, 3>) -> N {
         let along = unit(&(self.points[self.next(side)] - self.points[side]));
         along.map_or(N::ONE, |(along, _)| along.dot(direction).abs())
@@ -76,7 +76,7 @@ impl<N: Real> FlatOutline<N> {
         FeatureId::Edge(found.map_or(0, |(index, _)| index))
     }
 
-    /// A side, or the only vertex.
+    /// Writes a side, or the vertex if there is only one.
     fn fill_side(&self, side: usize, out: &mut Feature<N, 3>) {
         let named = |at: usize| (FeatureId::Vertex(self.ring[at]), self.points[at]);
         if self.ring.len() == 1 {
@@ -85,8 +85,8 @@ impl<N: Real> FlatOutline<N> {
         out.set_segment(self.edge_id(side), [named(side), named(self.next(side))]);
     }
 
-    /// All of one side, named as the face opposite to the corner that is not in the outline, or else
-    /// to the last corner.
+    /// Writes the whole outline, with the id of the face opposite to the corner that is not in the
+    /// outline, or to the last corner if all are.
     fn fill_face(&self, normal: Vector<N, 3>, is_back: bool, out: &mut Feature<N, 3>) {
         let left_out = (0..4).rev().find(|corner| !self.ring.contains(corner)).unwrap_or(3);
         out.clear();
@@ -113,7 +113,7 @@ fn widest_normal(places: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64)> 
     widest.try_normalize(0.0).map(|normal| (normal, widest.norm()))
 }
 
-/// The corners that no side passes outside of, in order around the normal.
+/// The corners of the outline, in order around the normal: no corner lies outside of a side.
 fn ring(places: &[Vector<f64, 3>; 4], normal: &Vector<f64, 3>, noise: f64) -> Vec<u32> {
     let is_left = |a: usize, b: usize, c: usize| {
         let side = places[b] - places[a];

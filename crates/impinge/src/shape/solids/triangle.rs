@@ -14,13 +14,13 @@ use crate::shape::{
 /// a line.
 ///
 /// In 3D it has no thickness and two sides. Vertices: 0, 1, 2 are `a`, `b`, `c`. Sides: `i` leads
-/// from vertex `i` to the next; they are faces in 2D and edges in 3D. In 3D `Face(0)`
-/// is the side that sees `a`, `b`, `c` counter-clockwise and `Face(1)` the other.
+/// from vertex `i` to the next; they are faces in 2D and edges in 3D. In 3D `Face(0)` is the side
+/// from which `a`, `b`, `c` appear counter-clockwise and `Face(1)` the other.
 ///
-/// As features, sides are given so that the loop they belong to runs counter-clockwise: in 2D
-/// with the triangle on the left, in 3D as seen from where the direction points. The normal on a
-/// side, and in 3D on an edge, lies in the triangle's plane and points out. A triangle without
-/// area has its longest side as its only feature besides the vertices, a triangle without extent its
+/// As features, sides are given so that the loop they belong to runs counter-clockwise: in 2D with
+/// the triangle on the left, in 3D seen from where the direction points. The normal of a side, and
+/// in 3D of an edge, lies in the triangle's plane and points out. A triangle without area has its
+/// longest side as its only feature besides the vertices, a triangle whose corners coincide its
 /// first vertex.
 ///
 /// ```
@@ -60,7 +60,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         Ok(Self { corners: [a, b, c] })
     }
 
-    /// The triangle of corners that are known to be finite.
+    /// The triangle of corners that are known to be finite, unchecked.
     #[inline]
     pub(crate) const fn of_finite(corners: [Point<N, D>; 3]) -> Self {
         Self { corners }
@@ -95,7 +95,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Triangle<N, D> {
         let [a, b, c] = &self.corners;
         let most = max(a.coords.norm_squared(), b.coords.norm_squared());
         let most = max(most, c.coords.norm_squared());
-        // The root of the largest is the largest root; see `length_of` for the others.
+        // The root of the largest square is the largest length; outside this range see `length_of`.
         if most > N::MIN_POSITIVE.sqrt() && most < N::MAX.sqrt() {
             return most.sqrt();
         }

@@ -1,13 +1,14 @@
-//! The features of triangles, in any dimension: what faces a direction, and which way it runs.
+//! The features of triangles, in any dimension: the supporting feature for a direction, and its
+//! winding.
 
 use crate::math::{Matrix, Point, Real, Vector, cross, max, max_component, unit, unit_or};
 use crate::shape::solids::segment::length_of;
 use crate::shape::tilt::{FACING_SINE_SQUARED, Tilt};
 use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Shown, SupportMap, Triangle};
 
-/// The plane (in two dimensions: the space) that a triangle spans.
+/// The plane (in 2D: the whole space) that a triangle spans.
 struct TriangleSpan<N: Real, const D: usize> {
-    /// The side that is longest.
+    /// The index of the longest side.
     longest: usize,
     /// Unit, along the longest side from its first vertex to its second.
     along: Vector<N, D>,
@@ -25,22 +26,23 @@ impl<N: Real, const D: usize> TriangleSpan<N, D> {
         let longest = longer(longer(0, 1), 2);
         let (along, length) = unit(&side(longest))?;
         let to_opposite = corners[(longest + 2) % 3] - corners[longest];
-        // Below this height the difference of coordinates may be all rounding.
+        // Below this height the difference of coordinates may be pure rounding error.
         let noise = N::lit(16.0) * N::EPSILON * length;
         let rise = unit(&without(&to_opposite, &along));
         let rise = rise.filter(|&(_, height)| height > noise);
-        // The second pass makes it perpendicular to the last digit, however flat the triangle.
+        // A second projection makes it perpendicular to the last digit, however flat the triangle.
         let rise = rise.map(|(rise, _)| unit_or(&without(&rise, &along), rise));
         Some(Self { longest, along, rise })
     }
 
-    /// What of a direction lies in the plane, squared; `None` if the triangle is no polygon.
+    /// The squared component of a direction in the plane; `None` if the corners lie on a line.
     fn lean_squared(&self, direction: &Vector<N, D>) -> Option<N> {
         let (along, rise) = (self.along.dot(direction), self.rise?.dot(direction));
         Some(along * along + rise * rise)
     }
 
-    /// The unit normal of the plane on the side of a direction that does not lie in it.
+    /// The unit normal of the plane on the side of a direction; `None` if the direction lies in the
+    /// plane.
     fn normal_toward(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
         let rise = self.rise?;
         let rest = |v: &Vector<N, D>| without(&without(v, &self.along), &rise);
@@ -49,12 +51,12 @@ impl<N: Real, const D: usize> TriangleSpan<N, D> {
     }
 }
 
-/// The part of a vector perpendicular to a unit vector.
+/// The component of a vector perpendicular to a unit vector.
 fn without<N: Real, const D: usize>(v: &Vector<N, D>, along: &Vector<N, D>) -> Vector<N, D> {
     v - along * along.dot(v)
 }
 
-/// The determinant of `D` columns is below zero: Gaussian elimination with row exchanges.
+/// Whether the determinant of `D` columns is negative, by Gaussian elimination with row exchanges.
 fn is_left_handed<N: Real, const D: usize>(mut columns: Matrix<N, D>) -> bool {
     let mut is_negative = false;
     for at in 0..D {
@@ -79,7 +81,7 @@ fn is_left_handed<N: Real, const D: usize>(mut columns: Matrix<N, D>) -> bool {
 
 impl<N: Real, const D: usize> Triangle<N, D> {
     /// The order of the corners that runs counter-clockwise, seen from where `direction` points; in
-    /// the plane, from above.
+    /// 2D, from above.
     fn ring(&self, direction: &Vector<N, D>) -> [usize; 3] {
         let [a, b, c] = self.corners();
         let mut columns = Matrix::<N, D>::zeros();
@@ -93,6 +95,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         (vertex_id(index), self.corners()[index])
     }
 
+    /// Writes the supporting feature for the unit vector `direction` with the limit `tilt`.
     pub(in crate::shape) fn fill_toward(
         &self,
         direction: &Vector<N, D>,
@@ -114,9 +117,9 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         }
     }
 
-    /// The corner, side or face that a point of the surface lies on, up to `noise`, seen from where the
-    /// unit vector `direction` points; `None` of a triangle whose corners lie on a line, and for a
-    /// point inside one of the plane.
+    /// The corner, side or face that a point of the surface lies on, up to `noise`, seen from where
+    /// the unit vector `direction` points; `None` if the corners lie on a line, and in 2D for a
+    /// point inside.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
@@ -140,7 +143,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
             (Some(side), None) => Some(side_id::<D>(side)),
             (None, _) => {
                 let index = u32::from(self.ring(direction)[1] == 2);
-                // In 2D what lies inside bounds nothing.
+                // In 2D the interior is no feature.
                 Some(FeatureId::flat::<D>(2, index)).filter(|id| matches!(id, FeatureId::Face(_)))
             }
             _ => None,
@@ -152,8 +155,8 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         (0..3).find(|&index| self.corners()[index] == support).unwrap_or(0)
     }
 
-    /// The side at the support vertex that leans least, and the sine by which it does; of corners on
-    /// a line only the longest counts.
+    /// The side at the support vertex with the smallest slope, and the sine of that slope. If the
+    /// corners lie on a line, only the longest side is considered.
     fn flattest_side(&self, span: &TriangleSpan<N, D>, direction: &Vector<N, D>) -> (usize, N) {
         if span.rise.is_none() {
             return (span.longest, span.along.dot(direction).abs());
@@ -168,7 +171,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         if back.1 < out.1 { back } else { out }
     }
 
-    /// The two-sided face: in 3D only.
+    /// Writes the face on the side of `direction`; in 3D only.
     fn fill_polygon(
         &self,
         span: &TriangleSpan<N, D>,
@@ -186,7 +189,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         out.normal = span.normal_toward(direction);
     }
 
-    /// A side, the longest if the corners lie on a line.
+    /// Writes a side; the longest if the corners lie on a line.
     fn fill_side(&self, side: usize, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
         out.set_segment(side_id::<D>(side), self.side_ends(side, direction));
         let normal = self.side_normal(side).filter(|normal| normal.dot(direction) > N::ZERO);
@@ -197,7 +200,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         out.normal = normal.filter(|_| matches!(out.id, FeatureId::Face(_)));
     }
 
-    /// Unit, in the triangle's plane, out of a side; `None` if the corners lie on a line.
+    /// The unit vector in the triangle's plane out of a side; `None` if the corners lie on a line.
     fn side_normal(&self, side: usize) -> Option<Vector<N, D>> {
         TriangleSpan::of(self.corners())?.rise?;
         let corners = self.corners();
@@ -206,8 +209,8 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         Some(unit_or(&without(&normal, &along), normal))
     }
 
-    /// The normal on a vertex or a side. Where the corners lie on a line, a vertex has the direction
-    /// from the middle to it and a side has none of its own: any perpendicular of it.
+    /// The normal of a vertex or a side. If the corners lie on a line, the normal of a vertex is
+    /// the direction from the centre to it, that of a side any perpendicular.
     fn thin_normal(&self, id: FeatureId) -> Vector<N, D> {
         let outward = |index: usize| unit(&(self.corners()[index] - self.center()));
         let normal = match id {
@@ -226,7 +229,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         normal.unwrap_or_else(|| axis(0))
     }
 
-    /// The ends of a side in the order of the ring.
+    /// The ends of a side in the order of [`Self::ring`].
     fn side_ends(&self, side: usize, direction: &Vector<N, D>) -> [(FeatureId, Point<N, D>); 2] {
         let ring = self.ring(direction);
         let ends = if ring[1] == 1 { [side, (side + 1) % 3] } else { [(side + 1) % 3, side] };
@@ -247,7 +250,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 }
 
 impl<N: Real> Triangle<N, 2> {
-    /// See [`Shown::of`]; `None` where the corners coincide.
+    /// See [`Shown::of`]; `None` if the corners coincide.
     pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
         let span = TriangleSpan::of(self.corners())?;
         let (side, slope) = self.flattest_side(&span, direction);
@@ -266,14 +269,14 @@ fn axis<N: Real, const D: usize>(index: usize) -> Vector<N, D> {
     axis
 }
 
-/// A unit vector perpendicular to a unit vector: the axis it leans on least, straightened.
+/// A unit vector perpendicular to a unit vector: the axis of its smallest component, projected.
 fn any_perpendicular<N: Real, const D: usize>(along: &Vector<N, D>) -> Vector<N, D> {
     let weakest =
         (1..D).fold(0, |best, at| if along[at].abs() < along[best].abs() { at } else { best });
     unit_or(&without(&axis(weakest), along), axis(weakest))
 }
 
-/// A corner, 0 to 2, as a name.
+/// The id of a corner, 0 to 2.
 fn vertex_id(index: usize) -> FeatureId {
     FeatureId::Vertex(u32::try_from(index).expect("there are three corners"))
 }
@@ -282,24 +285,24 @@ fn side_id<const D: usize>(index: usize) -> FeatureId {
     FeatureId::flat::<D>(1, u32::try_from(index).expect("there are three sides"))
 }
 
-/// The side between two corners next to each other, in either order.
+/// The side between two different corners, in either order.
 fn side_between(from: usize, to: usize) -> usize {
     if (from + 1) % 3 == to { from } else { to }
 }
 
-/// A triangle of less height than the root of this part of its longest side is thin.
+/// A triangle is thin if its squared area is at most this times the longest squared side, squared.
 pub(crate) const THIN_SQUARED: f64 = 1.0 / 1024.0;
-/// By this part of a number another one is clearly larger.
+/// A quantity exceeds another clearly if it does so by this fraction; else rounding may decide.
 pub(crate) const CLEAR: f64 = 1.0 / 1024.0;
 
 impl<N: Real> Triangle<N, 3> {
-    /// The name of what [`SupportMap::core_feature`] answers to a unit vector, by products alone; `None` of
-    /// triangles that are thin, and where rounding decides.
+    /// The id of the [`SupportMap::core_feature`] for a unit vector, by products alone; `None` for
+    /// thin triangles, and where rounding decides.
     pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
         let [a, b, c] = self.corners();
         let sides = [b - a, c - b, a - c];
         let size = max(max_component(&sides[0]), max_component(&sides[1]));
-        // So that fourth powers are numbers.
+        // Scaled so that fourth powers neither overflow nor underflow.
         let ways = sides.map(|side| side / size.power_of_two_below());
         let squared = [ways[0].norm_squared(), ways[1].norm_squared(), ways[2].norm_squared()];
         let longest = max(max(squared[0], squared[1]), squared[2]);
@@ -320,7 +323,7 @@ impl<N: Real> Triangle<N, 3> {
             return None;
         }
         let climbs = ways.map(|way| way.dot(direction));
-        // The highest corner, by which of the sides climb.
+        // The highest corner, from the climbs of the sides.
         let heights = [N::ZERO, climbs[0], climbs[0] + climbs[1]];
         let higher = |best: usize, at: usize| if heights[at] > heights[best] { at } else { best };
         let top = higher(higher(0, 1), 2);
@@ -335,11 +338,11 @@ impl<N: Real> Triangle<N, 3> {
         is_side.then(|| side_id::<3>(side))
     }
 
-    /// Fills a blank ring with the face that a direction sees; of a triangle that is not thin.
+    /// Fills a blank ring with the face on the side of a direction. The triangle must not be thin.
     pub(crate) fn fill_ring(&self, direction: &Vector<N, 3>, face: &mut FaceRing<N>) {
         let [a, b, c] = self.corners();
         let ways = [b - a, c - a];
-        // So that products are numbers.
+        // Scaled so that products neither overflow nor underflow.
         let size = max(max_component(&ways[0]), max_component(&ways[1])).power_of_two_below();
         let across = cross(&(ways[0] / size), &(ways[1] / size));
         let is_below = across.dot(direction) < N::ZERO;
@@ -439,7 +442,7 @@ impl<N: Real> ConvexPolyhedron<N, 3> for Triangle<N, 3> {
     }
 }
 
-/// Whether it is the second of the two faces.
+/// Whether `id` is the second of the two faces.
 #[track_caller]
 fn is_second_face(id: FeatureId) -> bool {
     assert!(matches!(id, FeatureId::Face(0 | 1)), "a triangle has no face named {id:?}");

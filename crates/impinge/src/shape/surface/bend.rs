@@ -1,38 +1,43 @@
-//! The edge between two triangles: which normals it has, computed from those of the faces.
+//! The edge between two triangles: which normals it admits, computed from the normals of its faces.
 //!
-//! The normals of an edge are those between the normals of its two faces on the side where it is a ridge,
-//! and none on the side where it is hollow. For triangles that are neither thin nor far away for their
-//! size that is plain to see without the directions from the edge into the faces, which the rule of
-//! [`seam`](super::seam) goes by; what is close is left to that.
+//! An edge admits the normals between those of its two faces on the side where it is a ridge, and
+//! none on the side where it is hollow. If the triangles are neither thin nor far from the origin
+//! for their size, the face normals alone decide this, without the directions from the edge into
+//! the faces that the rule of [`seam`](super::seam) needs. Cases near a limit are left to that
+//! rule.
 
 use crate::math::{Mapped, Point, Real, Vector, cross, max, max_component, min};
 use crate::shape::surface::seam::{FLAT_SINE, slack};
 
-/// A triangle with a squared height of more than this, of its longest side, is not thin.
+/// Minimum of the squared ratio of height to longest side for which a triangle is not thin: a
+/// height of 1/32 of that side.
 const TALL: f64 = 1.0 / 1024.0;
-/// A share of what counts as flat that is left to the rule of seams.
+/// Relative width of the band around each limit of flatness in which the rule of seams decides.
 const CLOSE: f64 = 0.1;
 
-/// Two triangles that share an edge, and whose fronts are on one side.
+/// An edge shared by two triangles whose fronts are on one side of the surface.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::shape) struct Bend<N: Real> {
-    /// The unit normals on the fronts, and the scalar product of the two.
+    /// The unit normals on the fronts; `cosine` is their scalar product.
     fronts: [Vector<N, 3>; 2],
     cosine: N,
     shape: BendShape,
 }
 
-/// How an edge looks from the front.
+/// The shape of an edge, seen from the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) enum BendShape {
+    /// The angle between the faces is below `FLAT_SINE`.
     Flat,
+    /// Each face lies behind the plane of the other.
     Ridge,
+    /// Each face lies in front of the plane of the other.
     Hollow,
 }
 
 impl<N: Real> Bend<N> {
-    /// By the corners of two triangles that share an edge, and their normals; `None` where it is not plain
-    /// how they lie.
+    /// Classifies the edge by the corners of its triangles and their unit normals; `None` where
+    /// these do not decide.
     pub(in crate::shape) fn new(
         corners: [&[Point<N, 3>; 3]; 2],
         fronts: [Vector<N, 3>; 2],
@@ -40,7 +45,7 @@ impl<N: Real> Bend<N> {
         Some(Self::of(BendShape::new(corners, &fronts)?, fronts))
     }
 
-    /// Of two triangles of which it is known how they lie.
+    /// Returns the edge between faces whose `shape` is known.
     pub(in crate::shape) fn of(shape: BendShape, fronts: [Vector<N, 3>; 2]) -> Self {
         Self { fronts, cosine: fronts[0].dot(&fronts[1]), shape }
     }
@@ -53,8 +58,8 @@ impl<N: Real> Bend<N> {
         self.shape
     }
 
-    /// Whether a unit vector that is none of the faces' normals is one that the edge has; `None` where it
-    /// is close, or not on the same side of both faces.
+    /// Whether the edge admits a unit vector other than the face normals. `None` close to a limit,
+    /// and for a vector that is not on the same side of both faces.
     pub(in crate::shape) fn admits(
         &self,
         normal: &Vector<N, 3>,
@@ -68,7 +73,9 @@ impl<N: Real> Bend<N> {
         }
         match (self.shape, is_front) {
             (BendShape::Flat, _) => {
-                // Close to the faces' normal and yet not flat it may lean along the edge as well.
+                // A level normal is that of a face. From √2 times `FLAT_SINE` on, its tilt along
+                // the edge or across it alone exceeds the limit; in between the rule of seams
+                // decides.
                 let squared_sine = (N::ONE - along1 * along1) / N::lit(FLAT_SINE * FLAT_SINE);
                 let is_level = squared_sine < N::lit(1.0 - CLOSE);
                 let is_leaning = squared_sine > N::lit(2.0 * (1.0 + CLOSE));
@@ -82,9 +89,11 @@ impl<N: Real> Bend<N> {
         }
     }
 
-    /// The vector lies between the two normals, or between their opposites, and across the edge.
+    /// Whether the vector lies between the two fronts, or between their opposites, and is
+    /// perpendicular to the edge. `None` close to a limit.
     fn is_between(&self, normal: &Vector<N, 3>, [along1, along2]: [N; 2]) -> Option<bool> {
-        // The heights over the planes that part the normals from what lies beyond them, times their sine.
+        // The components of the vector across each front and towards the other, times the sine of
+        // the angle between the fronts.
         let insides = [along2 - self.cosine * along1, along1 - self.cosine * along2];
         let inside = if along1 < N::ZERO {
             min(-insides[0], -insides[1])
@@ -105,13 +114,13 @@ impl<N: Real> Bend<N> {
 }
 
 impl BendShape {
-    /// As [`Bend::new`].
+    /// See [`Bend::new`].
     pub(in crate::shape) fn new<N: Real>(
         corners: [&[Point<N, 3>; 3]; 2],
         fronts: &[Vector<N, 3>; 2],
     ) -> Option<Self> {
         let cosine = fronts[0].dot(&fronts[1]);
-        // False for NaN, which is not plain.
+        // False for NaN. Beyond 90° between the fronts the rule of seams decides.
         let is_plain = cosine > N::ZERO && corners.iter().all(|corners| is_plain(corners));
         if !is_plain {
             return None;
@@ -133,8 +142,8 @@ impl BendShape {
     }
 }
 
-/// The height over the plane of one triangle of that corner of another that is farthest from it: the one
-/// that is not on their edge.
+/// Returns the signed height over a plane of the corner farthest from it: the one that is not on
+/// the shared edge. `front` is the unit normal of the plane.
 fn height_of<N: Real>(
     corners: &[Point<N, 3>; 3],
     plane: &[Point<N, 3>; 3],
@@ -146,7 +155,8 @@ fn height_of<N: Real>(
     })
 }
 
-/// The triangle is not thin, and not so far away that its corners are no more than rounding.
+/// Whether the triangle is not thin, its sides are longer than 4096 rounding units of its
+/// coordinates, and its squared area does not underflow.
 fn is_plain<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
     let [a, b, c] = corners;
     let (ab, ac) = (b - a, c - a);
@@ -168,7 +178,7 @@ mod tests {
     use crate::shape::composite::tri_mesh::{inward_of, normal_of};
     use crate::shape::surface::seam::{Seam, is_across};
 
-    /// The rule of seams for an edge between two faces.
+    /// The rule of seams for an edge between two faces, by the directions into them.
     fn rule<N: Real>(
         corners: [&[Point<N, 3>; 3]; 2],
         fronts: &[Vector<N, 3>; 2],
@@ -189,7 +199,7 @@ mod tests {
         for round in 0..20_000 {
             let (a, b) = (noise.vector::<f64>(1.0), noise.vector::<f64>(1.0));
             let tip1 = noise.vector::<f64>(1.0);
-            // Some lie almost flat.
+            // Every fifth is exactly flat, and others nearly.
             let flat = [1.0, 0.1, 0.01, 0.003, 0.0][round % 5];
             let tip2 = a + b - tip1 + noise.vector::<f64>(1.0) * flat;
             let point = |v: Vector<f64, 3>| Point::from(v.map(N::lit));
@@ -197,19 +207,20 @@ mod tests {
                 ([point(a), point(b), point(tip1)], [point(b), point(a), point(tip2)]);
             let fronts = [normal_of(&first), normal_of(&second)];
             let Some(bend) = Bend::new([&first, &second], fronts) else { continue };
-            // About between the two, on either side, and along the edge.
+            // Interpolates between the fronts or beyond, and adds a tilt; a quarter are on the
+            // back.
             let share = N::lit(0.7 * noise.next() + 0.5);
             let aside = noise.vector::<f64>(1.0).map(N::lit) * N::lit([0.0, 0.004, 0.3][round % 3]);
             let sign = if round % 4 == 0 { -N::ONE } else { N::ONE };
             let normal = (fronts[0] + (fronts[1] - fronts[0]) * share + aside) * sign;
             let normal = normal / normal.norm();
             let is_one_sided = round % 7 == 0;
-            // Of the faces' own normals neither is asked.
+            // `Bend::admits` is not defined for the face normals.
             if fronts.iter().any(|own| max_component(&(own * sign - normal)) <= slack()) {
                 continue;
             }
             if let Some(answer) = bend.admits(&normal, is_one_sided) {
-                // The rule sees the edge from its first corner in both.
+                // The rule takes both triangles from the same corner of the edge.
                 let turned = [second[0], second[1], second[2]];
                 let expected = rule([&first, &turned], &fronts, &normal, is_one_sided);
                 assert_eq!(answer, expected, "round {round}: {bend:?} {normal:?}");

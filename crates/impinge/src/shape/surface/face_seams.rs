@@ -1,11 +1,12 @@
-//! What a triangle of a surface in 3D and those across its sides say of its normals, kept beside its corners.
+//! The normals of a triangle of a surface in 3D and of its three neighbours, cached beside its
+//! corners.
 //!
 //! ```text
 //!            c
 //!           ╱ ╲
 //!    across╱   ╲across      front: the unit normal of the triangle
-//!         ╱front╲           across: those of the triangles beyond the sides
-//!        a───────b          bends: how the two lie at each side, where that is plain
+//!         ╱front╲           across: the unit normals of the neighbours
+//!        a───────b          bends: the shape of each side's edge, where known
 //!          across
 //! ```
 
@@ -14,22 +15,23 @@ use crate::shape::surface::bend::{Bend, BendShape};
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{FeatureId, Surface, SurfaceAccess};
 
-/// A triangle with an area, and how it is bent against its neighbours.
+/// A triangle that has an area, and the shapes of its edges.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceSeams<N: Real> {
-    /// Unit, in the frame of the surface.
+    /// Unit normal on the front, in the frame of the surface.
     pub(in crate::shape) front: Vector<N, 3>,
     pub(in crate::shape) across: [Vector<N, 3>; 3],
-    /// `None` at a rim, and where only the surface can tell.
+    /// `None` at a rim, and where [`Bend`] does not decide.
     pub(in crate::shape) bends: [Option<BendShape>; 3],
     pub(in crate::shape) is_one_sided: bool,
-    /// The triangles across the sides are known to have their fronts on the same side.
+    /// Each neighbour is known to have its front on the same side as this triangle.
     is_oriented: bool,
 }
 
 impl<N: Real> FaceSeams<N> {
-    /// A triangle by its front and what lies across its sides: how they are bent, with the fronts of both triangles, or
-    /// whether there is nothing.
+    /// Returns the seams of a triangle by its front normal. `bend` returns the edge at a side, with
+    /// the fronts of this triangle and its neighbour in this order; `is_rim` says that a side
+    /// without a bend has no neighbour, or one that is oriented alike.
     pub(in crate::shape) fn new(
         front: Vector<N, 3>,
         is_one_sided: bool,
@@ -46,13 +48,14 @@ impl<N: Real> FaceSeams<N> {
         Self { front, across, bends, is_one_sided, is_oriented }
     }
 
-    /// A face of the triangle is its front, and the triangles around have theirs on the same side: where all faces that
-    /// are touched are such, none hides another.
+    /// Whether `face` is the normal of the front and the neighbours are oriented alike. If this
+    /// holds for all faces in contact, none hides another.
     pub(crate) fn is_front(&self, face: &Vector<N, 3>) -> bool {
         self.is_oriented && self.front.dot(face) > N::ZERO
     }
 
-    /// The surface, of which this triangle answers what it knows; `corner` is one of its own.
+    /// Returns this triangle as a surface that answers from these seams and falls back to
+    /// `surface`; `corner` is a corner of the triangle.
     pub(crate) fn in_surface<'a>(
         &'a self,
         surface: SurfaceAccess<'a, N, 3>,
@@ -61,23 +64,24 @@ impl<N: Real> FaceSeams<N> {
         KnownFace { seams: self, surface, corner }
     }
 
-    /// A triangle across one of the sides that meet at a corner is known not to be level with this one.
+    /// Whether a neighbour across one of the two sides at a corner is known not to be coplanar with
+    /// this triangle.
     pub(in crate::shape) fn is_bent_at(&self, corner: usize) -> bool {
         let is_bent = |bend: Option<BendShape>| bend.is_some_and(|bend| bend != BendShape::Flat);
         is_bent(self.bends[corner]) || is_bent(self.bends[(corner + 2) % 3])
     }
 
-    /// Whether a unit vector that is not the face's own normal is one that a side has; `None` where only the
-    /// surface can tell.
+    /// Whether a side admits a unit vector other than the normal of the face; `None` where only the
+    /// surface can decide.
     fn side_admits(&self, side: usize, normal: &Vector<N, 3>) -> Option<bool> {
         let bend = Bend::of(self.bends[side]?, [self.front, self.across[side]]);
         bend.admits(normal, self.is_one_sided)
     }
 }
 
-/// One triangle of a surface: the answers of the surface, most without a look at it.
+/// One triangle of a surface: answers from its seams where they decide, else from the surface.
 ///
-/// It is asked about normals that differ from the face's own by more than rounding.
+/// The normals asked about must differ from the face's own by more than rounding.
 pub(crate) struct KnownFace<'a, N: Real> {
     seams: &'a FaceSeams<N>,
     surface: SurfaceAccess<'a, N, 3>,
@@ -131,7 +135,7 @@ mod tests {
     use crate::math::noise::Noise;
     use crate::shape::{CompositeShape, Diagonals, HeightField, PartSolid, TriMesh};
 
-    /// A rough sheet of triangles, some of them level.
+    /// Heights of a rough sheet of triangles, some of them level.
     fn heights(noise: &mut Noise) -> Vec<f64> {
         (0..36).map(|at| if at % 5 < 2 { 0.0 } else { 0.5 * noise.next() }).collect()
     }
@@ -153,7 +157,8 @@ mod tests {
         field
     }
 
-    /// What a triangle keeps answers as its surface does, about all normals but the triangle's own; counts the answers.
+    /// Checks that cached seams answer as the surface does, for normals other than the triangle's
+    /// own; counts the answers.
     fn check(parts: &dyn CompositeShape<f64, 3>, noise: &mut Noise, counts: &mut [usize; 3]) {
         let surface = parts.surface_access().expect("a surface");
         for part in 0..parts.num_parts() {

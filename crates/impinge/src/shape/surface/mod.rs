@@ -1,5 +1,5 @@
-//! What holds the parts of a surface together: how its edges are bent, which normals a seam of faces has, and the
-//! sides of chains.
+//! Adjacency of the parts of a surface: the shapes of edges, the normals that a seam admits, and
+//! the one-sidedness of chains.
 
 pub(crate) mod bend;
 pub(crate) mod face_seams;

@@ -1,14 +1,14 @@
-//! What the library's own surfaces answer beyond [`Surface`]: quicker ways to the same contacts.
+//! Methods of the library's own surfaces beyond [`Surface`]: shortcuts to the same contacts.
 
 use core::fmt;
 
 use crate::math::{Point, Real, Vector};
 use crate::shape::{FaceSeams, FeatureId, Sidedness, Surface};
 
-/// A surface of this library. No answer of it changes a contact, only what finding it costs.
+/// A surface of this library. Its methods change the cost of contacts, never the contacts.
 pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
-    /// [`Surface::admits`] of two normals, of the second only where the first is not admitted: what is
-    /// around the feature is looked up once.
+    /// Calls [`Surface::admits`] for two normals, for the second only if the first is rejected
+    /// (else the second result is false). The neighbourhood of the feature is evaluated once.
     fn admits_in_turn(
         &self,
         part: u32,
@@ -19,8 +19,8 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         [is_first, !is_first && self.admits(part, feature, second)]
     }
 
-    /// [`Self::admits_in_turn`] at a corner of a triangle, of normals that are not its own; what is known of the
-    /// triangle is given.
+    /// [`Self::admits_in_turn`] at a corner of a triangle, for normals other than its own; `known`
+    /// are the seams of the triangle.
     fn corner_admits_in_turn(
         &self,
         part: u32,
@@ -32,34 +32,36 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         self.admits_in_turn(part, FeatureId::Vertex([0, 1, 2][corner]), normals)
     }
 
-    /// What a triangle in 3D and those around it say of its normals; `None` of others, of one without area, and where
-    /// that does not decide.
+    /// The seams of a triangle in 3D; `None` for other parts, for a triangle without area, and for
+    /// a surface that keeps its internal edges.
     fn face_seams(&self, part: u32) -> Option<FaceSeams<N>> {
         let _ = part;
         None
     }
 
-    /// Which sides all segments of a chain in 2D have; `None` of surfaces in 3D.
+    /// The sides that all segments of a chain in 2D have; `None` for other surfaces.
     fn sidedness(&self) -> Option<Sidedness> {
         None
     }
 
-    /// The part bounds a body: a solid that overlaps it touches its front wherever the middle of the solid is.
+    /// Whether the part bounds a body: a solid that overlaps it touches its front, whichever side
+    /// of the surface the centre of the solid is on.
     fn is_body(&self, part: u32) -> bool {
         let _ = part;
         false
     }
 
-    /// In 3D, parts hang together where they have corners at one position, and there alone; and a normal
-    /// along which a direction into a part at the seam rises is none there.
+    /// Whether, in 3D, parts are adjacent exactly where they have corners at one position, and a
+    /// seam admits no normal along which a direction into an adjacent part rises.
     fn has_plain_seams(&self) -> bool {
         false
     }
 }
 
-/// The surface of a composite as the library's algorithms see it: any, with the quicker ways of its own.
+/// The surface of a composite for the algorithms of the library: a user's, or one of the library's
+/// own with shortcuts to the same contacts.
 ///
-/// Public only as the answer of a hidden method; users can neither make nor read one.
+/// Public only as the return type of a hidden method; users can neither make nor read one.
 #[derive(Clone, Copy)]
 pub struct SurfaceAccess<'a, N: Real, const D: usize> {
     surface: &'a dyn Surface<N, D>,
@@ -73,12 +75,12 @@ impl<N: Real, const D: usize> fmt::Debug for SurfaceAccess<'_, N, D> {
 }
 
 impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
-    /// A surface that may be a user's.
+    /// Wraps a surface that may be a user's.
     pub(crate) fn of_any(surface: &'a dyn Surface<N, D>) -> Self {
         Self { surface, own: None }
     }
 
-    /// A surface of the library.
+    /// Wraps a surface of the library.
     pub(crate) fn of_own<S: OwnSurface<N, D>>(surface: &'a S) -> Self {
         Self { surface, own: Some(surface) }
     }

@@ -1,37 +1,51 @@
-//! What a surface that hangs together admits at a seam: the rule that edges, vertices and joints of
-//! every composite surface share.
+//! The normals that a connected surface admits at a seam: one rule for the edges, vertices and
+//! joints of every composite surface.
 //!
 //! A point set has, at one of its points, exactly those normals along which no direction into the
-//! set rises: the polar cone of the directions. For an edge between two triangles that is the arc
-//! between their normals on the side where the edge is convex, for a vertex the cone over the normals
-//! of a convex corner; on the hollow side of a valley there is none. So the rule asks only for the
-//! directions that leave the seam, and neither for winding nor for sides. That contacts with other
-//! normals are ghosts of the pieces: Catto, "Ghost Collisions" (2020), for chains; Terdiman, "Contact
-//! generation for meshes" (2015); and the active edges of Jolt and Box3D.
+//! set rises: the polar cone of these directions. For an edge between two triangles that is the arc
+//! between their normals on the side where the edge is convex, for a vertex the cone over the
+//! normals of a convex corner; on the hollow side of a valley it is empty. So the rule depends only
+//! on the directions that leave the seam, neither on winding nor on sides. Contacts with other
+//! normals are ghosts of the pieces: Catto, "Ghost Collisions" (2020), for chains; Terdiman,
+//! "Contact generation for meshes" (2015); and the active edges of Jolt and Box3D.
+//!
+//! ```text
+//!   n1   n2         ╲           ╱            n1
+//!     ╲ ╱            ╲ ↗n1 n2↖ ╱             │ ╱
+//!      e              ╲       ╱              │╱
+//!    ╱   ╲             ╲     ╱         ──────e──
+//!  ╱       ╲            ╲ e ╱                │╲
+//!                                           -n1
+//!  ridge: n1 to n2    valley: none    rim: n1 to -n1, away from the face
+//! ```
+//!
+//! The edge `e` is seen along itself, fronts up. On the back of the valley its normals are those
+//! from -n1 to -n2. A surface with one side has only the normals that are in front of its highest
+//! piece.
 
 use crate::math::{Real, Vector, unit};
 
-/// The sine of the angle up to which faces count as one flat: 0.57 degrees.
+/// The sine of the angle up to which two faces count as coplanar: 0.57 degrees.
 pub(in crate::shape) const FLAT_SINE: f64 = 0.01;
 
-/// The sine of the angle that rounding may turn unit vectors by.
+/// Bound of the sine of the angle by which rounding may turn a unit vector.
 pub(in crate::shape) fn slack<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// The angle with this sine counts as none between pieces of one surface.
+/// Whether an angle counts as zero between pieces of one surface, by its sine.
 pub(in crate::shape) fn is_flat<N: Real>(sine: N) -> bool {
     sine.abs() <= N::lit(FLAT_SINE)
 }
 
-/// The angle between two lines, whichever way each points, counts as none; given the scalar product
-/// of unit vectors along them.
+/// Whether two lines count as parallel, by the scalar product of unit vectors along them.
 fn is_level<N: Real>(cosine: N) -> bool {
     N::ONE - cosine * cosine <= N::lit(FLAT_SINE * FLAT_SINE)
 }
 
-/// A unit vector is perpendicular to an edge. Not to the last digit: what it is asked of may have
-/// been found by iteration, and an edge has no other normals to take instead.
+/// Whether a unit vector is perpendicular to an edge, within `FLAT_SINE`: the vector may be the
+/// result of an iteration, and an edge has no other normals to take instead. True for an edge
+/// without length.
 pub(in crate::shape) fn is_across<N: Real, const D: usize>(
     edge: &Vector<N, D>,
     normal: &Vector<N, D>,
@@ -39,14 +53,16 @@ pub(in crate::shape) fn is_across<N: Real, const D: usize>(
     unit(edge).is_none_or(|(along, _)| is_flat(along.dot(normal)))
 }
 
-/// Sines of so many times what rounding may turn a vector by are none.
+/// A vector at a corner rises or sinks clearly if its sine exceeds `slack` by this factor.
 const CLEAR: f64 = 8.0;
 
-/// What the ways from a corner to those around it tell of a normal there, without a look at the faces: most are
-/// refused since one of the ways rises along them, or admitted since all sink.
+/// The sides that leave a corner, compared with a normal there. They decide most cases without the
+/// faces: the normal is rejected if a side rises along it, and admitted if all sink.
 pub(in crate::shape) struct CornerWays<'a, N: Real, const D: usize> {
     normal: &'a Vector<N, D>,
+    /// A side rises clearly along the normal.
     has_rising: bool,
+    /// A side is perpendicular to the normal, within rounding.
     has_level: bool,
 }
 
@@ -55,7 +71,7 @@ impl<'a, N: Real, const D: usize> CornerWays<'a, N, D> {
         Self { normal, has_rising: false, has_level: false }
     }
 
-    /// Adds a way of any length.
+    /// Adds a side of any length, as a vector away from the corner.
     #[inline]
     pub(in crate::shape) fn add(&mut self, way: &Vector<N, D>) {
         let (rise, room) = (way.dot(self.normal), N::lit(CLEAR) * slack());
@@ -64,13 +80,14 @@ impl<'a, N: Real, const D: usize> CornerWays<'a, N, D> {
         self.has_level |= !is_clear;
     }
 
-    /// A way rises.
+    /// Whether a side rises, so that more sides cannot change the answer.
     pub(in crate::shape) const fn is_refused(&self) -> bool {
         self.has_rising
     }
 
-    /// Whether the corner has the normal, given all ways; `None` where the faces decide. Of a face at the corner the
-    /// normal is given, and whether another face there is known not to be level with it.
+    /// Whether the corner admits the normal, after all its sides were added; `None` where the faces
+    /// decide. `own` is the unit normal of a face at the corner; `is_bent` says that another face
+    /// there is known not to be coplanar with it.
     pub(in crate::shape) fn admit(
         &self,
         (own, is_bent): (&Vector<N, D>, bool),
@@ -85,38 +102,42 @@ impl<'a, N: Real, const D: usize> CornerWays<'a, N, D> {
     }
 }
 
-/// What is known of a normal at a seam while its pieces are gone through.
+/// The state of one normal at a seam while the pieces of the seam are added.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     normal: Vector<N, D>,
-    /// The normal of the face, or the direction of the segment, that is asked; zero if it has none.
+    /// The unit normal of the face, or the direction of the segment, that asks; zero if it has
+    /// none.
     own: Vector<N, D>,
-    /// The part of the normal along the face or segment that is asked.
+    /// The component of the normal along the face or segment that asks.
     lean: Vector<N, D>,
-    /// A piece into which no direction rises along `lean` by more than this lies on the other side.
+    /// A piece lies on the side that the normal tilts to if a direction into it rises along `lean`
+    /// by more than `room`.
     room: N,
-    /// The normal and the pieces, that which is asked and all others, lie flat.
+    /// The normal is that of the asking face or segment, and all pieces are coplanar with this,
+    /// within `FLAT_SINE`.
     is_flat: bool,
-    /// A piece lies on the side that the normal leans to: the seam is no rim there.
+    /// A coplanar piece lies on the side that the normal tilts to, so the seam is no rim there.
     is_hemmed: bool,
     /// No direction into a piece rises along the normal.
     is_in_cone: bool,
-    /// How much the highest piece rises, how flat it lies, and whether its front is up. The highest
-    /// piece at the seam is the one that a point far along the normal sees; of two in one edge, the
-    /// flatter.
+    /// The rise of the highest piece along the normal, the absolute cosine of its front with the
+    /// normal, and whether its front is up. The highest piece at the seam is the first one met from
+    /// far along the normal; of two that rise equally, the flatter.
     highest: N,
     flatness: N,
     is_front: bool,
 }
 
 impl<N: Real, const D: usize> Seam<N, D> {
-    /// A seam between faces, asked by the one with the normal `own`.
+    /// Starts a seam between faces, for the face with the unit normal `own`.
     pub(in crate::shape) fn of_faces(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
         let along = own.dot(normal);
         Self::new(own, normal, normal - own * along, is_level(along))
     }
 
-    /// A seam that is an edge: what leans along it more than across it is no normal of a rim.
+    /// Marks the seam as an edge. A normal that tilts more along the edge than across it is not one
+    /// of a rim.
     pub(in crate::shape) fn along(mut self, edge: &Vector<N, D>) -> Self {
         if let Some((along, _)) = unit(edge) {
             self.room -= along.dot(&self.lean).abs();
@@ -124,7 +145,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
         self
     }
 
-    /// A seam between segments, asked by the one with the direction `own`.
+    /// Starts a seam between segments, for the one with the unit direction `own`.
     pub(in crate::shape) fn of_segments(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
         let along = own.dot(normal);
         Self::new(own, normal, own * along, is_flat(along))
@@ -145,8 +166,9 @@ impl<N: Real, const D: usize> Seam<N, D> {
         }
     }
 
-    /// Adds a face. `rise` returns how much the steepest direction from the seam into the face rises along a
-    /// vector; `front` is the normal on its front, zero if it has no area.
+    /// Adds a face. `rise` returns the largest component, along a vector, of the unit directions
+    /// from the seam into the face; `front` is the unit normal on its front, zero if it has no
+    /// area.
     pub(in crate::shape) fn add_face(
         &mut self,
         rise: impl Fn(&Vector<N, D>) -> N,
@@ -159,13 +181,13 @@ impl<N: Real, const D: usize> Seam<N, D> {
         }
     }
 
-    /// A segment by its direction away from the seam, and how much its front faces the normal; zero
-    /// if it has no front.
+    /// Adds a segment by its unit direction away from the seam; `front` is the component of the
+    /// normal along its front, zero if it has two sides.
     pub(in crate::shape) fn add_segment(&mut self, away: &Vector<N, D>, front: N) {
         self.add(|direction| away.dot(direction), away, front);
     }
 
-    /// `line` is compared with what is asked to tell whether the two lie flat.
+    /// Adds a piece; it is coplanar with the asking piece if `line` is parallel to `own`.
     fn add(&mut self, rise: impl Fn(&Vector<N, D>) -> N, line: &Vector<N, D>, front: N) {
         let (own, flatness) = (rise(&self.normal), front.abs());
         self.is_in_cone &= own <= slack();
@@ -173,7 +195,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
         self.is_hemmed |= self.is_flat && rise(&self.lean) > self.room;
         let is_same = |a: N, b: N| (a - b).abs() <= slack();
         if is_same(own, self.highest) && is_same(flatness, self.flatness) {
-            // One piece twice, with its front up in one of them.
+            // A piece that was added twice has its front up if it has in either.
             self.is_front |= front >= N::ZERO;
         } else if own > self.highest || (own == self.highest && flatness > self.flatness) {
             (self.highest, self.flatness) = (own, flatness);
@@ -181,9 +203,9 @@ impl<N: Real, const D: usize> Seam<N, D> {
         }
     }
 
-    /// The normal is one that the whole has at the seam and that is not better given by a face:
-    /// between pieces that lie flat, only the faces' own normals count. At a rim, where all pieces lie on
-    /// one side, the whole has the normals that lean to the other side, however many pieces there are.
+    /// Whether the whole surface has the normal at the seam and no face gives a better one: between
+    /// coplanar pieces only the normals of the faces count. At a rim, where all pieces lie on one
+    /// side, the normals that tilt to the other side are admitted, however many pieces there are.
     pub(in crate::shape) const fn admits(&self, is_one_sided: bool) -> bool {
         let is_flat = self.is_flat && self.is_hemmed;
         self.is_in_cone && !is_flat && (self.is_front || !is_one_sided)
@@ -198,7 +220,8 @@ mod tests {
         Vector::<f64, 3>::new(x, y, 0.0).normalize()
     }
 
-    /// Whether the edge of some faces, each by the way into it and its front, has a normal.
+    /// Whether the edge of some faces admits a normal; a face is the direction into it and its
+    /// front.
     fn admits(normal: &Vector<f64, 3>, faces: &[(Vector<f64, 3>, Vector<f64, 3>)]) -> bool {
         let mut seam = Seam::of_faces(faces[0].1, normal).along(&Vector::<f64, 3>::z());
         for (inward, front) in faces {

@@ -1,4 +1,5 @@
-//! Which normals a segment of a chain in 2D has: computed from its ends and those of the segments around it.
+//! The normals that a segment of a chain in 2D admits, computed from its ends and those of adjacent
+//! segments.
 
 use smallvec::SmallVec;
 
@@ -8,52 +9,55 @@ use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::surface::seam::{Seam, slack};
 use crate::shape::{FeatureId, Surface, SurfaceAccess};
 
-/// Which sides the segments of a chain have: what a surface in 2D answers so that contacts need not ask it
-/// about each segment. Chains of this library have one.
+/// The sides that the segments of a chain have. With this, contacts need not call the surface for
+/// each segment. Polylines and 2D height fields have one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sidedness {
-    /// The front is on the left of a segment, seen from its first end to its second.
+    /// The front is on the left of a segment, looking from its first end to its second.
     pub(in crate::shape) is_left: bool,
     pub(in crate::shape) is_one_sided: bool,
-    /// Of two sides the one that a vector points to follows from the front, else from the vector itself.
+    /// The side of a vector is decided by its component along the front, and the front wins a tie;
+    /// else by the vector's own perpendicular component, which may be too small for a side.
     pub(in crate::shape) follows_front: bool,
     pub(in crate::shape) keeps_internal_edges: bool,
     pub(in crate::shape) joining: Joining,
 }
 
-/// Which segments are joined where their ends are at one place.
+/// The rule by which segments with ends at one position are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) enum Joining {
-    /// All.
+    /// All segments with an end there are joined.
     All,
-    /// Each with that of the next number alone, its second end with the first of that.
+    /// The second end of each segment is joined to the first end of the segment with the next index
+    /// only.
     InRow,
-    /// Only the surface can tell.
+    /// Only the surface can decide.
     Unknown,
 }
 
-/// Segments of a chain, among them all that touch a box.
+/// Segments of a chain, including all that touch some box.
 pub(crate) trait KnownSegments<N: Real>: Sync {
-    /// All segments through a point are among them.
+    /// Whether all segments through a point are included.
     fn are_all_at(&self, point: &Point<N, 2>) -> bool;
 
-    /// Visits those that end at a point, by their numbers, ascending, and ends.
+    /// Visits the segments with an end at a point, by index in ascending order, with both ends.
     fn each_ending_at(&self, point: &Point<N, 2>, visit: &mut dyn FnMut(u32, [Point<N, 2>; 2]));
 }
 
 impl Sidedness {
+    /// The unit normal on the front of a segment with the unit direction `along`.
     fn front<N: Real>(self, along: &Vector<N, 2>) -> Vector<N, 2> {
         let left = perp(along);
         if self.is_left { left } else { -left }
     }
 
-    /// How far a vector leads in front of a segment; zero where there is no front and back.
+    /// The component of a vector along the front of a segment; zero for a chain with two sides.
     fn height_over<N: Real>(self, along: Option<&Vector<N, 2>>, vector: &Vector<N, 2>) -> N {
         let along = along.filter(|_| self.is_one_sided);
         along.map_or(N::ZERO, |along| self.front(along).dot(vector))
     }
 
-    /// As [`Surface::snapped`].
+    /// See [`Surface::snapped`].
     fn snapped<N: Real>(self, along: &Vector<N, 2>, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
         if !(self.is_one_sided || self.follows_front) {
             return across(along, normal);
@@ -64,11 +68,12 @@ impl Sidedness {
     }
 }
 
-/// A segment of a chain, with what follows from its ends: the answers of its surface, without a look at that.
+/// A segment of a chain as a surface: answers from its ends and neighbours, without a call of the
+/// chain's surface where these decide.
 pub(crate) struct KnownSegment<'a, N: Real> {
     surface: SurfaceAccess<'a, N, 2>,
     sidedness: Option<Sidedness>,
-    /// Those around it.
+    /// The adjacent segments.
     others: &'a dyn KnownSegments<N>,
     ends: [Point<N, 2>; 2],
     /// Unit, from the first end to the second; `None` without length.
@@ -76,7 +81,7 @@ pub(crate) struct KnownSegment<'a, N: Real> {
 }
 
 impl<'a, N: Real> KnownSegment<'a, N> {
-    /// A segment by its ends, as its surface has them.
+    /// Returns a segment by its ends, with the exact coordinates that the surface has.
     pub(crate) fn new(
         surface: SurfaceAccess<'a, N, 2>,
         sidedness: Option<Sidedness>,
@@ -87,7 +92,7 @@ impl<'a, N: Real> KnownSegment<'a, N> {
         Self { surface, sidedness, others, ends, along }
     }
 
-    /// The segments joined to this one at one of its ends; `None` if these are not known.
+    /// The segments joined to this one at one of its ends; `None` if they are not all known.
     fn joined(&self, sidedness: Sidedness, part: u32, end: u32) -> Option<Joined<N>> {
         let at = self.ends.get(end as usize)?;
         if sidedness.joining == Joining::Unknown || !self.others.are_all_at(at) {
@@ -105,7 +110,7 @@ impl<'a, N: Real> KnownSegment<'a, N> {
         Some(joined)
     }
 
-    /// The rule of [`Seam`] for a normal at an end with these segments.
+    /// Applies the rule of [`Seam`] to a normal at an end where these segments are joined.
     fn seam_admits(&self, sidedness: Sidedness, joined: &Joined<N>, normal: &Vector<N, 2>) -> bool {
         let own = self.along.unwrap_or_else(Vector::<N, 2>::zeros);
         let mut seam = Seam::of_segments(own, normal);
@@ -116,13 +121,14 @@ impl<'a, N: Real> KnownSegment<'a, N> {
         seam.admits(sidedness.is_one_sided)
     }
 
-    /// A normal is the segment's own, but for rounding; `None` if it has none.
+    /// Whether a normal is perpendicular to the segment within rounding; `None` without length.
     fn is_own(&self, normal: &Vector<N, 2>) -> Option<bool> {
         self.along.map(|along| along.dot(normal).abs() <= slack())
     }
 }
 
-/// Segments at one point: unit vectors from their first ends to their second, and whether they start there.
+/// Segments at one point: the unit vectors from their first ends to their second, and whether the
+/// first end is at the point.
 type Joined<N> = SmallVec<[(Vector<N, 2>, bool); 4]>;
 
 impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
@@ -169,7 +175,7 @@ impl<N: Real> OwnSurface<N, 2> for KnownSegment<'_, N> {
         feature: FeatureId,
         [first, second]: [&Vector<N, 2>; 2],
     ) -> [bool; 2] {
-        // Who asks about an end asks about normals that are not the segment's own.
+        // Callers normally ask about an end only for normals other than the segment's own.
         if let (Some(sidedness), FeatureId::Vertex(end)) = (self.sidedness, feature)
             && !sidedness.keeps_internal_edges
             && self.is_own(first) != Some(true)

@@ -1,4 +1,4 @@
-//! Copies of a world that go on by themselves.
+//! Clones of a world, which evolve independently.
 
 mod objects;
 mod rewind;
@@ -15,12 +15,12 @@ pub(super) use objects::ObjectNote;
 pub(super) use rewind::History;
 pub use rewind::WorldMark;
 
-/// The broad phase that a new world has.
+/// The broad phase of a new world.
 pub(super) type UsualBroadPhase<N, const D: usize> =
     DBVTBroadPhase<N, Aabb<N, D>, CollisionObjectHandle>;
 
-/// A broad phase that a world can have: every one that is `Clone`, `Send` and `Sync`. There is nothing to
-/// implement.
+/// A broad phase that a world can use: any that is `Clone`, `Send` and `Sync`. The blanket
+/// implementation covers them all.
 ///
 /// ```
 /// use impinge::dim2::broad_phase::DBVTBroadPhase;
@@ -33,14 +33,14 @@ pub(super) type UsualBroadPhase<N, const D: usize> =
 pub trait WorldsBroadPhase<N: Space<D>, const D: usize>:
     BroadPhase<N, Aabb<N, D>, CollisionObjectHandle> + Send + Sync
 {
-    /// A copy, which goes on as this one does.
+    /// Returns a clone that behaves as this one does from then on.
     fn boxed_clone(&self) -> Box<WorldBroadPhase<N, D>>;
 
-    /// The value itself, to be recognised by its type.
+    /// Returns the value itself, for a downcast.
     #[doc(hidden)]
     fn as_any(&self) -> &dyn Any;
 
-    /// The value itself, to be recognised by its type.
+    /// Returns the value itself, for a downcast.
     #[doc(hidden)]
     fn as_any_mut(&mut self) -> &mut dyn Any;
 }
@@ -62,7 +62,8 @@ where
     }
 }
 
-/// A narrow phase that a world can have: every one that is `Clone`. There is nothing to implement.
+/// A narrow phase that a world can use: any that is `Clone`. The blanket implementation covers them
+/// all.
 ///
 /// ```
 /// use impinge::dim2::narrow_phase::DefaultNarrowPhase;
@@ -73,14 +74,14 @@ where
 /// world.update();
 /// ```
 pub trait WorldsNarrowPhase<N: Space<D>, const D: usize, T>: NarrowPhase<N, D, T> {
-    /// A copy, which goes on as this one does.
+    /// Returns a clone that behaves as this one does from then on.
     fn boxed_clone(&self) -> Box<dyn WorldsNarrowPhase<N, D, T>>;
 
-    /// The value itself, to be recognised by its type.
+    /// Returns the value itself, for a downcast.
     #[doc(hidden)]
     fn as_any(&self) -> &dyn Any;
 
-    /// The value itself, to be recognised by its type.
+    /// Returns the value itself, for a downcast.
     #[doc(hidden)]
     fn as_any_mut(&mut self) -> &mut dyn Any;
 }
@@ -114,19 +115,20 @@ impl<N: Space<D>, const D: usize, T> Clone for Box<dyn WorldsNarrowPhase<N, D, T
     }
 }
 
-/// A clone gives the same bits from then on as the original, if the same is done to it: pairs, contacts with their
-/// ids, events, and handles of objects that are added. It may be stepped on another thread.
+/// A clone gives the same bits as the original from then on, if the same calls are made: pairs,
+/// contacts with their ids, events, and handles of objects that are added. It may be updated on
+/// another thread.
 ///
-/// A handle from before names the same object in both worlds. One of an object that was added to one of them since
-/// names in the other whatever that gave the same index and generation, if anything: keep the handles of each apart.
-/// Shapes are shared, and never change: [`CollisionWorld::deform`] gives the object of one world a shape of its own.
-/// Pair filters and dispatchers are shared too: what they look up elsewhere is looked up by both. Algorithms of single
-/// pairs are cloned. The manifolds that [`CollisionWorld::contact_manifolds`] has made are not: the
-/// clone makes its own when they are first read.
+/// A handle from before the clone names the same object in both worlds. A handle given by one of
+/// them afterwards may name another object or none in the other: keep the handles of each apart.
+/// Shapes are shared, and never change: [`CollisionWorld::deform`] gives the object of one world a
+/// new shape. Pair filters and dispatchers are shared too, including any state that they refer to.
+/// Algorithms of single pairs are cloned. The manifolds that [`CollisionWorld::contact_manifolds`]
+/// has built are not: the clone builds its own on first access.
 ///
-/// Costs a copy of the memory of the world; `clone_from` reuses that of the target, and takes none from the allocator if
-/// the target has had as much. 10 000 boxes that touch nothing take
-/// 2.5 MB, in a dense pile of 118 000 pairs 54 MB (3D, `f32`).
+/// Costs a copy of the memory of the world; `clone_from` reuses the memory of the target, and
+/// allocates nothing if the target has had as much. 10 000 boxes that touch nothing take 2.5 MB, in
+/// a dense pile of 118 000 pairs 54 MB (3D, `f32`).
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -140,7 +142,7 @@ impl<N: Space<D>, const D: usize, T> Clone for Box<dyn WorldsNarrowPhase<N, D, T
 /// });
 /// world.update();
 ///
-/// // What would be if `b` stood farther off?
+/// // Where would the contact be if `b` were farther away?
 /// let mut guess = world.clone();
 /// guess.set_position(b, Isometry::translation(9.0, 0.0));
 /// guess.update();
@@ -190,12 +192,12 @@ impl<N: Space<D>, const D: usize, T: Clone> Clone for CollisionWorld<N, D, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The broad phase, if it is that of the library.
+    /// Returns the broad phase, if it is the library's own.
     pub(super) fn usual_broad_phase(&mut self) -> Option<&mut UsualBroadPhase<N, D>> {
         (*self.broad_phase).as_any_mut().downcast_mut()
     }
 
-    /// The narrow phase, if it is that of the library.
+    /// Returns the narrow phase, if it is the library's own.
     pub(super) fn usual_narrow_phase(&mut self) -> Option<&mut DefaultNarrowPhase<N, D>> {
         (*self.narrow_phase).as_any_mut().downcast_mut()
     }

@@ -1,4 +1,4 @@
-//! The objects of a world as they were at a mark.
+//! The journal of a world's objects: notes by which a rewind undoes changes.
 
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
@@ -6,17 +6,17 @@ use crate::world::bodies::BodyMotion;
 use crate::world::objects::Slot;
 use crate::world::{CollisionObject, CollisionObjects};
 
-/// A change of the objects.
+/// One undoable change of the objects.
 pub(in crate::world) enum ObjectNote<N: Space<D>, const D: usize, T> {
     Added(CollisionObjectHandle),
     Removed(Box<KeptObject<N, D, T>>),
-    /// It is about to change for the first time since a mark.
+    /// An object before its first change since a mark.
     Changed(Box<KeptObject<N, D, T>>),
-    /// The same, of one that moves.
+    /// Pose and state of an object before its first move since a mark, by handle index.
     Moved(u32, BodyMotion<N, D>),
 }
 
-/// An object as it was, with what stands elsewhere by index.
+/// An object as it was, with its skin and prediction, which are stored elsewhere by index.
 pub(in crate::world) struct KeptObject<N: Space<D>, const D: usize, T> {
     object: CollisionObject<N, D, T>,
     skin: N,
@@ -24,7 +24,7 @@ pub(in crate::world) struct KeptObject<N: Space<D>, const D: usize, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
-    /// Adds a mark; see [`Journal`](crate::journal::Journal).
+    /// Sets a mark; see [`Journal`](crate::journal::Journal).
     pub(super) fn mark(&mut self, number: u64)
     where
         T: Clone,
@@ -34,13 +34,13 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.table.mark(number);
     }
 
-    /// Forgets the marks with smaller numbers.
+    /// Drops the marks with smaller numbers.
     pub(super) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
         self.table.forget_before(number);
     }
 
-    /// Goes back to a mark, which is kept.
+    /// Undoes all changes since a mark, which is kept.
     pub(super) fn rewind(&mut self, number: u64) {
         while let Some(note) = self.journal.undo(number) {
             match note {
@@ -60,7 +60,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.table.rewind(number);
     }
 
-    /// Undoes the last addition.
+    /// Undoes an addition, which is the latest change of the slots.
     fn unadd(&mut self, handle: CollisionObjectHandle) {
         self.take_record(handle);
         if handle.generation() == self.first {
@@ -70,7 +70,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Undoes the last removal.
+    /// Undoes a removal, which is the latest change of the slots. The object gets the last place of
+    /// the records.
     fn unremove(&mut self, kept: KeptObject<N, D, T>) {
         let (handle, object) = (kept.object.handle(), self.unpack(kept));
         let generation = handle.generation();
@@ -82,14 +83,14 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.records.push(object);
     }
 
-    /// The object, after its skin and prediction are brought back.
+    /// Restores skin and prediction, and returns the object.
     fn unpack(&mut self, kept: KeptObject<N, D, T>) -> CollisionObject<N, D, T> {
         let KeptObject { object, skin, prediction } = kept;
         self.changes.keep(object.body.index(), skin, prediction);
         object
     }
 
-    /// Notes the object at a place of the records, which is about to change.
+    /// Notes the object at index `place` of the records before it changes.
     #[inline]
     pub(in crate::world) fn note(&mut self, place: usize) {
         if self.journal.is_on() {
@@ -106,7 +107,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Notes the object at a place of the records, which is about to move.
+    /// Notes the motion of the object at index `place` of the records before it moves.
     #[inline]
     pub(in crate::world) fn note_motion(&mut self, place: usize) {
         if self.journal.is_on()
@@ -117,7 +118,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Notes the objects of some indices, which an update is about to see.
+    /// Notes the motion of the objects at some indices before an update processes them.
     pub(in crate::world) fn note_all(&mut self, indices: &[u32]) {
         if self.journal.is_on() {
             for &index in indices {
@@ -126,14 +127,14 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Notes an object that is about to leave.
+    /// Notes an object before it is removed.
     pub(in crate::world) fn note_removed(&mut self, handle: CollisionObjectHandle) {
         if let Some(kept) = self.kept(self.slots[handle.uid()].place as usize) {
             self.journal.note(ObjectNote::Removed(kept));
         }
     }
 
-    /// The object at a place of the records, if there are marks.
+    /// Returns a copy of the object at index `place` of the records; `None` if there are no marks.
     fn kept(&self, place: usize) -> Option<Box<KeptObject<N, D, T>>> {
         let cloned = self.cloned.filter(|_| self.journal.is_on())?;
         let object = self.records.get(place)?;

@@ -1,17 +1,19 @@
-//! Going back: marks in the history of a world.
+//! Rewinding a world to a mark in its history.
 //!
-//! While there are marks, whoever changes state notes first what was there ([`Journal`](crate::journal::Journal)); what is
-//! small is kept whole with the mark.
+//! While there are marks, each part notes its state before it changes
+//! ([`Journal`](crate::journal::Journal)); small state is copied whole with the mark
+//! ([`WorldHead`]).
 //!
 //! | state | who notes | how it comes back |
 //! |---|---|---|
 //! | objects, with data, skins and predictions | `fresh`, `fresh_to_move`, `get_mut`, `insert`, `remove` and `flush` of `CollisionObjects` | record by record |
 //! | rows of objects with pairs | `set`, `set_position`, `lend`, `release` and `set_skin` of `ObjectTable` | they are written again |
-//! | boxes, proxies and their pairs | `apply_waiting` and `remove` of `PairFinder`; `PairTable`; `DBVTBroadPhase` | boxes are set in the trees, whose order decides about time alone |
-//! | contacts and proximities | `Group`; before an update `PairLanes::note` and `note_due` | to the places that they had, since `contact_views` reads in that order |
+//! | boxes, proxies and their pairs | `apply_waiting` and `remove` of `PairFinder`; `PairTable`; `DBVTBroadPhase` | boxes are set in the trees, whose order affects time alone |
+//! | contacts and proximities | `Group`; before an update `PairLanes::note` and `note_due` | to their former positions, since `contact_views` reads in that order |
 //!
-//! The order of partners in a `PairTable` does not come back: no answer may depend on it. `Run::play_again` of the tests plays
-//! every golden scene with steps taken back; `world_model/forks.rs` has random operations.
+//! The order of partners in a `PairTable` is not restored: no result may depend on it.
+//! `Run::play_again` of the tests replays every golden scene with steps taken back;
+//! `world_model/forks.rs` has random operations.
 
 use std::collections::VecDeque;
 
@@ -23,12 +25,12 @@ use crate::world::filter::Filters;
 use crate::world::removed::RemovedObjects;
 use crate::world::{CollisionWorld, WorldBroadPhase, WorldError, WorldsNarrowPhase};
 
-/// Marks that a world keeps if nobody says otherwise.
+/// Number of marks that a world keeps by default.
 const USUAL_MARKS: usize = 8;
 
-/// A moment in the history of a world, to which it can go back: see [`CollisionWorld::mark`].
+/// A moment in the history of a world, to which it can return: see [`CollisionWorld::mark`].
 ///
-/// A world refuses the marks of others, those of its clones and of the world that it is a clone of included.
+/// A world refuses marks of other worlds, including its clones and its own original.
 ///
 /// ```
 /// use impinge::dim2::world::{CollisionWorld, WorldError};
@@ -46,7 +48,7 @@ pub struct WorldMark {
     number: u64,
 }
 
-/// What is kept whole with a mark.
+/// State that is copied whole with a mark.
 pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
     number: u64,
     events: Events,
@@ -54,7 +56,7 @@ pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
     keeps_events: bool,
     removed: RemovedObjects<N, D, T>,
     filters: Filters<N, D, T>,
-    /// The phases that do not go back by themselves, being others than the library's.
+    /// The present phases, if they are not the library's own, which have journals.
     broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
     narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
@@ -63,39 +65,40 @@ pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
 
 /// The marks of a world.
 pub(in crate::world) struct History<N: Space<D>, const D: usize, T> {
-    /// Tells the marks of this world from those of others; made with the first mark.
+    /// Identifies the marks of this world; created with the first mark.
     name: Option<Generation>,
     next: u64,
     most: usize,
-    /// The oldest first.
+    /// Sorted by number, the oldest first.
     heads: VecDeque<WorldHead<N, D, T>>,
 }
 
 impl<N: Space<D>, const D: usize, T> History<N, D, T> {
-    /// Without marks.
+    /// Creates a history without marks.
     pub(in crate::world) const fn new() -> Self {
         Self { name: None, next: 0, most: USUAL_MARKS, heads: VecDeque::new() }
     }
 
-    /// Without marks, as for a clone.
+    /// Creates a history without marks and with the same maximum, for a clone.
     pub(super) fn without_marks(&self) -> Self {
         Self { most: self.most, ..Self::new() }
     }
 }
 
-/// Going back in time.
+/// Marks and rewinding.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Keeps the present state, so that [`Self::rewind`] can bring it back: before a step whose inputs are guessed,
-    /// in a game over a network.
+    /// Marks the present state, so that [`Self::rewind`] can restore it: before a step whose inputs
+    /// are guessed, in a game over a network.
     ///
-    /// The eight latest marks are kept, or as many as [`Self::keep_marks`] says; the oldest ends when there are
-    /// more. All marks end when another broad or narrow phase takes over, and a clone has none.
+    /// The eight latest marks are kept, or as many as [`Self::keep_marks`] says; a surplus ends the
+    /// oldest. All marks end when another broad or narrow phase takes over, and a clone has none.
     ///
-    /// While there are marks, the world notes what it had before each change: each object once between two marks, each pair
-    /// once. A mark itself costs 1 to 20 µs, a clone of the events and, if the world has phases of one's own, of these. With 100
-    /// of 10 000 objects moving and a mark before each update, updates that compute the contacts of a dense pile take
-    /// up to 8 % longer, those that find nothing to compute half as long again (9 µs and 13 µs), and the notes of eight
-    /// marks take 0.4 to 8 MB.
+    /// While there are marks, the world notes old state before each change: each object once
+    /// between two marks, each pair once. A mark itself costs 1 to 20 µs: a clone of the events
+    /// and, if the world has custom phases, of these. With 100 of 10 000 objects moving and a mark
+    /// before each update, updates that compute the contacts of a dense pile take up to 8 % longer.
+    /// Updates that find nothing to compute take half as long again (9 µs and 13 µs), and the notes
+    /// of eight marks take 0.4 to 8 MB.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -142,20 +145,21 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         WorldMark { history, number }
     }
 
-    /// Keeps so many marks from now on, the latest ones; 0 ends all and what they cost.
+    /// Sets the number of latest marks to keep from now on; 0 ends all marks and their cost.
     pub fn keep_marks(&mut self, most: usize) {
         self.history.most = most;
         self.drop_old_marks();
     }
 
-    /// Brings the state of a mark back: objects with their data, shapes, groups, query types, pairs, contacts with their
-    /// ids, events, filters and what waits for the next update. The same calls as before then give the same bits: also
-    /// the same handles to objects that are added, so handles that were given since the mark
-    /// name other objects now or none. Whatever queries, pairs and contacts answer is as it was, in the same order.
+    /// Restores the state of a mark: objects with their data, shapes, groups, query types, pairs,
+    /// contacts with their ids, events, filters and the changes that wait for the next update. The
+    /// same calls as before then give the same bits, handles of added objects included. So a handle
+    /// that was given after the mark now names another object or none. All queries, pairs and
+    /// contacts return what they did, in the same order.
     ///
-    /// The mark stays, so that the world can go back to it again; later ones end. Costs as much as what changed since: eight
-    /// updates are undone in the time of two to four. The manifolds of [`Self::contact_manifolds`] that changed
-    /// are made anew when they are read.
+    /// The mark stays, so that the world can return to it again; later marks end. The cost is
+    /// proportional to the changes since: eight updates are undone in the time of two to four.
+    /// Manifolds of [`Self::contact_manifolds`] that changed are built again on first access.
     ///
     /// # Panics
     /// If the world does not keep the mark; [`Self::try_rewind`] returns this.
@@ -167,10 +171,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         or_panic(self.try_rewind(mark));
     }
 
-    /// Brings the state of a mark back; see [`Self::rewind`].
+    /// Restores the state of a mark; see [`Self::rewind`].
     ///
     /// # Errors
-    /// If the world does not keep the mark: it has ended, or is one of another world. The world is unchanged then.
+    /// If the world does not keep the mark: it has ended, or belongs to another world. The world is
+    /// unchanged then.
     pub fn try_rewind(&mut self, mark: WorldMark) -> Result<(), WorldError>
     where
         T: Clone,
@@ -201,7 +206,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.history.most = most;
     }
 
-    /// Ends the oldest marks that are too many.
+    /// Ends the oldest marks beyond the maximum.
     fn drop_old_marks(&mut self) {
         let heads = &mut self.history.heads;
         let surplus = heads.len().saturating_sub(self.history.most);

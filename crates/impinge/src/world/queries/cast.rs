@@ -1,4 +1,4 @@
-//! What a solid meets on its way.
+//! Shape casts among the objects of a world.
 
 use super::QueryFilter;
 use super::ranking::RankRange;
@@ -12,17 +12,17 @@ use crate::world::bodies::{WorldBody, grown};
 use crate::world::entries;
 use crate::world::{CollisionObject, CollisionWorld};
 
-/// Solids that move through the world along a straight line and do not turn, while its objects stay
-/// where they are.
+/// Shape casts: solids that move through the world along a straight line without rotating, while
+/// its objects stay at rest.
 ///
-/// An [`Impact`] is in the world frame, at its time; its first solid is the one that moves. Contacts at
-/// time zero count as they do for [`impact`]: what does not approach an object does not hit it. A
-/// position or velocity that is not finite hits nothing.
+/// An [`Impact`] is in the world frame, at its time; its first solid is the moving one. Contacts at
+/// time zero count as they do for [`impact`]: a solid that does not approach an object does not hit
+/// it. A position or velocity that is not finite hits nothing.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The object that a moving solid hits first, and how; of several at the same time the one whose
-    /// handle comes first.
+    /// Returns the object that a moving solid hits first, and the impact; at equal times the object
+    /// with the smallest handle.
     ///
-    /// Costs the search of a tree, and an [`impact`] for a few objects whose boxes are in the way.
+    /// Costs a tree search, and an [`impact`] for a few objects whose boxes lie on the path.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -70,10 +70,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         found.map(|(object, _, impact)| (object, impact))
     }
 
-    /// The objects that a moving solid would hit if none of them stopped it, and how it would first hit
-    /// each of them: in ascending order of time, then of handle.
+    /// Returns all objects that a moving solid would hit if none of them stopped it, each with its
+    /// first impact, in ascending order of time, then of handle.
     ///
-    /// Beside the order, as [`Self::cast_shape`].
+    /// Otherwise as [`Self::cast_shape`].
     #[must_use]
     pub fn cast_shape_all(
         &self,
@@ -102,7 +102,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// A moving solid and what its box asks for.
+/// A moving solid, and the probe for the boxes on its path.
 pub(crate) struct Cast<'a, N: Space<D>, const D: usize> {
     probe: WorldProbe<N, D>,
     moving: Moving<'a, N, D>,
@@ -110,7 +110,7 @@ pub(crate) struct Cast<'a, N: Space<D>, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
-    /// `None` if the position or velocity is not finite.
+    /// Creates the cast; `None` if the position or velocity is not finite.
     pub(crate) fn new(
         position: &N::Isometry,
         velocity: &Vector<N, D>,
@@ -130,7 +130,7 @@ impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Cast<'_, N, D> {
-    /// When the solid hits an object, and how; `None` if that is after `latest`.
+    /// Returns the time and the impact with an object; `None` if that is after `latest`.
     pub(crate) fn impact(&self, body: &WorldBody<N, D>, latest: N) -> Option<(N, Impact<N, D>)> {
         let options = self.options.with_max_time(latest);
         let at_rest = Vector::<N, D>::zeros();

@@ -1,4 +1,4 @@
-//! Which objects a query is about.
+//! Filters of queries: which objects count.
 
 use core::fmt;
 
@@ -8,10 +8,10 @@ use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::world::{CollisionGroups, CollisionObject};
 
-/// Which objects a query is about: all, unless something below leaves some out.
+/// Selects the objects that a query considers: all, unless a condition below excludes some.
 ///
-/// Groups are asked first, then the excluded objects, then the boxes, then the predicate; the exact test
-/// comes last. [`CollisionGroups`] alone make a filter by `into()`.
+/// Boxes are tested first, then groups, excluded objects and the predicate, and the exact geometry last.
+/// [`CollisionGroups`] alone convert to a filter by `into()`.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -47,46 +47,46 @@ pub struct QueryFilter<'a, N: Space<D>, const D: usize, T> {
     predicate: Option<&'a Predicate<'a, N, D, T>>,
 }
 
-/// What is asked of an object.
+/// A condition on an object.
 type Predicate<'a, N, const D: usize, T> = dyn Fn(&CollisionObject<N, D, T>) -> bool + 'a;
 
 impl<'a, N: Space<D>, const D: usize, T> QueryFilter<'a, N, D, T> {
-    /// All objects, whatever their groups.
+    /// Creates a filter that allows all objects, whatever their groups.
     #[must_use]
     pub fn new() -> Self {
         Self { groups: None, excluded: SmallVec::new(), predicate: None }
     }
 
-    /// Only objects able to interact with these groups; in place of groups given before.
+    /// Allows only objects that may interact with `groups`; replaces earlier groups.
     #[must_use]
     pub fn groups(self, groups: CollisionGroups) -> Self {
         Self { groups: Some(groups), ..self }
     }
 
-    /// Not this object, nor those excluded before: the one that asks, say. A stale handle excludes
-    /// nothing. For more than a few objects a predicate is faster.
+    /// Excludes one more object, such as the one that asks. A stale handle excludes nothing. For
+    /// more than a few objects a predicate is faster.
     #[must_use]
     pub fn exclude(mut self, handle: CollisionObjectHandle) -> Self {
         self.excluded.push(handle);
         self
     }
 
-    /// Only objects of which this is true; in place of a predicate given before.
+    /// Allows only objects for which `predicate` is true; replaces an earlier predicate.
     ///
-    /// A query asks it at most once about an object, in no particular order, and not about all.
+    /// A query calls it at most once for an object, in unspecified order, and not for all objects.
     #[must_use]
     pub fn predicate(self, predicate: &'a dyn Fn(&CollisionObject<N, D, T>) -> bool) -> Self {
         Self { predicate: Some(predicate), ..self }
     }
 
-    /// What is known without the user's record allows the object.
+    /// Returns `true` if groups and exclusions allow the object.
     #[inline]
     pub(super) fn admits(&self, handle: CollisionObjectHandle, groups: &CollisionGroups) -> bool {
         let can_interact = self.groups.is_none_or(|own| own.can_interact_with_groups(groups));
         can_interact && !self.excluded.contains(&handle)
     }
 
-    /// The predicate allows the object.
+    /// Returns `true` if the predicate allows the object.
     pub(super) fn accepts(&self, object: &CollisionObject<N, D, T>) -> bool {
         self.predicate.is_none_or(|predicate| predicate(object))
     }

@@ -1,7 +1,8 @@
-//! Questions about everything in a world: rays, points, boxes, solids at rest and in motion.
+//! Queries among all objects of a world: rays, points, boxes, solids at rest and in motion.
 //!
-//! The broad phase answers as of the last update, and a tree of dirty objects for those whose boxes changed since,
-//! so every change is seen at once; what they propose is tested again exactly, by the queries for one solid and two.
+//! The broad phase proposes objects as of the last update, and a tree of dirty objects those whose
+//! boxes changed since, so every change is visible at once. The queries for one or two solids then
+//! test each proposed object exactly.
 
 pub(super) mod cast;
 mod filter;
@@ -23,10 +24,10 @@ use crate::bounding_volume::Aabb;
 use crate::math::Space;
 use crate::query::ClosestPoints;
 
-/// So many objects are found without memory from the allocator.
+/// Number of objects that a query collects without allocating.
 const FEW: usize = 16;
 
-/// An object near what was asked about.
+/// An object near the point or solid of a query.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -43,10 +44,10 @@ const FEW: usize = 16;
 pub struct NearObject<'a, N: Space<D>, const D: usize, T> {
     /// The object.
     pub object: &'a CollisionObject<N, D, T>,
-    /// How far it is: zero if it touches or overlaps what was asked about.
+    /// The distance: zero if the object touches or overlaps the query's point or solid.
     pub distance: N,
-    /// The nearest points, in the world frame: on what was asked about, then on the object.
-    /// Never [`ClosestPoints::Disjoint`].
+    /// The nearest points in the world frame, first on the query's point or solid, then on the
+    /// object. Never [`ClosestPoints::Disjoint`].
     pub points: ClosestPoints<N, D>,
 }
 
@@ -68,10 +69,10 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for NearObject<'_, N, D, T> {
     }
 }
 
-/// What all queries share.
+/// Functions shared by all queries.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The objects whose boxes the probe meets with a key of at most `limit`, and few others, allowed by the filter,
-    /// in order, each once: for the test of the question itself.
+    /// Returns the objects that the filter allows and whose boxes have a key of at most `limit`,
+    /// and few others, in order of handle, each once; the caller applies the exact test.
     fn met<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
@@ -88,8 +89,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         objects.into_iter()
     }
 
-    /// One of the objects whose boxes the probe meets with a key of at most `limit`, or of few others, passes a
-    /// test; none is asked after it, and each once at most.
+    /// Returns `true` if `passes` accepts one of the objects whose boxes have a key of at most
+    /// `limit`. `passes` is called for these and few others, at most once each, and not after it
+    /// has returned `true`.
     fn any_met<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
@@ -97,7 +99,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         mut passes: impl FnMut(&'a CollisionObject<N, D, T>) -> bool,
     ) -> bool {
         if matches!(probe, WorldProbe::Near(aabb) if !aabb.holds_finite_point()) {
-            // No search goes to infinity, where none but unbounded boxes are met.
+            // No tree search reaches infinity, where only unbounded boxes are met.
             return self.objects.iter().any(passes);
         }
         let mut is_found = false;
@@ -108,7 +110,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         is_found
     }
 
-    /// The objects whose boxes meet `aabb`, as [`Self::met`].
+    /// Returns the objects whose boxes overlap `aabb`, as [`Self::met`].
     fn meeting<'a>(
         &'a self,
         aabb: &Aabb<N, D>,

@@ -1,4 +1,4 @@
-//! One question about one object: what the tables reach, compiled in this crate.
+//! Queries of one object, compiled in this crate.
 
 use crate::math::{Point, Space};
 use crate::query::point::{holds, is_surely_beyond, project};
@@ -6,7 +6,8 @@ use crate::query::{PointProjection, Ray, RayIntersection, cast_on, surely_misses
 use crate::world::WorldBody;
 
 impl<N: Space<D>, const D: usize> WorldBody<N, D> {
-    /// Where a ray meets the object, at `latest` at the latest, with the normal in the world frame.
+    /// Returns where a ray meets the object, at time `latest` or before, with the normal in the
+    /// world frame.
     pub(crate) fn cast_ray(
         &self,
         ray: &Ray<N, D>,
@@ -27,8 +28,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         Some(RayIntersection { normal: pose.vector(&hit.normal), ..hit })
     }
 
-    /// The nearest point of the object and its distance; `None` if it is empty, and perhaps if it is beyond
-    /// `farthest`.
+    /// Returns the nearest point of the object and its distance; `None` if the shape is empty. May
+    /// also be `None` if the distance exceeds `farthest`.
     pub(crate) fn project(
         &self,
         point: &Point<N, D>,
@@ -47,7 +48,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         )
     }
 
-    /// The object holds a point.
+    /// Returns `true` if the object contains a point.
     pub(crate) fn holds(&self, point: &Point<N, D>) -> bool {
         let local = N::pose(&self.isometry).inverse_point(point);
         self.ask(

@@ -1,4 +1,4 @@
-//! Where a point lies to the objects.
+//! Point queries among the objects of a world.
 
 use super::ranking::RankRange;
 use super::search::WorldProbe;
@@ -10,9 +10,9 @@ use crate::world::bodies::WorldBody;
 use crate::world::entries;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
-/// Points, in the world frame. A point that is not finite lies in nothing and is near nothing.
+/// Point queries, in the world frame. A point that is not finite is in no object and near none.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The same as [`Self::objects_containing`], of the objects able to interact with `groups`.
+    /// As [`Self::objects_containing`], for the objects that may interact with `groups`.
     pub fn interferences_with_point<'a>(
         &'a self,
         point: &Point<N, D>,
@@ -21,7 +21,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects_containing(point, &groups.into())
     }
 
-    /// The objects that hold a point, on their surface at least, in order of their handles.
+    /// Returns the objects that contain a point, boundary included, in order of their handles.
     #[doc(alias = "interferences_with_point")]
     pub fn objects_containing<'a>(
         &'a self,
@@ -33,12 +33,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         near.into_iter().flatten().filter(move |object| entries::holds(&object.body, &point))
     }
 
-    /// The nearest point to `point` of any object, and that object; of several the one whose handle comes
-    /// first. `None` if there is nothing at most `max_distance` away.
+    /// Returns the object nearest to `point` and the projection of `point` on it; at equal
+    /// distances the object with the smallest handle. `None` if no object is at most `max_distance`
+    /// away.
     ///
-    /// With `solid`, a point in an object is its own projection, at distance zero; without, only the
-    /// boundaries of the objects count, from inside and from outside. Nothing is found if
-    /// `max_distance` is negative or NaN.
+    /// With `solid`, a point in an object is its own projection, at distance zero; without, only
+    /// the boundaries of the objects count, from inside and from outside. `None` if `max_distance`
+    /// is negative or NaN.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -78,14 +79,15 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         found.map(|(object, _, projection)| (object, projection))
     }
 
-    /// The `count` objects nearest to a point, at most `max_distance` away: in ascending order of
-    /// distance, then of handle.
+    /// Returns the `count` objects nearest to a point, at most `max_distance` away, in ascending
+    /// order of distance, then of handle.
     ///
-    /// Objects that hold the point are at distance zero and [`ClosestPoints::Intersecting`]; of the
-    /// [`ClosestPoints::WithinMargin`] of others the first is `point` itself. There is nothing if `count`
-    /// is zero or `max_distance` negative or NaN.
+    /// An object that contains the point has distance zero and [`ClosestPoints::Intersecting`]. For
+    /// others, [`ClosestPoints::WithinMargin`] has `point` itself first. Empty if `count` is zero,
+    /// or `max_distance` negative or NaN.
     ///
-    /// [`Self::nearest_objects`] for a point in place of a solid; see there for an example.
+    /// Corresponds to [`Self::nearest_objects`] with a point instead of a solid; see there for an
+    /// example.
     #[must_use]
     pub fn nearest_to_point(
         &self,
@@ -107,13 +109,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// What boxes are asked about a point; `None` if it is not finite.
+/// Returns the probe of a point; `None` if it is not finite.
 fn near<N: Space<D>, const D: usize>(point: &Point<N, D>) -> Option<WorldProbe<N, D>> {
     let usable = point.iter().all(|x| x.is_finite_number());
     usable.then(|| WorldProbe::Near(Aabb::at(*point)))
 }
 
-/// How far an object is from a point, and its nearest point; `None` beyond `farthest`.
+/// Returns the distance of an object from a point and its nearest point; `None` beyond `farthest`.
 fn projection<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     point: &Point<N, D>,

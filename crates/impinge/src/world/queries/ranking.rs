@@ -1,7 +1,7 @@
-//! The best answers so far.
+//! The best results of a ranked query.
 //!
-//! Answers come by (key, handle), whatever the order in which objects are proposed. A box is passed over only
-//! where its key proves that it holds no better answer.
+//! Results are ordered by (key, handle), whatever the order in which objects are proposed. A box is
+//! skipped only if its key proves that it holds no better result.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -9,16 +9,16 @@ use std::collections::BinaryHeap;
 use crate::math::{Real, max};
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// The answers of least key, ties by handle: at most `count` of them, none above a limit.
+/// The results with the smallest keys, ties by handle: at most `count` of them, none above `limit`.
 #[derive(Debug)]
 pub(super) struct Ranking<N: Real, A> {
     count: usize,
     limit: N,
-    /// The last one on top.
+    /// Max-heap: the worst result on top.
     heap: BinaryHeap<Ranked<N, A>>,
 }
 
-/// An answer about an object, and its key: a time or a distance, zero or more.
+/// A result for an object, and its key: a time or a distance, zero or more.
 #[derive(Debug)]
 pub(super) struct Ranked<N: Real, A> {
     pub(super) key: N,
@@ -26,18 +26,18 @@ pub(super) struct Ranked<N: Real, A> {
     pub(super) answer: A,
 }
 
-/// What keeps answers and knows how good others must be.
+/// A collection of the best results, which bounds the keys of further ones.
 pub(super) trait Rank<N: Real, A> {
-    /// The largest key that still counts.
+    /// Returns the largest key that still counts.
     fn limit(&self) -> N;
 
-    /// Keeps the answer if it is among the best. A key that is NaN never is.
+    /// Keeps the result if it is among the best. A NaN key never is.
     fn offer(&mut self, ranked: Ranked<N, A>);
 
-    /// The largest key that a box may have whose object has a key that still counts.
+    /// Returns the largest key of a box whose object may have a key that still counts.
     ///
-    /// Keys are quotients and square roots of sums, wrong by a few units in the last place; by more
-    /// where squares are hardly numbers of the type any more.
+    /// Keys of boxes are quotients and square roots of sums, with errors of a few units in the last
+    /// place. The error is larger where squares underflow; hence the lower bound.
     fn limit_of_boxes(&self) -> N {
         let limit = self.limit();
         let least = (N::MIN_POSITIVE / N::EPSILON).sqrt();
@@ -45,7 +45,7 @@ pub(super) trait Rank<N: Real, A> {
     }
 }
 
-/// How many answers are asked for, and up to which key.
+/// Number of requested results, and the largest key.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RankRange<N: Real> {
     pub(super) count: usize,
@@ -53,20 +53,21 @@ pub(super) struct RankRange<N: Real> {
 }
 
 impl<N: Real> RankRange<N> {
-    /// All answers with keys up to `limit`.
+    /// Requests all results with keys up to `limit`.
     pub(super) const fn for_all(limit: N) -> Self {
         Self { count: usize::MAX, limit }
     }
 }
 
 impl<N: Real, A> Ranking<N, A> {
-    /// Room for `count` answers with keys up to `limit`; `None` if that is no room at all.
+    /// Creates a ranking of up to `count` results with keys up to `limit`; `None` if no result can
+    /// qualify.
     pub(super) fn new(count: usize, limit: N) -> Option<Self> {
         let has_room = count > 0 && limit >= N::ZERO;
         has_room.then(|| Self { count, limit, heap: BinaryHeap::new() })
     }
 
-    /// The answers, the best first.
+    /// Returns the results, the best first.
     pub(super) fn into_sorted(self) -> Vec<Ranked<N, A>> {
         self.heap.into_sorted_vec()
     }
@@ -93,7 +94,7 @@ impl<N: Real, A> Rank<N, A> for Ranking<N, A> {
     }
 }
 
-/// A ranking of one answer, which needs no memory.
+/// A ranking of one result, which does not allocate.
 #[derive(Debug)]
 pub(super) struct BestOne<N: Real, A> {
     limit: N,
@@ -101,12 +102,13 @@ pub(super) struct BestOne<N: Real, A> {
 }
 
 impl<N: Real, A> BestOne<N, A> {
-    /// Room for an answer with a key up to `limit`; `None` if that is no room.
+    /// Creates a ranking of one result with a key up to `limit`; `None` if `limit` is negative or
+    /// NaN.
     pub(super) fn new(limit: N) -> Option<Self> {
         (limit >= N::ZERO).then_some(Self { limit, best: None })
     }
 
-    /// The answer.
+    /// Returns the result.
     pub(super) fn found(self) -> Option<Ranked<N, A>> {
         self.best
     }

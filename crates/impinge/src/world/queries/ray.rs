@@ -1,4 +1,4 @@
-//! What a ray meets.
+//! Ray queries among the objects of a world.
 
 use super::QueryFilter;
 use super::ranking::RankRange;
@@ -10,13 +10,13 @@ use crate::world::bodies::WorldBody;
 use crate::world::entries;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
-/// Rays.
+/// Ray queries.
 ///
-/// Times are in units of the length of the ray's direction, normals in the world frame. Each object is
-/// hit once at most: where the ray meets it first.
+/// Times are in units of the length of the ray's direction, normals in the world frame. Each object
+/// is hit at most once: where the ray meets it first.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The same as [`Self::ray_hits`] without a longest time, with solids, of the objects able to interact
-    /// with `groups`, but in order of their handles.
+    /// As [`Self::ray_hits`] without a maximum time and with solids, for the objects that may
+    /// interact with `groups`, but in order of their handles.
     pub fn interferences_with_ray<'a>(
         &'a self,
         ray: &Ray<N, D>,
@@ -28,7 +28,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
 
-    /// The same as [`Self::first_ray_hit`] without a longest time, with solids, of the objects able to
+    /// As [`Self::first_ray_hit`] without a maximum time and with solids, for the objects that may
     /// interact with `groups`.
     #[must_use]
     pub fn first_interference_with_ray(
@@ -39,13 +39,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.first_ray_hit(ray, N::INFINITY, true, &groups.into())
     }
 
-    /// The object that a ray meets first, at `max_time` at the latest, and where; of several at the
-    /// same time the one whose handle comes first.
+    /// Returns the object that a ray meets first, at `max_time` or before, and the intersection; at
+    /// equal times the object with the smallest handle.
     ///
-    /// With `solid`, a ray that starts inside an object meets it at time zero; without, where it leaves
-    /// it. A ray that is not finite meets nothing, nor does any ray if `max_time` is negative or NaN.
+    /// With `solid`, a ray that starts inside an object meets it at time zero; without, where it
+    /// leaves it. A ray that is not finite meets nothing, nor does any ray if `max_time` is
+    /// negative or NaN.
     ///
-    /// Costs the search of a tree and a ray cast against a few objects.
+    /// Costs a tree search and a ray cast against a few objects.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -89,11 +90,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         found.map(|(object, _, hit)| (object, hit))
     }
 
-    /// [`Self::first_ray_hit`] for many rays: `hits[i]` becomes the handle of the object that
-    /// `batch.rays[i]` meets first and where, to the bit. The caller keeps the places from frame to frame.
+    /// Casts many rays: `hits[i]` becomes the handle and the intersection that
+    /// [`Self::first_ray_hit`] finds for `batch.rays[i]`, to the bit. The caller keeps `hits` from
+    /// frame to frame.
     ///
-    /// On the calling thread, whatever the features: a world may hold data that cannot be shared. Those
-    /// that can be shared may be asked from several threads, each with a share of the rays.
+    /// Runs on the calling thread, whatever the features, since the user's data may not be `Sync`.
+    /// A world that is `Sync` may be queried from several threads, each with a share of the rays.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -130,10 +132,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         });
     }
 
-    /// The objects that a ray meets, at `max_time` at the latest, and where it first meets each of them:
-    /// in ascending order of time, then of handle.
+    /// Returns the objects that a ray meets, at `max_time` or before, each with its first
+    /// intersection, in ascending order of time, then of handle.
     ///
-    /// Beside the order, as [`Self::first_ray_hit`].
+    /// Otherwise as [`Self::first_ray_hit`].
     #[doc(alias = "interferences_with_ray")]
     #[must_use]
     pub fn ray_hits(
@@ -161,7 +163,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Where a ray meets an object, at `latest` at the latest, with the normal in the world frame.
+/// Returns where a ray meets an object, at time `latest` or before, with the normal in the world
+/// frame.
 fn cast<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     ray: &Ray<N, D>,

@@ -1,4 +1,5 @@
-//! The way all ranked queries go: box by box, near ones first, as long as a box may hold an answer.
+//! The search of all ranked queries: objects by their boxes, near ones first, as long as a box may
+//! hold a result.
 
 use crate::world::entries;
 use core::cell::Cell;
@@ -14,19 +15,19 @@ use crate::partitioning::Sweep;
 use crate::world::bodies::WorldBody;
 use crate::world::{CollisionObject, CollisionWorld, DirtyTree, DirtyVisitor, WorldBroadPhase};
 
-/// What the boxes are asked; the key of a box is a time or a distance.
+/// The probe of a query. The key of a box is a time or a distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum WorldProbe<N: Real, const D: usize> {
-    /// When they are entered.
+    /// Key: the time at which the ray enters the box.
     Ray(Ray<N, D>),
-    /// How far they are.
+    /// Key: the distance between the boxes.
     Near(Aabb<N, D>),
-    /// When they are touched.
+    /// Key: the time at which the moving box touches the box.
     Cast(Aabb<N, D>, Vector<N, D>),
 }
 
 impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
-    /// The boxes of dirty objects, those of least keys about first.
+    /// Visits the boxes of dirty objects, roughly in ascending order of keys.
     fn visit_dirty(&self, tree: &DirtyTree<D>, limit: N, visit: &mut DirtyVisitor<'_, N>) {
         let along = |sweep, visit| entries::dirty_by_time(tree, &sweep, limit, visit);
         match self {
@@ -36,7 +37,7 @@ impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
         }
     }
 
-    /// The boxes of the broad phase, those of least keys about first.
+    /// Visits the boxes of the broad phase, roughly in ascending order of keys.
     fn visit(
         &self,
         broad_phase: &WorldBroadPhase<N, D>,
@@ -53,25 +54,25 @@ impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
     }
 }
 
-/// Gets some objects that the broad phase proposes, and returns the largest key that still counts.
+/// Receives some objects that the broad phase proposes; returns the largest key that still counts.
 type ProposalVisitor<'a, N> = dyn FnMut(&[Proposal<'_, N, CollisionObjectHandle>]) -> N + 'a;
 
-/// A few objects, and bounds below their keys.
+/// A few objects with lower bounds of their keys.
 type ProposedGroup<'a, N, const D: usize, T> = [Option<(&'a CollisionObject<N, D, T>, N)>; GROUP];
 
-/// An object and what was found about it.
+/// An object and its result.
 type FoundObject<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, A);
 
-/// An object and what was found about it, with the key that it was ranked by.
+/// An object, its key and its result.
 pub(super) type QueryAnswer<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, N, A);
 
-/// Gets an object and the largest key that still counts, and returns the key of the object and the
-/// answer; `None` if the object has no key or a larger one.
+/// Receives an object and the largest key that still counts; returns the object's key and result,
+/// or `None` if it has no key or a larger one.
 pub(super) type Measure<'a, N, const D: usize, A> =
     dyn Fn(&WorldBody<N, D>, N) -> Option<(N, A)> + 'a;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The best answers, in order, that `measure` gives about objects that the filter allows.
+    /// Returns the best results of `measure` among the objects that the filter allows, in order.
     pub(super) fn rank<A>(
         &self,
         probe: &WorldProbe<N, D>,
@@ -84,7 +85,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         ranking.into_sorted().into_iter().map(answer).collect()
     }
 
-    /// The best of the answers with keys up to `limit`.
+    /// Returns the best result with a key up to `limit`.
     pub(super) fn best<A>(
         &self,
         probe: &WorldProbe<N, D>,
@@ -116,11 +117,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         });
     }
 
-    /// Calls `visit` with each object whose box may have a key of at most `limit`, and with some others, near ones
-    /// about first, each once. `visit` gets and returns the largest key that still counts; a negative one ends the
-    /// search.
+    /// Calls `visit` for each object whose box may have a key of at most `limit`, and for some
+    /// others, near ones roughly first, each once. `visit` receives and returns the largest key
+    /// that still counts; a negative one ends the search.
     ///
-    /// Dirty objects are proposed by a tree of their own, whatever the broad phase proposes.
+    /// Dirty objects come from a tree of their own; proposals of the broad phase for them are
+    /// dropped.
     pub(super) fn propose<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
@@ -150,10 +152,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         });
     }
 
-    /// The object of a proposal of the broad phase, if it lives and is not dirty.
+    /// Returns the object of a proposal of the broad phase, if it exists and is not dirty.
     ///
-    /// As a rule the number of its proxy tells where it is, which saves the way through the broad phase's
-    /// record. A proxy with the number of that of a living object is that object's.
+    /// Usually the number of the proxy gives the index of the object, which avoids loading the
+    /// broad phase's record. A proxy number that a living object has identifies that object.
     #[inline]
     fn clean_proposal(
         &self,
@@ -164,7 +166,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         (!self.objects.changes.is_dirty(&object.body)).then_some(object)
     }
 
-    /// The filter allows a living object.
+    /// Returns `true` if the filter allows an object.
     #[inline]
     pub(super) fn allows(
         &self,
@@ -182,8 +184,8 @@ fn answer<'a, N: Space<D>, const D: usize, T, A>(
     (object, ranked.key, answer)
 }
 
-/// The objects of a few proposals, before any is looked at: they lie apart from each other, and memory is slow one by
-/// one.
+/// Fetches the objects of a few proposals before any of them is tested: they are scattered in
+/// memory, and independent loads overlap.
 #[inline]
 fn gathered<P, A: Copy>(group: &[P], find: impl Fn(&P) -> Option<A>) -> [Option<A>; GROUP] {
     let mut found = [None; GROUP];

@@ -1,4 +1,4 @@
-//! What lies near a solid, and what it overlaps.
+//! Queries for the objects near or overlapping a solid.
 
 use super::ranking::RankRange;
 use super::search::WorldProbe;
@@ -14,14 +14,14 @@ use crate::world::bodies::{WorldBody, aabb_at, grown};
 use crate::world::entries;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
-/// Solids and boxes, in the world frame.
+/// Queries with solids and boxes, in the world frame.
 ///
-/// The solid asked about is no object of the world: any shape will do, at any position, and a
-/// [`ShapeHandle`](crate::shape::ShapeHandle) gives its own by `&*`. A position that is not finite is
-/// near nothing. Distances are those of [`crate::query::distance`]: zero for solids that touch or
-/// overlap.
+/// The solid of a query is not an object of the world: any shape at any position will do, and a
+/// [`ShapeHandle`](crate::shape::ShapeHandle) gives its shape by `&*`. A position that is not
+/// finite is near nothing. Distances are those of [`crate::query::distance`]: zero for solids that
+/// touch or overlap.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The same as [`Self::objects_in_aabb`], of the objects able to interact with `groups`.
+    /// As [`Self::objects_in_aabb`], for the objects that may interact with `groups`.
     pub fn interferences_with_aabb<'a>(
         &'a self,
         aabb: &Aabb<N, D>,
@@ -30,9 +30,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects_in_aabb(aabb, &groups.into())
     }
 
-    /// The objects whose boxes meet or touch a box, in order of their handles. The boxes are those of
-    /// the shapes where the objects are now, without any margin; [`Self::objects_overlapping`] with a
-    /// cuboid asks the shapes themselves.
+    /// Returns the objects whose boxes overlap or touch `aabb`, in order of their handles. These
+    /// are the exact boxes of the shapes at the present positions, without margin;
+    /// [`Self::objects_overlapping`] with a cuboid tests the shapes themselves.
     #[doc(alias = "interferences_with_aabb")]
     pub fn objects_in_aabb<'a>(
         &'a self,
@@ -43,7 +43,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.meeting(&aabb, filter).filter(move |object| entries::meets(&object.body, &aabb))
     }
 
-    /// The objects that touch or overlap a solid, in order of their handles.
+    /// Returns the objects that touch or overlap a solid, in order of their handles.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -79,8 +79,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         near.into_iter().flatten().filter(move |object| entries::touches(&placed, &object.body))
     }
 
-    /// An object touches or overlaps a solid: whether [`Self::objects_overlapping`] has any. The search ends at the
-    /// first one found.
+    /// Returns `true` if an object touches or overlaps a solid: whether
+    /// [`Self::objects_overlapping`] has any. The search ends at the first one found.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -115,8 +115,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// The same as [`Self::nearest_objects`] for one object: the nearest, and of several the one whose
-    /// handle comes first.
+    /// Returns the object nearest to a solid, as [`Self::nearest_objects`] does; at equal distances
+    /// the one with the smallest handle.
     #[must_use]
     pub fn closest_object(
         &self,
@@ -128,8 +128,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.nearest_objects(position, shape, 1, max_distance, filter).pop()
     }
 
-    /// The objects at most `distance` from a solid: in ascending order of distance, then of handle.
-    /// [`Self::nearest_objects`], however many there are.
+    /// Returns all objects at most `distance` from a solid, in ascending order of distance, then of
+    /// handle; as [`Self::nearest_objects`] without a `count`.
     #[must_use]
     pub fn objects_within(
         &self,
@@ -141,16 +141,16 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.nearest_objects(position, shape, usize::MAX, distance, filter)
     }
 
-    /// The `count` objects nearest to a solid, at most `max_distance` away: in ascending order of
-    /// distance, then of handle.
+    /// Returns the `count` objects nearest to a solid, at most `max_distance` away, in ascending
+    /// order of distance, then of handle.
     ///
-    /// Objects that touch or overlap the solid are at distance zero and
-    /// [`ClosestPoints::Intersecting`]; of the [`ClosestPoints::WithinMargin`] of others the first lies
-    /// on the solid, the second on the object. There is nothing if `count` is zero or `max_distance`
+    /// Objects that touch or overlap the solid have distance zero and
+    /// [`ClosestPoints::Intersecting`]. For others, [`ClosestPoints::WithinMargin`] has the point
+    /// on the solid first, then the one on the object. Empty if `count` is zero, or `max_distance`
     /// negative or NaN.
     ///
-    /// Costs the search of a tree, and a computation of the distance for each object found and for a
-    /// few whose boxes are as near as the last of them.
+    /// Costs a tree search, and a distance computation for each object found and for a few whose
+    /// boxes are as near as the last of them.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -207,8 +207,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// The box of a placed solid, grown by what rounding may have taken from it; `None` if the position is
-/// not finite.
+/// Returns the box of a placed solid, grown by the rounding slack; `None` if the position is not
+/// finite.
 pub(crate) fn around<N: Space<D>, const D: usize>(
     position: &N::Isometry,
     shape: &dyn Shape<N, D>,
@@ -217,7 +217,8 @@ pub(crate) fn around<N: Space<D>, const D: usize>(
     pose.is_finite().then(|| grown(&aabb_at(shape, &pose), N::ZERO))
 }
 
-/// A solid touches or overlaps an object: by no more than that is certain, and by any parts that do.
+/// Returns `true` if a solid touches or overlaps an object, that is, if their distance does not
+/// exceed zero.
 pub(crate) fn touches<N: Space<D>, const D: usize>(
     placed: &Placed<'_, N, D>,
     body: &WorldBody<N, D>,
@@ -228,7 +229,7 @@ pub(crate) fn touches<N: Space<D>, const D: usize>(
     })
 }
 
-/// How far a solid is from an object, `None` beyond `limit`.
+/// Returns the separation of a solid from an object; `None` beyond `limit`.
 pub(crate) fn separation_from<N: Space<D>, const D: usize>(
     placed: &Placed<'_, N, D>,
     body: &WorldBody<N, D>,
@@ -240,7 +241,7 @@ pub(crate) fn separation_from<N: Space<D>, const D: usize>(
     })
 }
 
-/// The box of an object meets another box.
+/// Returns `true` if the exact box of an object overlaps another box.
 #[inline]
 pub(crate) fn meets<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,

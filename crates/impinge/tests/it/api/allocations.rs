@@ -1,4 +1,4 @@
-//! A step of a world in which nothing is new takes no memory from the allocator.
+//! Tests that a step in which no pair or object is new takes no memory from the allocator.
 
 use impinge::dim2::shape::ConvexPolygon;
 use impinge::math::na::{Translation2, Translation3, UnitComplex, UnitQuaternion};
@@ -9,12 +9,12 @@ use impinge::shape::{
 };
 use impinge::world::{CollisionGroups, CollisionWorld};
 
-/// Steps after which everything is where it was.
+/// Number of steps after which all poses repeat.
 const PERIOD: u32 = 16;
-/// Objects along each axis.
+/// Number of objects along each axis.
 const ROW: usize = 6;
 
-/// What differs by dimension.
+/// The poses and shapes that differ by dimension.
 trait Stage<const D: usize>: Space<D> {
     fn place(at: Vector<Self, D>, turn: f64) -> Self::Isometry;
     fn own_shapes() -> Vec<ShapeHandle<Self, D>>;
@@ -57,7 +57,8 @@ fn shapes<N: Stage<D>, const D: usize>() -> Vec<ShapeHandle<N, D>> {
     shapes
 }
 
-/// Where the object of an index is, and how far it is turned: neighbours come and go.
+/// Pose of object `index` at `step`: on a grid of unit cells, swinging, so that neighbours come and
+/// go.
 fn pose<N: Stage<D>, const D: usize>(index: usize, step: u32) -> N::Isometry {
     let phase = (step as usize + index * 5) % PERIOD as usize;
     let swing = (phase.min(PERIOD as usize - phase) as f64 - 4.0) * 0.06;
@@ -93,7 +94,7 @@ impl<N: Stage<D>, const D: usize> Grid<N, D> {
         Self { world, handles, step: 0 }
     }
 
-    /// One period; answers how many events and contacts there were.
+    /// Plays one period and returns the number of events and of contacts.
     fn play(&mut self) -> (usize, usize) {
         let (mut events, mut contacts) = (0, 0);
         for _ in 0..PERIOD {
@@ -117,7 +118,7 @@ fn takes_nothing<N: Stage<D>, const D: usize>(narrow_phase: DefaultNarrowPhase<N
     let mut found = (0, 0);
     let used = allocation_counter::measure(|| found = grid.play());
     assert!(found.0 > 100 && found.1 > 200, "a lively period: {found:?}");
-    // The iterator over the views is a box: one for each step.
+    // `contact_views` returns a boxed iterator: one allocation for each step.
     assert_eq!(used.count_total, u64::from(PERIOD), "{used:?}");
 }
 
@@ -135,7 +136,7 @@ fn nor_where_contacts_are_kept() {
     takes_nothing::<f64, 3>(DefaultNarrowPhase::new().reusing(0.05));
 }
 
-/// A solid slides to and fro over hilly ground.
+/// A solid that slides to and fro over a surface with hills takes no memory either.
 fn slides_without_memory<const D: usize>(ground: ShapeHandle<f32, D>, solid: ShapeHandle<f32, D>)
 where
     f32: Stage<D>,
@@ -160,14 +161,14 @@ where
         }
         contacts
     };
-    // The ground comes to rest meanwhile.
+    // Within these 8 periods the surface comes to rest and all buffers reach their size.
     for _ in 0..8 {
         slide();
     }
     let mut contacts = 0;
     let used = allocation_counter::measure(|| contacts = slide());
     assert!(contacts >= PERIOD as usize, "{contacts} contacts");
-    // The iterator over the views is a box: one for each step.
+    // `contact_views` returns a boxed iterator: one allocation for each step.
     assert_eq!(used.count_total, u64::from(PERIOD), "{used:?}");
 }
 

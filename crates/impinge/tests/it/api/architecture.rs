@@ -1,12 +1,12 @@
-//! The maps for contributors name files that exist, and stay short.
+//! Tests that the maps for contributors name only files that exist, and stay short.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Longer than this the map is not read.
+/// Greatest number of lines of a map; longer ones are not read to the end.
 const MAX_LINES: usize = 150;
 
-/// The folder of the repository.
+/// Root folder of the repository.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
@@ -15,8 +15,8 @@ fn document(name: &str) -> String {
     fs::read_to_string(root().join(name)).expect("a text at the root of the repository")
 }
 
-/// What stands in backquotes and names a file or folder: it ends in `.rs`, `.md` or `/`. Blocks of code are left
-/// out: they name what a command writes.
+/// The words in backquotes that name a file or folder, that is, end in `.rs`, `.md` or `/`. Blocks of code are left
+/// out, because they may name files that a command writes.
 fn paths(text: &str) -> Vec<&str> {
     let prose = text.split("```").step_by(2);
     let quoted = prose.flat_map(|prose| prose.split('`').skip(1).step_by(2));
@@ -27,14 +27,14 @@ fn paths(text: &str) -> Vec<&str> {
     quoted.filter(is_path).collect()
 }
 
-/// A file of this name is in a folder or below it.
+/// Whether a folder holds a file of this name, at any depth.
 fn holds(folder: &Path, name: &str) -> bool {
     let mut entries =
         fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     entries.any(|path| path.ends_with(name) || path.is_dir() && holds(&path, name))
 }
 
-/// Paths are below the root or below the library's sources; a name without a folder is that of any source.
+/// Whether a path exists below the root or below the library's sources; a bare file name may be that of any source.
 fn exists(path: &str) -> bool {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let is_there = root().join(path).exists() || sources.join(path).exists();

@@ -1,5 +1,5 @@
-//! The programs of the guide's pipeline chapter, typed for space: the two phases on their own,
-//! groups, filters, questions about two solids.
+//! The programs of the guide's pipeline chapter in 3D: the two phases on their own, groups, filters
+//! and queries of two solids.
 
 use impinge::dim3::bounding_volume::{self, Aabb};
 use impinge::dim3::broad_phase::{BroadPhase, DBVTBroadPhase};

@@ -1,4 +1,4 @@
-//! Pictures of shapes, worlds and queries: in both dimensions and for both scalars.
+//! Tests the drawings of shapes, worlds and queries, in both dimensions and with both scalars.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use impinge::world::{CollisionGroups, CollisionWorld, QueryFilter};
 use crate::support::query_support::random::Random;
 use crate::support::query_support::samples::{PLANE, SPACE, Sample, sample2, sample3};
 
-/// A back end that keeps all lines.
+/// A back end that records all lines.
 #[derive(Debug, PartialEq)]
 struct Lines<N: Real, const D: usize>(Vec<Line<N, D>>);
 
@@ -49,12 +49,13 @@ fn at<N: Space<D>, const D: usize>(coordinates: &[f64]) -> N::Isometry {
     N::isometry(&Pose::from_translation(vector(coordinates)))
 }
 
-/// A vector of the first coordinates; those that are missing are zero.
+/// The vector with these first coordinates; missing ones are zero.
 fn vector<N: Real, const D: usize>(coordinates: &[f64]) -> Vector<N, D> {
     Vector::<N, D>::from_fn(|axis, _| N::lit(coordinates.get(axis).copied().unwrap_or(0.0)))
 }
 
-/// Every index names a vertex, all is finite, and no line is there twice or without length.
+/// Asserts that every index names a vertex, that all coordinates are finite, and that no line
+/// occurs twice or has length zero.
 fn assert_sound<N: Real, const D: usize>(mesh: &ShapeMesh<N, D>, name: &str) {
     let indices = mesh.lines.iter().flatten().chain(mesh.triangles.iter().flatten());
     for &index in indices {
@@ -72,8 +73,8 @@ fn assert_sound<N: Real, const D: usize>(mesh: &ShapeMesh<N, D>, name: &str) {
     assert!(!mesh.vertices.is_empty(), "{name}: nothing to see");
 }
 
-/// Random solids of all kinds with an end, of which every third has sizes of zero; returns how many have
-/// lines.
+/// Random bounded solids of all kinds, every third with sizes of zero, have their vertices on their
+/// surface; returns how many have lines.
 fn vertices_on_surfaces<N: Space<D>, const D: usize>(
     kinds: &[ShapeKind],
     sample: Sample<N, D>,
@@ -106,8 +107,9 @@ fn every_vertex_lies_on_the_surface() {
     assert!(counts.iter().all(|&count| count > 120), "few are points: {counts:?}");
 }
 
-/// The triangles of a solid with an inside are counter-clockwise seen from outside, by `volume`: of the
-/// simplex of a point inside and a triangle in 3D, of the triangle in 2D.
+/// The triangles of solids with an interior are counter-clockwise seen from outside. `volume` gives
+/// the signed volume of the simplex of an inner point and a triangle in 3D, and of the triangle in
+/// 2D.
 fn triangles_face_outwards<N: Space<D>, const D: usize>(
     kinds: &[ShapeKind],
     sample: Sample<N, D>,
@@ -138,7 +140,8 @@ fn triangles_are_counter_clockwise() {
     triangles_face_outwards::<f64, 3>(&SPACE, sample3, volume);
 }
 
-/// A box of half extents 1, 2, 3: its edges run along one axis each, from one face to the opposite.
+/// The edges of a box of half extents 1, 2, 3 each run along one axis, from one face to the
+/// opposite one. Unequal extents tell the axes apart.
 fn edges_of_boxes<N: Space<D>, const D: usize>(expected: usize) {
     let half = Vector::<N, D>::from_fn(|axis, _| N::lit([1.0, 2.0, 3.0][axis]));
     let mesh = mesh_of(&Cuboid::new(half));
@@ -236,7 +239,7 @@ fn ids_follow_from_the_mesh() {
     assert_ne!(ShapeMesh::<f32, 3>::of(&Ball::new(0.5), &fine).id, ids[0]);
 }
 
-/// Shapes that overlap their neighbours, over a half-space, and a sensor beside the first.
+/// Shapes that overlap their neighbours, above a half-space, and a sensor beside the first one.
 fn stage<N: Space<D>, const D: usize>() -> CollisionWorld<N, D, ()> {
     let mut world = CollisionWorld::new(N::lit(0.02));
     let contacts = GeometricQueryType::Contacts(N::ZERO, N::ZERO);
@@ -258,7 +261,7 @@ fn stage<N: Space<D>, const D: usize>() -> CollisionWorld<N, D, ()> {
     world
 }
 
-/// All that is drawn of a world, with the number of each object as its colour.
+/// All lines drawn for a world, coloured by the uid of their object.
 fn picture<N: Space<D>, const D: usize>(
     world: &CollisionWorld<N, D, ()>,
     options: DebugOptions<N>,
@@ -285,7 +288,7 @@ fn worlds<N: Space<D>, const D: usize>() {
         counts
     });
     let edges = D << (D - 1);
-    // The half-space has no box. Five objects in one tree are in one node.
+    // The half-space has no box, so 5 objects have one; 5 boxes fit in one node of the tree.
     assert_eq!(counts.get(&Drawn::TightBox), Some(&(5 * edges)), "{counts:?}");
     assert_eq!(counts.get(&Drawn::LoosenedBox), Some(&(5 * edges)), "{counts:?}");
     assert_eq!(counts.get(&Drawn::TreeNode), Some(&edges), "{counts:?}");
@@ -306,7 +309,7 @@ fn boxes_hold_their_objects<N: Space<D>, const D: usize>(
     let (tight, loosened) = (drawn.of(Drawn::TightBox), drawn.of(Drawn::LoosenedBox));
     let objects = drawn.of(Drawn::Object);
     let edges = D << (D - 1);
-    // Those of the half-space, which comes first, have no box.
+    // The half-space is the first object and has no boxes.
     let boxes = tight.chunks(edges).zip(loosened.chunks(edges));
     for (object, (tight, loosened)) in world.collision_objects().skip(1).zip(boxes) {
         let number = u8::try_from(object.handle().uid()).expect("few objects");
@@ -324,15 +327,15 @@ fn boxes_hold_their_objects<N: Space<D>, const D: usize>(
     }
 }
 
-/// The least and the greatest coordinates of lines.
+/// Least and greatest coordinates of the ends of lines.
 fn extremes<N: Real, const D: usize>(lines: &[Line<N, D>]) -> [Vector<N, D>; 2] {
     let ends: Vec<_> = lines.iter().flat_map(|line| line.ends.map(|end| end.coords)).collect();
     let low = ends.iter().fold(ends[0], |low, end| low.inf(end));
     [low, ends.iter().fold(ends[0], |high, end| high.sup(end))]
 }
 
-/// Crosses are drawn around points of contact: `D` lines with the point in their middle, alternately on
-/// the first and the second shape of a pair.
+/// Contact points are drawn as crosses of `D` lines centred at the point, alternately on the first
+/// and the second shape of a pair.
 fn contact_points_lie_on_both<N: Space<D>, const D: usize>(
     world: &CollisionWorld<N, D, ()>,
     drawn: &Lines<N, D>,

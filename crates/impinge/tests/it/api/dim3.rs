@@ -1,4 +1,5 @@
-//! Programs as users type them from the guide: the names, the signatures, algorithms of one's own.
+//! Programs as users of `impinge::dim3` type them from the guide: names, signatures, custom
+//! algorithms.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -23,12 +24,13 @@ use impinge::dim3::world::{
 };
 use impinge::world::{ContactPairs, ProximityPairs};
 
-/// A function of a user who does not say which scalar or which data.
+/// A user's function that is generic over the scalar and the data.
 fn count_touching<N: Real, T>(world: &CollisionWorld<N, T>) -> usize {
     world.contact_pairs().filter(|(_, _, pair)| pair.num_contacts() > 0).count()
 }
 
-/// One that does everything with them.
+/// A generic function that fills a world with three balls of equal centres, updates it and casts a
+/// ray.
 fn fill<N: Real, T: Clone>(data: T) -> CollisionWorld<N, T> {
     let mut world = CollisionWorld::new(N::lit(0.02));
     let shape = ShapeHandle::new(Ball::new(N::HALF));
@@ -92,7 +94,7 @@ fn questions_about_solids() {
     assert!(plane.contains_point(&here, &Point::new(3.0, 0.0, 0.0)), "behind the plane");
 }
 
-/// Leaves the work to the library and counts how often it is asked.
+/// Dispatcher that leaves the work to the library and counts its calls.
 struct Counting(Arc<AtomicUsize>);
 
 impl<N: Real> ContactDispatcher<N, 3> for Counting {
@@ -106,7 +108,7 @@ impl<N: Real> ContactDispatcher<N, 3> for Counting {
     }
 }
 
-/// Knows no algorithm.
+/// Dispatcher without algorithms.
 struct Nothing;
 
 impl<N: Real> ProximityDispatcher<N, 3> for Nothing {
@@ -119,7 +121,7 @@ impl<N: Real> ProximityDispatcher<N, 3> for Nothing {
     }
 }
 
-/// A world of three balls at one place, one of them an area; nothing is computed yet.
+/// A world of three balls with the same centre, one of them a sensor, before its first update.
 fn three_balls() -> (CollisionWorld<f32, ()>, [CollisionObjectHandle; 3]) {
     let mut world = CollisionWorld::new(0.02);
     let shape = ShapeHandle::new(Ball::new(0.5));
@@ -142,7 +144,8 @@ fn dispatchers_of_ones_own() {
     assert_eq!(world.contact_events(), [ContactEvent::Started(first, second)], "by the library");
     assert!(world.proximity_events().is_empty(), "there is no algorithm");
 
-    // The pairs without algorithm must end with the old narrow phase and broad phase.
+    // The pairs without an algorithm must go with the old narrow phase and broad phase and send no
+    // events.
     world.set_broad_phase(Box::new(DBVTBroadPhase::new(0.5)));
     world.update();
     assert!(world.contact_events().is_empty() && world.proximity_events().is_empty(), "the same");
@@ -157,7 +160,8 @@ fn dispatchers_of_ones_own() {
     world.validate().expect("the parts agree");
 }
 
-/// The default narrow phase behind a wall: it reports no proximities to others.
+/// Wraps the default narrow phase and hands only pairs of two contact queries to it: no proximities
+/// are reported.
 #[derive(Clone, Debug, Default)]
 struct ContactsOnly(DefaultNarrowPhase<f32>);
 
@@ -253,7 +257,7 @@ fn a_narrow_phase_of_ones_own() {
     assert_eq!(world.contact_events(), [ContactEvent::Stopped(first, second)], "as ever");
 }
 
-/// Nobody is valid.
+/// Filter that refuses every pair.
 struct Nobody;
 
 impl<N: Real, T> BroadPhasePairFilter<N, T> for Nobody {

@@ -1,12 +1,12 @@
-//! The order of the modules and the rules of the house, read off the sources.
+//! Tests the order of the modules and the rules for sources, by reading the sources.
 //!
 //! A module imports only from floors below its own, or from itself. `tables/` is the one hook that
-//! reaches upwards, `lib.rs` names the modules, and tests may look anywhere.
+//! reaches upwards, `lib.rs` names the modules, and tests may import anything.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// From the ground up.
+/// Modules by floor, the lowest floor first. Modules of one floor do not import each other.
 const FLOORS: [&[&str]; 13] = [
     &["chunks", "generation", "journal", "math", "memory"],
     &["bounding_volume", "pairs"],
@@ -24,16 +24,16 @@ const FLOORS: [&[&str]; 13] = [
 ];
 
 struct Source {
-    /// Below `src`.
+    /// Path below `src`.
     path: PathBuf,
-    /// The module at the top that the file belongs to.
+    /// Top-level module that the file belongs to.
     module: String,
     lines: usize,
-    /// The lines that are neither comments nor the tests at the foot.
+    /// Lines that are neither comments nor part of the test module at the end.
     code: Vec<String>,
 }
 
-/// All files but the tests in files of their own.
+/// All source files except those that hold only tests.
 fn sources() -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let (mut folders, mut sources) = (vec![root.clone()], Vec::new());
@@ -70,7 +70,7 @@ fn floor(module: &str) -> Option<usize> {
     FLOORS.iter().position(|floor| floor.contains(&module))
 }
 
-/// The modules at the top that a line of code names.
+/// The top-level modules that a line of code names after `crate::`.
 fn named(line: &str) -> impl Iterator<Item = &str> {
     let ends = |c: char| !c.is_alphanumeric() && c != '_';
     line.split("crate::").skip(1).filter_map(move |rest| rest.split(ends).next())
@@ -86,7 +86,7 @@ fn modules_import_only_from_floors_below() {
         assert!(own.is_some(), "{} stands on no floor", source.path.display());
         for line in &source.code {
             let upward = |other: &&str| *other != source.module && floor(other) >= own;
-            // The tables are on no floor: every module may reach the hook.
+            // `tables` is on no floor, so every module may use it.
             for other in named(line).filter(|other| floor(other).is_some()).filter(upward) {
                 found.push(format!("{} uses {other}: {line}", source.path.display()));
             }
@@ -108,7 +108,7 @@ fn rules_of_the_house() {
             let forbidden = asks_dimension.iter().any(|words| line.contains(words))
                 || line.contains(".unwrap()")
                 || (line.contains("nalgebra") && source.module != "math")
-                // Kernels that are compiled for its fallback take compilers forever.
+                // Kernels compiled for the fallback of `dispatch` take very long to compile.
                 || line.contains("fearless_simd::dispatch")
                 || (line.contains("fearless_simd")
                     && !["math", "bvh"].contains(&source.module.as_str()));

@@ -1,4 +1,4 @@
-//! The bytes that a world costs for objects to which nothing happens.
+//! Bounds the bytes of a world for each object that rests.
 
 use crate::support::world_stage;
 
@@ -8,9 +8,9 @@ use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use world_stage::{Stage, ball};
 
-/// Steps after which every object counts as still and memory that was needed once is given back.
+/// Number of steps after which every object counts as still and spare memory has been given back.
 const ASLEEP: u32 = 300;
-/// Bytes that a world may have beside those for each object.
+/// Bytes allowed for a world beside those of its objects.
 const WORLD: usize = 200_000;
 
 struct Grid<N: Space<D>, const D: usize> {
@@ -18,7 +18,7 @@ struct Grid<N: Space<D>, const D: usize> {
     handles: Vec<CollisionObjectHandle>,
 }
 
-/// Where the object of an index is on a grid of this spacing.
+/// Position of object `index` of `count` on a grid of this spacing.
 fn place<const D: usize>(index: usize, count: usize, spacing: f64) -> [f64; D] {
     let volume = |row: usize| row.pow(u32::try_from(D).expect("2 or 3"));
     let row = (1..).find(|&row| volume(row) >= count).expect("some row is long enough");
@@ -31,7 +31,7 @@ fn place<const D: usize>(index: usize, count: usize, spacing: f64) -> [f64; D] {
 }
 
 impl<N: Stage<D>, const D: usize> Grid<N, D> {
-    /// Balls of diameter 1, which share their shape, at rest.
+    /// Balls of diameter 1 at rest, which share their shape.
     fn new(count: usize, spacing: f64) -> Self {
         let (mut world, shape) = (CollisionWorld::new(N::lit(0.02)), ball::<N, D>(0.5));
         let query = GeometricQueryType::Contacts(N::lit(0.01), N::ZERO);
@@ -48,7 +48,7 @@ impl<N: Stage<D>, const D: usize> Grid<N, D> {
     }
 }
 
-/// Bytes for each object of what `make` leaves behind, without the list of handles that this test keeps.
+/// Bytes for each object of the grid that `make` returns, without the list of handles that the test keeps.
 fn bytes_each<N: Stage<D>, const D: usize>(count: usize, make: impl FnOnce() -> Grid<N, D>) -> f64 {
     let mut kept = None;
     let used = measure(|| kept = Some(make()));
@@ -57,7 +57,7 @@ fn bytes_each<N: Stage<D>, const D: usize>(count: usize, make: impl FnOnce() -> 
     (used - handles - WORLD.min(used - handles)) as f64 / count as f64
 }
 
-/// Objects that sleep and never had pairs.
+/// Bytes of objects that rest and never had pairs: the spacing 1.5 keeps balls of diameter 1 apart.
 fn sleeps_in<N: Stage<D>, const D: usize>(bound: f64) {
     let count = 20_000;
     let fresh = bytes_each(count, || {
@@ -69,9 +69,9 @@ fn sleeps_in<N: Stage<D>, const D: usize>(bound: f64) {
     assert!(fresh <= bound, "{fresh} bytes for an object that sleeps, {bound} are allowed");
 }
 
-/// In space with `f32`: 96 bytes are the record of the user's words (pose 28, shape 16 and its numbers 12,
-/// query 8, groups 12, handles 16, its state 4), 48 the volume and the loosened one, 24 the box in the tree, about 45 the
-/// numbers that join these; an eighth is for growth.
+/// In 3D with `f32` an object takes 96 bytes for the user's data (pose 28, shape 16 and its numbers 12, query 8, groups
+/// 12, handles 16, state 4), 48 for its volume and the loosened one, 24 for its box in the tree, and about 45 for the
+/// indices that join these; an eighth is left for growth.
 #[test]
 fn an_object_that_sleeps_takes_256_bytes() {
     sleeps_in::<f32, 3>(256.0);
@@ -85,7 +85,7 @@ fn a_quiet_step_takes_no_memory() {
     for spacing in [1.0, 1.5] {
         let mut grid = Grid::<f64, 3>::new(3000, spacing);
         grid.rest();
-        // Two looks at what can be given back are among these.
+        // Within these 128 steps the world checks twice whether memory can be given back.
         let used = measure(|| (0..128).for_each(|_| grid.world.update()));
         assert_eq!(used.count_total, 0, "spacing {spacing}: {used:?}");
     }

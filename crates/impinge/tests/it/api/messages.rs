@@ -1,4 +1,5 @@
-//! What panics say: the handle or the value at fault, in the words of the error of the `try_` twin.
+//! Tests that messages of panics name the handle or the value at fault, in the words of the error
+//! of the matching `try_` method.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -13,13 +14,13 @@ use impinge::dim2::shape::{
 };
 use impinge::dim2::world::{CollisionGroups, CollisionObject, CollisionWorld, GeometricQueryType};
 
-/// What a call panics with.
+/// The message with which `call` panics.
 fn message<R>(call: impl FnOnce() -> R) -> String {
     let Err(panic) = catch_unwind(AssertUnwindSafe(call)) else { panic!("no panic") };
     *panic.downcast::<String>().expect("a formatted message")
 }
 
-/// The call panics with a message that holds all of `parts`.
+/// Asserts that `call` panics with a message that contains all of `parts`.
 #[track_caller]
 fn names<R>(parts: &[&str], call: impl FnOnce() -> R) {
     let message = message(call);
@@ -113,7 +114,7 @@ fn features_that_are_not_there_are_named() {
     names(&["Face(4)"], || cuboid.feature_normal(FeatureId::Face(4)));
 }
 
-/// Fields and marks of the insides of types, which tell users nothing.
+/// Names of private fields and parts, which mean nothing to users.
 const INSIDES: [&str; 22] = [
     "state",
     "blocks",
@@ -139,7 +140,7 @@ const INSIDES: [&str; 22] = [
     "4294967295",
 ];
 
-/// What a value prints, which holds all of `parts` and nothing of the insides.
+/// Asserts that the debug output of a value contains all of `parts` and none of [`INSIDES`].
 #[track_caller]
 fn prints(value: &dyn std::fmt::Debug, parts: &[&str]) {
     let text = format!("{value:?}");

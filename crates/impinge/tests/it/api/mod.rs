@@ -1,4 +1,5 @@
-//! The public interface: chapters of the specification, messages, memory, the rules of the house.
+//! Tests of the public interface: chapters of the specification, messages, memory, rules for the
+//! sources.
 
 mod allocations;
 mod architecture;
@@ -13,5 +14,6 @@ mod dim3;
 mod floors;
 mod memory;
 mod messages;
+mod prose;
 mod public_face;
 mod values;

@@ -1,5 +1,5 @@
-//! Programs as a user writes them who begins with the prelude: the names that there are, in both dimensions and for
-//! both scalars, and that short names are the generic types.
+//! Programs of users who start with the prelude: the names exist in both dimensions and for both
+//! scalars, and the short names are the generic types.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Real, Space, Vector};
@@ -7,7 +7,7 @@ use impinge::shape::{
     CompositeShape, FeatureId, Geometry, Part, PartSearch, Polyline, Shape, Surface,
 };
 
-/// A line behind a type of one's own: all that a user's surface has to answer, and no more.
+/// A polyline behind a custom type that implements only the required methods of a composite shape.
 #[derive(Debug)]
 struct Ground<N: Space<D>, const D: usize>(Polyline<N, D>);
 
@@ -57,7 +57,7 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Ground<N, D> {
     }
 }
 
-/// The programs of one dimension; they are the same source for both.
+/// The programs of one dimension, written once for both.
 macro_rules! programs {
     ($name:ident, $dim:ident, $d:literal) => {
         mod $name {
@@ -73,7 +73,7 @@ macro_rules! programs {
                 Cuboid::new(Vector::repeat(N::lit(size)))
             }
 
-            /// All of a usual program, with no other import.
+            /// A typical program that needs no import beside the prelude.
             fn program<N: Real>() {
                 let mut world = CollisionWorld::new(N::lit(0.02));
                 let groups = CollisionGroups::new();
@@ -123,7 +123,8 @@ macro_rules! programs {
                 assert_eq!(around.maxs().y, N::lit(4.0), "its box");
             }
 
-            /// The numbers of a query type by their names, and the same events whichever way they are given.
+            /// Query types made from named fields equal those made by position, and cause the same
+            /// events.
             fn query_types<N: Real>() {
                 let contacts = ContactQuery::new(N::HALF).with_angular_prediction(N::ONE);
                 let by_place = GeometricQueryType::Contacts(N::HALF, N::ONE);
@@ -158,7 +159,7 @@ macro_rules! programs {
                 );
             }
 
-            /// Each name of a question answers as the one that it is the same as.
+            /// Each alias of a query gives the result of the method it stands for.
             fn aliases<N: Real>() {
                 let mut world = CollisionWorld::new(N::lit(0.02));
                 let ball = ShapeHandle::new(Ball::new(N::ONE));
@@ -195,7 +196,7 @@ macro_rules! programs {
                 assert_eq!(found.map(|hit| hit.toi), ball.toi_with_ray(&here, &ray, true), "time");
             }
 
-            /// A line along the first axis.
+            /// A polyline along the first axis, from -3 to 3.
             fn line<N: Real>() -> Polyline<N> {
                 let at = |x: i32| Point::from(Vector::x() * N::lit(f64::from(x)));
                 Polyline::open((-3..4).map(at).collect())
@@ -224,7 +225,7 @@ macro_rules! programs {
                 }
             }
 
-            /// A world with pairs of all ways that contacts are kept, in both orders.
+            /// A world with pairs of every representation of contacts, in both orders.
             fn crowd<N: Real>() -> CollisionWorld<N, ()> {
                 let mut world = CollisionWorld::new(N::lit(0.02));
                 let query = ContactQuery::new(N::lit(0.125)).with_angular_prediction(N::lit(0.09));
@@ -247,7 +248,7 @@ macro_rules! programs {
                 world
             }
 
-            /// A turn by a tenth of a radian, all in the plane of the first two axes.
+            /// A rotation by a tenth of a radian in the plane of the first two axes.
             fn tilted<N: Real>() -> Isometry<N> {
                 let (from, to) = (Vector::x(), Vector::x() + Vector::y() * N::lit(0.1));
                 let turn = Rotation::rotation_between(&from, &to);
@@ -330,12 +331,12 @@ macro_rules! programs {
 programs!(plane, dim2, 2);
 programs!(space, dim3, 3);
 
-/// Vectors and poses of glam, in and out of a world.
+/// Passes vectors and poses of glam into a world and out of it.
 #[cfg(feature = "glam")]
 mod glam_conversions {
     use glam::{DQuat, DVec3, Mat4, Quat, Vec2, Vec3};
 
-    /// A ball that a program with vectors of glam drops on a box in 3D.
+    /// A program with glam vectors places a ball on a box in 3D.
     #[test]
     fn in_space() {
         use impinge::dim3::prelude::*;
@@ -362,7 +363,7 @@ mod glam_conversions {
         assert_eq!(exact.translation.x, 1.0, "of f64 too");
     }
 
-    /// Points and poses in 2D.
+    /// Converts points and poses in 2D.
     #[test]
     fn in_the_plane() {
         use impinge::dim2::prelude::*;

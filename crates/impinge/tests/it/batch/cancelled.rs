@@ -1,4 +1,4 @@
-//! Progress and cancellation, of every method.
+//! Tests progress and cancellation of every method of batches.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -16,7 +16,7 @@ use super::scene::on_threads;
 
 const COUNT: usize = 1000;
 
-/// Calls with each method, by its name.
+/// Passes each method to `call` together with its name.
 fn each_method(call: impl Fn(&str, &dyn Fn(&Control<'_>) -> Result<(), BatchError>)) {
     let ball = Ball::new(1.0_f64);
     let at = |index: usize| Pose::from_translation(Vector::<f64, 2>::new(3.0 * index as f64, 0.0));
@@ -48,7 +48,8 @@ fn each_method(call: impl Fn(&str, &dyn Fn(&Control<'_>) -> Result<(), BatchErro
     call("cast", &|control| rays.cast(control, HitColumns::default()));
 }
 
-/// What a batch says that is cancelled at a call, and what the callback heard.
+/// Result of a batch whose callback cancels at its call number `call`, and the progress reported
+/// until then.
 fn cancelled_at(
     call: usize,
     run: &dyn Fn(&Control<'_>) -> Result<(), BatchError>,

@@ -1,4 +1,4 @@
-//! Manifolds against those of a new generator for each pair.
+//! Compares the manifolds of batches with those of a new generator for each pair.
 
 use impinge::batch::{Control, ManifoldRows, OnePose, PairBatch, Shapes, Side};
 use impinge::math::{AbstractRotation, Isometry, Isometry3, Pose, Space, Vector};
@@ -12,7 +12,8 @@ use impinge::shape::{Ball, Capsule, Cuboid, Segment, ShapeHandle};
 use super::scene::{Scene, assert_number, assert_point, on_threads, scene2, scene3};
 use crate::support::query_support::random::Random;
 
-/// The points of pair `index` are those of the manifolds; the number of these.
+/// Asserts that the rows of pair `index` hold the points of the expected manifolds, and returns the
+/// number of points.
 fn check<N: Space<D>, const D: usize>(
     rows: &ManifoldRows<N, D>,
     index: usize,
@@ -82,7 +83,8 @@ fn points_are_those_of_new_generators() {
     rows_of_all(&scene3::<f64>(0.0));
 }
 
-/// Kinds with lanes in random order, in groups that are not full, near each other.
+/// Kinds of pairs that are computed in lanes, in random order, so that groups stay incomplete; all
+/// solids are near each other.
 #[test]
 fn lanes_take_pairs_of_mixed_kinds() {
     let random = &mut Random(3, false);

@@ -1,4 +1,4 @@
-//! Batches against single calls, bit for bit.
+//! Compares batches with single calls, bit for bit.
 
 mod cancelled;
 mod manifolds;

@@ -1,4 +1,4 @@
-//! The minimum of a batch against the minimum of single calls.
+//! Compares the minimum over a batch with the minimum over single calls.
 
 use impinge::batch::{Control, OnePose, PairBatch, Shapes, Side};
 use impinge::math::{AbstractRotation, Pose, Space, Vector};
@@ -7,7 +7,7 @@ use impinge::shape::Ball;
 
 use super::scene::{Scene, on_threads, scene2, scene3};
 
-/// The least by distance, then by index, of the pairs from one on.
+/// The least distance of the pairs from index `from` on; of equal ones that with the least index.
 fn least<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
     from: usize,
@@ -24,7 +24,8 @@ fn least<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize>(
     least
 }
 
-/// Keeps the pairs that are apart, and all of them twice, so that each distance occurs twice.
+/// Keeps the pairs that are more than 0.5 apart, and doubles them, so that each distance occurs
+/// twice and the index decides.
 fn apart<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     scene: Scene<N, R, D>,
 ) -> Scene<N, R, D> {
@@ -72,7 +73,7 @@ fn the_least_of_all_by_distance_then_by_index() {
 fn of_equals_the_first_on_any_number_of_threads() {
     let ball = Ball::new(1.0_f64);
     let at = |x: f64| Pose::from_translation(Vector::<f64, 2>::new(x, 0.0));
-    // All at one distance, but for two that are nearer by as much.
+    // All at one distance, except two that are nearer by equal amounts.
     let mut poses = vec![at(10.0); 2000];
     let here = OnePose(at(0.0));
     let nearest = |poses: &Vec<Pose<f64, 2>>, threads| {

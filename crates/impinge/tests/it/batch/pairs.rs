@@ -1,4 +1,4 @@
-//! Each question about pairs against the single call.
+//! Compares each query of pairs with the single call.
 
 use impinge::batch::{
     ClosestColumns, ContactColumns, Control, ImpactColumns, NO_FEATURE, WitnessColumns,
@@ -12,10 +12,10 @@ use impinge::shape::FeatureId;
 
 use super::scene::{Scene, assert_number, assert_point, on_threads, scene2, scene3};
 
-/// Limits at which some pairs of a scene have an answer and others do not.
+/// Limits at which some pairs of a scene have a result and others have none.
 const LIMITS: [f64; 4] = [0.0, 0.5, f64::INFINITY, -0.25];
 
-/// Calls a generic function with the scenes of both dimensions and scalars, near the origin and far from it.
+/// Calls a generic function with scenes of both dimensions and scalars, near the origin and 1e6 away from it.
 macro_rules! everywhere {
     ($check:ident) => {
         $check(&scene2::<f32>(0.0));

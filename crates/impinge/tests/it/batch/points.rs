@@ -1,4 +1,4 @@
-//! Points against single calls.
+//! Compares queries of points with single calls.
 
 use impinge::batch::{Control, NO_FEATURE, OnePose, PointBatch, ProjectionColumns, Shapes, Side};
 use impinge::math::{AbstractRotation, Isometry, Point, Space};
@@ -7,7 +7,7 @@ use impinge::query::PointQuery;
 use super::scene::{Scene, assert_number, assert_point, on_threads, scene2, scene3};
 use crate::support::query_support::random::Random;
 
-/// A point near each of the second solids of a scene; some are not finite.
+/// A point near the first solid of each pair; two points are not finite.
 fn points_near<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
 ) -> Vec<[N; D]> {
@@ -68,7 +68,7 @@ fn projections_are_those_of_single_calls() {
     check(&scene3::<f64>(0.0));
 }
 
-/// One point beside many shapes, many points beside one.
+/// Compares one point against many shapes and many points against one shape with single calls.
 fn one_against_many<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
 ) {

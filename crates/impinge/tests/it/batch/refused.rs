@@ -1,4 +1,4 @@
-//! Input that is refused, by what it is called; nothing is changed by it.
+//! Tests which inputs are refused with which error, and that the output stays unchanged.
 
 use impinge::batch::{
     BatchError, ClosestColumns, ContactColumns, Control, HitColumns, ImpactColumns, OnePose,

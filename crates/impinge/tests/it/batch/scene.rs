@@ -1,4 +1,4 @@
-//! All shapes in all settings, side by side.
+//! Pairs of all shapes in all relative positions.
 
 use impinge::batch::{PairBatch, PoseSource, Shapes, Side};
 use impinge::math::na::{UnitComplex, UnitQuaternion};
@@ -8,15 +8,16 @@ use impinge::shape::ShapeHandle;
 use crate::support::query_support::random::Random;
 use crate::support::shape_table;
 
-/// Pairs of shapes from a list.
+/// Pairs of shapes taken from a list, with poses.
 pub(super) struct Scene<N: Real, R, const D: usize> {
     pub(super) shapes: Vec<ShapeHandle<N, D>>,
     pub(super) picks: [Vec<u32>; 2],
     pub(super) poses: [Vec<Isometry<N, R, D>>; 2],
 }
 
-/// Every shape with every other: at one place, with touching boxes, turned and overlapping, near, far, and
-/// with a place that is NaN. All about a point so far from the origin along every axis.
+/// Pairs every shape with every other: with equal centres, with touching boxes, turned and
+/// overlapping, near, far, and with a position that is NaN. All lie around the point whose
+/// coordinates are all `away`.
 fn scene<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize>(
     table: shape_table::Shapes<N, D>,
     away: f64,
@@ -67,7 +68,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> Scene<N, R, 
         self.picks[0].len()
     }
 
-    /// The shape of one side of a pair.
+    /// Shape of pair `index` on `side`.
     pub(super) fn shape(&self, side: usize, index: usize) -> &ShapeHandle<N, D> {
         &self.shapes[self.picks[side][index] as usize]
     }
@@ -76,7 +77,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> Scene<N, R, 
         Shapes::Picked { shapes: &self.shapes, picks: &self.picks[side] }
     }
 
-    /// One side with the scene's shapes at poses.
+    /// One side of a batch: the scene's shapes at `poses`.
     pub(super) fn side<'a>(
         &'a self,
         side: usize,
@@ -91,13 +92,14 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> Scene<N, R, 
     }
 }
 
-/// Runs on a pool of so many threads; they share the chunks of a batch if the library is parallel.
+/// Runs on a pool of `threads` threads, which share the chunks of a batch if the feature `parallel`
+/// is on.
 pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(run)
 }
 
-/// The same numbers to the bit, or all NaN in place of nothing.
+/// Asserts that the coordinates have equal bits, or that all are NaN where `expected` is `None`.
 #[track_caller]
 pub(super) fn assert_point<N: Real, const D: usize>(
     found: &[N; D],
@@ -113,7 +115,7 @@ pub(super) fn assert_point<N: Real, const D: usize>(
     }
 }
 
-/// The same number to the bit.
+/// Asserts that two numbers have equal bits.
 #[track_caller]
 pub(crate) fn assert_number<N: Real>(found: N, expected: N, what: &str) {
     assert_eq!(found.bits(), expected.bits(), "{what}: {found} and {expected}");

@@ -1,4 +1,4 @@
-//! The pairs of all tiles together against those of one call, for any number of tiles.
+//! Compares the pairs of all tiles together with those of one call, for several numbers of tiles.
 
 use impinge::batch::{
     BatchError, Control, Shapes, Side, TileCut, Tiles, boxes, pairs_in_tile, pairs_within_one,
@@ -10,7 +10,7 @@ use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 
 use crate::support::query_support::random::Random;
 
-/// Some shapes at places, with ids in no order.
+/// Placed shapes, with ids in no order.
 struct Heap<N: Space<D>, const D: usize> {
     shapes: Vec<ShapeHandle<N, D>>,
     picks: Vec<u32>,
@@ -34,13 +34,14 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
     fn add(&mut self, pick: u32, place: Vector<N, D>) {
         self.picks.push(pick);
         self.poses.push(Pose::from_translation(place));
-        // Odd factors are invertible: no two ids are equal.
+        // An odd factor is invertible modulo 2⁶⁴, so all ids differ.
         let count = u64::try_from(self.ids.len()).expect("few");
         self.ids.push(count.wrapping_mul(0x9E37_79B9_7F4A_7C15));
     }
 
-    /// Balls and boxes in clusters, each of a thousandth of the density of the one before; two at one place, a huge
-    /// one, half-spaces, and one that is nowhere.
+    /// Balls and boxes in three clusters, each 10 times as wide as the one before with as many
+    /// objects. With `odd` also four balls with equal centres, a huge object, half-spaces and a
+    /// ball at NaN.
     fn uneven(count: usize, odd: bool) -> Self {
         let (mut heap, mut random) = (Self::new(), Random(5, false));
         for index in 0..count {
@@ -57,7 +58,8 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         heap
     }
 
-    /// Cubes of the size 1 on a grid of the size 1.5: neighbours are exactly half apart, and faces lie on cuts.
+    /// Cubes of size 1 on a grid of spacing 1.5: neighbours are exactly 0.5 apart, and faces lie on
+    /// cuts.
     fn grid(width: usize) -> Self {
         let mut heap = Self::new();
         for index in 0..width.pow(u32::try_from(D).expect("few")) {
@@ -76,7 +78,7 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         boxes(&Side::try_new(shapes, &self.poses).expect("as many"), &Control::new()).expect("few")
     }
 
-    /// The pairs of ids in one call.
+    /// The pairs of ids that one call finds.
     fn pairs(&self, distance: N) -> Vec<[u64; 2]> {
         let shapes = Shapes::Picked { shapes: &self.shapes, picks: &self.picks };
         let side = Side::try_new(shapes, &self.poses).expect("as many");
@@ -91,7 +93,7 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         named
     }
 
-    /// The objects of each tile, in descending order: no order counts.
+    /// The objects of each tile in descending order: the order of objects must not matter.
     fn objects(&self, tiles: &Tiles<N, D>) -> Vec<Vec<usize>> {
         let rows = tiles.meeting(&self.boxes());
         let mut objects = vec![vec![]; tiles.number() as usize];
@@ -112,7 +114,8 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         found
     }
 
-    /// Asks tile by tile, with tiles from every `step`-th box.
+    /// Compares the pairs of all tiles with those of one call; the tiles are made from every
+    /// `step`-th box.
     fn check(&self, distance: f64, step: usize) -> usize {
         let distance = N::lit(distance);
         let expected = self.pairs(distance);
@@ -135,7 +138,7 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
     }
 }
 
-/// The second unit vector.
+/// The second unit vector in any dimension.
 trait YAxis<N, const D: usize> {
     fn y_axis_of() -> Unit<Vector<N, D>>;
 }
@@ -152,7 +155,8 @@ fn check<N: Space<D>, const D: usize>() {
         let count = uneven.check(distance, 5);
         assert!(count > 100, "{count} pairs within {distance}");
     }
-    // Of the sample nothing is near these; and one of nothing.
+    // First with tiles made from a sample of one box, which lies away from most objects; then with
+    // a distance that makes every two objects a pair.
     assert!(uneven.check(0.25, 10_000) > 100, "one box");
     assert!(Heap::<N, D>::uneven(60, true).check(f64::INFINITY, 1) > 60 * 59 / 2, "all of them");
     let width = if uneven.shapes[0].local_aabb().mins().len() == 2 { 20_usize } else { 7 };

@@ -1,4 +1,5 @@
-//! Bounding volumes hold what they are around to the last bit, and are hardly larger; asked with 31 digits.
+//! Tests with 31 digits that bounding volumes hold their contents to the last bit and are hardly
+//! larger.
 
 use impinge::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use impinge::math::na::{Quaternion, UnitQuaternion};
@@ -28,17 +29,17 @@ fn norm<const D: usize>(a: &Exact<D>) -> Quad {
     dot(a, a).sqrt()
 }
 
-/// What a solid is the hull of.
+/// Pieces whose convex hull is a solid.
 #[derive(Clone, Debug)]
 enum Piece<const D: usize> {
     Ball([f64; D], f64),
-    /// A disk across the y axis at a height.
+    /// A disk at right angles to the y axis, by its height and its radius.
     Disk(f64, f64),
     Ellipsoid([f64; D]),
 }
 
 impl<const D: usize> Piece<D> {
-    /// How far it reaches along a direction, and how far from its origin at most.
+    /// Farthest extent along a direction, and greatest distance from the origin.
     fn reach(&self, direction: &Exact<D>) -> Quad {
         match self {
             Self::Ball(center, radius) => {
@@ -69,7 +70,7 @@ impl<const D: usize> Piece<D> {
 
 type Solid<N, const D: usize> = (ShapeHandle<N, D>, Vec<Piece<D>>);
 
-/// Numbers of the scalar, as `f64`.
+/// Random numbers that the scalar represents exactly, as `f64`.
 fn numbers<N: Real, const K: usize>(random: &mut Random, limit: f64) -> [f64; K] {
     std::array::from_fn(|_| N::lit(random.range(-limit, limit)).as_f64())
 }
@@ -82,7 +83,7 @@ fn point<N: Real, const D: usize>(p: &[f64; D]) -> Point<N, D> {
     Point::from(Vector::<N, D>::from_fn(|axis, _| N::lit(p[axis])))
 }
 
-/// Shapes of both dimensions.
+/// Solids of both dimensions.
 fn solids<N: Space<D>, const D: usize>(random: &mut Random) -> Vec<Solid<N, D>> {
     let [a, b, c]: [[f64; D]; 3] = [(); 3].map(|()| numbers::<N, D>(random, 20.0));
     let [r, s] = lengths::<N, 2>(random);
@@ -119,7 +120,7 @@ fn solids<N: Space<D>, const D: usize>(random: &mut Random) -> Vec<Solid<N, D>> 
     ]
 }
 
-/// Those of space.
+/// Solids in 3D: those of both dimensions and some that exist in 3D only.
 fn solids3<N: Space<3>>(random: &mut Random) -> Vec<Solid<N, 3>> {
     let [r, h] = lengths::<N, 2>(random);
     let corners: [[f64; 3]; 9] = [(); 9].map(|()| numbers::<N, 3>(random, 20.0));
@@ -134,7 +135,7 @@ fn solids3<N: Space<3>>(random: &mut Random) -> Vec<Solid<N, 3>> {
     all
 }
 
-/// The box of a shape holds it, and is larger by rounding alone.
+/// The box of a shape holds it, and is larger by no more than rounding.
 fn check_box<N: Space<D>, const D: usize>((shape, pieces): &Solid<N, D>, pose: &Pose<N, D>) {
     let aabb = shape.aabb(pose);
     let size = pieces.iter().map(Piece::size).fold(0.0, f64::max);
@@ -161,7 +162,7 @@ fn check_box<N: Space<D>, const D: usize>((shape, pieces): &Solid<N, D>, pose: &
     check_sphere(shape, pieces, pose);
 }
 
-/// So does the sphere.
+/// The bounding sphere of a shape holds it.
 fn check_sphere<N: Space<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     pieces: &[Piece<D>],
@@ -180,7 +181,7 @@ fn check_sphere<N: Space<D>, const D: usize>(
     }
 }
 
-/// Angles: none, quarters, hardly any, any.
+/// A random angle: zero, a quarter turn, a tiny one or any.
 fn angle<N: Real>(random: &mut Random) -> N {
     let tilt = random.magnitude(1e-12, 40);
     N::lit(*random.pick(&[0.0, std::f64::consts::FRAC_PI_2, tilt, -tilt, random_angle(tilt)]))
@@ -241,7 +242,8 @@ fn boxes_and_spheres_hold_the_shapes_in_the_plane() {
     all_in_the_plane::<f64>(4);
 }
 
-/// A compound turns its children twice.
+/// The box of a compound holds the children, whose corners are placed by two poses one after the
+/// other.
 fn compounds<N: Space<3, Isometry = Isometry3<N>>>(seed: u64) {
     let mut random = Random::new(seed);
     for _ in 0..300 {
@@ -290,7 +292,8 @@ fn random_box<N: Real, const D: usize>(random: &mut Random) -> Aabb<N, D> {
     Aabb::from_half_extents(Point::from(center), Vector::<N, D>::from_fn(|i, _| N::lit(half[i])))
 }
 
-/// The corner that is the greatest along the axes whose bits are set.
+/// The corner with the greatest coordinate on the axes whose bits are set, and the least on the
+/// others.
 fn corner_of<N: Real, const D: usize>(aabb: &Aabb<N, D>, bits: usize) -> Exact<D> {
     std::array::from_fn(|axis| {
         let ends = [aabb.mins()[axis], aabb.maxs()[axis]];
@@ -298,7 +301,7 @@ fn corner_of<N: Real, const D: usize>(aabb: &Aabb<N, D>, bits: usize) -> Exact<D
     })
 }
 
-/// A box made of others holds what the numbers say.
+/// Boxes derived from boxes (turned, loosened, swept, ...) hold the exact result.
 fn boxes<N: Space<D>, const D: usize>(seed: u64, pose: fn(&mut Random) -> Pose<N, D>) {
     let mut random = Random::new(seed);
     for _ in 0..3000 {
@@ -332,7 +335,7 @@ fn boxes_round_outwards() {
     boxes::<f64, 3>(10, pose3);
 }
 
-/// How far the farthest point of a sphere that was moved by a vector sticks out of another.
+/// How far the inner sphere, moved by `by`, reaches beyond the outer one; negative if it is inside.
 fn outside<N: Real, const D: usize>(
     outer: &BoundingSphere<N, D>,
     inner: &BoundingSphere<N, D>,

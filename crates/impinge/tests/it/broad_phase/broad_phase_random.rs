@@ -1,11 +1,11 @@
-//! Random sequences of calls against a broad phase that tests all pairs.
+//! Compares the broad phase with one that tests all pairs, over random sequences of calls.
 
 use crate::support::broad_phase_model;
 
 use broad_phase_model::{Plan, Reached, run};
 use impinge::math::Space;
 
-/// Runs plans of several sizes; the coordinates lie on a grid, so that touching is common.
+/// Runs plans of several sizes; all coordinates lie on a grid, so that touching is common.
 fn check<N: Space<D>, const D: usize>(size: u32) {
     let small = (0..6).map(|seed| Plan {
         seed,

@@ -1,4 +1,4 @@
-//! Bounding volumes, trees and broad phases.
+//! Tests of bounding volumes, trees and broad phases.
 
 mod bounding_volumes;
 mod broad_phase_random;

@@ -1,14 +1,14 @@
-//! The tree over a user's boxes against looking at every box.
+//! Compares the tree over a user's boxes with a scan of all boxes.
 //!
-//! Coordinates are whole numbers or halves, so that touching is common and the tests here, done in `f64`
-//! without rounding, are exact.
+//! Coordinates are whole numbers or halves, so that touching is common and the scan, done in `f64`
+//! without rounding, is exact.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::{Point, Real, Space, Vector};
 use impinge::partitioning::{BoxTree, BoxTreeError};
 use impinge_reference::random::Random;
 
-/// A box as two corners.
+/// A box as its least and its greatest corner.
 type Corners<const D: usize> = [[f64; D]; 2];
 
 const COUNTS: [usize; 8] = [0, 1, 2, 16, 17, 257, 600, 4200];
@@ -32,7 +32,7 @@ fn tree_of<N: Space<D>, const D: usize>(corners: &[Corners<D>]) -> BoxTree<N, D>
     tree
 }
 
-/// A multiple of a half in 0..side.
+/// A random multiple of 0.5 in `0..side`.
 fn half(random: &mut Random, side: usize) -> f64 {
     let doubled = u16::try_from(random.below(2 * side)).expect("a small grid");
     f64::from(doubled) / 2.0
@@ -42,7 +42,8 @@ fn place<const D: usize>(random: &mut Random, side: usize) -> [f64; D] {
     core::array::from_fn(|_| half(random, side))
 }
 
-/// Boxes of up to two units on a grid on which a few overlap; flat ones and copies are among them.
+/// Boxes of extents up to 2 on a grid so large that only a few overlap; flat boxes and copies are
+/// among them.
 fn scene<const D: usize>(random: &mut Random, count: usize) -> (usize, Vec<Corners<D>>) {
     let dimension = u32::try_from(D).expect("small");
     let holds = |side: &usize| side.pow(dimension) >= count;
@@ -68,7 +69,8 @@ fn matching<const D: usize>(
     (0..boxes.len()).filter(|&index| accept(&boxes[index])).collect()
 }
 
-/// How many of some numbers were more than zero, to be between a tenth and all of them.
+/// Asserts that at least a tenth of `of` cases were hits, so that the test does not pass for lack
+/// of them.
 fn assert_common(what: &str, hits: usize, of: usize) {
     assert!(10 * hits >= of, "{what}: {hits} of {of} found something");
 }
@@ -100,8 +102,8 @@ fn boxes_and_points<N: Space<D>, const D: usize>() {
     assert_common("points that miss", misses, asked);
 }
 
-/// When a ray enters a box, by asking at each time at which it crosses a face whether it is in the box.
-/// The numbers are such that nothing rounds.
+/// Time at which a ray enters a box: the least of the times at which it crosses a face and is in
+/// the box. The numbers are chosen so that nothing rounds.
 fn entry<const D: usize>([lo, hi]: &Corners<D>, from: &[f64; D], dir: &[f64; D]) -> Option<f64> {
     let crossing = |axis: usize| [lo, hi].map(|face| (face[axis] - from[axis]) / dir[axis]);
     let crossings = (0..D).filter(|&axis| dir[axis] != 0.0).flat_map(crossing);
@@ -120,7 +122,7 @@ fn rays<N: Space<D>, const D: usize>() {
         let tree = tree_of::<N, D>(&boxes);
         for _ in 0..100 {
             let from: [f64; D] = place(&mut random, side);
-            // Speeds are powers of two or zero: all quotients are exact.
+            // Speeds are powers of two or zero, so all quotients are exact.
             let dir: [f64; D] =
                 core::array::from_fn(|_| [-2.0, -1.0, -0.5, 0.0, 0.5, 1.0][random.below(6)]);
             let ray = Ray::new(point::<N, D>(from), vector(dir));
@@ -144,7 +146,7 @@ fn rays<N: Space<D>, const D: usize>() {
     assert_common("rays", hits, asked);
 }
 
-/// Limits cut the list off and change nothing else.
+/// A limit on the time cuts off the rest of the list and changes nothing else.
 fn assert_limits<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     ray: &Ray<N, D>,
@@ -184,7 +186,8 @@ fn nearest<N: Space<D>, const D: usize>() {
         let tree = tree_of::<N, D>(&boxes);
         for _ in 0..30 {
             let p: [f64; D] = place(&mut random, side);
-            // Squares are exact, so distances round from the same number in both scalars.
+            // The squared distances are exact, so their roots round from the same number for both
+            // scalars.
             let mut expected: Vec<(f64, usize)> =
                 (0..count).map(|index| (distance_squared(&boxes[index], &p), index)).collect();
             expected.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
@@ -214,8 +217,8 @@ fn nearest<N: Space<D>, const D: usize>() {
     assert_common("points outside", asked - inside, asked);
 }
 
-/// Numbers that no `f32` holds: the tree proposes, the boxes as given decide. Ordered searches agree
-/// with the box's own answers, bit by bit.
+/// Coordinates that no `f32` holds: the tree, made of `f32` boxes, only proposes candidates, and
+/// the boxes as given decide. Ordered searches give the bits of the box's own methods.
 fn anywhere<N: Space<D>, const D: usize>() {
     let (mut random, mut proposed) = (Random::new(4), 0);
     let lo = |random: &mut Random| core::array::from_fn(|_| random.range(-10.0, 10.0));
@@ -278,7 +281,7 @@ fn unbounded<N: Space<D>, const D: usize>() {
     }
     let all = tree.bounds().expect("there are boxes");
     assert!(!all.is_bounded(), "around everything");
-    // Every box is unbounded, and one ray meets them all.
+    // Every box is unbounded, and one ray hits them all.
     let tree = tree_of::<N, D>(&[[[f64::NEG_INFINITY; D], [f64::INFINITY; D]]; 3]);
     let ray = Ray::new(Point::origin(), vector([1.0; D]));
     assert_eq!(tree.hit_by(&ray), [0, 1, 2], "inside at once");
@@ -294,7 +297,7 @@ fn few_and_equal<N: Space<D>, const D: usize>() {
     assert!(none.containing(&origin).is_empty() && none.hit_by(&ray).is_empty(), "nothing");
     assert_eq!(none.nearest(&origin, N::INFINITY), None, "nothing");
     assert_eq!(none.bounds(), None, "around nothing");
-    // A point a thousand times: every list is in order of the index.
+    // A thousand equal points: every list is in order of the index.
     let tree = tree_of::<N, D>(&[[[2.0; D]; 2]; 1000]);
     let all: Vec<usize> = (0..1000).collect();
     assert_eq!(tree.containing(&point([2.0; D])), all, "a point holds itself");

@@ -1,16 +1,17 @@
-//! Searches of a tree with a box, resting or moving, against looking at every box.
+//! Compares searches of a tree with a box, at rest or moving, with a scan of all boxes.
 //!
-//! Where coordinates are whole numbers or halves, nothing rounds in the tests here, done in `f64`, and
-//! they are exact; elsewhere the answers of one box for another are what counts.
+//! Coordinates that are whole numbers or halves do not round in the scan, which uses `f64`, so
+//! results must be equal. With other coordinates the methods of single boxes give the expected
+//! results.
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::math::{Point, Real, Space, Vector};
 use impinge::partitioning::BoxTree;
 use impinge_reference::random::Random;
 
-/// A box as two corners.
+/// A box as its least and its greatest corner.
 type Corners<const D: usize> = [[f64; D]; 2];
-/// What a search found: the key (a distance or a time) and the box.
+/// Results of a search: the key (a distance or a time) and the index of the box.
 type Found<N> = Vec<(N, usize)>;
 
 const COUNTS: [usize; 5] = [0, 1, 17, 300, 2500];
@@ -27,13 +28,13 @@ fn tree_of<N: Space<D>, const D: usize>(corners: &[Corners<D>]) -> BoxTree<N, D>
     BoxTree::from_boxes(&corners.iter().copied().map(aabb).collect::<Vec<_>>())
 }
 
-/// A multiple of a half in 0..side.
+/// A random multiple of 0.5 in `0..side`.
 fn half(random: &mut Random, side: usize) -> f64 {
     let doubled = u16::try_from(random.below(2 * side)).expect("a small grid");
     f64::from(doubled) / 2.0
 }
 
-/// A box of up to two units, flat ones among them.
+/// A random box of extents up to 2; flat boxes are among them.
 fn small_box<const D: usize>(random: &mut Random, side: usize) -> Corners<D> {
     let lo: [f64; D] = core::array::from_fn(|_| half(random, side));
     [lo, lo.map(|x| x + half(random, 2))]
@@ -73,7 +74,8 @@ fn sorted<N: Real>(keys: impl Iterator<Item = Option<N>>) -> Found<N> {
     all
 }
 
-/// The first half of what there is, by a limit, which itself counts.
+/// Cuts the results at the key of the middle one, and returns that limit and the results up to it,
+/// inclusively.
 fn up_to<N: Real>(all: &Found<N>) -> (N, Found<N>) {
     let limit = all.get(all.len() / 2).map_or(N::ONE, |&(key, _)| key);
     (limit, all.iter().copied().filter(|&(key, _)| key <= limit).collect())
@@ -84,8 +86,8 @@ fn distance_squared<const D: usize>(a: &Corners<D>, b: &Corners<D>) -> f64 {
     (0..D).map(|axis| gap(axis) * gap(axis)).sum()
 }
 
-/// When a moving box touches another, by asking at each time at which two faces come level whether
-/// the boxes meet.
+/// Time at which a moving box first touches another: the least of the times at which two faces come
+/// level and the boxes meet.
 fn touching<const D: usize>(own: &Corners<D>, other: &Corners<D>, v: &[f64; D]) -> Option<f64> {
     let level = |axis: usize| {
         let faces = [other[0][axis] - own[1][axis], other[1][axis] - own[0][axis]];
@@ -102,7 +104,7 @@ fn touching<const D: usize>(own: &Corners<D>, other: &Corners<D>, v: &[f64; D]) 
 fn on_a_grid<N: Space<D>, const D: usize>() {
     let (mut random, mut hits, mut misses) = (Random::new(11), 0, 0);
     for count in COUNTS {
-        // A few overlap.
+        // The grid is so large that only a few boxes overlap.
         let holds = |side: &usize| (0..D).map(|_| side).product::<usize>() >= count;
         let side = (3..).find(holds).expect("one is large enough");
         let boxes: Vec<Corners<D>> = (0..count).map(|_| small_box(&mut random, side)).collect();
@@ -114,7 +116,7 @@ fn on_a_grid<N: Space<D>, const D: usize>() {
             assert_eq!(nearest(&tree, &aabb(own), N::INFINITY), expected, "{own:?} of {count}");
             let (limit, within) = up_to(&expected);
             assert_eq!(nearest(&tree, &aabb(own), limit), within, "{own:?} up to {limit}");
-            // Speeds are powers of two or zero: all quotients are exact.
+            // Speeds are powers of two or zero, so all quotients are exact.
             let v: [f64; D] =
                 core::array::from_fn(|_| [-2.0, -1.0, -0.5, 0.0, 0.5, 1.0][random.below(6)]);
             let times = boxes.iter().map(|other| touching(&own, other, &v).map(N::lit));
@@ -131,7 +133,8 @@ fn on_a_grid<N: Space<D>, const D: usize>() {
     assert!(hits > 1000 && misses > 1000, "some are met, some are not: {hits}, {misses}");
 }
 
-/// Numbers that no `f32` holds, and far from the origin: the tree proposes, the boxes as given decide.
+/// Coordinates that no `f32` holds, near the origin and far from it: the tree, made of `f32` boxes,
+/// only proposes candidates, and the boxes as given decide.
 fn anywhere<N: Space<D>, const D: usize>() {
     around::<N, D>(0.0);
     around::<N, D>(1e6);
@@ -189,7 +192,7 @@ fn unbounded<N: Space<D>, const D: usize>() {
 }
 
 fn limits<N: Space<D>, const D: usize>() {
-    // Points at 1, 2, 2, 3 on every axis, from the origin.
+    // Points at 1, 2, 2 and 3 on every axis; the search starts at the origin.
     let boxes = [3.0, 2.0, 1.0, 2.0].map(|x| [[x; D]; 2]);
     let (tree, origin) = (tree_of::<N, D>(&boxes), aabb::<N, D>([[0.0; D]; 2]));
     let v = vector([1.0; D]);
@@ -217,7 +220,7 @@ fn limits<N: Space<D>, const D: usize>() {
     assert!(nearest(&none, &Aabb::unbounded(), N::INFINITY).is_empty(), "there is nothing");
 }
 
-/// Squares of these distances are no numbers of the type.
+/// Distances whose squares overflow the scalar.
 fn huge<N: Space<D>, const D: usize>() {
     let unit = N::MAX.as_f32().min(f32::MAX / 8.0);
     let unit = f64::from(unit) / 64.0;

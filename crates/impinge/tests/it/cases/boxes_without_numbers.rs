@@ -1,4 +1,4 @@
-//! Found by fuzzing: boxes of placed shapes whose coordinates overflow are those of everything.
+//! Found by fuzzing: the box of a placed shape whose coordinates overflow is the unbounded box.
 
 use impinge::bounding_volume::Aabb;
 use impinge::dim3::math::{Isometry, Point, Vector};
@@ -36,7 +36,7 @@ fn boxes_at_no_place_are_those_of_everything() {
     }
 }
 
-/// Turned, 3e38 - 3e38 - 3e38 + ... overflows on the way to a number.
+/// With this rotation, sums like 3e38 - 3e38 - 3e38 overflow on the way to a representable number.
 #[test]
 fn boxes_of_corners_at_the_end_of_all_numbers_are_boxes() {
     let far = Isometry::new(Vector::new(3e38, 3e38, 3e38), Vector::new(0.0, 1.0, 2.0));
@@ -46,7 +46,7 @@ fn boxes_of_corners_at_the_end_of_all_numbers_are_boxes() {
     }
 }
 
-/// The candidates of two composites ask for the boxes of parts at any pose.
+/// The search for pairs of parts of two composites needs the boxes of parts at any pose.
 #[test]
 fn manifolds_of_composites_at_poses_beyond_all_numbers() {
     let mesh = TriMesh::new(corners().to_vec(), vec![[0, 1, 2]]);

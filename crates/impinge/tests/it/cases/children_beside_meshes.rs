@@ -1,12 +1,11 @@
-//! Found by fuzzing: a convex child of a compound touches in the same way whether or not another child
-//! has a surface.
+//! Found by fuzzing: a convex child of a compound has the same contacts whether or not another child has a surface.
 
 use impinge::math::{Isometry, Isometry2, Isometry3, Point, Vector};
 use impinge::query::contact;
 use impinge::shape::{Compound, Cuboid, Segment, Shape, ShapeHandle, TriMesh, Triangle};
 
-/// Where the other solid lies to the child decided about its normal, and was even taken for it, with
-/// its length: a depth of 8.7 where there was one of 3.
+/// The position of the other solid relative to the child decided about the child's normal, and was even used as that
+/// normal with its length: the depth came out as 8.7 instead of 3.
 #[test]
 fn contacts_of_a_child_beside_a_mesh_in_the_plane() {
     let mesh = TriMesh::new(far_corners::<2>(), vec![[0, 1, 2]]);
@@ -30,7 +29,7 @@ fn contacts_of_a_child_beside_a_mesh_in_the_plane() {
     }
 }
 
-/// The middle of the triangle lies above that of the bar, but the way out of it is down.
+/// The middle of the triangle lies above that of the bar, but the shortest way out of the bar points down.
 #[test]
 fn contacts_away_from_the_middle_of_the_other() {
     let mesh = TriMesh::new(far_corners::<2>(), vec![[0, 1, 2]]);
@@ -60,7 +59,7 @@ fn contacts_of_a_child_beside_a_mesh_in_space() {
     }
 }
 
-/// The corners of a triangle far away from everything.
+/// Corners of a triangle far away from all other shapes.
 fn far_corners<const D: usize>() -> Vec<Point<f32, D>> {
     let corner = |number: usize| {
         Point::from(Vector::<f32, D>::from_fn(|axis, _| if axis == number { 101.0 } else { 100.0 }))

@@ -1,4 +1,4 @@
-//! Found by fuzzing: triangles and segments of the plane whose corners coincide.
+//! Found by fuzzing: triangles and segments in 2D with coinciding corners.
 
 use impinge::dim2::math::{Isometry, Point, Vector};
 use impinge::dim2::shape::{Ball, Capsule, Cuboid, Segment, Shape, Triangle};
@@ -6,7 +6,7 @@ use impinge::query::{Proximity, contact, distance, proximity};
 
 const HERE: [f64; 2] = [4.875, 0.0];
 
-/// The distance from a small solid beyond the end of a flat one, along it.
+/// Distance from a small solid that lies beyond the end of a flat one, on its line.
 fn beyond(flat: &dyn Shape<f64, 2>, solid: &dyn Shape<f64, 2>) -> f64 {
     let (origin, place) = (Isometry::identity(), Isometry::translation(HERE[0], HERE[1]));
     let found = distance(&origin, flat, &place, solid);
@@ -18,7 +18,7 @@ fn beyond(flat: &dyn Shape<f64, 2>, solid: &dyn Shape<f64, 2>) -> f64 {
     found
 }
 
-/// The side of no length hid that the triangle ends there: it touched everything along its line.
+/// The side of length zero hid the end of the triangle: it touched everything along its line.
 #[test]
 fn triangles_with_two_corners_at_one_place_end_there() {
     let (a, o) = (Point::new(-7.5, 0.0), Point::origin());
@@ -43,7 +43,7 @@ fn triangles_of_one_point_are_points() {
     assert_eq!(beyond(&triangle, &Segment::new(Point::new(-2.0, 0.0), o)), 2.875, "towards it");
 }
 
-/// Boxes without extent along an axis repeat corners too.
+/// Boxes with an extent of zero have coinciding corners too.
 #[test]
 fn flat_boxes_end_at_their_corners() {
     let flat = Cuboid::new(Vector::new(2.0, 0.0));

@@ -1,5 +1,5 @@
-//! How many points the contacts of the corpus's boxes have, and how much of the overlap of two faces points span: of
-//! more than four the library keeps four.
+//! Tests how many points the contacts of the corpus's boxes have, and which share of the overlap of two faces the
+//! points span. Of more than four points the library keeps four.
 
 use crate::support::query_support;
 
@@ -18,7 +18,7 @@ use query_support::corpus::{placed2, placed3, regression, vector};
 use query_support::random::Random;
 use serde_json::Value;
 
-/// The manifolds of two boxes in a world, in the order of the case or the other.
+/// The manifolds of two boxes in a world, added in the order of `names`.
 fn manifolds<N, R, const D: usize>(
     case: &Value,
     place: fn(&Value, &Value) -> Option<Placed<N, R, D>>,
@@ -78,7 +78,7 @@ fn manifold_points_of_the_corpus() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A convex polygon of the plane of contact, counter-clockwise.
+/// A convex polygon in the plane of contact, counter-clockwise.
 type Outline = Vec<[f64; 2]>;
 
 /// Twice the area of a triangle, positive if it is counter-clockwise.
@@ -91,8 +91,7 @@ fn area(outline: &[[f64; 2]]) -> f64 {
     outline.windows(2).map(|side| turn(first, side[0], side[1])).sum::<f64>() / 2.0
 }
 
-/// What two outlines have in common (I. E. Sutherland and G. W. Hodgman, 1974), without corners that
-/// coincide.
+/// Intersection of two outlines (I. E. Sutherland and G. W. Hodgman, 1974), without coinciding corners.
 fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     let mut rest = one.to_vec();
     for (at, &from) in other.iter().enumerate() {
@@ -115,13 +114,13 @@ fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     rest
 }
 
-/// The largest area of four corners of an outline, one of which may be given: of all choices.
+/// Largest area of four corners of an outline over all choices, or over those that contain the corner `given`.
 fn best_four(outline: &[[f64; 2]], given: Option<usize>) -> f64 {
     let count = outline.len();
     if count < 4 {
         return area(outline);
     }
-    // All choices of four indices in ascending order.
+    // Visits all choices of four indices in ascending order.
     let mut four = [0, 1, 2, 3];
     let mut best: f64 = 0.0;
     loop {
@@ -138,7 +137,7 @@ fn best_four(outline: &[[f64; 2]], given: Option<usize>) -> f64 {
     }
 }
 
-/// The area around points in any order, each of them a corner.
+/// Area of the polygon whose corners are the points, given in any order.
 fn spanned(mut points: Outline) -> f64 {
     let sum = points.iter().fold([0.0; 2], |sum, point| [sum[0] + point[0], sum[1] + point[1]]);
     let middle = sum.map(|x| x / points.len() as f64);
@@ -155,8 +154,8 @@ fn turned(outline: &[[f64; 2]], angle: f64, at: [f64; 2]) -> Outline {
     outline.iter().map(|&corner| place(corner)).collect()
 }
 
-/// A solid of half a unit's height above and below its origin, and its flat ends seen from above, where x and z
-/// are the coordinates.
+/// A solid from `-0.5 scale` to `0.5 scale` in height, and the outline of its flat ends seen from above, in coordinates x
+/// and z.
 struct Flat<N: Space<3>> {
     shape: ShapeHandle<N, 3>,
     outline: Outline,
@@ -173,7 +172,7 @@ fn cuboid<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     Flat { shape: ShapeHandle::new(shape), outline: rectangle(half) }
 }
 
-/// With three to twenty sides.
+/// A prism with 3 to 20 sides.
 fn prism<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     let count = [3, 5, 6, 8, 12, 20][usize::try_from(random.bits() % 6).expect("few")];
     let radii = [random.within(0.4, 1.5), random.within(0.4, 1.5)].map(|x| x * scale);
@@ -184,7 +183,7 @@ fn prism<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     Flat { shape: ShapeHandle::new(ConvexHull::from_points(&points)), outline }
 }
 
-/// A square of nine cells at half a unit's height.
+/// A square of nine cells at the height `0.5 scale`, as a height field or a mesh.
 fn floor<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     let side = 3.0 * scale;
     let outline = rectangle([0.5 * side; 2]);
@@ -205,7 +204,8 @@ fn floor<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
 
 type Make<N> = fn(&mut Random, f64) -> Flat<N>;
 
-/// One solid on another: the overlap of their ends seen from above, and its deepest corner if it has one.
+/// A solid that rests on another: the overlap of their ends seen from above, and the index of its deepest corner if
+/// there is a single one.
 struct Rest<N: Space<3>> {
     solids: [(ShapeHandle<N, 3>, N::Isometry); 2],
     overlap: Outline,
@@ -219,18 +219,18 @@ fn turn_about<N: Real>(axis: [f64; 3], angle: f64) -> UnitQuaternion<N> {
 }
 
 impl<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>> Rest<N> {
-    /// A pose drawn at random, sunk in by a hundredth; `None` if the ends overlap little, or if a corner that the
-    /// tilt makes the lowest lies beside the lower solid.
+    /// Draws a random pose that overlaps by `0.01 scale`; `None` if the ends overlap little, or if the lowest corner of the
+    /// tilted solid lies beside the lower solid.
     fn draw(makes: [Make<N>; 2], tilt: f64, scale: f64, random: &mut Random) -> Option<Self> {
         let [low, high] = makes.map(|make| make(random, scale));
         let (at, angle) = ([0.0; 2].map(|_| 1.5 * scale * random.signed()), TAU * random.signed());
         let axis = TAU * random.signed();
         let (sine, cosine) = (axis.sin(), axis.cos());
-        // The end that touches is half a unit below the axis of the tilt, so that it slides aside.
+        // The touching end is `0.5 scale` below the axis of the tilt, so the tilt moves it aside.
         let slide = 0.5 * scale * tilt.sin();
         let upper = turned(&high.outline, angle, [at[0] + slide * sine, at[1] - slide * cosine]);
         let overlap = overlap(&upper, &low.outline);
-        // Turned about (cosine, 0, sine), what lies on one side of this axis sinks.
+        // A rotation about (cosine, 0, sine) lowers the points on one side of this axis.
         let rise = |&[x, z]: &[f64; 2]| tilt.tan() * ((x - at[0]) * sine - (z - at[1]) * cosine);
         let lowest = |outline: &[[f64; 2]]| outline.iter().map(rise).fold(f64::INFINITY, f64::min);
         let [lowest, lowest_of_all] = [lowest(&overlap), lowest(&upper)];
@@ -250,8 +250,8 @@ impl<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>> Rest<N> {
     }
 }
 
-/// How much of the best area the points of all rests have: of the best four corners, one of which is the
-/// deepest; and of the best four of all.
+/// Share of the best area that the points of each rest span: of the best four corners that contain the deepest one, and
+/// of the best four corners at all.
 fn shares<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>>(
     rests: &[Rest<N>],
     scale: f64,
@@ -311,14 +311,15 @@ fn points_span_the_overlap<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>,
     }
 }
 
-/// At least 90 % of what the best four corners span, the deepest among them where one corner is the deepest.
+/// The points span at least 90 % of the area of the best four corners; where one corner is the deepest, these contain
+/// it.
 #[test]
 fn four_points_span_the_overlap_of_two_faces() {
     points_span_the_overlap::<f32>();
     points_span_the_overlap::<f64>();
 }
 
-/// In the plane both ends of the common stretch of two sides.
+/// In 2D the points are both ends of the common stretch of two sides.
 #[test]
 fn two_points_span_the_overlap_of_two_sides() {
     let random = &mut Random(8, false);

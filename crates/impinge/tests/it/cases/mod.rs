@@ -1,4 +1,4 @@
-//! What once was wrong.
+//! Regression tests: cases in which the library, or others, once gave wrong results.
 
 mod angular_prediction;
 mod boxes_without_numbers;

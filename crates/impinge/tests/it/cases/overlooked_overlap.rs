@@ -1,4 +1,4 @@
-//! Found by fuzzing: a solid that overlaps a surface without a contact.
+//! Found by fuzzing: a solid that overlaps a surface but had no contact.
 
 use impinge::dim3::math::{Isometry, Vector};
 use impinge::dim3::shape::{HeightField, Shape, Tetrahedron, TriMesh};
@@ -36,8 +36,8 @@ fn places() -> [Isometry<f32>; 2] {
     ]
 }
 
-/// Along the normal of its face the part of the sliver's plane that the solid is above lies beside the
-/// overlap; so the face said that the two are apart, and there was no contact.
+/// Along the normal of the tetrahedron's face, the part of the sliver's plane below the face lies
+/// beside the overlap. The test of that face therefore reported a gap, and there was no contact.
 #[test]
 fn what_overlaps_a_sliver_touches_it() {
     let ([place, origin], solid) = (places(), tetrahedron());
@@ -49,7 +49,7 @@ fn what_overlaps_a_sliver_touches_it() {
         for prediction in [0.0, 100.0] {
             let found = contact(&place, &*shape, &origin, &solid, prediction);
             let found = found.expect("overlapping shapes have a contact");
-            // That of the tetrahedron and the triangle taken alone.
+            // The depth of the tetrahedron and the triangle alone.
             assert!((found.depth - 0.6468).abs() < 1e-3, "{found:?} within {prediction}");
         }
     }

@@ -1,4 +1,4 @@
-//! Known by hand: joints, touching to the last bit, nothing to check, cancellation.
+//! Cases computed by hand: joints, touching to the last bit, empty checkers, cancellation.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::ControlFlow;
@@ -18,7 +18,7 @@ fn axis<N: Real, const D: usize>(axis: usize) -> Unit<Vector<N, D>> {
     Unit::new_unchecked(along(axis, 1.0).translation)
 }
 
-/// A ball that slides along the first axis, and a box whose face is at 2.
+/// A checker with a ball that slides along the first axis, and a box whose face is at 2.
 fn slider<N: Space<D>, const D: usize>(radius: f64) -> Checker<N, D> {
     let frame =
         Frame { parent: None, origin: Pose::identity(), joint: Joint::prismatic(axis(0), 0) };
@@ -33,7 +33,7 @@ fn slider<N: Space<D>, const D: usize>(radius: f64) -> Checker<N, D> {
     checker
 }
 
-/// Exactly touching is no more free; one rounding error less is.
+/// A body that touches exactly is not free; one that is a rounding error away is.
 fn touches<N: Space<D>, const D: usize>() {
     for radius in [0.5, 0.0] {
         let checker = slider::<N, D>(radius);
@@ -66,7 +66,7 @@ fn touching_is_no_more_free() {
 fn joints_move_as_they_say() {
     let z = axis::<f64, 3>(2);
     let frames = [
-        // The parent comes later.
+        // The parent has a greater index than its child.
         Frame { parent: Some(2), origin: along(1, 1.0), joint: Joint::prismatic(axis(0), 1) },
         Frame { parent: Some(0), origin: along(0, 1.0), joint: Joint::fixed() },
         Frame { parent: None, origin: along(0, 2.0), joint: Joint::<f64, 3>::revolute(z, 0) },
@@ -87,7 +87,8 @@ fn joints_move_as_they_say() {
     at(1, [3.0, 1.0, 0.0]);
     at(4, [1.0, 0.5, 0.0]);
     at(5, [1.0, 1.5, 0.0]);
-    // Half a turn; and a quarter, less twice as much, and half a turn.
+    // Frame 3 of the first row has half a turn; that of the second row a quarter (its parent's),
+    // minus two quarters, plus half a turn.
     assert!((poses[3].rotation[(0, 0)] + 1.0).abs() < 1e-15, "half a turn");
     assert!((poses[7].rotation[(1, 0)] - 1.0).abs() < 1e-15, "a quarter turn");
 }

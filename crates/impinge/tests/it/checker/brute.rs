@@ -1,4 +1,4 @@
-//! The answers by single calls about all pairs.
+//! The results of the checker, computed by single queries of all pairs.
 
 use impinge::batch::{Control, PairBatch, Shapes, Side};
 use impinge::checker::NO_PAIR;
@@ -7,9 +7,9 @@ use impinge::shape::ShapeHandle;
 
 use super::robots::Robot;
 
-/// All pairs of one configuration with their distances, in order.
+/// All pairs of one configuration with their distances, in ascending order of the pairs.
 pub(super) struct Brute<N> {
-    /// All frames have a pose.
+    /// Whether the poses of all frames are finite.
     pub(super) is_finite: bool,
     pairs: Vec<[u32; 2]>,
     distances: Vec<N>,
@@ -51,13 +51,13 @@ impl<N: Real> Brute<N> {
         Self { is_finite: frames.iter().all(Pose::is_finite), pairs, distances }
     }
 
-    /// The first pair that is not farther apart than this.
+    /// The first pair whose distance is at most the clearance.
     pub(super) fn first(&self, clearance: N) -> [u32; 2] {
         let found = self.distances.iter().position(|&distance| distance <= clearance);
         found.filter(|_| self.is_finite).map_or(NO_PAIR, |index| self.pairs[index])
     }
 
-    /// The least distance up to a limit, and the first pair that has it.
+    /// The least distance up to a limit, and the first pair at that distance.
     pub(super) fn nearest(&self, limit: N) -> (N, [u32; 2]) {
         if !self.is_finite {
             return (N::lit(f64::NAN), NO_PAIR);
@@ -73,7 +73,7 @@ impl<N: Real> Brute<N> {
     }
 }
 
-/// All pairs in order.
+/// All pairs that the checker tests, in ascending order.
 fn pairs_of<N: Space<D>, const D: usize>(robot: &Robot<N, D>) -> Vec<[u32; 2]> {
     let count = |number: usize| u32::try_from(number).expect("a few");
     let (bodies, obstacles) =

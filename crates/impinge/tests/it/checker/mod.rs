@@ -1,4 +1,4 @@
-//! The configuration checker against single calls, and what it refuses.
+//! Compares the configuration checker with single queries, and tests which inputs it refuses.
 
 mod aligned;
 mod brute;

@@ -1,4 +1,4 @@
-//! All answers about random robots against single calls about all pairs, to the bit.
+//! Compares all results about random robots with single queries of all pairs, bit for bit.
 
 use impinge::batch::Control;
 use impinge::checker::{NO_PAIR, NearestColumns};
@@ -8,7 +8,8 @@ use super::brute::Brute;
 use super::robots::{Robot, robot2, robot3};
 use crate::batch::scene::{assert_number, on_threads};
 
-/// Returns how many configurations are free, and how many are not.
+/// Compares the results for one clearance, and returns how many configurations are free and how
+/// many are not.
 fn check<N: Space<D>, const D: usize>(
     robot: &Robot<N, D>,
     clearance: f64,

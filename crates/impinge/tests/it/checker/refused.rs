@@ -1,4 +1,4 @@
-//! Input that is refused, by what it is called.
+//! Tests which inputs are refused with which error.
 
 use impinge::batch::{BatchError, Control};
 use impinge::checker::{Body, Checker, CheckerError, Frame, FrameTree, Joint, Obstacle};

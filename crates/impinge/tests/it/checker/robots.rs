@@ -1,4 +1,4 @@
-//! Robots of random frames, with bodies and obstacles of every kind.
+//! Robots with random frames, and with bodies and obstacles of every kind.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -9,24 +9,24 @@ use impinge::shape::{Ball, ShapeHandle};
 use crate::support::query_support::random::Random;
 use crate::support::shape_table;
 
-/// A checker, what may touch, and configurations row by row.
+/// A checker, the pairs whose contact is ignored, and configurations row by row.
 pub(super) struct Robot<N: Real, const D: usize> {
     pub(super) checker: Checker<N, D>,
     pub(super) ignored: Vec<[u32; 2]>,
     pub(super) configurations: Vec<N>,
 }
 
-/// The columns of a random robot.
+/// Number of joint values of a random robot.
 const COLUMNS: usize = 5;
 
-/// A random joint that turns about a random axis.
+/// Makes a random revolute joint driven by the given column.
 type Turn<N, const D: usize> = fn(&mut Random, usize) -> Joint<N, D>;
 
-/// What is random in a dimension: joints that turn, and poses.
+/// The random parts that differ by dimension: revolute joints, and poses.
 type Draws<N, const D: usize> = (Turn<N, D>, fn(&mut Random) -> Pose<N, D>);
 
 impl<N: Space<D>, const D: usize> Robot<N, D> {
-    /// How many configurations there are.
+    /// Number of configurations.
     pub(super) fn count(&self) -> usize {
         self.configurations.len() / self.checker.frames().columns()
     }
@@ -69,7 +69,8 @@ fn robot<N: Space<D>, const D: usize>(
     Robot { checker, ignored, configurations: configurations(random) }
 }
 
-/// Every third joint slides, every fifth is fixed; column 1 drives two joints.
+/// Joint 3 slides, joint 5 is fixed and the others are revolute. Joint 6 follows column 1, which
+/// other joints use too, with a factor and an offset.
 fn joint<N: Space<D>, const D: usize>(
     random: &mut Random,
     number: usize,
@@ -98,7 +99,8 @@ fn obstacle<N: Space<D>, const D: usize>(
     Obstacle { shape: shape.clone(), pose: place }
 }
 
-/// Random, aligned, far-fetched and not finite, so that batches of eight have some of each.
+/// Configurations that are random, aligned to quarter turns, extreme or not finite, mixed so that a
+/// batch of eight has several kinds.
 fn configurations<N: Real>(random: &mut Random) -> Vec<N> {
     let mut all: Vec<N> = vec![N::ZERO; COLUMNS];
     for index in 0..90 * COLUMNS {

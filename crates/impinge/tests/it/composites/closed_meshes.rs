@@ -1,4 +1,5 @@
-//! What closed meshes and lines enclose, against solid angles and angle-weighted pseudonormals.
+//! Compares the volumes that closed meshes and lines enclose with solid angles and angle-weighted
+//! pseudonormals.
 
 use crate::support::query_support;
 
@@ -16,12 +17,12 @@ fn mesh<N: Real>(corners: &[P3], triangles: Vec<[u32; 3]>) -> TriMesh<N, 3> {
     TriMesh::new(vertices.collect(), triangles)
 }
 
-/// Corners rounded as in `f32`, so that both scalars mean the same.
+/// Rounds the coordinates to `f32`, so that both scalars have the same corners.
 fn rounded(point: P3) -> P3 {
     Point::from(point.coords.map(|x| x.as_f32().as_f64()))
 }
 
-/// A box from one corner to the other, as corners and triangles.
+/// The corners and triangles of a box between two corners.
 fn cuboid(low: [f64; 3], high: [f64; 3]) -> (Vec<P3>, Vec<[u32; 3]>) {
     let (low, high) = (P3::from(low), P3::from(high));
     let surface = surfaces::cuboid(&Cuboid::new((high - low) * 0.5));
@@ -49,7 +50,7 @@ fn bumpy(random: &mut Random, subdivisions: u32) -> (Vec<P3>, Vec<[u32; 3]>) {
     (surface.vertices.iter().map(&mut bump).collect(), surface.triangles)
 }
 
-/// A ring of square section, with a hole along z, thin on one side.
+/// A ring of square section around the z axis, thin on one side.
 fn ring() -> (Vec<P3>, Vec<[u32; 3]>) {
     let (mut corners, mut triangles) = (Vec::new(), Vec::new());
     for step in 0..24_u32 {
@@ -69,7 +70,7 @@ fn ring() -> (Vec<P3>, Vec<[u32; 3]>) {
     (corners, triangles)
 }
 
-/// The number of times that a surface winds around a point: the solid angles over 4π (Van Oosterom and
+/// Winding number of a surface around a point: the sum of solid angles over 4π (Van Oosterom and
 /// Strackee, "The Solid Angle of a Plane Triangle", 1983).
 fn solid_angles(mesh: &Mesh, point: &P3) -> f64 {
     let one = |part: u32| {
@@ -82,8 +83,9 @@ fn solid_angles(mesh: &Mesh, point: &P3) -> f64 {
     (0..mesh.num_parts()).map(one).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
-/// The side of the nearest feature's pseudonormal that the point is on: Bærentzen and Aanæs, "Signed
-/// distance computation using the angle weighted pseudonormal" (2005). The cosine between both.
+/// Cosine between the pseudonormal of the nearest feature and the direction to the point; negative
+/// inside (Bærentzen and Aanæs, "Signed distance computation using the angle weighted
+/// pseudonormal", 2005).
 fn pseudonormal(mesh: &Mesh, point: &P3) -> f64 {
     let (nearest, location) = mesh.project_local_point_with_location(point, false);
     let normal = |part: u32| mesh.normal(part).expect("an area");
@@ -109,7 +111,7 @@ fn pseudonormal(mesh: &Mesh, point: &P3) -> f64 {
     (point - nearest.point).normalize().dot(&sum.normalize())
 }
 
-/// A point anywhere around, or close to the surface, or in line with a corner along an axis.
+/// A random point around the mesh, close to its surface, or level with a corner along an axis.
 fn asked(random: &mut Random, mesh: &Mesh) -> P3 {
     let part = u32::try_from(random.bits() % u64::from(mesh.num_parts())).expect("few");
     let corners = *mesh.triangle(part).corners();
@@ -171,7 +173,8 @@ fn signs_are_those_of_solid_angles_and_pseudonormals() {
     assert!(counts.iter().all(|&count| count > 700), "{counts:?} inside and outside");
 }
 
-/// All points of a grid to which every corner and side is a tie, by the closed form of the union.
+/// Compares a union of boxes with its closed form, at all points of a grid that contains the
+/// corners, so that many points are level with corners or equally near to several faces.
 fn check_grid<N: Real>(bodies: &[([f64; 3], [f64; 3])], offset: f64) {
     let moved = |corner: [f64; 3]| corner.map(|x| x + offset);
     let all: Vec<_> = bodies.iter().map(|&(low, high)| cuboid(moved(low), moved(high))).collect();
@@ -192,7 +195,7 @@ fn check_grid<N: Real>(bodies: &[([f64; 3], [f64; 3])], offset: f64) {
     }
 }
 
-/// The signed distance to the boundary of a box.
+/// Signed distance to the boundary of a box.
 fn to_box(at: [f64; 3], low: &[f64; 3], high: &[f64; 3]) -> f64 {
     let beyond: [f64; 3] = std::array::from_fn(|i| f64::max(low[i] - at[i], at[i] - high[i]));
     let deepest = beyond.iter().copied().fold(f64::MIN, f64::max);
@@ -202,7 +205,8 @@ fn to_box(at: [f64; 3], low: &[f64; 3], high: &[f64; 3]) -> f64 {
     beyond.iter().map(|x| f64::max(*x, 0.0).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Of two signed distances that of the nearer boundary; inside one is inside.
+/// The signed distance to a union from those to its two bodies: the smaller magnitude, negative if
+/// the point is in one of them.
 fn nearer(a: f64, b: f64) -> f64 {
     let size = f64::min(a.abs(), b.abs());
     if a < 0.0 || b < 0.0 { -size } else { size }
@@ -220,7 +224,7 @@ fn ties_and_bodies_that_touch() {
         vec![([0.0; 3], [4.0, 4.0, 1.0]), ([1.0, 1.0, 1.0], [2.0, 2.0, 4.0])],
     ];
     for bodies in &scenes {
-        // At 2^20 f32 knows eighths.
+        // At 2^20 the resolution of `f32` is 1/8, so all halves stay exact.
         for offset in [0.0, 1_048_576.0] {
             check_grid::<f32>(bodies, offset);
             check_grid::<f64>(bodies, offset);
@@ -262,7 +266,7 @@ fn what_is_not_closed_encloses_nothing() {
         assert!(!mesh.is_volume(), "no volume");
         assert_eq!((mesh.encloses(&middle), mesh.signed_distance(&middle)), (None, None));
     }
-    // A triangle with a repeated corner and the two that pass it, as at the poles of a globe.
+    // Adds a triangle with a repeated corner and two that pass it, as at the poles of a globe.
     let mut filled = triangles;
     let [a, b, _] = filled[0];
     filled.push([a, b, b]);
@@ -271,7 +275,7 @@ fn what_is_not_closed_encloses_nothing() {
 
 #[test]
 fn parted_corners_open_a_mesh() {
-    // The vertices of `procedural` repeat where normals differ.
+    // The vertices of meshes from `procedural` repeat where normals differ.
     let (corners, triangles) = cuboid([-1.0; 3], [1.0; 3]);
     let soup: Vec<P3> = triangles.iter().flatten().map(|&at| corners[at as usize]).collect();
     let names = (0..).take(triangles.len()).map(|part| [3 * part, 3 * part + 1, 3 * part + 2]);
@@ -314,13 +318,13 @@ fn check_extremes<N: Real>(scales: &[f64]) {
 
 #[test]
 fn scales_and_points_that_are_none() {
-    // Powers of two.
+    // Powers of two, so that scaling is exact.
     let [up, down] = [80, -80].map(|power| 2.0_f64.powi(power));
     check_extremes::<f32>(&[up, down]);
     check_extremes::<f64>(&[up, down, up.powi(6), down.powi(6)]);
 }
 
-/// The winding number of a closed line by angles.
+/// Winding number of a closed line around a point, by angles.
 fn turns(corners: &[Point<f64, 2>], point: &Point<f64, 2>) -> f64 {
     let around = |at: usize| {
         let [u, v] = [at, at + 1].map(|at| corners[at % corners.len()] - point);
@@ -333,7 +337,7 @@ fn check_lines<N: Real>() {
     let (mut inside, mut outside) = (0, 0);
     for seed in 0..40 {
         let random = &mut Random(seed, false);
-        // On a grid, so that many are in line; the line crosses itself.
+        // Corners on a grid, so that many are in line; the line crosses itself.
         let mut whole = || (random.within(-4.0, 4.0)).round();
         let corners: Vec<_> = (0..12).map(|_| Point::<f64, 2>::new(whole(), whole())).collect();
         let here = corners.iter().map(|corner| Point::from(corner.coords.map(N::lit))).collect();

@@ -1,5 +1,5 @@
-//! Composites against convex solids, half-spaces and each other: the part that brute force finds, in
-//! both orders to the bit, whatever the search proposes.
+//! Compares composites against convex solids, half-spaces and each other with a scan of all parts,
+//! in both orders to the bit, whatever order the search proposes.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -38,7 +38,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Two<'_, N, R, D> {
         witness(self.m1, self.g1, self.m2, self.g2, limit)
     }
 
-    /// What holds of every pair; `noise` is what rounding may do to lengths.
+    /// Laws of every pair of shapes; `noise` is the rounding error allowed in lengths.
     fn check(&self, noise: N) {
         let Self { m1, g1, m2, g2 } = *self;
         let found = self.witness(N::INFINITY).expect("they are some distance apart");
@@ -67,7 +67,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Two<'_, N, R, D> {
     }
 }
 
-/// The parts that a witness names are as far apart as it says.
+/// The parts that a witness reports are at the distance that it reports.
 fn check_parts<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     found: &Witness<N, D>,
     two: (&Scene<N, R, D>, &Isometry<N, R, D>),
@@ -177,7 +177,7 @@ fn against_each_other() {
     assert!((60..260).contains(&overlaps), "{overlaps} of 320 overlap");
 }
 
-/// Against a half-space the deepest part answers.
+/// Against a half-space, the deepest part gives the result.
 fn against_planes<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     maker: &Maker<N, R, D>,
 ) {
@@ -205,7 +205,7 @@ fn against_half_spaces() {
     against_planes(&space);
 }
 
-/// A composite of one part in its own frame is that part, to the bit.
+/// A composite of one part, in that part's own frame, gives the result of the part.
 fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(maker: &Maker<N, R, D>) {
     for seed in 0..60 {
         let random = &mut Random(seed, false);
@@ -215,7 +215,7 @@ fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(maker
         let m2 = maker.place(random, N::lit(3.0));
         let bare = witness(&m1, &*solid, &m2, &*other, N::INFINITY).expect("a witness");
         let found = witness(&m1, &one, &m2, &*other, N::INFINITY).expect("a witness");
-        // The order of the computation may differ, so only up to rounding.
+        // The order of the operations may differ, so they agree only up to rounding.
         let noise = N::EPSILON * N::lit(1024.0) + N::lit(1e-9);
         assert!((bare.distance - found.distance).abs() <= noise, "{bare:?} {found:?}");
         assert_eq!((found.part1, found.part2), (0, 0), "the only part");
@@ -234,7 +234,7 @@ fn one_part_is_that_part() {
 
 #[test]
 fn equal_distances_go_to_the_first_part() {
-    // Four unit squares around the origin, equally near to a ball in their middle.
+    // Four squares of half extent 1 around the origin, equally near to a ball in their middle.
     let at = |x: f64, y: f64| Pose::from_translation(Vector::<f64, 2>::new(x, y));
     let square = || Piece::of(Cuboid::new(Vector::<f64, 2>::new(1.0, 1.0)));
     let around = [at(3.0, 0.0), at(0.0, 3.0), at(-3.0, 0.0), at(0.0, -3.0)];
@@ -293,12 +293,12 @@ fn what_is_not_finite_is_far() {
     assert_eq!(witness(&here, &one, &here, &one, f32::NAN), None, "no limit");
 }
 
-/// A ball over a mesh of two triangles, `far` from the mesh's own origin.
+/// A ball above a mesh of two triangles that lie `far` from the origin of the mesh.
 fn over_far_floor(far: f32, world: f32) -> Witness<f32, 3> {
     let p = |x: f32, z: f32| Point::<f32, 3>::new(far + x, -far, far + z);
     let points = [p(0.0, 0.0), p(4.0, 0.0), p(4.0, 4.0), p(0.0, 4.0)];
     let mesh = Pieces::mesh(&points, &[[0, 2, 1], [0, 3, 2]]);
-    // Powers of two, so that the places themselves are exact.
+    // The offsets are powers of two, so that the positions themselves are exact.
     let m1 = Isometry3::translation(world, world, world);
     let m2 = Isometry3::translation(world + far + 1.0, world - far + 1.0, world + far + 2.0);
     witness(&m1, &mesh, &m2, &Ball::new(0.7), 9.0).expect("near")

@@ -1,4 +1,4 @@
-//! Moving composites: the first impact of two parts, in both orders to the bit.
+//! Tests the first impact of moving composites, in both orders to the bit.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -29,7 +29,7 @@ fn hit<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     impact(&Moving::new(one.0, &one.1, one.2), &Moving::new(two.0, &two.1, two.2), options)
 }
 
-/// The first impact of all parts with a solid.
+/// Time of the first impact of all parts with a solid, found one by one.
 fn brute<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     scene: &Scene<N, R, D>,
     (m1, velocity): (&Isometry<N, R, D>, Vector<N, D>),
@@ -71,7 +71,7 @@ fn against_convex<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize
         let expected = brute(&scene, (&m1, v1), &two, &options);
         let toi = found.map_or(N::INFINITY, |found| found.toi);
         let noise = N::EPSILON.sqrt() * N::lit(16.0) + N::lit(1e-6);
-        // What grazes may count as touching or not.
+        // Rounding decides whether shapes that graze each other touch.
         let both = toi.is_finite_number() && expected.is_finite_number();
         assert!(!both || (toi - expected).abs() <= noise, "{seed} {toi:?} {expected:?}");
         if both != (toi.is_finite_number() || expected.is_finite_number()) {
@@ -97,7 +97,7 @@ fn moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     m
 }
 
-/// Until an impact the shapes are farther apart than the target, at it they are there.
+/// Before the impact the shapes are farther apart than the target distance, and at the impact they are at it.
 fn stepped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     one: &Mover<'_, N, R, D>,
     two: &Mover<'_, N, R, D>,
@@ -107,7 +107,8 @@ fn stepped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let at =
         |time: N| distance(&moved(one.0, one.1 * time), one.2, &moved(two.0, two.1 * time), two.2);
     assert!(at(toi) <= target + noise, "they touch at {toi:?}: {:?}", at(toi));
-    // What touches at the start and parts again does not count; so only what starts apart.
+    // Shapes that touch at the start and part again do not count as an impact, so only pairs that start apart are
+    // checked.
     if at(N::ZERO) > target + noise {
         for step in 0..16 {
             let time = toi * N::lit(f64::from(step) / 16.0);
@@ -150,7 +151,7 @@ fn against_composites<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: u
             stepped(&one, &two, (found.toi, N::ZERO));
             later += u32::from(found.toi > N::ZERO);
         }
-        // With itself, at one place and with two velocities.
+        // The composite against itself at the same pose, with two different velocities.
         let twin = (&m1, v2, &scene1.fast as &dyn Shape<N, D>);
         let found = hit(&one, &twin, &options);
         let swapped = hit(&twin, &one, &options).map(|found| found.flipped());
@@ -210,7 +211,8 @@ fn what_slides_over_the_floor_meets_the_wall() {
     assert_eq!(impact(&still, &slide, &short), None, "too late");
 }
 
-/// The impact of a shape that moves with one that stays at the origin: nothing touches before it, and at it the shapes are within what counts as near.
+/// Impact of a moving shape with one that stays at the origin: nothing touches before it, and at it the gap is at most
+/// 2⁻¹⁵.
 fn slides<N, R, const D: usize>(
     motion: ConstantVelocities<N, D>,
     mover: &dyn Shape<N, D>,
@@ -228,7 +230,7 @@ where
     let gap = |time: N| distance(&motion.position_at(time), mover, &Isometry::identity(), stays);
     for look in 0..12 {
         let share = N::lit(f64::from(look) / 12.0);
-        // All over the way, and ever closer to its end.
+        // Looks all along the path, and ever closer to its end.
         for time in [end * share, end * (N::ONE - share * share * share)] {
             assert!(gap(time) > N::ZERO, "{time} is before {found:?} {motion:?}");
         }
@@ -240,8 +242,7 @@ where
     true
 }
 
-/// The surface of a thread with the pitch 1 about the second axis: its distance from the axis goes up and down by a
-/// quarter along a helix.
+/// Surface of a screw thread of pitch 1 around the second axis: its radius varies by 0.25 along a helix.
 fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
     let (around, rows) = (24, 8 * pitches);
     let mut points = Vec::new();
@@ -263,7 +264,7 @@ fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
     Pieces::mesh(&points, &triangles)
 }
 
-/// A screw that turns in its nut, and rises by nearly what a turn asks for: flanks slide on flanks.
+/// A screw turns in its nut and rises by nearly as much as the pitch asks for, so that flanks slide along flanks.
 fn screw_in_nut<N: Space<3, Isometry = Isometry3<N>>>()
 where
     ConstantVelocities<N, 3>: RigidMotion<N, 3>,
@@ -282,7 +283,7 @@ where
     assert!(hits >= 2, "{hits}");
 }
 
-/// A round outline of segments that spins within another, and drifts to it far slower than it spins.
+/// A round outline of segments spins within another, and drifts towards it much more slowly than it spins.
 fn spins_in_ring<N: Space<2, Isometry = Isometry2<N>>>()
 where
     ConstantVelocities<N, 2>: RigidMotion<N, 2>,
@@ -303,7 +304,7 @@ where
     }
 }
 
-/// A composite that counts how often it is asked for a part.
+/// A composite that counts how often a part is requested.
 #[derive(Debug)]
 struct Asked(Pieces<f64, 3>, AtomicU32);
 
@@ -332,8 +333,8 @@ impl Shape<f64, 3> for Asked {
     }
 }
 
-/// A screw in its nut is brought to where they touch by a few looks at all of their parts, not by one for each step
-/// of the parts that touch.
+/// A screw in its nut advances to the impact with a few searches over all parts, not with one search for each step of
+/// the parts that touch.
 #[test]
 fn screws_are_looked_at_a_few_times() {
     let [screw, nut] =
@@ -352,8 +353,8 @@ fn screws_are_looked_at_a_few_times() {
     }
 }
 
-/// The impact of two composites whose parts lie along their axes is that of the first two parts that meet, each two
-/// advanced as solids of their own.
+/// The impact of two composites whose parts have the identity as their pose is the first impact of any two parts, each
+/// advanced as a solid of its own.
 fn both_turn<N: Space<D>, const D: usize>(
     motions: &[ConstantVelocities<N, D>; 2],
     shapes: &[Pieces<N, D>; 2],
@@ -376,7 +377,7 @@ where
     found.is_finite_number()
 }
 
-/// Patches that lie close to each other and turn, each about a centre of its own, or one of them alone.
+/// Patches that lie close to each other and rotate, each about its own centre, or only one of them.
 fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = Isometry3<N>>>() {
     let (random, mut hits) = (&mut Random(31, false), [0, 0]);
     for round in 0..40 {

@@ -1,4 +1,5 @@
-//! Points and composites: the part that is nearest, or that the point lies deepest in.
+//! Tests queries of points and composites: the result belongs to the nearest part, or to the one in
+//! which the point lies deepest.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -25,7 +26,7 @@ fn dot<N: Real, const D: usize, const K: usize>(
     Point::from(sum)
 }
 
-/// The point that weights stand for, in the frame of the solid; `None` without weights.
+/// The point that barycentric weights stand for, in the frame of the solid; `None` without weights.
 fn weighed<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     barycentric: &Barycentric<N>,
@@ -61,7 +62,7 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
         for shot in 0..20 {
             let mut local = Point::from(random.vector::<N, D>() * (scale * N::lit(6.0)));
             if shot % 4 == 0 {
-                // Onto a part.
+                // Moves the point onto a part.
                 local = scene.fast.project_local_point(&local).0.point;
             }
             let point = m.transform_point(&local);

@@ -1,4 +1,5 @@
-//! Rays and composites: no ray slips through where parts meet, and the hits are those of the parts.
+//! Tests rays and composites: no ray slips through where parts meet, and the hits are those of the
+//! parts.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -13,10 +14,10 @@ use impinge::shape::{Ball, CompositeShape, Cuboid, HeightField, Polyline, Shape,
 use query_support::random::Random;
 use query_support::samples::{PLANE, SPACE, sample2, sample3};
 
-/// How far from the origins, in units of the mesh's size over a hundred.
+/// Offsets from the origin, for meshes about a hundred large.
 const OFFSETS: [f64; 3] = [0.0, 1e3, 1e6];
 
-/// A closed surface around the origin, about a hundred large, then moved.
+/// A closed surface, about a hundred large, and its middle, both moved away from the origin.
 struct Closed<N: Real> {
     mesh: TriMesh<N, 3>,
     middle: Point<N, 3>,
@@ -34,7 +35,7 @@ fn closed<N: Real>(which: usize, offset: f64) -> Closed<N> {
     Closed { mesh: TriMesh::new(vertices, surface.triangles), middle: Point::from(by) }
 }
 
-/// A point on a side of a triangle: a corner, the middle, or anywhere between.
+/// A point on a side of a triangle: a corner, the middle, or any point between.
 fn on_side<N: Real>(random: &mut Random, corners: &[Point<N, 3>; 3]) -> Point<N, 3> {
     let side = usize::try_from(random.bits() % 3).expect("few");
     let (a, b) = (corners[side], corners[(side + 1) % 3]);
@@ -46,8 +47,8 @@ fn on_side<N: Real>(random: &mut Random, corners: &[Point<N, 3>; 3]) -> Point<N,
     a + (b - a) * share
 }
 
-/// Rays from within a closed surface, and from far outside through its middle, aimed exactly at its
-/// edges and corners.
+/// Shoots rays from within a closed surface, and from far outside through its middle, aimed exactly
+/// at edges and corners. None may pass without a hit.
 fn through_closed<N: Real>(world: f64) -> usize {
     let mut shots = 0;
     let random = &mut Random(7, false);
@@ -69,7 +70,7 @@ fn through_closed<N: Real>(world: f64) -> usize {
             assert!(mesh.intersects_ray(&m, &ray), "any");
             let outside = Ray::new(ray.origin + ray.dir * N::TWO, -ray.dir);
             let hits = mesh.all_hits_with_ray(&m, &outside, N::INFINITY, true);
-            // Into the surface and out again.
+            // One hit where the ray enters, and one where it leaves.
             assert!(hits.len() >= 2, "{which} {own} {world}: {outside:?} {hits:?}");
             shots += 2;
         }
@@ -86,7 +87,7 @@ fn no_ray_slips_through_a_closed_surface() {
     assert!(shots > 100_000, "{shots}");
 }
 
-/// Heights between 0 and 3 on a grid of 12 by 9 cells.
+/// A field with heights between 0 and 3 on a grid of 12 by 9 cells.
 fn grid<N: Real>() -> HeightField<N, 3> {
     let random = &mut Random(3, false);
     let heights = (0..13 * 10).map(|_| N::lit(random.within(0.0, 3.0))).collect();
@@ -98,7 +99,7 @@ fn grid<N: Real>() -> HeightField<N, 3> {
     )
 }
 
-/// The field as a mesh, somewhere.
+/// The field as a mesh, moved by `by`.
 fn meshed<N: Real>(field: &HeightField<N, 3>, by: &Vector<N, 3>) -> TriMesh<N, 3> {
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     for part in 0..field.num_parts() {
@@ -123,7 +124,7 @@ fn through_grid<N: Real>(world: f64) -> usize {
         let part = u32::try_from(random.bits() % u64::from(field.num_parts())).expect("few");
         let local = meshed_corners(&field, part);
         let target = on_side(random, &local);
-        // The border may be missed by rounding.
+        // A ray at the border of the field may miss by rounding.
         let inner = target.x.abs() < N::lit(29.0) && target.z.abs() < N::lit(21.0);
         if !inner {
             continue;
@@ -158,7 +159,7 @@ fn no_ray_slips_through_a_grid() {
     assert!(shots > 100_000, "{shots}");
 }
 
-/// A closed line around the origin, a chain of segments and a filled mesh.
+/// A closed line around a middle, a filled mesh of the same outline, their points and the middle.
 fn round<N: Real>(offset: f64) -> (Polyline<N, 2>, TriMesh<N, 2>, Vec<Point<N, 2>>, Point<N, 2>) {
     let middle = Point::<N, 2>::new(N::lit(offset), N::lit(-offset));
     let corner = |index: u32| {
@@ -198,7 +199,7 @@ fn no_ray_slips_through_a_closed_line() {
     }
 }
 
-/// The hits of all parts, one by one.
+/// The hits of all parts, tested one by one.
 fn brute<N: Space<D>, const D: usize>(
     parts: &Pieces<N, D>,
     ray: &Ray<N, D>,
@@ -280,7 +281,7 @@ fn hits_are_those_of_the_parts() {
 
 #[test]
 fn solid_and_hollow_unions() {
-    // Two unit squares that overlap between x = 1 and x = 2.
+    // Two squares of half extent 1, which overlap between x = 1 and x = 2.
     let square = || Piece::of(Cuboid::new(Vector::<f64, 2>::new(1.0, 1.0)));
     let at = |x: f64| Pose::from_translation(Vector::<f64, 2>::new(x, 0.0));
     let two = Pieces::new(vec![(at(1.0), square()), (at(2.0), square())]);

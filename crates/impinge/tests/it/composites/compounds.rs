@@ -1,4 +1,4 @@
-//! Compounds: parts, paths and searches of nested ones against flattened lists.
+//! Tests parts, paths and searches of nested compounds against flattened lists.
 
 use crate::support::part_search;
 use crate::support::query_support;
@@ -32,7 +32,7 @@ fn hills<N: Real>(seed: u64) -> HeightField<N, 3> {
     HeightField::<N, 3>::new(4, 5, heights, Vector::<N, 3>::new(N::TWO, N::ONE, N::TWO))
 }
 
-/// Convex solids, a field, and compounds of the same down to a depth.
+/// Convex solids, a height field, and compounds of such children down to a depth.
 fn children<N: Real>(random: &mut Poses, depth: usize) -> Vec<Child<N>> {
     let [a, b, c] = [0, 1, 2].map(|_| Point::from(random.vector::<N, 3>()));
     let mut children: Vec<Child<N>> = vec![
@@ -50,7 +50,7 @@ fn children<N: Real>(random: &mut Poses, depth: usize) -> Vec<Child<N>> {
     children
 }
 
-/// The solids, where they lie, and the way to them: by walking down the children.
+/// The solids with their poses and paths, found by walking down the children.
 fn flattened<N: Real>(
     children: &[Child<N>],
     outer: &Isometry3<N>,
@@ -147,7 +147,7 @@ fn searches_of_nested_compounds_miss_nothing() {
     check_searches::<f64>(1e6);
 }
 
-/// Of solids that are no composites the search is exact.
+/// If no child is a composite, the search finds exactly the children of a scan.
 #[test]
 fn searches_of_flat_compounds_find_what_looking_at_all_children_finds() {
     let mut random = Random::new(33);
@@ -188,7 +188,8 @@ fn bad_children_are_refused() {
     let error = error.expect_err("NaN");
     assert_eq!(error, ShapeError::ChildPoseNotFinite { index: 1 }, "named");
     assert_eq!(error.to_string(), "the position of child 1 is not finite", "in words");
-    // 2^31 cells of a line, twice, and one more.
+    // A line of two cells, doubled 30 times, gives 2^31 parts; twice as many exceed the limit of
+    // indices.
     let line =
         ShapeHandle::new(HeightField::<f32, 2>::new(vec![0.0; 3], Vector::<f32, 2>::new(1.0, 1.0)));
     let mut nested = Compound2::<f32>::new(vec![(Isometry2::identity(), line)]);
@@ -222,7 +223,8 @@ fn unbounded_children_are_found_everywhere() {
     assert_eq!(compound.aabb(&Pose::identity()), Aabb::unbounded(), "placed");
 }
 
-/// The box of a placed compound is that of its children, placed.
+/// The box of a placed compound is the union of its children's boxes as placed, not the box of a
+/// box.
 #[test]
 fn placed_boxes_are_tight() {
     let capsule = ShapeHandle::new(Capsule::<f64, 2>::new(2.0, 0.5));
@@ -268,7 +270,7 @@ fn surfaces_and_neighbours_are_those_of_the_child() {
     assert_eq!(compound.child_of_part(6), (2, 1), "the same");
 }
 
-/// A solid and a corner of it, with small numbers that half of the time are whole.
+/// A solid and one of its corners, with small numbers that are whole half of the time.
 fn cornered<N: Real, const D: usize>(random: &mut Poses) -> (ShapeHandle<N, D>, Vector<N, D>) {
     let grid = N::lit([1.0, 1.0 / 1024.0][usize::from(random.bits() & 1 == 0)]);
     let mut corner = || random.vector::<N, D>().map(|x| (x * N::lit(4.0) / grid).round() * grid);
@@ -282,7 +284,7 @@ fn cornered<N: Real, const D: usize>(random: &mut Poses) -> (ShapeHandle<N, D>, 
     }
 }
 
-/// A compound with a turned child, or one in one, of which a corner is near the origin.
+/// A compound that holds a turned child, possibly nested, one corner of which is near the origin.
 fn with_corner_at_origin<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     random: &mut Poses,
     turn: fn(&mut Poses) -> R,
@@ -301,7 +303,7 @@ fn with_corner_at_origin<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>
     })
 }
 
-/// Zero distance, intersecting and having a contact are one fact, in either order.
+/// A distance of zero, an intersection and a contact occur together, in either order.
 fn check_one_fact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
@@ -343,7 +345,8 @@ fn check_corners<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     assert!((600..2700).contains(&touching), "{touching} of 3000 touch");
 }
 
-/// Of children that are turned and moved so that a corner comes to the origin, where another solid begins.
+/// The turned children have a corner at the origin up to rounding, which is also a corner of the
+/// other solid.
 #[test]
 fn touching_a_turned_child_is_one_fact() {
     check_corners::<f32, _, 2>(quarter_or_any2);

@@ -1,4 +1,5 @@
-//! A part that is listed twice, or lies on others, changes no contact: meshes of the field are full of doubles.
+//! Tests that parts that are listed twice, or lie on other parts, change no contact: meshes in use
+//! have many duplicates.
 
 use crate::support::{query_support, slides};
 
@@ -20,7 +21,7 @@ fn mesh<N: Space<3>>(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> TriMesh<N,
 
 const SQUARE: [[f64; 3]; 4] =
     [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];
-/// One square: as two triangles, and with triangles twice or on each other.
+/// A square as two triangles, and with triangles that occur twice or lie on each other.
 const SHEETS: [&[[u32; 3]]; 6] = [
     &[[0, 2, 1], [0, 3, 2]],
     &[[0, 2, 1], [0, 3, 2], [0, 2, 1], [0, 3, 2]],
@@ -30,7 +31,8 @@ const SHEETS: [&[[u32; 3]]; 6] = [
     &[[0, 2, 1], [0, 2, 1], [0, 3, 2], [0, 2, 1], [0, 3, 2], [0, 3, 2]],
 ];
 
-/// Two depths differ by rounding, of curved solids by what an iteration leaves; or there is none.
+/// Whether two depths differ by at most `room` (rounding, for curved solids also the error of an
+/// iteration), or both are `None`.
 fn are_same_up_to(room: f64, [one, other]: [Option<f64>; 2]) -> bool {
     match (one, other) {
         (Some(one), Some(other)) => (one - other).abs() <= room,
@@ -38,17 +40,17 @@ fn are_same_up_to(room: f64, [one, other]: [Option<f64>; 2]) -> bool {
     }
 }
 
-/// The sheet with both diagonals.
+/// Index of the sheet that is cut along both diagonals.
 const OTHER_CUT: usize = 4;
 
-/// Contacts of a sheet that is listed once, and of the others, are the same.
+/// A sheet listed once and the other sheets give the same contacts.
 fn rims<N: Space<3, Isometry = Isometry3<N>>>() {
     let random = &mut Random(41, false);
     let (mut met, mut at_rim) = (0, 0);
     let sheets = SHEETS.map(|triangles| mesh::<N>(&SQUARE, triangles));
     let one_sided = sheets.each_ref().map(|sheet| sheet.clone().one_sided());
     for round in 0..400 {
-        // Around the rim, and flat over it as well as turned.
+        // Positions around the rim; solids are nearly level or turned at random.
         let angle = [0.25, 0.0, 0.004, -0.6][round % 4];
         let turn =
             if round % 3 == 0 { v(0.0, 0.0, angle) } else { random.turn3::<N>().scaled_axis() };
@@ -64,7 +66,8 @@ fn rims<N: Space<3, Isometry = Isometry3<N>>>() {
                 let once = depth(&sheets[0]);
                 met += u32::from(once.is_some());
                 at_rim += u32::from(once.is_some_and(|(_, normal)| normal.y.abs() < 0.99));
-                // How deep a solid is below a face follows from where that is cut.
+                // The depth below a face depends on where the square is cut into triangles, so the
+                // sheet with the other diagonal is compared for shallow contacts only.
                 let is_deep = once.is_some_and(|(depth, _)| depth > 0.05);
                 let is_asked = |index: usize| !(index == OTHER_CUT && is_deep);
                 let others = sheets.iter().enumerate().skip(1);
@@ -98,7 +101,7 @@ fn the_rim_of_a_doubled_sheet_by_its_report() {
     assert!((found.normal.x - 0.969).abs() < 1e-3, "{found:?}");
 }
 
-/// With a floor in the same mesh, the rim's contact is one of two.
+/// With a floor in the same mesh, the contact at the rim is one of two.
 #[test]
 fn the_rim_above_a_floor_is_touched() {
     let mut corners = SQUARE.map(|[x, _, z]| [x, 1.0, z]).to_vec();
@@ -117,7 +120,8 @@ fn the_rim_above_a_floor_is_touched() {
     }
 }
 
-/// At the rim of a sheet a ball that is hardly off it has a normal close to that of the face.
+/// A ball whose centre is slightly beyond the rim of a sheet has a normal close to that of the
+/// face.
 fn shallow<N: Space<3, Isometry = Isometry3<N>>>() {
     for (index, sheet) in SHEETS.map(|triangles| mesh::<N>(&SQUARE, triangles)).iter().enumerate() {
         for (x, z) in [(0.004, 0.0), (0.004, 0.004), (0.0, 0.004)] {
@@ -140,7 +144,7 @@ fn rims_have_normals_close_to_that_of_the_face() {
     shallow::<f64>();
 }
 
-/// In the plane: lines that are listed twice, and their ends.
+/// Lines in 2D whose segments are listed twice keep the contacts at their ends.
 fn lines<N: Space<2, Isometry = Isometry2<N>>>() {
     let p = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x), N::lit(y));
     let corners = || vec![p(2.0, 0.0), p(0.0, 0.0), p(-2.0, 1.0)];
@@ -180,8 +184,8 @@ fn lines_that_are_listed_twice_keep_their_ends() {
     lines::<f64>();
 }
 
-/// A triangle without area that sticks out past a shared edge is met where it sticks out, as if it were alone, though
-/// a floor below it is touched as well.
+/// A triangle without area that extends beyond a shared edge has the contact there that it has
+/// alone, although the solid touches a floor below it as well.
 fn sticking_out<N: Space<3, Isometry = Isometry3<N>>>() {
     let mut corners = SQUARE.to_vec();
     corners.push([1.0, 0.0, 3.0]);
@@ -224,7 +228,7 @@ fn triangles_without_area_are_met_where_they_stick_out() {
     sticking_out::<f64>();
 }
 
-/// Filled triangles of the plane that are listed twice are there once.
+/// Filled triangles in 2D that are listed twice count once.
 #[test]
 fn filled_triangles_that_are_listed_twice_are_there_once() {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Point::<f64, 2>::from);

@@ -1,4 +1,4 @@
-//! The seams of height fields: cases by hand, and against meshes and polylines of the same parts.
+//! Tests the seams of height fields by hand, and against meshes and polylines of the same parts.
 
 use crate::support::part_search;
 
@@ -16,13 +16,13 @@ fn v(x: f64, y: f64, z: f64) -> Vector<f64, 3> {
     Vector::<f64, 3>::new(x, y, z).normalize()
 }
 
-/// Three rows and columns of unit cells, with the heights of rows the same along x.
+/// A field of three rows and columns of points, whose height depends on the row only.
 fn folded(rows: [f64; 3]) -> Field {
     let heights = rows.iter().flat_map(|&height| [height; 3]).collect();
     Field::new(3, 3, heights, Vector::<f64, 3>::new(2.0, 1.0, 2.0))
 }
 
-/// The parts and sides with a side between two points.
+/// The parts with a side between two points, and that side of each.
 fn sides(field: &Field, a: Point<f64, 3>, b: Point<f64, 3>) -> Vec<(u32, FeatureId)> {
     let mut found = Vec::new();
     for part in (0..field.num_parts()).filter(|part| !field.is_hole(*part)) {
@@ -43,7 +43,7 @@ fn corners<N: Real>(field: &HeightField<N, 3>, part: u32) -> [Point<N, 3>; 3] {
     *part.solid.as_shape().as_shape::<Triangle<N, 3>>().expect("a triangle").corners()
 }
 
-/// Whether all parts at a side admit a normal there; they must agree.
+/// Whether the parts at a side admit a normal there; all of them must agree.
 fn admitted(field: &Field, ends: [[usize; 2]; 2], normal: Vector<f64, 3>) -> bool {
     let [a, b] = ends.map(|[row, column]| field.point(row, column));
     let sides = sides(field, a, b);
@@ -70,7 +70,7 @@ fn a_flat_field_has_only_its_two_normals_inside() {
             Diagonal::Backward => [[0, 1], [1, 0]],
         };
         assert!(!admitted(&field, ends, v(1.0, 2.0, -1.0)), "nor at a diagonal");
-        // The border of the whole has a half circle of them.
+        // At the border of the field, the normals within a half circle are admitted.
         let border = [[0, 0], [0, 1]];
         for normal in [v(0.0, 1.0, 0.0), v(0.0, 1.0, -1.0), v(0.0, 0.0, -1.0), v(0.0, -1.0, -1.0)] {
             assert!(admitted(&field, border, normal), "{normal} at the border");
@@ -141,7 +141,7 @@ fn internal_edges_may_be_kept() {
     assert!(!surface.admits(0, FeatureId::Edge(0), &v(1.0, -1.0, 1.0)), "in front only");
 }
 
-/// A mesh of the parts that are left, and their numbers.
+/// A mesh of the parts that are not holes, and their indices.
 fn mesh_of<N: Real>(field: &HeightField<N, 3>) -> (TriMesh<N, 3>, Vec<u32>) {
     let numbers: Vec<_> = (0..field.num_parts()).filter(|part| !field.is_hole(*part)).collect();
     let vertices: Vec<_> = numbers.iter().flat_map(|&part| corners(field, part)).collect();
@@ -151,7 +151,7 @@ fn mesh_of<N: Real>(field: &HeightField<N, 3>) -> (TriMesh<N, 3>, Vec<u32>) {
     (if field.is_one_sided() { mesh.one_sided() } else { mesh }, numbers)
 }
 
-/// Both answer the same; how many of the normals were admitted.
+/// Asserts that both surfaces give the same results, and returns whether the normal was admitted.
 fn compare<N: Real, const D: usize>(
     (surface1, part1): (&dyn Surface<N, D>, u32),
     (surface2, part2): (&dyn Surface<N, D>, u32),
@@ -167,10 +167,10 @@ fn compare<N: Real, const D: usize>(
     admits
 }
 
-/// A part, by its number, of a surface.
+/// A surface and the index of one of its parts.
 type PartOf<'a, N, const D: usize> = (&'a dyn Surface<N, D>, u32);
 
-/// All features of a triangle; how many admit the normal, and how many do not.
+/// Compares all features of a triangle; returns how many admit the normal and how many do not.
 fn compare_features<N: Real>(
     (side1, side2): (PartOf<'_, N, 3>, PartOf<'_, N, 3>),
     normal: &Vector<N, 3>,
@@ -188,7 +188,7 @@ fn check_against_meshes<N: Real>() {
     let (mut admitted, mut refused) = (0, 0);
     for round in 0..24 {
         let scale = Vector::<N, 3>::from_fn(|_, _| N::lit([1.0, -1.0, 3.0][random.below(3)]));
-        // Few different heights, so that there are flats, ridges and valleys.
+        // Only a few different heights, so that there are flat regions, ridges and valleys.
         let heights = (0..16).map(|_| N::lit((2.0 * coarse(&mut random)).round() * 0.5)).collect();
         let pattern = [Diagonals::Forward, Diagonals::Backward, Diagonals::Zigzag][round % 3];
         let mut field = HeightField::<N, 3>::new(4, 4, heights, scale).with_diagonals(pattern);
@@ -205,7 +205,7 @@ fn check_against_meshes<N: Real>() {
                     continue;
                 };
                 let snapped = surface1.snapped(part, &normal).expect("an area");
-                // The other face's own normal, and one between the two.
+                // Also tests the normal of another face, and one between the two.
                 let other = numbers[random.below(numbers.len())];
                 let other = surface1.snapped(other, &snapped).expect("an area");
                 let between = (snapped + other).try_normalize(N::lit(1e-3)).unwrap_or(normal);
@@ -227,7 +227,7 @@ fn seams_are_those_of_a_mesh_of_the_same_triangles() {
     check_against_meshes::<f64>();
 }
 
-/// How many features admit the normal: the same of both.
+/// Number of features that admit the normal; both surfaces must agree on each.
 fn admitted_alike<N: Real>(
     ((surface1, part1), (surface2, part2)): (PartOf<'_, N, 2>, PartOf<'_, N, 2>),
     features: &[(FeatureId, FeatureId)],
@@ -256,7 +256,7 @@ fn check_against_polylines<N: Real>() {
         let field = if round % 2 == 0 { field.one_sided() } else { field };
         let points: Vec<_> = (0..9).map(|index| field.point(index)).collect();
         let numbers: Vec<_> = (0..8_u32).filter(|&part| !field.is_hole(part)).collect();
-        // A polyline has its front on the right.
+        // The front of a polyline is on its right.
         let is_turned = scale.x * scale.y > N::ZERO;
         let ends = |&part: &u32| if is_turned { [part + 1, part] } else { [part, part + 1] };
         let ends_turned = if is_turned { [1, 0] } else { [0, 1] };
@@ -285,7 +285,7 @@ fn check_against_polylines<N: Real>() {
                     let rounding = N::lit(4.0) * N::EPSILON;
                     let is_same =
                         own.zip(other).is_some_and(|(own, other)| (own - other).norm() <= rounding);
-                    // Along the segment itself only the field has a side to prefer.
+                    // For a normal along the segment itself only the field prefers one side.
                     let along =
                         own.is_some_and(|own| own.dot(&normal).abs() <= N::lit(16.0) * N::EPSILON);
                     assert!(is_same || along, "part {part}, {normal}: {own:?} and {other:?}");

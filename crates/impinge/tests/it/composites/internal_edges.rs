@@ -1,4 +1,5 @@
-//! Solids that slide over flat floors of many pieces see the normal of the floor and nothing else.
+//! Tests that solids sliding over flat floors of many parts get the normal of the floor only, with
+//! no contact at an inner edge.
 
 use crate::support::slides;
 
@@ -7,7 +8,7 @@ use impinge::math::{Isometry3, Real, Space, Vector};
 use impinge::shape::Shape;
 use slides::{Expected, PATTERNS, Random, field, grid, lowest, slide, solids3};
 
-/// How a floor lies in the world.
+/// Poses of the floor in the world.
 fn frames<N: Real>() -> Vec<Isometry3<N>> {
     let lit = |x: f64| N::lit(x);
     let axis = |x: f64, y: f64, z: f64| Vector::<N, 3>::new(lit(x), lit(y), lit(z));
@@ -20,8 +21,8 @@ fn frames<N: Real>() -> Vec<Isometry3<N>> {
     ]
 }
 
-/// Orientations of a solid on the floor: at rest on a face, turned about the vertical, tilted a
-/// little, thrown.
+/// Orientations of a solid on the floor: resting on a face, turned about the vertical, slightly
+/// tilted, arbitrary.
 fn turns<N: Real>() -> Vec<UnitQuaternion<N>> {
     let axes = [
         [0.0, 0.0, 0.0],
@@ -35,7 +36,7 @@ fn turns<N: Real>() -> Vec<UnitQuaternion<N>> {
     axes.into_iter().map(turn).collect()
 }
 
-/// Slides all solids over a floor around `center`, in directions all around.
+/// Slides all solids over a floor around `center`, in many directions.
 fn slide_all<N: Real + Space<3, Isometry = Isometry3<N>>>(
     floor: &dyn Shape<N, 3>,
     center: [f64; 3],
@@ -67,7 +68,7 @@ fn slide_all<N: Real + Space<3, Isometry = Isometry3<N>>>(
                     normal: up,
                     normal_tolerance: N::lit(1e-6),
                     depth: N::lit(depth),
-                    // Of curved solids distances are found to 2⁻⁴⁰ of the size.
+                    // Distances of curved solids are found to 2⁻⁴⁰ of the size.
                     depth_tolerance: N::lit(1e-11) + N::lit(16.0) * N::EPSILON * size,
                     manifolds: 1,
                 };

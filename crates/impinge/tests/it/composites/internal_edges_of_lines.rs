@@ -1,4 +1,5 @@
-//! In the plane: solids that slide over a straight line of many segments, or over filled triangles.
+//! Tests in 2D that solids sliding over a straight line of many segments, or over filled triangles,
+//! get the normal of the floor only.
 
 use crate::support::slides;
 
@@ -25,7 +26,7 @@ fn solids<N: Real>() -> Vec<(&'static str, ShapeHandle<N, 2>)> {
     ]
 }
 
-/// The height of the lowest point of a solid turned like this.
+/// Height of the lowest point of a solid with the rotation `turn` and its origin at 0.
 fn lowest<N: Real>(solid: &dyn Shape<N, 2>, turn: UnitComplex<N>) -> N {
     let pose = Pose::from_isometry(&Isometry2::from_parts(Translation2::identity(), turn));
     let geometry = solid.geometry();
@@ -33,7 +34,7 @@ fn lowest<N: Real>(solid: &dyn Shape<N, 2>, turn: UnitComplex<N>) -> N {
     pose.point(&map.support_point(&pose.inverse_vector(&v(0.0, -1.0)))).y
 }
 
-/// Slides all solids along a floor at y = 0 around x = `center`, to both sides.
+/// Slides all solids along a floor at y = 0 around x = `center`, in both directions.
 fn slide_all<N: Real + Space<2, Isometry = Isometry2<N>>>(
     floor: &dyn Shape<N, 2>,
     (center, depth, is_below): (f64, f64, bool),
@@ -47,7 +48,7 @@ fn slide_all<N: Real + Space<2, Isometry = Isometry2<N>>>(
                 let height = -lowest(solid.as_ref(), turn) - N::lit(depth);
                 let start = random.unit();
                 let side = if random.below(2) == 0 { N::ONE } else { -N::ONE };
-                // Below the floor the whole scene is turned by half a circle.
+                // For a solid below the floor the whole scene is rotated by half a turn.
                 let half = if is_below { N::pi() } else { N::ZERO };
                 let flip = Isometry2::rotation(half);
                 let middle = Isometry2::translation(N::lit(center), N::ZERO);
@@ -76,7 +77,7 @@ fn line<N: Real>(center: f64, is_even: bool) -> Vec<Point<N, 2>> {
     let mut random = Random::new(9);
     let off = |random: &mut Random| if is_even { 0.0 } else { 0.2 * random.unit() };
     let xs = (0..=40).map(|i| f64::from(i) * 0.5 - 10.0 + center + off(&mut random));
-    // From right to left: the front, on the right of each segment, is above.
+    // From right to left, so that the front, which is on the right of each segment, faces up.
     xs.rev().map(|x| Point::from(v(x, 0.0))).collect()
 }
 
@@ -104,7 +105,7 @@ fn solids_slide_over_lines_in_double_precision() {
     over_lines::<f64>();
 }
 
-/// A slab of filled triangles, whose top is at y = 0.
+/// A slab of filled triangles with its top at y = 0.
 fn slab<N: Real + Space<2>>(rows: u32) -> TriMesh<N, 2> {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for j in 0..=rows {

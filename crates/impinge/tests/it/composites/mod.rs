@@ -1,4 +1,4 @@
-//! Compounds, meshes, lines and fields.
+//! Tests of compounds, meshes, polylines and height fields.
 
 mod cast_out_of_floors;
 mod closed_meshes;

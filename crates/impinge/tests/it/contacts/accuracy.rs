@@ -1,6 +1,7 @@
-//! Curved solids against the reference that knows 25 digits: distances, depths and normals are right
-//! to the rounding of the scalar, not only to the tolerance of an iteration. Where that is hardest, for cylinders
-//! and cones about axes that all but coincide, settings are changed little by little for the worst.
+//! Compares curved solids with a reference of 25 digits: distances, depths and normals are right to
+//! the rounding of the scalar, not only to the tolerance of an iteration. The hardest pairs are
+//! cylinders and cones whose axes nearly coincide; for these the settings are changed little by
+//! little towards larger errors.
 //!
 //! The full table, of all kinds and beside another library, is `bench/accuracy.md`.
 
@@ -18,7 +19,7 @@ use impinge_reference::random::Random;
 
 const KINDS: usize = 7;
 
-/// One solid for the library and for the reference; the first four are curved.
+/// A solid for the library and for the reference; kinds 0 to 3 are curved.
 fn solid<N: Space<3>>(kind: usize, random: &mut Random) -> (ShapeHandle<N, 3>, Solid<3>) {
     let sizes: [f64; 3] = std::array::from_fn(|_| random.single(0.2, 1.5));
     let [x, y, z] = sizes;
@@ -45,7 +46,7 @@ fn solid<N: Space<3>>(kind: usize, random: &mut Random) -> (ShapeHandle<N, 3>, S
     }
 }
 
-/// A quaternion of the scalar whose length is 1 to a small part of its rounding.
+/// A random quaternion of the scalar whose squared length is 1 to half a rounding error.
 fn quaternion<N: Real>(random: &mut Random) -> [f64; 4] {
     loop {
         let q = random.quaternion().map(|x| N::lit(x).as_f64());
@@ -56,8 +57,8 @@ fn quaternion<N: Real>(random: &mut Random) -> [f64; 4] {
     }
 }
 
-/// The worst error of the signed distance and of what the normal separates, in parts of the size of
-/// the scene, over pairs of which one is curved at least.
+/// The worst error of the signed distance, and of the separation along the normal, relative to the
+/// size of the scene, over pairs with at least one curved solid.
 fn worst<N: Space<3>>(seed: u64, rounds: usize) -> (f64, String) {
     let (mut random, mut worst) = (Random::new(seed), (0.0, String::new()));
     for (kind1, kind2, round) in pairs(rounds) {
@@ -66,7 +67,7 @@ fn worst<N: Space<3>>(seed: u64, rounds: usize) -> (f64, String) {
         let [q1, q2] = [(); 2].map(|()| quaternion::<N>(&mut random));
         let pose1 = Pose::from_quaternion([0.0; 3], q1);
         let mut at2 = scale(&random.unit_vector(), 8.0);
-        // Moved along the normal: near, and shallow; or straight into the middle.
+        // Moved along the normal: near or shallow; every third pair has nearly equal centres.
         let truth = signed_distance(&solid1, &pose1, &solid2, &Pose::from_quaternion(at2, q2));
         let gap = [random.magnitude(1e-3, 8), -random.magnitude(1e-3, 6)][round % 2];
         let way = gap - truth.distance.to_f64();
@@ -110,22 +111,22 @@ fn curved_solids_in_single_precision() {
     assert!(error <= 1e-6, "off by {error} of the size: {what}");
 }
 
-/// Two cylinders or cones of which one is about the axis of the other, all but for little.
+/// Two cylinders or cones with nearly the same axis.
 #[derive(Clone, Debug)]
 struct Coaxial {
     are_cones: [bool; 2],
-    /// The half height and the radius.
+    /// Half height and radius of each.
     sizes: [[f64; 2]; 2],
     turns: [[f64; 4]; 2],
     at: [f64; 3],
 }
 
-/// As the scalar has it.
+/// The number rounded to the scalar.
 fn single<N: Real>(x: f64) -> f64 {
     N::lit(x).as_f64()
 }
 
-/// The turn of a quaternion of any length near zero to one of the scalar, as [`quaternion`] has it.
+/// A quaternion of the scalar near `q`, of length 1 as precisely as from [`quaternion`].
 fn turn<N: Real>(q: [f64; 4], random: &mut Random) -> [f64; 4] {
     for wobble in 0..100 {
         let wobble = N::EPSILON.as_f64() * f64::from(wobble.min(2));
@@ -156,7 +157,7 @@ impl Coaxial {
         Self { are_cones: [(); 2].map(|()| random.chance(0.5)), sizes, turns, at }
     }
 
-    /// The same with something changed a little.
+    /// A copy with sizes, position and rotations changed a little.
     fn changed<N: Real>(&self, random: &mut Random) -> Self {
         let strength = random.magnitude(1e-6, 18);
         let mut change = |x: f64, by: f64| single::<N>(x + by * strength * random.range(-1.0, 1.0));
@@ -179,7 +180,8 @@ impl Coaxial {
         }
     }
 
-    /// By how many units another normal parts them farther than the contact says, or its own less far.
+    /// Error in units: by how much the best separation exceeds that of the contact, or the
+    /// contact's normal separates less than its depth says.
     fn units<N: Space<3>>(&self) -> f64 {
         let ((shape1, solid1), (shape2, solid2)) = (self.solid::<N>(0), self.solid::<N>(1));
         let pose1 = Pose::from_quaternion([0.0; 3], self.turns[0]);
@@ -195,7 +197,7 @@ impl Coaxial {
     }
 }
 
-/// The worst of some settings, changed again and again where that makes it worse.
+/// The worst error found by changing a few bad settings at random and keeping the worse ones.
 fn worst_coaxial<N: Space<3>>(seed: u64) -> (f64, String) {
     const KEPT: usize = 3;
     let (tries, changes) = (samples(15), samples(15));

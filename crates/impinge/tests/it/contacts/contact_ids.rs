@@ -1,4 +1,4 @@
-//! The names of contacts through a world, and what their kinematics predict of the next step.
+//! Tests contact ids through a world, and the contacts that kinematics predict for the next step.
 
 use crate::support::scene_stage;
 
@@ -19,7 +19,8 @@ fn cuboid<N: Real, const D: usize>(half: [f64; D]) -> ShapeHandle<N, D> {
     ShapeHandle::new(Cuboid::new(Vector::<N, D>::from_fn(|axis, _| N::lit(half[axis]))))
 }
 
-/// A pose `x` along the floor at a height, turned about an axis by the angle of a half tangent.
+/// A pose `x` along the floor at a height, rotated about an axis; `tangent` is that of half the
+/// angle.
 fn pose<N: Play<D>, const D: usize>(
     x: f64,
     height: f64,
@@ -33,7 +34,7 @@ fn pose<N: Play<D>, const D: usize>(
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
 const ACROSS: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// A cube at rest on a floor, which is added first or last, just updated.
+/// A world after an update, with a cube resting on a floor that is added first or last.
 struct Floor<N: Play<D>, const D: usize> {
     world: World<N, D>,
     floor: CollisionObjectHandle,
@@ -79,7 +80,7 @@ fn contacts_of<N: Play<D>, const D: usize>(
     manifolds.iter().flat_map(|manifold| manifold.contacts()).copied().collect()
 }
 
-/// A box and a half-space whose upper faces are at height zero.
+/// A box and a half-space, both with the upper face at height zero.
 fn floors<N: Play<D>, const D: usize>() -> [ShapeHandle<N, D>; 2] {
     let mut half = [20.0; D];
     half[1] = 2.0;
@@ -89,10 +90,10 @@ fn floors<N: Play<D>, const D: usize>() -> [ShapeHandle<N, D>; 2] {
     [cuboid(half), ShapeHandle::new(high)]
 }
 
-/// The names stay for a thousand steps in which the cube slides, sinks and rises, and turns.
+/// Contact ids persist for a thousand steps, while the cube slides, sinks and rises, and rotates.
 fn names_last<N: Play<D>, const D: usize>(turn: impl Fn(f64) -> ([f64; 3], f64)) {
     for (index, shape) in floors::<N, D>().iter().enumerate() {
-        // The plane's own origin is the surface.
+        // The origin of the half-space is on its surface, that of the box is 2 below it.
         let lift = if index == 0 { 0.0 } else { -2.0 };
         for is_floor_first in [true, false] {
             let mut scene = Floor::<N, D>::new(shape, is_floor_first);
@@ -120,13 +121,13 @@ fn names_outlast_a_thousand_steps() {
     names_last::<f64, 2>(sliding);
     names_last::<f32, 3>(sliding);
     names_last::<f64, 3>(sliding);
-    // Rocking by half a degree to both sides.
+    // Rocks by half a degree to both sides.
     let rocking = |step: f64| (ACROSS, 0.0045 * ((step / 50.0) % 4.0 - 2.0).abs() - 0.0045);
     names_last::<f32, 2>(rocking);
     names_last::<f64, 2>(rocking);
     names_last::<f32, 3>(rocking);
     names_last::<f64, 3>(rocking);
-    // Half a turn, slowly; in the plane there is no turn about the vertical.
+    // Turns slowly by half a turn; in 2D there is no rotation about the vertical.
     let spinning = |step: f64| (UP, 0.003 * step);
     names_last::<f32, 3>(spinning);
     names_last::<f64, 3>(spinning);
@@ -155,7 +156,8 @@ fn names_outlast_shapes<N: Play<D>, const D: usize>() {
     assert!(!first.contains(&round[0]), "which is no corner");
 }
 
-/// What begins again has new names, also if it was asked for something else in between.
+/// Contacts that begin again have new ids, also if the pair was queried for something else in
+/// between.
 fn names_end_with_contacts<N: Play<D>, const D: usize>() {
     let [floor, _] = floors::<N, D>();
     let mut scene = Floor::<N, D>::new(&floor, false);
@@ -163,7 +165,7 @@ fn names_end_with_contacts<N: Play<D>, const D: usize>() {
     let pair = (floor.min(cube), floor.max(cube));
     let mut seen = scene.ids();
     let near = pose::<N, D>(0.0, 0.49, (ACROSS, 0.0));
-    // Not so far that the broad phase forgets the pair, far, and as far as can be.
+    // Raised a little, so that the broad phase keeps the pair; far; and very far.
     for height in [0.7, 3.0, 1e6] {
         scene.world.set_position(cube, pose::<N, D>(0.0, height, (ACROSS, 0.0)));
         scene.world.update();
@@ -208,7 +210,7 @@ fn names_follow_features_and_touch() {
 
 type Pair = (CollisionObjectHandle, CollisionObjectHandle);
 
-/// A name stands for one pair, and never comes back once it is gone.
+/// A contact id belongs to one pair and never returns after its contact ended.
 fn names_are_unique<N: Play<D>, const D: usize>() {
     for scene in [spawn_and_despawn(400), mixed_shapes(300), pile(100)] {
         let mut player = Player::<N, D>::new(scene, 1.0);
@@ -239,9 +241,9 @@ fn names_are_never_given_twice() {
     names_are_unique::<f64, 3>();
 }
 
-/// Motion and prediction, which need the isometries of a dimension.
+/// Moves poses and predicts contacts; both need the isometry type of the dimension.
 trait Move<const D: usize>: Play<D> {
-    /// The pose moved by a velocity and a turn about its origin for a time.
+    /// The pose moved by a linear and an angular velocity about its origin for `time`.
     fn moved(at: &Self::Isometry, motion: &([f64; D], [f64; 3]), time: f64) -> Self::Isometry;
 
     fn predict(
@@ -277,7 +279,7 @@ impl<N: Real> Move<3> for N {
     }
 }
 
-/// Two solids in contact, and how both move.
+/// Two solids in contact, and the motions of both.
 struct Case<N: Play<D>, const D: usize> {
     name: &'static str,
     shapes: [ShapeHandle<N, D>; 2],
@@ -286,8 +288,8 @@ struct Case<N: Play<D>, const D: usize> {
 }
 
 impl<N: Move<D>, const D: usize> Case<N, D> {
-    /// The contacts at time zero as predicted for `time` and as they are then, by descending depth
-    /// at time zero.
+    /// Pairs of the contact predicted from time zero for `time` and the contact found then, sorted
+    /// by descending depth at time zero.
     fn predicted(&self, time: f64) -> Vec<[Contact<N, D>; 2]> {
         let mut world = World::<N, D>::new(N::lit(0.02));
         let query = GeometricQueryType::Contacts(N::lit(0.1), N::ZERO);
@@ -310,8 +312,8 @@ impl<N: Move<D>, const D: usize> Case<N, D> {
         both
     }
 
-    /// Points, lines and planes that stay what they are: the prediction is exact, up to what the
-    /// query that it is compared with loses.
+    /// For points, lines and planes fixed to their solids the prediction is exact, up to the error
+    /// `loss` of the query that it is compared with.
     fn check_exact(&self, loss: f64) {
         for time in [0.08, 0.04, 0.02] {
             for [predicted, found] in self.predicted(time) {
@@ -322,8 +324,8 @@ impl<N: Move<D>, const D: usize> Case<N, D> {
         }
     }
 
-    /// Halving the motion divides the error of depth and normal of the deepest contact by three at
-    /// least: it is of second order, which makes four in the limit. Answers whether the errors are more than rounding.
+    /// Halving the time divides the error of the deepest contact at least by three: it is of second
+    /// order, for which the limit is four. Returns whether the errors exceed rounding.
     fn check_second_order(&self) -> bool {
         let rounding = 256.0 * N::EPSILON.as_f64();
         let errors = [0.08, 0.04, 0.02].map(|time| {
@@ -352,7 +354,7 @@ fn motion<const D: usize>(seed: u32) -> ([f64; D], [f64; 3]) {
     (velocity, spin)
 }
 
-/// Contacts of all kinds of neighbourhoods that both dimensions have.
+/// Predictions for all kinds of features that both dimensions have.
 fn kinematics_predict<N: Move<D>, const D: usize>() {
     let turned = (ACROSS, 0.1);
     let level = (ACROSS, 0.0);
@@ -389,7 +391,7 @@ fn kinematics_of_flat_and_round_solids_are_exact() {
     kinematics_predict::<f64, 3>();
 }
 
-/// Edges that cross, and round solids, in space.
+/// Predictions in 3D for crossing edges and round solids.
 fn kinematics_predict_in_space<N: Move<3>>() {
     let cylinder = SceneShape::Cylinder { half_height: 0.5, radius: 0.25 };
     let (cube, cylinder) = (cuboid::<N, 3>([0.5; 3]), shape_of::<N, 3>(&cylinder, 1.0));
@@ -408,10 +410,10 @@ fn kinematics_predict_in_space<N: Move<3>>() {
             .check_exact(256.0 * N::EPSILON.as_f64());
         let poses = [at(0.0, 0.0, (ACROSS, 1.0)), at(0.0, 0.48, ([1.0, 0.0, 0.0], 0.8))];
         let shapes = [cylinder.clone(), cylinder.clone()];
-        // Found by a search that knows the place of the contact to half the digits, in both solids.
+        // The search finds the contact to half the digits, on both solids.
         let loss = 8.0 * N::EPSILON.as_f64().sqrt();
         Case { name: "crossed cylinders", shapes, poses, motions }.check_exact(loss);
-        // Leaning on their rims, whose lowest point runs round as the solid turns.
+        // The solids lean on their rims, whose lowest point moves around as the solid rotates.
         for (name, shape) in [("rim of a cylinder", &cylinder), ("rim of a cone", &cone)] {
             let poses = [at(0.0, 0.0, (ACROSS, 0.0)), at(0.0, 0.55, (ACROSS, 0.2))];
             let shapes = [plane.clone(), shape.clone()];

@@ -1,4 +1,5 @@
-//! Contacts that are kept while pairs hardly move, held against a world that computes all of them anew.
+//! Compares a world that reuses the contacts of pairs that hardly move with a world that computes
+//! all contacts anew.
 
 use crate::support::scene_stage;
 
@@ -16,11 +17,12 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge_scenes::{Scene, SceneQuery, mixed_shapes, pile};
 use scene_stage::{Digest, Play, Player, assert_views_agree, digest_state};
 
-/// What a scene of objects of size 1 predicts, and how far they may move.
+/// Prediction for objects of size 1, and the distance below which a pair's contacts are reused.
 const PREDICTION: f64 = 0.02;
 const TOLERANCE: f64 = 0.002;
 
-/// A scene in which the fastest objects take ten to a hundred steps for the tolerance.
+/// The scene slowed down, so that the fastest objects need ten to a hundred steps to move by the
+/// tolerance.
 fn slow<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     for object in &mut scene.objects {
         object.query = SceneQuery::Contacts { linear: PREDICTION / 2.0, angular: 0.0 };
@@ -37,7 +39,7 @@ fn reusing<N: Play<D>, const D: usize>(scene: Scene<D>, tolerance: f64) -> Playe
     player
 }
 
-/// The depth of each pair with contacts.
+/// Depth of each pair with contacts.
 fn depths<N: Play<D>, const D: usize>(player: &Player<N, D>) -> BTreeMap<(usize, usize), f64> {
     let mut depths = BTreeMap::new();
     for (object1, object2, manifold) in player.world.contact_manifolds() {
@@ -52,7 +54,8 @@ fn depths<N: Play<D>, const D: usize>(player: &Player<N, D>) -> BTreeMap<(usize,
     depths
 }
 
-/// Plays a scene in two worlds; answers how many contacts were kept, of how many.
+/// Plays a scene in both worlds; returns how many depths differed, of how many. Differing depths
+/// show that contacts were reused.
 fn compare<N: Play<D>, const D: usize>(scene: &Scene<D>, steps: u32) -> (usize, usize) {
     let mut exact = Player::<N, D>::new(scene.clone(), 1.0);
     let mut kept = reusing::<N, D>(scene.clone(), TOLERANCE);
@@ -95,7 +98,7 @@ fn depths_are_within_twice_the_tolerance() {
     assert_kept::<f64, 3>(&slow(pile(60)), 8);
     assert_kept::<f32, 2>(&slow(pile(200)), 8);
     assert_kept::<f64, 2>(&slow(pile(200)), 8);
-    // Balls, segments and capsules among them are always computed anew.
+    // Among these kinds, pairs of balls, segments and capsules are always computed anew.
     for (differing, all) in [
         compare::<f32, 3>(&slow(mixed_shapes(400)), 10),
         compare::<f64, 3>(&slow(mixed_shapes(400)), 10),
@@ -149,7 +152,7 @@ fn at<N: Real>(place: [f64; 3], turn: f64) -> Isometry3<N> {
     Isometry3::from_parts(place, UnitQuaternion::from_scaled_axis(v(0.0, turn, 0.0)))
 }
 
-/// A world that keeps contacts, of an object on something.
+/// A world that reuses contacts, with an object on a ground body.
 struct Stage<N: Real> {
     world: World<N>,
     ground: CollisionObjectHandle,
@@ -191,7 +194,7 @@ impl<N: Real> Stage<N> {
     }
 }
 
-/// Two triangles that are a square of 4 by 4 in the plane of x and z.
+/// A square of 4 by 4 in the plane of x and z, made of two triangles.
 fn floor<N: Real>() -> ShapeHandle<N, 3> {
     let corners = [(-2.0, -2.0), (2.0, -2.0), (2.0, 2.0), (-2.0, 2.0)];
     let corners = corners.map(|(x, z)| Point::from(v::<N>(x, 0.0, z))).to_vec();
@@ -211,8 +214,8 @@ fn solids<N: Real>() -> Vec<ShapeHandle<N, 3>> {
     ]
 }
 
-/// A solid on a ground, far from the origin and near it, is lowered and turned a little: what is measured
-/// along the normal that was is exact as long as that is the normal.
+/// A solid on a ground body, near the origin or far from it, is lowered and rotated a little.
+/// Depths measured along the old normal are exact while the normal stays the same.
 fn sinks<N: Real>(ground: &ShapeHandle<N, 3>, height: f64, far: f64, noise: f64) {
     for solid in solids::<N>() {
         let place = |depth: f64| [far, height + 0.5 - depth, -far];
@@ -226,7 +229,7 @@ fn sinks<N: Real>(ground: &ShapeHandle<N, 3>, height: f64, far: f64, noise: f64)
             let off = found.iter().map(|x| (x - depth).abs()).fold(0.0, f64::max);
             assert!(off <= noise, "{off} off a depth of {depth}, {far} away");
         }
-        // Beyond the tolerance, all of them are found anew, also when it is lifted off.
+        // Beyond the tolerance all contacts are found anew, also when the solid is lifted off.
         assert!(stage.moved(place(-0.5), 0.0).is_empty(), "nothing is kept of what is gone");
         assert_eq!(stage.moved(place(0.001), 0.7).len(), before, "turned");
     }
@@ -260,7 +263,8 @@ fn another_shape_or_question_is_answered_anew() {
     assert!(stage.depths().is_empty(), "without a floor there is nothing to stand on");
 }
 
-/// Where a leaning capsule touches a ground, step by step, while it leans over.
+/// The x coordinate of the deepest contact of a capsule on a ground body, step by step, while the
+/// capsule leans over.
 fn leaning(tolerance: f64, ground: &ShapeHandle<f64, 3>) -> Vec<f64> {
     let capsule = ShapeHandle::new(Capsule::<f64, 3>::new(0.5, 0.3));
     let lean =
@@ -306,7 +310,8 @@ fn contacts_are_kept_on_every_ground() {
 
 #[test]
 fn what_was_fast_and_slows_down_is_kept_again() {
-    // A box over the edge of a floor: contacts at the edge stay there, kept ones go with the box.
+    // A box moves over the edge of a floor: computed contacts stay at the edge, reused ones move
+    // with the box.
     let mut stage = Stage::<f64>::new(floor(), [0.0, 0.499, 0.0], solids()[0].clone());
     let edge = |stage: &Stage<f64>| {
         let contacts = stage.world.contact_views().flat_map(|(_, _, view)| view.contacts());
@@ -327,8 +332,8 @@ fn what_was_fast_and_slows_down_is_kept_again() {
     assert!(kept >= 10, "kept {kept} times");
 }
 
-/// Capsules that lie on capsules, and how many contacts they have and of what depths: the upper ones lean,
-/// less and less until both of their ends are near; all of them at once move, or one.
+/// Depths of the contacts of capsules that lie on capsules. The upper ones lean less and less until
+/// both of their ends are near; in some steps all of them move, in others only one.
 fn capsules(narrow_phase: DefaultNarrowPhase<f64, 3>) -> Vec<Vec<f64>> {
     let capsule = ShapeHandle::<f64, 3>::new(Capsule::new(0.5, 0.3));
     let (mut world, groups) = (World::<f64>::new(0.05), CollisionGroups::new());
@@ -373,7 +378,7 @@ fn it_is_of_no_account_whether_few_or_all_are_updated() {
 
 #[test]
 fn an_overlap_is_never_missed() {
-    // Less is predicted than may be moved.
+    // The prediction, zero, is less than the tolerance for movement.
     let ball = || ShapeHandle::new(Cylinder::new(0.5_f64, 0.5));
     let mut world = World::<f64>::new(0.05);
     let narrow_phase = DefaultNarrowPhase::<f64, 3>::new().reusing(0.01);

@@ -1,8 +1,8 @@
-//! How deep solids with flat faces, segments and capsules lie in cylinders and cones: held against the
-//! reference, which searches the whole sphere of directions and shares no code with the library.
+//! Compares the depths of segments, capsules and solids with flat faces in cylinders and cones with
+//! a reference that searches the whole sphere of directions and shares no code with the library.
 //!
-//! Sizes are ordinary, zero or hardly more than zero; solids stand straight, all but straight or anyhow;
-//! places are those of the origin, near it, on the axis, on a grid, or any.
+//! Sizes are ordinary, zero or tiny; solids are aligned, nearly aligned or arbitrarily rotated;
+//! positions are the origin, near it, on the axis, on a grid, or arbitrary.
 
 use crate::support::samples::samples;
 use impinge::math::na::{Quaternion, Translation, UnitQuaternion};
@@ -13,20 +13,20 @@ use impinge_reference::geometry::vector::{norm, scale};
 use impinge_reference::geometry::{Pose, Solid, separation_along, signed_distance};
 use impinge_reference::random::Random;
 
-/// A solid for the library, and for the reference.
+/// A solid for the library and for the reference.
 type Solids<N> = (ShapeHandle<N, 3>, Solid<3>);
 
-/// Sizes that are hardly any.
+/// Sizes that are zero or small.
 const THIN: [f64; 10] = [0.0, 1e-14, 1e-10, 1e-8, 1e-7, 1e-5, 1e-4, 1e-3, 1e-2, 0.1];
-/// Segments, capsules, triangles, boxes, hulls.
+/// Number of kinds: segments, capsules, triangles, boxes, hulls.
 const KINDS: usize = 5;
 
-/// How many pairs are tried.
+/// Number of pairs that are tested.
 fn rounds() -> u64 {
     samples(30) as u64
 }
 
-/// As the scalar has it.
+/// The number rounded to the scalar.
 fn single<N: Space<3>>(x: f64) -> f64 {
     N::lit(x).as_f64()
 }
@@ -35,12 +35,12 @@ fn point<N: Space<3>>(p: [f64; 3]) -> Point<N, 3> {
     Point::from(p.map(N::lit))
 }
 
-/// What a scene is made with.
+/// Random source and parameters of a scene.
 struct Maker {
     random: Random,
-    /// One in so many sizes is hardly any.
+    /// One in `thin` sizes is taken from [`THIN`].
     thin: usize,
-    /// All lengths are so much larger.
+    /// Factor of all lengths.
     scale: f64,
 }
 
@@ -52,7 +52,7 @@ impl Maker {
         Self { random, thin, scale }
     }
 
-    /// A size that the scalar has.
+    /// A random size that the scalar represents exactly.
     fn size<N: Space<3>>(&mut self) -> f64 {
         let is_thin = self.random.below(self.thin) == 0;
         let size = if is_thin { *self.random.pick(&THIN) } else { self.random.range(0.1, 1.0) };
@@ -94,7 +94,8 @@ impl Maker {
         }
     }
 
-    /// A hull of points anywhere, on an ellipsoid, on a grid or on a prism, now and then all but flat.
+    /// A hull of random points, of points on an ellipsoid, on a grid or on a prism; some hulls are
+    /// nearly flat.
     fn hull<N: Space<3>>(&mut self) -> Solids<N> {
         loop {
             let sizes = self.sizes::<N>();
@@ -136,7 +137,8 @@ impl Maker {
         }
     }
 
-    /// Straight, all but straight, or any; up to its length.
+    /// A random quaternion that is aligned, nearly aligned or arbitrary; its length is not
+    /// normalized.
     fn turn<N: Space<3>>(&mut self) -> [f64; 4] {
         const STRAIGHT: [[f64; 4]; 5] = [
             [0.0, 0.0, 0.0, 1.0],
@@ -156,7 +158,7 @@ impl Maker {
         mixed.map(|x| single::<N>(x / length))
     }
 
-    /// A place such that solids with this reach probably overlap.
+    /// A position at which solids with this reach probably overlap.
     fn place<N: Space<3>>(&mut self, reach: f64) -> [f64; 3] {
         let at = match self.random.below(5) {
             0 => [0.0; 3],
@@ -169,7 +171,7 @@ impl Maker {
     }
 }
 
-/// A place for the library, and for the reference.
+/// A pose for the library and for the reference.
 fn placed<N: Space<3>>(at: [f64; 3], turn: [f64; 4]) -> (Isometry3<N>, Pose<3>) {
     let [i, j, k, w] = turn.map(N::lit);
     let quaternion = UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k));
@@ -177,8 +179,8 @@ fn placed<N: Space<3>>(at: [f64; 3], turn: [f64; 4]) -> (Isometry3<N>, Pose<3>) 
     (isometry, Pose::from_quaternion(at, turn))
 }
 
-/// The error of the depth of a pair and of what its normal separates in parts of their size, and what it may
-/// be; `None` unless the cores overlap.
+/// Error of the depth of a pair and of the separation along its normal relative to the size, and
+/// the error allowed; `None` unless the cores overlap.
 fn error<N: Space<3>>(seed: u64, kind: usize, accuracy: f64) -> Option<(f64, f64, String)> {
     let mut maker = Maker::new(seed);
     let ((shape1, solid1), (shape2, solid2)) = (maker.flat::<N>(kind), maker.round::<N>());
@@ -196,8 +198,8 @@ fn error<N: Space<3>>(seed: u64, kind: usize, accuracy: f64) -> Option<(f64, f64
     let normal = found.normal.into_inner().map(Real::as_f64).into();
     let own = separation_along(&solid1, &pose1, &solid2, &pose2, &normal);
     let error = truth.error_of(distance).max((own - distance).abs()) / size;
-    // Where a whole ring of normals is about as good, a search that is not finished ends the work; a needle or a
-    // disk is left to it too.
+    // Where all normals of a ring are nearly equally good, the general search may end before it has
+    // converged; it also handles needles and disks.
     let is_ring = truth.upper - truth.lower > 1e-10 * size;
     let is_thin = matches!(solid2, Solid::Cylinder { half_height, radius }
         | Solid::Cone { half_height, radius } if half_height.min(radius) < 1e-6 * size);

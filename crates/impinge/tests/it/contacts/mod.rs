@@ -1,4 +1,4 @@
-//! Contacts and manifolds: the numeric contract, ids, batches.
+//! Tests of contacts and manifolds: the numeric contract, contact ids, batches.
 
 mod accuracy;
 mod contact_ids;

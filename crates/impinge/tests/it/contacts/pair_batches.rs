@@ -1,4 +1,4 @@
-//! Pairs that begin and end together, held against a world that handles them one by one.
+//! Compares pairs that begin and end in batches with a world that handles them one by one.
 
 use crate::support::scene_stage;
 
@@ -11,7 +11,8 @@ use impinge_scenes::{Scene, SceneQuery, mixed_shapes, sparse_drift, spawn_and_de
 use scene_stage::{Digest, Play, Player, digest_state};
 use std::hash::Hasher;
 
-/// The default narrow phase, given pairs one by one: `handle_interactions` is the provided method.
+/// The default narrow phase behind the provided `handle_interactions`, which passes the pairs one
+/// by one.
 #[derive(Clone)]
 struct OneByOne<N: Space<D>, const D: usize>(DefaultNarrowPhase<N, D>);
 
@@ -88,7 +89,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for OneByOne<N, D> {
     }
 }
 
-/// Every third object asks for proximity.
+/// The scene with every third object as a sensor.
 fn asking_for_both<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     for object in scene.objects.iter_mut().step_by(3) {
         object.query = SceneQuery::Proximity { margin: 0.02 };
@@ -96,11 +97,11 @@ fn asking_for_both<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
     scene
 }
 
-/// Plays a scene in both ways; answers how many contacts and proximities changed.
+/// Plays a scene in both ways; returns how many contacts and proximities changed.
 fn compare<N: Play<D>, const D: usize>(scene: &Scene<D>, steps: u32) -> usize {
     let mut together = Player::<N, D>::new(scene.clone(), 1.0);
     let mut one_by_one = Player::<N, D>::new(scene.clone(), 1.0);
-    // Both change their narrow phase, which numbers proxies anew.
+    // Both worlds exchange their narrow phase, after which proxies have new indices.
     together.world.set_narrow_phase(Box::new(DefaultNarrowPhase::new()));
     one_by_one.world.set_narrow_phase(Box::new(OneByOne(DefaultNarrowPhase::new())));
     let mut events = 0;

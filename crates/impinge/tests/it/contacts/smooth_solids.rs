@@ -1,5 +1,5 @@
-//! Ellipsoids and tapered capsules against searches of their own, where the iterations of the general
-//! algorithm never end by themselves: also of needles and pancakes.
+//! Compares ellipsoids and tapered capsules, including needles and thin disks, with searches written for them. The
+//! iterations of the general algorithm do not converge for these solids by themselves.
 
 use crate::support::query_support;
 
@@ -11,8 +11,8 @@ use impinge::query::{PointQuery, contact};
 use impinge::shape::{Ellipsoid, Segment, Shape, TaperedCapsule};
 use query_support::random::Random;
 
-/// How far a unit normal separates two ellipsoids around the origin and `away`, given as the matrices of
-/// their squared support functions; its gradient and its Hessian.
+/// Separation of two ellipsoids along a unit normal, its gradient and its Hessian. The ellipsoids lie at the origin and
+/// at `away`, and are given by the matrices of their squared support functions.
 fn height(
     normal: &Vector3<f64>,
     solids: &[Matrix3<f64>; 2],
@@ -29,8 +29,8 @@ fn height(
     (height, gradient, hessian)
 }
 
-/// The largest height that can be climbed to from a normal: Newton's method with a line search, uphill
-/// along each principal direction.
+/// The largest separation reached from a start normal by Newton's method with a line search, going uphill along each
+/// principal direction.
 fn climbed(mut normal: Vector3<f64>, solids: &[Matrix3<f64>; 2], away: &Vector3<f64>) -> f64 {
     let (mut best, mut gradient, mut hessian) = height(&normal, solids, away);
     for _ in 0..200 {
@@ -59,7 +59,7 @@ fn turn(random: &mut Random) -> UnitQuaternion<f64> {
     UnitQuaternion::new_normalize(q)
 }
 
-/// The matrix whose quadratic form is the square of the support function.
+/// The matrix whose quadratic form is the squared support function.
 fn squared_support(turn: &UnitQuaternion<f64>, half_axes: &Vector3<f64>) -> Matrix3<f64> {
     let turn = turn.to_rotation_matrix().into_inner();
     turn * Matrix3::from_diagonal(&half_axes.component_mul(half_axes)) * turn.transpose()
@@ -87,7 +87,7 @@ fn ellipsoids_are_as_far_apart_as_the_best_normal_says() {
         let local = climbed(*found.normal, &solids, &away);
         let starts = (0..8).map(|_| random.direction::<f64, 3>());
         let best = starts.map(|start| climbed(start, &solids, &away)).fold(local, f64::max);
-        // The test's own square roots lose half of the digits of the aspect ratio.
+        // The square roots of this test lose half of the digits of the aspect ratio.
         let close = if aspect > 1e3 { 2e-12 } else { 2e-13 };
         assert!((best + found.depth).abs() <= close, "{best}, not {}: case {case}", -found.depth);
         let gap = found.world2 - found.world1 + *found.normal * found.depth;
@@ -98,7 +98,7 @@ fn ellipsoids_are_as_far_apart_as_the_best_normal_says() {
     assert!(deep > 400 && apart > 200, "{deep} overlap, {apart} do not");
 }
 
-/// The least distance of the points of a segment, which is a convex function along it.
+/// Least distance over a segment by ternary search: the distance is convex along it.
 fn least(distance: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..120 {
@@ -142,7 +142,7 @@ fn segments_are_as_far_as_their_nearest_point() {
     assert!(apart > 2000, "{apart} of 6000 are apart");
 }
 
-/// The nearest point of an ellipse by its angle: the best of many, then closer.
+/// Distance of a point from an ellipse: the best of many angles, then a ternary search around it.
 fn nearest_by_angle(half_axes: &Vector2<f64>, point: &Vector2<f64>) -> f64 {
     const PARTS: i32 = 720;
     let step = core::f64::consts::FRAC_PI_2 / f64::from(PARTS);
@@ -172,7 +172,7 @@ fn points_of_ellipses<N: Real>() {
         let half_axes = Vector2::new(1.0, ratio).map(|x| N::lit(x).as_f64());
         let near = [2.0, 1.0, ratio, ratio * 0.1][case / 4 % 4];
         let place = Vector2::new(random.within(0.0, 1.5), random.within(0.0, 1.0) * near);
-        // Now and then on an axis, and in the middle.
+        // Some positions lie on an axis or in the middle.
         let place = match case % 7 {
             0 => Vector2::new(0.0, place.y),
             1 => Vector2::new(place.x, 0.0),

@@ -1,4 +1,4 @@
-//! The manifolds of two placed shapes, without a world.
+//! Tests manifolds of two placed shapes without a world.
 
 use crate::support::query_support::random::Random;
 use crate::support::shape_table::{self, Shapes};
@@ -13,11 +13,11 @@ use impinge::query::{ContactId, ContactManifold};
 use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 use impinge::world::{CollisionGroups, CollisionWorld};
 
-/// A pair in its place, and what is asked.
+/// Two placed shapes and the query.
 struct Setting<'a, N: Space<D>, const D: usize> {
     places: [N::Isometry; 2],
     shapes: [&'a ShapeHandle<N, D>; 2],
-    /// The share of each object.
+    /// Contact query of each of the two objects.
     query: ContactQuery<N>,
     max_points: Option<usize>,
 }
@@ -30,7 +30,7 @@ impl<N: Space<D>, const D: usize> Setting<'_, N, D> {
         ContactPrediction::new(prediction + prediction, angular_prediction, angular_prediction)
     }
 
-    /// What a new world says of the two.
+    /// The manifolds that a new world computes.
     fn by_world(&self) -> Manifolds<N, D> {
         let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.25));
         if let Some(max_points) = self.max_points {
@@ -46,7 +46,7 @@ impl<N: Space<D>, const D: usize> Setting<'_, N, D> {
         world.contact_manifolds().map(|(_, _, manifold)| manifold.clone()).collect()
     }
 
-    /// What a generator says that has not seen them before.
+    /// The manifolds that a new generator computes.
     fn by_generator(&self) -> Manifolds<N, D> {
         let mut generator =
             self.max_points.map_or_else(PairManifoldGenerator::default, PairManifoldGenerator::new);
@@ -60,7 +60,7 @@ impl<N: Space<D>, const D: usize> Setting<'_, N, D> {
     }
 }
 
-/// All but the ids.
+/// Asserts that the manifolds are equal except for the ids.
 fn assert_same<N: Real, const D: usize>(
     found: &[ContactManifold<N, D>],
     expected: &[ContactManifold<N, D>],
@@ -76,7 +76,7 @@ fn assert_same<N: Real, const D: usize>(
     }
 }
 
-/// Every two shapes, in both orders, in some places.
+/// Tests every two shapes in both orders at several positions.
 fn every_pair<N, R, const D: usize>(shapes: &Shapes<N, D>, turn: fn(&mut Random) -> R)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,

@@ -1,7 +1,7 @@
-//! Searches with many equal answers: of things as near, or met at the same time, the first by number
-//! answers, whatever the order of the search.
+//! Tests searches with many equal results: of things at equal distance, or hit at the same time,
+//! the one with the least index is the result, whatever order the search visits them in.
 //!
-//! The twin looks at everything, with the same test of one thing.
+//! The expected results come from scans of all things with the same test of each thing.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::dim3;
@@ -13,7 +13,7 @@ use impinge::shape::ShapeHandle;
 use impinge::world::{CollisionGroups, QueryFilter};
 use impinge_reference::random::Random;
 
-/// A few places on a grid, many things at each.
+/// Cells along each axis of the grid; few enough that each holds many things.
 const SIDE: usize = 6;
 
 fn cell<const D: usize>(random: &mut Random) -> [f64; D] {
@@ -24,7 +24,7 @@ fn vector<N: Real, const D: usize>(v: [f64; D]) -> Vector<N, D> {
     Vector::<N, D>::from_fn(|axis, _| N::lit(v[axis]))
 }
 
-/// The first of least key.
+/// The first index with the least key.
 fn first<N: Real>(keys: impl Iterator<Item = Option<N>>) -> Option<(usize, N)> {
     let mut best: Option<(usize, N)> = None;
     for (index, key) in keys.enumerate() {
@@ -35,7 +35,7 @@ fn first<N: Real>(keys: impl Iterator<Item = Option<N>>) -> Option<(usize, N)> {
     best
 }
 
-/// Boxes of the size of a cell or of none, a place in units of `unit` and beside `offset`.
+/// Boxes of half a cell or of size zero, at random cells of size `unit` from `offset` on.
 fn boxes<N: Real, const D: usize>(
     random: &mut Random,
     count: usize,
@@ -90,7 +90,7 @@ fn of_equal_boxes_the_first_by_index_answers() {
 
 type World = dim3::world::CollisionWorld<f32, usize>;
 
-/// Balls and cubes of one size, several at each place.
+/// Balls and cubes of one size, several in each cell.
 fn world(random: &mut Random, count: usize) -> World {
     let mut world = World::new(0.02);
     let mut nobody = CollisionGroups::new();
@@ -111,7 +111,7 @@ fn place(random: &mut Random) -> dim3::math::Isometry<f32> {
     dim3::math::Isometry::translation(at.x, at.y, at.z)
 }
 
-/// The world's answers against those of its objects one by one.
+/// Compares queries of the world with scans of its objects.
 fn ask(world: &World, random: &mut Random) -> usize {
     let (all, reach) = (QueryFilter::new(), 4.0_f32);
     let objects: Vec<_> = world.collision_objects().collect();
@@ -172,7 +172,7 @@ fn of_equal_objects_the_first_by_handle_answers() {
     let (mut random, mut ties) = (Random::new(43), 0);
     for count in [20, 700] {
         let mut world = world(&mut random, count);
-        // As they are added, some at rest and some in motion, and all at rest.
+        // After one update, with some objects at rest, and with all at rest.
         for updates in [1, 40, 100] {
             (0..updates).for_each(|_| world.update());
             world.validate().expect("sound");
@@ -185,14 +185,15 @@ fn of_equal_objects_the_first_by_handle_answers() {
                 let position = place(&mut random);
                 world.set_position(handle, position);
             }
-            // Between a change and the update.
+            // Queries between a change and the next update.
             ties += ask(&world, &mut random);
         }
     }
     assert!(ties > 500, "{ties} ties");
 }
 
-/// Triangles around whole numbers of a plane, in any order: above a vertex six of them are as near.
+/// Triangles around the whole numbers of a plane, in random order: above a vertex, six of them are
+/// equally near, and the least index is the result.
 #[test]
 fn of_equal_triangles_the_first_by_number_answers() {
     let side = 12_u32;

@@ -1,5 +1,5 @@
-//! No case of the corpus of bugs is left out: each is run by a test that is named here, and that counts
-//! its cases itself.
+//! Tests that every case of the corpus of bugs is run: each kind of query has a test listed here, which counts its
+//! cases itself.
 
 use crate::support::query_support;
 
@@ -9,7 +9,7 @@ use std::path::Path;
 
 use query_support::corpus::{narrow_phase, regression};
 
-/// By kind of question: the file that runs all cases of it, in both scalars, and how many there are.
+/// By kind of query: the file that runs all its cases with both scalars, and their number.
 const RUN: [(&str, &str, usize); 12] = [
     ("convex_hull", "queries/hull/corpus.rs", 8),
     ("linear_cast", "queries/query_corpus.rs", 27),
@@ -25,7 +25,7 @@ const RUN: [(&str, &str, usize); 12] = [
     ("world_scenario", "worlds/world_corpus.rs", 14),
 ];
 
-/// Cases that are not run, and why not.
+/// Cases that are not run, with the reason.
 const EXEMPT: [(&str, &str); 1] =
     [("box2d-756-sliver", "asks for a moment of inertia: there are no masses here")];
 
@@ -60,7 +60,7 @@ fn names_are_given_once() {
     }
 }
 
-/// The files that are said to run a kind of question name it.
+/// Each listed file contains the name of its kind of query.
 #[test]
 fn files_ask_what_they_are_said_to() {
     for (query, file, _) in RUN {

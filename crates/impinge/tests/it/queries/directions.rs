@@ -1,4 +1,5 @@
-//! Directions and rotations that are none are refused where they come in, and named.
+//! Tests that directions and rotations whose length is not 1 are refused, and that the error
+//! reports the length.
 
 use impinge::math::na::{
     Complex, Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion,
@@ -46,7 +47,7 @@ fn half_spaces_without_a_direction_panic() {
     let _ = HalfSpace::<f32, 3>::new(Unit::new_normalize(Vector::<f32, 3>::zeros()));
 }
 
-/// A position is refused by compounds and worlds, by the length of its rotation.
+/// Compounds and worlds refuse a position whose rotation is not a unit one, and report its length.
 fn positions<N: Space<D>, const D: usize>(good: N::Isometry, bad: N::Isometry, expected: f64) {
     let ball = || ShapeHandle::<N, D>::new(Ball::new(N::ONE));
     let refused = Compound::<N, D>::try_new(vec![(good, ball()), (bad, ball())]);

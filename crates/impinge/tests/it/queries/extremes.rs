@@ -1,5 +1,5 @@
-//! Input at the edge of what is allowed, and beyond: worlds refuse it or bear it, and never panic,
-//! hang or lose track.
+//! Tests input at and beyond the limits: worlds refuse it or handle it, and never panic, hang or
+//! become inconsistent.
 
 use crate::support::scene_stage;
 use crate::support::world_stage;
@@ -24,7 +24,7 @@ type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
-/// A number for everything that can be seen of a world.
+/// Digest of the complete visible state of a world.
 fn state<N: Stage<D>, const D: usize>(world: &World<N, D>) -> u64 {
     let mut digest = Digest::new();
     digest_state(world, &mut digest);
@@ -40,7 +40,7 @@ fn state<N: Stage<D>, const D: usize>(world: &World<N, D>) -> u64 {
     digest.finish()
 }
 
-/// The call panics, and the message names what is wrong.
+/// The call panics with a message that explains the reason.
 #[track_caller]
 fn panics<R>(call: impl FnOnce() -> R, what: &str) {
     let outcome = catch_unwind(AssertUnwindSafe(|| drop(call())));
@@ -99,7 +99,8 @@ fn bad_shapes_are_refused<N: Stage<D>, const D: usize>() {
     panics(|| DBVTBroadPhase::<N, Aabb<N, D>, ()>::new(N::lit(f64::NAN)), "margin");
 }
 
-/// Too few points, coincident ones, ones on a line, and numbers that are none.
+/// Refused: too few points, coinciding points, points on a line, and coordinates that are not
+/// finite.
 fn bad_hulls_are_refused<N: Real>() {
     let flat = |points: &[[f64; 2]]| {
         let points: Vec<_> = points.iter().map(|p| Point::from(vector::<N, 2>(*p))).collect();
@@ -129,7 +130,7 @@ fn hulls_of_bad_points() {
     bad_hulls_are_refused::<f64>();
 }
 
-/// Three objects in contact, one of which is an area, and a stale handle.
+/// A world with three objects in contact, one of them a sensor, and a stale handle.
 fn busy<N: Stage<D>, const D: usize>() -> (World<N, D>, [CollisionObjectHandle; 4]) {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let handles = [
@@ -144,7 +145,7 @@ fn busy<N: Stage<D>, const D: usize>() -> (World<N, D>, [CollisionObjectHandle; 
     (world, handles)
 }
 
-/// Every mutator with every kind of bad argument: refused, and nothing has changed.
+/// Every mutator refuses every kind of bad argument and leaves the state unchanged.
 fn refusals_change_nothing<N: Stage<D>, const D: usize>() {
     let (mut world, [first, second, area, stale]) = busy::<N, D>();
     let before = state(&world);
@@ -182,13 +183,13 @@ fn refusals_change_nothing<N: Stage<D>, const D: usize>() {
     assert!(world.contact_pair(first, first).is_none(), "no pair with itself");
     assert_eq!(state(&world), before, "stale handles");
     assert!(step(&mut world).is_empty() && world.proximity_events().is_empty(), "no event");
-    // The events of the update before are gone now; the rest is as before.
+    // The events of the previous update are gone; everything else is unchanged.
     let calm = state(&world);
     step(&mut world);
     assert_eq!(state(&world), calm, "and after another update");
 }
 
-/// Questions that make no sense have no answer, and no effect.
+/// Queries with NaN or infinite coordinates find nothing and change nothing.
 fn questions_that_are_none<N: Stage<D>, const D: usize>() {
     let (world, [first, ..]) = busy::<N, D>();
     let all = CollisionGroups::new();
@@ -216,7 +217,7 @@ fn questions_that_are_none<N: Stage<D>, const D: usize>() {
     assert_eq!(world.interferences_with_aabb(&aabb, &all).count(), 3, "everything");
 }
 
-/// Shapes without any size: all interact with all, as points and boxes do.
+/// Shapes of size zero at one position all interact with each other.
 fn sizes_of_zero<N: Stage<D>, const D: usize>() {
     let zero = Point::<N, D>::origin();
     let shapes: Vec<ShapeHandle<N, D>> = vec![
@@ -255,12 +256,12 @@ fn sizes_of_zero<N: Stage<D>, const D: usize>() {
         world.set_position(handle, N::on_x(10.0 * f64::from(u32::try_from(index).expect("few"))));
     }
     let stopped = step(&mut world);
-    // All still lie on the half-space.
+    // All of them still lie on the half-space.
     assert_eq!(stopped.len(), (count - 1) * (count - 2) / 2, "all but those of the half-space");
     assert!(stopped.iter().all(|event| matches!(event, ContactEvent::Stopped(..))), "stopped");
 }
 
-/// Sizes and places whose squares, or which themselves, leave the range of the scalar.
+/// Sizes and positions whose squares, or which themselves, exceed the range of the scalar.
 fn enormous<N: Stage<D>, const D: usize>() {
     let huge = N::MAX.as_f64() / 4.0;
     let mut world = World::<N, D>::new(N::lit(0.02));
@@ -284,7 +285,8 @@ fn enormous<N: Stage<D>, const D: usize>() {
     assert!(hits > 0, "the enormous ones");
 }
 
-/// Very many objects at one place: each touches all, and all of it ends with one removal.
+/// Very many objects with the same centre: each touches all others, and all contacts end with one
+/// removal.
 fn coincident<N: Stage<D>, const D: usize>(count: usize) {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let shape = ball(0.5);
@@ -315,8 +317,8 @@ fn coincident<N: Stage<D>, const D: usize>(count: usize) {
 
 #[test]
 fn two_thousand_at_one_place() {
-    // Two million pairs, each looked up among the partners of an object: too slow where every look
-    // is checked by another one.
+    // Two million pairs, each looked up among the partners of an object: too slow for debug builds,
+    // which check each lookup by a second one.
     coincident::<f32, 3>(if cfg!(debug_assertions) { 1000 } else { 2000 });
     coincident::<f64, 2>(500);
     coincident::<f32, 2>(500);

@@ -1,4 +1,5 @@
-//! Impacts of solids that do not turn: values by hand, the policy for starts in contact, and bad input.
+//! Tests impacts of solids without rotation: values by hand, the policy for starts in contact, and
+//! bad input.
 
 use crate::support::query_support;
 
@@ -23,7 +24,7 @@ fn floor() -> Plane<f64, 2> {
     Plane::new(Unit::new_unchecked(V2::y()))
 }
 
-/// The impact of a shape on one that stays at the origin.
+/// The impact of a moving shape on one that stays at the origin.
 fn onto(
     still: &dyn Shape<f64, 2>,
     place: Isometry2<f64>,
@@ -44,12 +45,12 @@ fn onto_with(
 
 #[test]
 fn an_impact_names_points_and_normal_in_the_world() {
-    // The box is turned by a quarter and moves too: nothing is in anybody's local frame.
+    // The box is turned by a quarter and moves too, so that the world frame is neither local frame.
     let (cuboid, ball) = (Cuboid::new(V2::new(0.5, 2.0)), Ball::new(1.0));
     let quarter = Isometry2::new(V2::new(-1.0, 10.0), std::f64::consts::FRAC_PI_2);
     let cuboid = Moving::new(&quarter, &V2::new(1.0, -2.0), &cuboid);
     let ball = Moving::new(&at(-1.0, 20.5), &V2::new(1.0, -5.0), &ball);
-    // 20.5 - 1 - 10.5 = 9 apart, at a speed of 3.
+    // Initially 20.5 - 1 - 10.5 = 9 apart, approaching with the speed 3.
     let found = impact(&cuboid, &ball, &ImpactOptions::new()).expect("from above");
     assert!((found.toi - 3.0).abs() < 1e-14, "{found:?}");
     let touch = V2::new(2.0, 4.5);
@@ -67,7 +68,8 @@ fn the_target_distance_is_where_it_ends() {
     let hit = onto_with(&ball, (at(0.0, 6.0), -V2::y(), &ball), &options).expect("straight on");
     assert_eq!(hit.toi, 3.5, "half a unit before they touch");
     assert_eq!((hit.world1.y, hit.world2.y), (1.0, 1.5), "where they are half a unit apart");
-    // They pass at a distance of a quarter: the centres are 2.25 apart there, 2.5 at the target.
+    // They pass at a distance of 0.25: the centres are 2.25 apart there, and 2.5 apart at the
+    // target distance.
     let pass = (at(-10.0, 2.25), V2::x(), &ball as &dyn Shape<f64, 2>);
     assert_eq!(onto_with(&ball, pass, &ImpactOptions::new()), None, "past it");
     let near = onto_with(&ball, pass, &options).expect("within half a unit");
@@ -98,7 +100,7 @@ fn the_longest_time_is_included() {
     assert_eq!((touching(0.0), touching(-1.0)), (Some(0.0), None), "the start is a moment");
 }
 
-/// The table of the documentation: rows are starts, columns are motions.
+/// A longest time that is negative or NaN gives no impact, whatever the start and the speed.
 #[test]
 fn there_is_no_time_before_the_start() {
     let ball = Ball::new(1.0_f64);
@@ -121,7 +123,9 @@ fn starts_in_contact_count_by_their_velocities() {
     let (square, ball, capsule) =
         (Cuboid::new(V2::new(1.0, 1.0)), Ball::new(1.0), Capsule::<f64, 2>::new(0.5, 0.5));
     let wide = Cuboid::new(V2::new(9.0, 1.0));
-    // What stands still, how high its top is, the height of the mover, and whether that is deep.
+    // The table of the documentation: rows are starts in contact, columns are motions. Each start
+    // has the resting shape, the height of the mover, the options, and whether the mover is deeper
+    // than the target distance.
     let (low, wide): (&dyn Shape<f64, 2>, &dyn Shape<f64, 2>) = (&floor, &wide);
     let starts = [
         (low, 1.0, &none, false),
@@ -194,7 +198,7 @@ fn what_is_not_finite_never_hits() {
     assert_eq!(impact(&moving1, &moving2, &ImpactOptions::new()), None, "no difference");
 }
 
-/// From the least to the largest numbers: the unit of time does not matter.
+/// Speeds from the least to the greatest numbers: the unit of time does not matter.
 #[test]
 fn speeds_of_every_size() {
     let ball = Ball::new(1.0);
@@ -209,7 +213,7 @@ fn speeds_of_every_size() {
     assert_eq!(onto(&ball, at(0.0, 6.0), V2::new(least, 0.0), &ball), None, "sideways");
 }
 
-/// A fast common motion changes nothing, nor does a place far from the origin.
+/// Neither a fast common motion nor a position far from the origin changes the impact.
 #[test]
 fn only_differences_count() {
     let (cuboid, cylinder) =
@@ -226,7 +230,7 @@ fn only_differences_count() {
     assert_eq!(cast(0.0, 1e6), Some(6.75), "both fast");
 }
 
-/// A mover that only just passes, or only just does not.
+/// A mover that just passes, and one that just hits.
 #[test]
 fn grazing_passes() {
     let (ball, square) = (Ball::new(1.0), Cuboid::new(V2::new(1.0, 1.0)));
@@ -234,15 +238,16 @@ fn grazing_passes() {
         let over = onto(&ball, at(-9.0, 2.0 + miss), V2::x(), &square);
         assert_eq!(over, None, "over it by {miss}");
         let into = onto(&ball, at(-9.0, 2.0 - miss), V2::x(), &square).expect("into it");
-        // The lower leading corner meets the ball at the height 1 - miss.
-        // There the distance falls that slowly, so that its rounding moves the time by so much more.
+        // The lower leading corner hits the ball at the height 1 - miss. The distance decreases
+        // slowly there, so its rounding error moves the time by a multiple.
         let slope = (1.0 - (1.0 - miss) * (1.0 - miss)).sqrt();
         let (toi, late) = (8.0 - slope, 1e-15 / slope);
         assert!(into.toi < toi + late && into.toi > toi - late * 64.0, "{into:?}, not {toi}");
     }
 }
 
-/// Every two kinds, overlapping: moved along the normal they separate or approach.
+/// Every two kinds, overlapping at the start: a motion along the normal separates them or is an
+/// impact at time 0.
 fn overlapping_starts<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     kinds: &[ShapeKind],
     sample: Sample<N, D>,
@@ -300,7 +305,7 @@ fn in_space() {
     let diagonal = V3::new(-1.0, -1.0, -1.0);
     let moving = Moving::new(&Isometry3::translation(4.0, 4.0, 4.0), &diagonal, &ball);
     let hit = impact(&still, &moving, &ImpactOptions::new()).expect("onto the corner");
-    // The centre is 3 √3 from the corner, and stops at 1.
+    // The centre is 3 √3 away from the corner, and at the impact 1.
     assert!((hit.toi - (3.0 - 1.0 / 3.0_f64.sqrt())).abs() < 1e-13, "{hit:?}");
     assert!((hit.world1.coords - V3::new(1.0, 1.0, 1.0)).norm() < 1e-13, "{hit:?}");
     assert!(matches!(hit.feature1, FeatureId::Vertex(_)), "the corner: {hit:?}");

@@ -1,6 +1,6 @@
-//! What must hold of every impact: nothing touches before it, the solids touch at it, and the order of
-//! the arguments does not matter. Each pair of kinds, both dimensions and both scalars, against the
-//! distance at many times on the way.
+//! Tests laws of every impact: nothing touches before it, the solids touch at it, and the order of
+//! the arguments does not matter. Each pair of kinds, in both dimensions and with both scalars, is
+//! compared with the distance at many times on the path.
 
 use crate::support::query_support;
 
@@ -14,20 +14,20 @@ use impinge::shape::{Compound, Shape, ShapeHandle, ShapeKind};
 use query_support::random::Random;
 use query_support::samples::{PLANE, SPACE, Sample, sample2, sample3};
 
-/// How many pairs of each two kinds are tried.
+/// Number of pairs tested for each two kinds.
 const SEEDS: u64 = 6;
 
-/// How many times are looked at on the way.
+/// Number of times on the path at which the distance is computed.
 const LOOKS: u32 = 48;
 
-/// What differs by dimension.
+/// The solids, rotations and motions that differ by dimension.
 struct Maker<N: Space<D>, R, const D: usize> {
     sample: Sample<N, D>,
     turn: fn(&mut Random) -> R,
     spin: fn(&N::Isometry, &Vector<N, D>, &mut Random, N) -> ConstantVelocities<N, D>,
 }
 
-/// Two shapes and how they move.
+/// Two shapes and their motions.
 struct Scene<N: Space<D>, const D: usize> {
     shapes: [Box<dyn Shape<N, D>>; 2],
     positions: [N::Isometry; 2],
@@ -37,12 +37,12 @@ struct Scene<N: Space<D>, const D: usize> {
     what: String,
 }
 
-/// What the tests vary.
+/// Parameters of a scene.
 #[derive(Clone, Copy, Debug)]
 struct Setting {
     kinds: [ShapeKind; 2],
     seed: u64,
-    /// How fast the bodies turn, in radians for the way between them.
+    /// Angle in radians by which the bodies rotate on the path between them.
     turn: f64,
 }
 
@@ -58,7 +58,7 @@ where
         let away = random.direction::<N, D>() * N::lit(5.0);
         let places =
             [origin, origin + away].map(|at| Isometry::from_parts(at.into(), (self.turn)(random)));
-        // One of them is sent past the other, or at it; both drift.
+        // One is sent at the other or past it, and both drift.
         let drift = random.vector::<N, D>() * N::lit(0.5);
         let aim = away + random.vector::<N, D>() * N::lit(2.0);
         let velocities = [drift + aim, drift + random.vector::<N, D>() * N::lit(0.25)];
@@ -78,7 +78,7 @@ where
     R: AbstractRotation<N, D> + Copy,
     ConstantVelocities<N, D>: RigidMotion<N, D>,
 {
-    /// The signed distance of the shapes at two places, less the target distance.
+    /// Signed distance of the shapes at two poses, minus the target distance.
     fn gap(&self, m1: &Isometry<N, R, D>, m2: &Isometry<N, R, D>) -> N {
         let found = contact(m1, &*self.shapes[0], m2, &*self.shapes[1], N::INFINITY);
         found.map_or(-N::INFINITY, |found| -found.depth) - self.options.target_distance
@@ -103,8 +103,8 @@ where
         sizes[0] + sizes[1] + N::lit(8.0)
     }
 
-    /// Nothing touches before the impact, and the solids touch at it. `noise` is what rounding makes
-    /// of a distance.
+    /// Asserts that nothing touches before the impact and that the solids touch at it; `noise` is
+    /// the rounding error allowed in distances.
     fn check(&self, found: Option<&Impact<N, D>>, gap: &dyn Fn(N) -> N, noise: N) -> bool {
         let what = &self.what;
         let end = found.map_or(self.options.max_time, |found| found.toi);
@@ -113,7 +113,7 @@ where
         let is_at_start = found.is_some_and(|found| found.status.is_at_start());
         assert!(!is_at_start || end == N::ZERO, "{found:?} {what}");
         if start <= noise {
-            // Whether starts in contact count is a matter of policy, what they are is not.
+            // The policy decides whether a start in contact counts, but its status is determined.
             let is_named = found.is_none_or(|found| found.toi > N::ZERO || is_at_start);
             assert!(is_named, "{found:?} starts at {start} {what}");
             let status = found.map(|found| found.status);
@@ -127,7 +127,7 @@ where
         assert!(!is_at_start, "{found:?} starts at {start} {what}");
         for look in 0..LOOKS {
             let share = N::lit(f64::from(look) / f64::from(LOOKS));
-            // All over the way, and ever closer to its end.
+            // Times all along the path, and ever closer to its end.
             for time in [end * share, end * (N::ONE - share * share * share)] {
                 let before = gap(time);
                 assert!(before > -noise, "{before} at {time}, before {found:?} {what}");
@@ -162,16 +162,17 @@ where
         self.check(found.as_ref(), &|time| self.straight(time), self.noise())
     }
 
-    /// Rounding of the separation: of curved solids it is less exact than of others.
+    /// Rounding error of the separation, which is larger for curved solids.
     fn noise(&self) -> N {
         max(N::EPSILON * N::lit(1024.0), N::lit(1e-9)) * self.extent()
     }
 
-    /// The law for the bodies that turn too, given by how `told` gives their motions.
+    /// Tests the laws for bodies that rotate too; `told` wraps their motions.
     fn turning(&self, setting: &Setting, told: Told<N, D>) -> Option<ImpactStatus> {
         let [one, two] = self.motions.map(told);
         let [shape1, shape2] = &self.shapes;
-        // Up to rounding or not at all: by default a millionth of the sizes will do where bounds are loose.
+        // Without tolerance: the default of a millionth of the sizes would accept a gap where
+        // bounds are loose.
         let options = self.options.with_tolerance(N::ZERO);
         let found = nonlinear_time_of_impact(&*one, &**shape1, &*two, &**shape2, &options);
         let swapped = nonlinear_time_of_impact(&*two, &**shape2, &*one, &**shape1, &options);
@@ -187,10 +188,10 @@ where
     }
 }
 
-/// A way to hand over a motion.
+/// A conversion of a motion into the form in which it is passed.
 type Told<N, const D: usize> = fn(ConstantVelocities<N, D>) -> Box<dyn RigidMotion<N, D>>;
 
-/// A motion of which nothing is known but its bounds.
+/// A motion that gives only its positions and bounds.
 struct Opaque<M>(M);
 
 impl<N: Space<D>, M: RigidMotion<N, D>, const D: usize> RigidMotion<N, D> for Opaque<M> {
@@ -211,8 +212,8 @@ impl<N: Space<D>, M: RigidMotion<N, D>, const D: usize> RigidMotion<N, D> for Op
     }
 }
 
-/// Both laws for all pairs of kinds; how many impacts of each sort there were, and how many searches
-/// were given up.
+/// Tests both laws for all pairs of kinds, and asserts how many impacts of each sort occur and how
+/// few searches are given up.
 fn laws<N, R, const D: usize>(kinds: &[ShapeKind], maker: &Maker<N, R, D>)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,
@@ -243,11 +244,12 @@ where
     assert!(spent[0] < scenes / 50 && spent[1] < scenes / 10, "{spent:?} of {scenes} given up");
 }
 
-/// Solids that are put where they touch with a known normal, and moved back: the impact brings them there again,
-/// alone and as the only part of a composite.
+/// Solids are placed so that they touch with a known normal, and moved back along their path; the
+/// impact must find that position and normal again, both for the solid and for a composite with the
+/// solid as its only part.
 ///
-/// The supporting planes across the normal hold them apart until then. One of them is round, or they stop
-/// before they touch: so there is one normal alone.
+/// Until then the supporting planes across the normal separate them. At least one of the solids is
+/// round, or the target distance is positive, so that the normal is unique.
 fn known_normals<N, R, const D: usize>(kinds: &[ShapeKind], maker: &Maker<N, R, D>)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,
@@ -290,13 +292,13 @@ where
     assert!(worst.0 < N::lit(1024.0), "epsilon off: {worst:?}");
 }
 
-/// A solid that has one normal alone at each of its points.
+/// Whether the solid has a unique normal at each of its points.
 fn is_round(kind: ShapeKind) -> bool {
     use ShapeKind::{Ball, Capsule, Ellipsoid, Rounded, SupportMap, TaperedCapsule};
     matches!(kind, Ball | Capsule | Ellipsoid | Rounded | SupportMap | TaperedCapsule)
 }
 
-/// The point of a turned solid that is outermost in a direction; `None` of half-spaces.
+/// The outermost point of a rotated solid in a direction; `None` for half-spaces.
 fn outermost<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     turn: &R,

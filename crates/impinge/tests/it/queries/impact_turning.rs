@@ -1,5 +1,4 @@
-//! Impacts of bodies that turn: values by hand, brute force, motions of the user's own, starts in
-//! contact, and bad input.
+//! Tests impacts of rotating bodies: values by hand, brute force, custom motions, starts in contact, and bad input.
 
 use crate::support::query_support;
 
@@ -38,7 +37,7 @@ fn spins(place: Isometry2<f64>, angular: f64) -> Turning2<f64> {
     Turning2::<f64>::new(place, V2::zeros(), angular)
 }
 
-/// The half-plane below or beyond a line through its origin.
+/// The half-plane opposite to the normal (x, y), with its boundary through its origin.
 fn half_plane(x: f64, y: f64) -> Plane<f64, 2> {
     Plane::new(Unit::new_unchecked(V2::new(x, y)))
 }
@@ -47,10 +46,10 @@ fn rod(from: f64, to: f64) -> Segment<f64, 2> {
     Segment::new(Point::<f64, 2>::new(from, 0.0), Point::<f64, 2>::new(to, 0.0))
 }
 
-/// A body: how it moves and its shape.
+/// The motion and the shape of a body.
 type Body<'a, N, const D: usize> = (&'a dyn RigidMotion<N, D>, &'a dyn Shape<N, D>);
 
-/// The impact, the same in both orders.
+/// The impact, which must be equal in both orders.
 fn both<N: Space<D>, const D: usize>(
     one: Body<'_, N, D>,
     two: Body<'_, N, D>,
@@ -94,7 +93,7 @@ fn a_rod_swings_against_a_wall() {
     assert!((found.world1 - touch).norm() < 1e-12, "{found:?}");
     assert!((found.normal.into_inner() - V2::y()).norm() < 1e-12, "{found:?}");
     assert_eq!((found.feature1, found.feature2), (FeatureId::Vertex(1), FeatureId::Face(0)));
-    // In the other direction it takes half a turn more.
+    // The rotation in the other direction takes half a turn more.
     let found = toi(
         (&spins(at(0.0, 0.0), -1.0), &rod),
         (&Turning2::still(at(7.0, 2.0_f64.sqrt())), &wall),
@@ -105,7 +104,7 @@ fn a_rod_swings_against_a_wall() {
 
 #[test]
 fn the_centre_of_a_turn_may_be_anywhere() {
-    // The same rod, given by its middle, or by a frame far from it.
+    // One rod, given once from its middle and once from a frame far away from it.
     let wall = half_plane(0.0, -1.0);
     let wall = (&Turning2::still(at(7.0, 2.0_f64.sqrt())) as &dyn RigidMotion<f64, 2>, &wall as _);
     for shift in [1.0, -40.0] {
@@ -121,9 +120,9 @@ fn a_half_plane_turns_against_a_ball() {
     let (plane, ball) = (half_plane(0.0, 1.0), Ball::new(0.5));
     let still = Turning2::still(at(3.0, 2.0));
     let found = toi((&spins(at(0.0, 0.0), 1.0), &plane), (&still, &ball), &FOR_EVER);
-    // Its height over the plane is 2 cos t - 3 sin t.
+    // The height of the ball's centre above the plane is 2 cos t - 3 sin t.
     assert_near(found, (0.5 / 13.0_f64.sqrt()).acos() - 1.5_f64.atan());
-    // The same seen from the plane: the ball goes round, and turns, the other way.
+    // In the frame of the plane, the ball moves on a circle and rotates in the other direction.
     let motion = spins(at(3.0, 2.0), -1.0).with_local_center(Point::<f64, 2>::new(-3.0, -2.0));
     let round = toi((&Turning2::still(at(0.0, 0.0)), &plane), (&motion, &ball), &FOR_EVER);
     assert_near(round, found);
@@ -138,7 +137,7 @@ fn a_half_plane_turns_and_a_box_flies() {
     assert_near(found, first_touch((&turns, &plane), (&flies, &cuboid), 10.0));
 }
 
-/// The first time of contact, by so many looks that none is missed, then by halving.
+/// First time of contact: by scanning so many times that none is missed, then by bisection.
 fn first_touch(one: Body<'_, f64, 2>, two: Body<'_, f64, 2>, end: f64) -> f64 {
     let touch = |time: f64| {
         distance(&one.0.position_at(time), one.1, &two.0.position_at(time), two.1) <= 0.0
@@ -156,7 +155,7 @@ fn first_touch(one: Body<'_, f64, 2>, two: Body<'_, f64, 2>, end: f64) -> f64 {
 
 #[test]
 fn a_rod_that_whirls_a_thousand_times_on_its_way() {
-    // It is as thin as can be and turns by 0.1 in the time in which it moves by 0.0001.
+    // The rod is as thin as possible and rotates by 0.1 while it moves by 0.0001.
     let (rod, ball) = (rod(-1.0, 1.0), Ball::new(0.01));
     let whirls = Turning2::<f64>::new(turned(3.0, 0.3, 0.7), V2::new(-1.0, 0.0), 1000.0);
     let still = Turning2::still(at(0.0, 0.0));
@@ -168,7 +167,7 @@ fn a_rod_that_whirls_a_thousand_times_on_its_way() {
 
 #[test]
 fn in_space() {
-    // An arm along x swings about y, towards -z, and meets a ball that lies at 60 degrees.
+    // An arm along x swings about y, towards -z, and hits a ball at 60 degrees.
     let (arm, ball) = (
         Capsule::<f64, 3>::try_from_ends(
             Point::origin(),
@@ -182,18 +181,18 @@ fn in_space() {
     let place = Isometry3::translation(2.0 * FRAC_PI_3.cos(), 0.0, -2.0 * FRAC_PI_3.sin());
     let found = toi((&swings, &arm), (&Turning3::still(place), &ball), &FOR_EVER);
     assert_near(found, 2.0 * (FRAC_PI_3 - (0.75_f64 / 2.0).asin()));
-    // A half-space that turns about z against a box: its lower right edge is met first.
+    // A half-space rotates about z towards a box and first hits its lower right edge.
     let plane = Plane::new(Unit::new_unchecked(V3::y()));
     let cuboid = Cuboid::new(V3::new(1.0, 1.0, 1.0));
     let turns = Turning3::<f64>::new(Isometry3::identity(), V3::zeros(), V3::z());
     let still = Turning3::still(Isometry3::translation(2.0, 4.0, 0.0));
     assert_near(toi((&turns, &plane), (&still, &cuboid), &FOR_EVER), FRAC_PI_4);
-    // It may spin about its own normal, and slide along itself, as it likes.
+    // Spinning about its own normal and sliding within its surface change nothing.
     let spins = Turning3::<f64>::new(Isometry3::identity(), V3::new(3.0, 0.0, 0.0), V3::y() * 9.0);
     assert_eq!(both((&spins, &plane), (&still, &cuboid), &FOR_EVER), None);
 }
 
-/// A body that falls from a height without turning: no bound holds for ever.
+/// A body that falls without rotation; its speed has no bound over an infinite time.
 struct Falls {
     height: f64,
     gravity: f64,
@@ -228,7 +227,7 @@ fn a_fall_gets_faster() {
     }
 }
 
-/// Any motion, with nothing known of it but what a user must tell.
+/// Any motion reduced to the required methods of the trait.
 struct Opaque<M>(M);
 
 impl<M: RigidMotion<f64, 2>> RigidMotion<f64, 2> for Opaque<M> {
@@ -321,15 +320,15 @@ fn starts_in_contact_count_by_the_motion_of_the_points() {
     let still = Turning2::still(at(1.0, 0.0));
     let swings = |angular| spins(turned(0.0, 0.0, FRAC_PI_3), angular);
     assert_eq!(toi((&swings(-1.0), &rod), (&still, &wall), &FOR_EVER), 0.0, "into the wall");
-    // Away from it, and round: it comes back from below.
+    // Swinging away from the wall, the rod comes back from below.
     let back = toi((&swings(1.0), &rod), (&still, &wall), &FOR_EVER);
     assert_near(back, 2.0 * TAU / 3.0);
     assert_eq!(both((&swings(1.0), &rod), (&still, &wall), &until(4.0)), None, "not yet");
-    // Straight out the end only slides, and is back after a turn.
+    // At a right angle to the wall the end only slides, and touches again after a full turn.
     let straight = Turning2::still(at(2.0, 0.0));
     let back = toi((&spins(at(0.0, 0.0), 1.0), &rod), (&straight, &wall), &FOR_EVER);
     assert!(back <= TAU + 1e-9 && back > TAU - 1e-6, "{back}");
-    // A motion that only tells its bounds does the same.
+    // A motion that only gives its bounds has the same result.
     let hit = toi((&Opaque(swings(-1.0)), &rod), (&still, &wall), &FOR_EVER);
     assert_eq!(hit, 0.0, "into the wall");
     assert_eq!(both((&Opaque(swings(1.0)), &rod), (&still, &wall), &until(0.5)), None, "away");
@@ -361,7 +360,7 @@ fn overlapping_starts() {
 
 #[test]
 fn a_search_without_end_says_so() {
-    // The rod goes round the ball and never touches it.
+    // The rod circles the ball without touching it.
     let (rod, ball) = (rod(1.0, 2.0), Ball::new(0.5));
     let (turns, still) = (spins(at(0.0, 0.0), 1.0), Turning2::still(at(0.0, 0.0)));
     assert_eq!(both((&turns, &rod), (&still, &ball), &until(20.0)), None, "three times round");
@@ -388,7 +387,7 @@ fn what_is_not_finite_never_hits() {
     }
 }
 
-/// A motion with a bound that is none.
+/// A motion whose speed bound is not a valid number.
 struct Unbounded(f64);
 
 impl RigidMotion<f64, 2> for Unbounded {
@@ -415,7 +414,7 @@ fn bounds_that_are_none_are_never_trusted() {
     }
 }
 
-/// Powers of ten of sizes, speeds and times, in both scalars.
+/// Sizes, speeds and times scaled by powers of ten, with both scalars.
 fn scaled<N: Space<2, Isometry = Isometry2<N>>>(size: N, time: N, offset: N) -> N {
     let rod = Segment::new(Point::<N, 2>::origin(), Point::<N, 2>::new(N::TWO * size, N::ZERO));
     let wall = Plane::new(Unit::new_unchecked(-Vector::<N, 2>::y()));
@@ -446,7 +445,7 @@ fn sizes_and_times_of_every_order() {
     assert_eq!(far, scaled::<f32>(1.0, 1.0, 0.0), "far from the origin it is the same");
 }
 
-/// box2d#115: a sweep that only nears another body was said to hit it.
+/// box2d#115: a sweep that only comes near another body reported a hit.
 #[test]
 fn box2d_115_sweep() {
     let corpus = regression();
@@ -458,12 +457,12 @@ fn box2d_115_sweep() {
     let turn = two.pose.rotation.angle_to(&end.pose.rotation);
     let still = Turning2::still(one.pose);
     let (shape1, shape2) = (&*one.shape, &*two.shape);
-    // The second start is the same place, with an angle of many turns.
+    // The second start is the same pose, given by an angle of many turns.
     for start in [two.pose, turned(two.pose.translation.x, two.pose.translation.y, 513.366_76)] {
         let sweep = Turning2::<f64>::new(start, way, turn);
         assert_eq!(both((&still, shape1), (&sweep, shape2), &until(1.0)), None, "it only nears");
     }
-    // The case says how near it comes: within a little more it hits, and at the end.
+    // The case gives the least distance: with a slightly larger target there is an impact, at the end.
     let least = case["expected"]["min_signed_distance"].as_f64().expect("a number");
     let sweep = Turning2::<f64>::new(two.pose, way, turn);
     let near = |distance| {
@@ -474,7 +473,7 @@ fn box2d_115_sweep() {
     assert!(near(least + 1e-6).expect("so near") > 0.999, "at the end");
 }
 
-/// A composite is hit when the first of its parts is, and says which.
+/// The impact of a composite is that of its first part, which the result reports.
 #[test]
 fn composites() {
     let parts = [
@@ -494,7 +493,7 @@ fn composites() {
         let found = both((&motion, &compound), other, &until(20.0)).expect("it falls on it");
         assert_eq!(found.status, ImpactStatus::Reached, "{found:?}");
         let of_part = |(place, shape): &(Isometry2<f64>, ShapeHandle<f64, 2>)| {
-            // The part alone, turning about where the compound has its origin.
+            // The part alone, rotating about the origin of the compound.
             let center = place.inverse_transform_point(&Point::origin());
             let motion = Turning2::<f64>::new(start * place, V2::new(1.0, -1.25), turn)
                 .with_local_center(center);
@@ -509,7 +508,7 @@ fn composites() {
     assert!(named.iter().filter(|&&named| named).count() > 1, "{named:?}");
 }
 
-/// Half-spaces make a composite unbounded; it may move and turn all the same.
+/// Half-spaces make a composite unbounded, and it can still move and rotate.
 #[test]
 fn unbounded_composites() {
     let half = |x, y| ShapeHandle::new(half_plane(x, y));
@@ -523,7 +522,7 @@ fn unbounded_composites() {
     assert_eq!((found.toi, found.part1), (5.5, 1));
 }
 
-/// A pose is where the isometry is, for motions that do not say more.
+/// The default `pose_about` follows `position_at`.
 #[test]
 fn poses_follow_positions() {
     let falls = Falls { height: 10.0, gravity: 2.0 };
@@ -549,7 +548,7 @@ fn within_the_tolerance_bodies_count_as_touching() {
         let gap = 2.0_f64.sqrt() - 2.0 * early.sin();
         assert!(early < exact && gap > 0.0 && gap <= tolerance, "{early}, {gap} of {tolerance}");
     }
-    // It starts within the tolerance: as what touches.
+    // The start is within the tolerance, so it counts as touching.
     let still = Turning2::still(at(0.0, 0.0));
     let options = FOR_EVER.with_tolerance(0.125);
     let cast = |v: V2| {
@@ -561,7 +560,8 @@ fn within_the_tolerance_bodies_count_as_touching() {
     assert_eq!(cast(V2::y()), None, "separating");
 }
 
-/// The end of a rod passes a wall by very little, and only bounds of its speed are known.
+/// The end of a rod passes a wall by a tiny gap, and only bounds of its speed are known: a gap below a millionth of the
+/// size counts as contact.
 #[test]
 fn what_grazes_within_a_millionth_touches() {
     let (rod, wall) = (rod(0.0, 2.0), half_plane(0.0, -1.0));
@@ -573,7 +573,7 @@ fn what_grazes_within_a_millionth_touches() {
     }
 }
 
-/// Equal bodies at one pose: only their motions tell them apart, and not until the longest time.
+/// Equal bodies at one pose whose motions differ only after the longest time: both orders give the same result.
 #[test]
 fn equal_bodies_that_part_after_the_longest_time_have_one_order() {
     let triangle = Triangle::new(

@@ -1,4 +1,4 @@
-//! Questions about one shape and two.
+//! Tests of queries of one shape and of two.
 
 mod corpus_coverage;
 mod directions;

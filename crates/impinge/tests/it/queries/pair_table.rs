@@ -1,6 +1,5 @@
-//! Every built-in shape, and composites and convex solids of a user's own, with every other in every
-//! query: no pair is without an answer, whatever the order, the dimension, the scalar, the size and the
-//! place.
+//! Tests every built-in shape, and custom composites and convex solids, with every other in every
+//! query. No pair may lack a result, whatever the order, dimension, scalar, size and position.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -13,11 +12,11 @@ use impinge::query::{
 };
 use impinge::shape::{Shape, ShapeKind};
 
-/// Where two shapes lie.
+/// Relative position of two shapes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Regime {
     Far,
-    /// Their boxes touch.
+    /// The boxes touch.
     Touching,
     Deep,
     Coincident,
@@ -27,15 +26,15 @@ enum Regime {
 struct Setting {
     regime: Regime,
     scale: f64,
-    /// How far from the world's origin, in units of the scale.
+    /// Distance from the world's origin, in units of `scale`.
     away: f64,
     turned: bool,
 }
 
-/// A motion from a place, that turns as fast as the number says.
+/// A rotating motion from a pose, with the given angular speed.
 type Spin<N, R, const D: usize> = fn(&Isometry<N, R, D>, N) -> Box<dyn RigidMotion<N, D>>;
 
-/// What is particular to a dimension.
+/// The shapes, rotation and motion that differ by dimension.
 struct Stage<N: Real, R, const D: usize> {
     shapes: fn(N) -> Shapes<N, D>,
     turn: R,
@@ -43,7 +42,7 @@ struct Stage<N: Real, R, const D: usize> {
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R, D> {
-    /// How many pairs are wrong.
+    /// Number of pairs with a wrong result or a panic.
     fn all_pairs(&self, setting: &Setting) -> usize {
         let shapes = (self.shapes)(N::lit(setting.scale));
         let mut wrong = Vec::new();
@@ -63,7 +62,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R,
         wrong.len()
     }
 
-    /// The queries about two shapes.
+    /// Tests the queries of two shapes.
     fn together(&self, setting: &Setting, [g1, g2]: [&dyn Shape<N, D>; 2], same: bool) {
         let (m1, m2) = self.places(setting, g1, g2);
         check(&Two { m1: &m1, g1, m2: &m2, g2, same }, setting);
@@ -103,7 +102,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R,
         (m1, Isometry::from_parts((origin + by).into(), second))
     }
 
-    /// The queries about one shape.
+    /// Tests the queries of one shape.
     fn alone(&self, setting: &Setting, shape: &dyn Shape<N, D>) {
         let (m, _) = self.places(setting, shape, shape);
         let scale = N::lit(setting.scale);
@@ -135,7 +134,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Stage<N, R,
         }
     }
 
-    /// Bodies that turn.
+    /// Tests impacts of rotating bodies.
     fn turning(
         &self,
         (m1, g1): (&Isometry<N, R, D>, &dyn Shape<N, D>),
@@ -159,7 +158,7 @@ struct Two<'a, N: Real, R, const D: usize> {
     g1: &'a dyn Shape<N, D>,
     m2: &'a Isometry<N, R, D>,
     g2: &'a dyn Shape<N, D>,
-    /// They cannot be told apart.
+    /// Whether shapes and poses are equal, so that the order is undefined.
     same: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Points whose answers are worked out by hand.
+//! Tests queries of points whose results are computed by hand.
 
 use impinge::math::{Isometry2, Isometry3, Point, Space, Unit, Vector};
 use impinge::query::PointQuery;
@@ -13,7 +13,7 @@ type P3 = Point<f64, 3>;
 type V2 = Vector<f64, 2>;
 type V3 = Vector<f64, 3>;
 
-/// A point; whether it is inside; the nearest point of the boundary and its feature.
+/// A point, whether it is inside, the nearest point of the boundary and the feature there.
 type Case<const D: usize> = ([f64; D], bool, [f64; D], FeatureId);
 
 fn check<const D: usize>(shape: &dyn Shape<f64, D>, cases: &[Case<D>])
@@ -216,7 +216,8 @@ fn cylinders() {
 
 #[test]
 fn cones() {
-    // The side rises by 4 over 3: points (3, 4) from it are 5 away.
+    // The slant falls by 4 over 3, so its normal is (4, 3) / 5: a point at an offset of (4, 3) from
+    // it is 5 away.
     check::<3>(
         &Cone::new(2.0, 3.0),
         &[

@@ -1,4 +1,5 @@
-//! Points against a slow oracle: samples of each boundary, found along rays from the middle.
+//! Compares queries of points with a slow oracle: samples of each boundary, found along rays from
+//! the middle.
 
 use crate::support::solids;
 
@@ -15,8 +16,8 @@ fn rounding<N: Real, const D: usize>(solid: &Solid<N, D>, far: f64) -> f64 {
     50.0 * unit * (solid.size + far)
 }
 
-/// The answer lies on the boundary, and no sample of the boundary is nearer: neither of those all
-/// around nor of those close to the answer.
+/// Asserts that the result lies on the boundary, and that no sample is nearer, neither all around
+/// nor close to the result.
 fn check_nearest<N: Real, const D: usize>(
     rng: &mut Rng,
     solid: &Solid<N, D>,
@@ -35,7 +36,8 @@ fn check_nearest<N: Real, const D: usize>(
         };
         if let Some(other) = solid.boundary(&direction) {
             let nearer = distance - (asked - other).norm();
-            // A flat cut may move by the rounding of the answer; a round one by its square root.
+            // On a flat side the nearest point may move by its rounding, on a round side by the
+            // root of it.
             assert!(nearer <= 4.0 * close, "{other} is nearer by {nearer}: {what}");
         }
     }
@@ -46,7 +48,7 @@ fn check_point<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     solid: &Solid<N, D>,
 ) -> (u32, u32) {
-    // Near the boundary or anywhere, so that about half of the points are inside.
+    // Points near the boundary or anywhere, so that about half of them are inside.
     let place = match solid.boundary(&rng.vector::<D>(1.0)) {
         Some(surface) => solid.center + (surface - solid.center) * rng.between(0.0, 2.0),
         None => rng.vector::<D>(2.0 * solid.size),
@@ -69,7 +71,7 @@ fn check_point<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     (1, u32::from(hollow.is_inside))
 }
 
-/// The ways of asking whether the point is inside agree, and so do the projections.
+/// All queries of whether the point is inside agree, and so do the projections.
 fn consistent<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     solid: &Solid<N, D>,
     m: &Isometry<N, R, D>,
@@ -139,7 +141,8 @@ fn solids_far_from_the_world_origin_agree_with_samples() {
     run(space_solids::<f64>, |rng| pose3(rng, 1e6), 13);
 }
 
-/// Sets without thickness: the answer is a mix of the corners, and no mix on a grid is nearer.
+/// For shapes without thickness: the result is a convex combination of the corners, and no
+/// combination on a grid is nearer.
 fn check_flat<N: Space<D>, const D: usize>(rng: &mut Rng, flat: &Flat<N, D>) {
     let asked = rng.vector::<D>(4.0);
     let (near, feature) = flat.shape.project_local_point(&Point::from(narrow(&asked)));

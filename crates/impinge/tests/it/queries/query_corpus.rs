@@ -1,4 +1,4 @@
-//! The corpus of cases that other libraries got wrong: in both scalars and in both orders.
+//! Runs the corpus of cases that other libraries got wrong, with both scalars and in both orders.
 
 use crate::support::query_support;
 
@@ -11,10 +11,10 @@ use query_support::corpus::{narrow_phase, placed2, placed3, regression, vector};
 use query_support::{Placed, gap_along};
 use serde_json::Value;
 
-/// Normals of impacts may be off by so much: points of `f32` far from the origins are rounded.
+/// Tolerance of the normals of impacts: points in `f32` far from the origin are rounded.
 const CLOSE_NORMAL: f64 = 1e-3;
 
-/// What a case says about a pair, in both scalars.
+/// Expected results of a case for one scalar.
 struct Expected {
     id: String,
     signed: f64,
@@ -22,8 +22,8 @@ struct Expected {
     tolerance: f64,
 }
 
-/// All answers about one pair agree with the expected ones and with each other; `exact` is the same
-/// pair in `f64`, on which the normal is judged by how far it separates.
+/// Compares all results of one pair with the expected ones and with each other. `exact` is the pair
+/// in `f64`, for which the separation along the normal is tested.
 fn check<N: Space<D>, R, Q, const D: usize>(
     expected: &Expected,
     pair: &[Placed<N, R, D>; 2],
@@ -37,7 +37,7 @@ where
     let [(m1, g1), (m2, g2)] = [&pair[0], &pair[1]].map(|solid| (&solid.pose, &*solid.shape));
     let found = contact(m1, g1, m2, g2, N::INFINITY).ok_or("no contact")?;
     let swapped = contact(m2, g2, m1, g1, N::INFINITY).ok_or("no contact when swapped")?;
-    // Of a pair of equal solids at one place the two orders are the same question.
+    // For equal solids at the same pose both orders are the same query.
     let same = expected.id == "coincident-cuboids" && swapped == found;
     if swapped.flipped() != found && !same {
         return Err(format!("swapping changes {found:?} to {swapped:?}"));
@@ -65,7 +65,7 @@ where
     check_normal(expected, found.normal.map(Real::as_f64), exact)
 }
 
-/// The normal separates as well as the signed distance says.
+/// The separation along the normal equals the signed distance up to the tolerance.
 fn check_normal<Q: AbstractRotation<f64, D>, const D: usize>(
     expected: &Expected,
     normal: Vector<f64, D>,
@@ -80,7 +80,7 @@ where
         return if (given - normal).norm() < 1e-5 { Ok(()) } else { Err("normal".into()) };
     }
     let lost = expected.signed - gap_along(&exact[0], &exact[1], &normal);
-    // A normal in f32 is itself off by rounding, which moves the farthest points of the solids.
+    // A normal in `f32` has a rounding error, which moves the farthest points of the solids.
     let extent = exact.iter().map(Placed::extent).fold(0.0, f64::max);
     let rounding = if expected.tolerance < 1e-8 * extent { 0.0 } else { 5e-7 * extent };
     if lost <= expected.tolerance + rounding {
@@ -89,7 +89,7 @@ where
     Err(format!("the normal {normal:?} loses {lost}"))
 }
 
-/// Both scalars; `None` if a shape does not exist here.
+/// Runs a case with both scalars; `None` if a shape does not exist in this dimension.
 fn run<const D: usize, R32, R64>(
     case: &Value,
     expected: &[Expected; 2],
@@ -117,7 +117,7 @@ where
     Some(results.into_iter().flatten().collect())
 }
 
-/// Runs a case of either dimension; with shapes that the library knows, and that the tests know.
+/// Runs a case of either dimension, with the shapes of the library and with those of the tests.
 fn run_any(case: &Value, expected: [Expected; 2]) -> Option<Vec<String>> {
     let run_one = |case: &Value, expected: &[Expected; 2]| {
         if case["dim"] == 2 {
@@ -133,7 +133,8 @@ fn run_any(case: &Value, expected: [Expected; 2]) -> Option<Vec<String>> {
     Some(complaints)
 }
 
-/// The case with the tests' own shapes for those kinds that there are two of.
+/// The case with the tests' own shapes for the kinds that exist in both forms; `None` if there is
+/// none.
 fn by_support(case: &Value) -> Option<Value> {
     let mut twin = case.clone();
     for name in ["shape1", "shape2"] {
@@ -144,7 +145,7 @@ fn by_support(case: &Value) -> Option<Value> {
     (twin != *case).then_some(twin)
 }
 
-/// Fails with all complaints, and if not exactly so many cases ran.
+/// Asserts that there are no complaints and that exactly `runs` cases ran.
 fn judge(results: &[Option<Vec<String>>], runs: usize) {
     let complaints: Vec<_> = results.iter().flatten().flatten().cloned().collect();
     assert!(complaints.is_empty(), "{} failed:\n{}", complaints.len(), complaints.join("\n"));
@@ -173,7 +174,7 @@ fn regression_signed_distance() {
         .iter()
         .filter(|case| case["query"] == "signed_distance" || case["query"] == "segment_segment")
         .map(|case| {
-            // No tolerance: the numbers of the case are too coarse in that scalar.
+            // A missing tolerance means that the numbers of the case are too coarse for the scalar.
             let tolerance = |scalar: &str| case["tolerance"][scalar].as_f64().unwrap_or(f64::MAX);
             let name =
                 if case["query"] == "signed_distance" { "signed_distance" } else { "distance" };
@@ -191,7 +192,7 @@ fn narrow_phase_failures_of_others() {
             let size = case["size"].as_f64().expect("a number");
             let pair = case["pair"].to_string();
             let curved = pair.contains("cylinder") || pair.contains("cone");
-            // Of curved solids the reference itself is known up to a bound only.
+            // For curved solids the reference value itself is only known up to a bound.
             let bound = case["reference_bound"].as_f64().unwrap_or(0.0).abs();
             let tolerances = if curved {
                 [1e-3 * size, 1e-9 * size + bound]
@@ -204,7 +205,7 @@ fn narrow_phase_failures_of_others() {
     judge(&results, 1600);
 }
 
-/// The time of impact of a case in one scalar and both orders.
+/// Time of impact of a case with one scalar, in both orders.
 fn cast<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     case: &Value,
     scalar: &str,
@@ -236,7 +237,7 @@ fn cast<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     Some(complaints)
 }
 
-/// The normal at the impact, in both orders, if the case says which.
+/// Compares the normal at the impact, in both orders, if the case gives it.
 fn cast_normal<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     case: &Value,
     scalar: &str,

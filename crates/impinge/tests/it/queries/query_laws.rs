@@ -1,5 +1,5 @@
-//! What must hold of every pair of solids, whatever the right answer is: each pair of kinds, in both
-//! orders, both dimensions and both scalars, from far apart to one inside the other.
+//! Tests laws of every pair of solids that hold whatever the right result is: each pair of kinds,
+//! in both orders, both dimensions and both scalars, from far apart to one inside the other.
 
 use crate::support::query_support;
 use crate::support::samples::samples;
@@ -15,12 +15,12 @@ use query_support::random::Random;
 use query_support::samples::{PLANE, SPACE, Sample, sample2, sample3};
 use query_support::{Placed, gap_along, signed};
 
-/// How the second solid is placed.
+/// Placement of the second solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Regime {
-    /// At this signed distance from the first, in units of the smaller solid.
+    /// At this signed distance from the first solid, in units of the smaller one.
     At(f64),
-    /// With the frames at one place.
+    /// With equal origins of both frames.
     Coincident,
 }
 
@@ -34,38 +34,38 @@ const REGIMES: [Regime; 7] = [
     Regime::Coincident,
 ];
 
-/// How many times larger the second solid is.
+/// Size of the second solid relative to the first.
 const RATIOS: [f64; 8] = [1.0, 1.0, 0.1, 30.0, 1e-3, 1e3, 1e-6, 1e6];
 
-/// How many pairs of each two kinds are tried in each regime.
+/// Number of pairs of each two kinds in each regime.
 fn seeds() -> u64 {
     samples(2) as u64
 }
 
-/// What the tests vary.
+/// Parameters of a pair.
 #[derive(Clone, Copy, Debug)]
 struct Setting {
     kinds: [ShapeKind; 2],
     regime: Regime,
     seed: u64,
-    /// How many times larger the second solid is.
+    /// Size of the second solid relative to the first.
     ratio: f64,
-    /// How far from the world's origin.
+    /// Distance from the world's origin.
     offset: f64,
-    /// Everything is so much larger.
+    /// Factor of all lengths.
     scale: f64,
-    /// Half of the sizes and coordinates are zero.
+    /// Whether half of the sizes and coordinates are zero.
     degenerate: bool,
 }
 
-/// A way to make random solids and rotations of one dimension.
+/// Makes random solids and rotations of one dimension.
 struct Maker<N: Real, R, const D: usize> {
     sample: Sample<N, D>,
     turn: fn(&mut Random) -> R,
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R, D> {
-    /// Two solids in a setting: the same up to the scale for every scale.
+    /// Makes the two solids of a setting, which differ only by a factor between scales.
     fn make(&self, setting: &Setting) -> [Placed<N, R, D>; 2] {
         let random = &mut Random(setting.seed, setting.degenerate);
         let scale = N::lit(setting.scale);
@@ -85,7 +85,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R,
     }
 }
 
-/// The contact of a pair, however far apart.
+/// The contact of a pair at any distance.
 fn contact_of<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     [solid1, solid2]: &[Placed<N, R, D>; 2],
 ) -> Option<Contact<N, D>> {
@@ -103,30 +103,30 @@ fn bring_to<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     }
 }
 
-/// What arithmetic may get wrong about a pair of kinds, relative to their size.
+/// Error allowed for a pair of kinds, relative to their size.
 ///
-/// A solid a million times smaller than the other shows it faces whose directions are only known up to
-/// rounding a million times as large.
+/// Next to a solid a million times smaller, the faces of the larger one have directions known only
+/// up to a rounding error a million times as large.
 fn precision<N: Real, const D: usize>(setting: &Setting) -> N {
     let ratio = setting.ratio.max(1.0 / setting.ratio);
     max(of_alike::<N, D>(setting), N::EPSILON * N::lit(ratio))
 }
 
-/// The same for solids of about the same size.
+/// Error allowed for solids of similar sizes.
 fn of_alike<N: Real, const D: usize>(setting: &Setting) -> N {
     let kinds = setting.kinds;
     let curved = |kind| matches!(kind, ShapeKind::Cylinder | ShapeKind::Cone);
     let ball = kinds.contains(&ShapeKind::Ball) || kinds.contains(&ShapeKind::Plane);
     if kinds.into_iter().any(curved) && !ball {
-        // Of a curved solid that swallows one a thousand times smaller every direction is about as
-        // good as the best, and the general algorithm reaches its cap.
+        // In a curved solid around one a thousand times smaller, all directions are nearly equally
+        // good, and the general algorithm reaches its limit of iterations.
         let swallowed = setting.regime == Regime::Coincident && (setting.ratio - 1.0).abs() > 0.99;
         let relative = if swallowed { 1e-6 } else { 1e-9 };
-        // In f32 this is 1e-4.
+        // In `f32` this is about 1e-4.
         return max(N::EPSILON * N::lit(1024.0), N::lit(relative));
     }
-    // The generating line of a tapered capsule and the edge of a flat solid are kinks; the iterations
-    // of the general algorithm stop a little earlier there.
+    // The generating line of a tapered capsule and the edge of a flat solid are kinks, at which the
+    // general algorithm stops a little earlier.
     if kinds.contains(&ShapeKind::TaperedCapsule) && D == 3 && !ball {
         return max(N::EPSILON * N::lit(128.0), N::lit(2e-11));
     }
@@ -137,7 +137,7 @@ fn of_alike<N: Real, const D: usize>(setting: &Setting) -> N {
     max(N::EPSILON * N::lit(128.0), N::lit(1e-12))
 }
 
-/// All that must hold of one pair.
+/// Tests all laws for one pair.
 fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
@@ -151,8 +151,8 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     };
     let signed = -found.depth;
     let swapped = contact(m2, g2, m1, g1, N::INFINITY).map(|swapped| swapped.flipped());
-    // Of equal solids at one place, both orders are the same question and have one answer; balls have no
-    // rotation that tells them apart.
+    // For equal solids at the same pose both orders are the same query and give one result; the
+    // rotations of balls make no difference.
     let are_balls = setting.kinds == [ShapeKind::Ball; 2];
     let at_one_place = setting.regime == Regime::Coincident
         || (are_balls && m1.translation.vector == m2.translation.vector);
@@ -183,7 +183,7 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     check_geometry(setting, pair, &found);
 }
 
-/// The points and the normal of a contact are what they say.
+/// The points, the normal and the depth of a contact are consistent.
 fn check_geometry<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
@@ -206,20 +206,20 @@ fn check_geometry<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize
     }
 }
 
-/// Moving the second solid by a little less or more than the way to touching toggles the answer.
+/// Moving the second solid slightly less or more than the depth decides whether the solids touch.
 fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
 ) {
     let Some(found) = contact_of(pair) else { return };
     let noise = precision::<N, D>(setting) * (pair[0].extent() + pair[1].extent());
-    // What has sharp tips may pass the other by rounding; of two such solids nothing can be said.
+    // A solid with sharp tips may miss the other by rounding, so two such solids are not tested.
     let sharpness = |kind: &ShapeKind| match kind {
         ShapeKind::Segment | ShapeKind::Triangle | ShapeKind::Cone => 2,
         ShapeKind::Polytope => 1,
         _ => 0,
     };
-    // So may one that is no larger than what is lost in the rounding of the other.
+    // A solid no larger than the rounding error of the other may miss it too.
     let is_lost = N::lit(setting.ratio.min(1.0)) < N::lit(16.0) * noise;
     let sharp = setting.kinds.iter().map(sharpness).sum::<i32>() + if is_lost { 3 } else { 0 };
     let slack = if sharp > 0 { noise } else { noise / N::lit(4.0) };
@@ -233,7 +233,7 @@ fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     assert!(sharp > 2 || together <= slack, "{together} not together {setting:?}");
 }
 
-/// A power of two times larger, everything is exactly that much larger.
+/// Scaling all lengths by a power of two scales the results exactly.
 fn check_scaled<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     maker: &Maker<N, R, D>,
     setting: &Setting,
@@ -287,7 +287,7 @@ fn check_moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     assert!(same, "{before} becomes {after} {setting:?}");
 }
 
-/// A moving pair does not touch before the time of impact, and does at it.
+/// A moving pair does not touch before the time of impact and touches at it.
 fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
@@ -309,7 +309,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     );
     assert_eq!(found, swapped, "swapped {setting:?}");
     if signed(&pair[0], &pair[1]) <= N::ZERO {
-        // Whether such a start counts depends on the velocities; see `tests/it/impact.rs`.
+        // Whether such a start counts depends on the velocities; see `queries/impact.rs`.
         assert!(found.is_none_or(|time| time == N::ZERO), "touching at the start {setting:?}");
         return found.is_some();
     }
@@ -329,7 +329,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     for step in 0..20 {
         let time = end * N::lit(f64::from(step) / 20.0);
         let before = at(time);
-        // Of two that graze each other, the distance says more than the time.
+        // For two solids that graze each other the distance is a better measure than the time.
         let is_early = before > -noise || (end - time) * speed < noise;
         assert!(is_early, "{before} before the end {setting:?}");
     }
@@ -337,7 +337,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     found.is_some()
 }
 
-/// All laws, for all kinds and regimes.
+/// Tests all laws for all kinds and regimes.
 fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     kinds: &[ShapeKind],
     maker: &Maker<N, R, D>,
@@ -346,7 +346,8 @@ fn laws<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let (mut settings, mut broken) = (0, 0);
     let pairs = kinds.iter().flat_map(|k1| kinds.iter().map(move |k2| (*k1, *k2)));
     for (first, (kind1, kind2)) in (0..).zip(pairs) {
-        // Few seeds, of which every two kinds begin with others, have all ratios.
+        // Few seeds, but each two kinds start at another one, so that together they cover all
+        // ratios.
         let own = first..first + seeds();
         let all = REGIMES.iter().flat_map(|r| own.clone().map(move |seed| (*r, seed)));
         for (regime, seed) in all {

@@ -1,4 +1,4 @@
-//! Answers computed by hand, through the public functions.
+//! Tests the public functions with results computed by hand.
 
 use impinge::math::na::UnitQuaternion;
 use impinge::math::{Isometry2, Isometry3, Point, Unit, Vector};
@@ -128,7 +128,7 @@ fn time_of_impact_of_boxes_and_balls() {
     assert_eq!(cast(V3::y(), V3::y()), None, "side by side");
     assert_eq!(cast(V3::new(1.0, 1.0, 0.0), V3::zeros()), None, "past it");
     assert_eq!(cast(V3::x() * f64::NAN, V3::zeros()), None, "no velocity");
-    // The ball grazes an edge: it comes closest, to a distance of one, after nine units.
+    // The ball grazes an edge: it comes closest, at a distance of 1, after 9 units.
     let beside = Isometry3::translation(10.0, 2.0, 0.0);
     let graze = time_of_impact(&origin, &V3::x(), &cuboid, &beside, &V3::zeros(), &ball);
     assert!(graze.is_none_or(|time| time > 9.0 - 1e-6 && time < 9.0 + 1e-6), "{graze:?}");
@@ -143,7 +143,7 @@ fn starts_in_contact() {
     let cast = |y: f64, v: V2| {
         time_of_impact(&at(0.0, y), &v, &ball, &at(0.0, 0.0), &V2::zeros(), &segment)
     };
-    // Touching is not enough: a start in contact counts if the solids do not separate.
+    // A start in contact counts only if the solids do not separate.
     assert_eq!(cast(1.0, V2::y()), None, "touching and leaving");
     assert_eq!(cast(1.0, -V2::y()), Some(0.0), "touching and approaching");
     assert_eq!(cast(0.5, V2::y()), None, "overlapping and leaving");

@@ -1,5 +1,5 @@
-//! Many rays in one call, and what sorts triangles out before they are asked: the same answers to the bit
-//! as one by one, and as of all parts.
+//! Tests that batches of rays, with the tests that cull triangles early, give the bits of single
+//! calls and of a scan of all parts.
 
 use crate::support::query_support;
 
@@ -11,11 +11,11 @@ use impinge::shape::{Ball, CompositeShape, Part, Plane, Polyline, Shape, ShapeHa
 use impinge::world::{CollisionGroups, CollisionWorld, QueryFilter};
 use query_support::random::Random;
 
-/// Where and how large a soup of triangles is.
+/// Size and offset from the origin of a triangle soup.
 const PLACES: [(f64, f64); 6] =
     [(1.0, 0.0), (1.0, 1e6), (1e-3, 40.0), (1e6, 0.0), (1e-18, 0.0), (1e25, -3e25)];
 
-/// Triangles of very different sizes, a tenth of them without area, in no order.
+/// Triangles of very different sizes in random order, a tenth of them without area.
 fn soup<N: Real>(random: &mut Random, (size, offset): (f64, f64), count: u32) -> TriMesh<N, 3> {
     let by = Vector::<N, 3>::repeat(N::lit(offset));
     let mut vertices = Vec::new();
@@ -29,7 +29,8 @@ fn soup<N: Real>(random: &mut Random, (size, offset): (f64, f64), count: u32) ->
     TriMesh::new(vertices, (0..count).map(|index| [0, 1, 2].map(|k| 3 * index + k)).collect())
 }
 
-/// At corners, at points of sides, into triangles, along their sides, from on them, and anywhere.
+/// Rays at corners, at points of sides and into triangles, along sides, from points on them, and
+/// arbitrary ones.
 fn aimed<N: Real>(random: &mut Random, mesh: &TriMesh<N, 3>, size: f64) -> Ray<N, 3> {
     let any = |random: &mut Random| {
         let part = u32::try_from(random.bits() % u64::from(mesh.num_parts())).expect("few");
@@ -50,7 +51,7 @@ fn aimed<N: Real>(random: &mut Random, mesh: &TriMesh<N, 3>, size: f64) -> Ray<N
     }
 }
 
-/// The first hit on any part, each asked alone.
+/// The first hit, found by casting at each part alone.
 fn slow<N: Space<D>, const D: usize>(
     shape: &impl CompositeShape<N, D>,
     batch: &RayBatch<'_, N, D>,
@@ -170,8 +171,8 @@ fn answers_need_places() {
     RayCast::<f32, 2>::cast_local_rays(&Ball::new(1.0_f32), &RayBatch::new(&rays), &mut []);
 }
 
-/// A world in three layers of blocks, in which some objects stir, some have moved since the last update and
-/// some have no end.
+/// A world of 5000 balls and half-spaces, whose objects do not interact. Every ninth moves in each
+/// step and once after the last update; a hundred are removed.
 fn world<N: Space<D>, const D: usize>(
     random: &mut Random,
     place: impl Fn(Vector<N, D>) -> N::Isometry,

@@ -1,4 +1,4 @@
-//! Rays whose answers are worked out by hand.
+//! Tests rays whose results are computed by hand.
 
 use impinge::math::na::{Complex, Translation2, UnitComplex};
 use impinge::math::{Isometry2, Isometry3, Point, Space, Unit, Vector};
@@ -12,7 +12,7 @@ type P3 = Point<f64, 3>;
 type V2 = Vector<f64, 2>;
 type V3 = Vector<f64, 3>;
 
-/// Origin and direction; what a solid and a hollow shape answer.
+/// Origin and direction, and the time of the hit of a solid and of a hollow shape.
 type Case<const D: usize> = ([f64; D], [f64; D], Option<f64>, Option<f64>);
 
 fn check<const D: usize>(shape: &dyn Shape<f64, D>, cases: &[Case<D>])
@@ -36,7 +36,7 @@ fn at(t: f64) -> (Option<f64>, Option<f64>) {
     (Some(t), Some(t))
 }
 
-/// A ray that starts outside: both answers are the same.
+/// A ray that starts outside, for which solid and hollow shapes have the same hit.
 fn from_outside<const D: usize>(origin: [f64; D], dir: [f64; D], t: f64) -> Case<D> {
     let (solid, hollow) = at(t);
     (origin, dir, solid, hollow)
@@ -385,7 +385,7 @@ fn rays_that_are_not_finite_hit_nothing() {
     }
 }
 
-/// By rounding, the crossing of a line that starts on a segment may come out before the start.
+/// Rounding may put the crossing of a ray that starts on a segment before its start.
 #[test]
 fn a_ray_that_starts_on_a_turned_segment_hits_it() {
     let capsule = Capsule::<f32, 2>::new(1.0, 0.0);

@@ -1,4 +1,4 @@
-//! The bugs of other libraries: rays and points.
+//! Runs the bugs of other libraries with rays and points.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::na::{Quaternion, UnitQuaternion};
@@ -62,7 +62,7 @@ fn pose3<N: Real>(value: &Value) -> Isometry3<N> {
     Isometry3::from_parts(vector::<N, 3>(&value["t"]).into(), rotation)
 }
 
-/// A flat field or a mesh.
+/// A flat height field or a mesh.
 fn surface<N: Real>(shape: &Value) -> Option<ShapeHandle<N, 3>> {
     match shape["type"].as_str()? {
         "heightfield" => {
@@ -85,7 +85,7 @@ fn tri_mesh<N: Real>(shape: &Value) -> TriMesh<N, 3> {
     TriMesh::new(corners(&shape["vertices"]), triangles.collect())
 }
 
-/// Round solids along y, and the turn that takes y to the axis of the case.
+/// Cylinders and cones along y, and the rotation that takes y to the axis of the case.
 fn round<N: Real>(shape: &Value) -> Option<(ShapeHandle<N, 3>, Isometry3<N>)> {
     let (half_height, radius) = (number::<N>(&shape["half_height"]), number(&shape["radius"]));
     let handle = match shape["type"].as_str()? {
@@ -115,7 +115,7 @@ fn check_ray<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     let what = format!("{}: {found:?}", case["id"]);
     let close = tolerance::<N>(case);
     if case["id"] == "parry-171-ridge-graze" {
-        // A ray along a ridge may miss it, or meet the front at that time, but never the back.
+        // A ray along a ridge may miss it or hit the front at that time, but never the back.
         let in_front = |hit: &RayIntersection<N, D>| {
             hit.toi == N::lit(5.0) && hit.normal.dot(&ray.dir) <= N::ZERO && hit.normal[2] > N::ZERO
         };
@@ -216,7 +216,7 @@ fn reordered(case: &Value) -> Vec<Value> {
     orders.iter().map(|order| reorder(order)).collect()
 }
 
-/// A closed mesh, with its faces in the order given and turned inside out.
+/// A closed mesh, as given and with reversed windings.
 fn check_mesh<N: Real>(case: &Value) {
     let (params, expected) = (&case["params"], &case["expected"]);
     let asked = point::<N, 3>(&params["point"]);
@@ -258,7 +258,7 @@ fn corners<N: Real>(list: &Value) -> Vec<Point<N, 3>> {
     list.as_array().expect("a list").iter().map(point).collect()
 }
 
-/// Closed meshes that are convex, as hulls: signs and distances must not depend on the faces.
+/// The convex closed meshes as hulls: signs and distances must not depend on the faces.
 fn convex_meshes<N: Space<3>>() {
     let mut checked = 0;
     for case in cases() {
@@ -274,7 +274,7 @@ fn convex_meshes<N: Space<3>>() {
     assert_eq!(checked, 4, "all of the cube");
 }
 
-/// Inside a tetrahedron by its four planes, on a grid around it.
+/// Compares the sign of a tetrahedron with its four planes, on a grid around it.
 fn tetrahedron<N: Space<3>>() {
     let all = cases();
     let case = all.iter().find(|case| case["query"] == "point_sign_grid").expect("it is there");

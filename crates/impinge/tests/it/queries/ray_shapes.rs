@@ -1,4 +1,5 @@
-//! Rays against a slow oracle: the convex function of each solid, searched along the ray.
+//! Compares rays with a slow oracle that searches the convex level function of each solid along the
+//! ray.
 
 use crate::support::solids;
 
@@ -9,7 +10,7 @@ use solids::{
     turned_back, wide,
 };
 
-/// A ray in the world, and the same in the local frame in `f64`.
+/// A ray in world coordinates, and in the local frame in `f64`.
 struct Shot<N: Real, const D: usize> {
     ray: Ray<N, D>,
     origin: Vector<f64, D>,
@@ -22,8 +23,8 @@ impl<N: Real, const D: usize> Shot<N, D> {
     }
 }
 
-/// From up to two sizes away: some rays aim at the middle, more in space; the others anywhere; with a
-/// direction of any length.
+/// A random ray from up to two sizes away, with a direction of any length. Some rays aim at the
+/// middle, more of them in 3D.
 fn shoot<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     rng: &mut Rng,
     m: &Isometry<N, R, D>,
@@ -47,7 +48,8 @@ fn shoot<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     Shot { ray, origin: tip, dir: toward }
 }
 
-/// When the line is deepest in the solid (a convex function has one minimum), within `reach`.
+/// Time and level at which the line is deepest in the solid, by ternary search: a convex function
+/// has one minimum.
 fn deepest<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> (f64, f64) {
     let speed = shot.dir.norm();
     let (mut low, mut high) = (0.0, 12.0 * solid.size / speed);
@@ -58,7 +60,7 @@ fn deepest<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> (
     (low, solid.at(&shot.at(low)))
 }
 
-/// Where the sign changes between two times, the first of which is `inside` or not.
+/// Time between two times at which the sign of the level changes, by bisection.
 fn crossing<N: Real, const D: usize>(
     solid: &Solid<N, D>,
     shot: &Shot<N, D>,
@@ -76,11 +78,11 @@ fn crossing<N: Real, const D: usize>(
 struct Expected {
     hit: bool,
     solid: f64,
-    /// `None` where the ray starts inside and stays there.
+    /// `None` if the ray starts inside and does not leave.
     hollow: Option<f64>,
 }
 
-/// `None` where the answer is too close to call, or so far away that rounding decides.
+/// The expected hit; `None` if it is too close to call, or so far away that rounding decides.
 fn expected<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> Option<Expected> {
     let unclear = 0.02 * solid.size;
     let start = solid.at(&shot.origin);
@@ -97,7 +99,7 @@ fn expected<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> 
         return clear.then_some(Expected { hit: true, solid: 0.0, hollow });
     }
     if depth > 0.0 {
-        // Not so where the ray is all but parallel to a half-space.
+        // Not certain for a ray nearly parallel to a half-space.
         let clear = solid.at(&shot.at(far)) > start + solid.size;
         return clear.then_some(Expected { hit: false, solid: f64::NAN, hollow: None });
     }
@@ -105,8 +107,8 @@ fn expected<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> 
     near(t).then_some(Expected { hit: true, solid: t, hollow: Some(t) })
 }
 
-/// The least error that rounding explains: a few units in the last place of the longest length; the
-/// iterated shapes stop at 2⁻⁴⁰ of it.
+/// Least error that rounding explains: a few units in the last place of the greatest length. Shapes
+/// found by iteration stop at 2⁻⁴⁰ of it.
 fn rounding<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>, far: f64) -> f64 {
     let iterated = ["ellipsoid", "round box"].contains(&solid.name);
     let unit = N::EPSILON.as_f64().max(if iterated { 1e-12 } else { 0.0 });
@@ -174,7 +176,7 @@ fn check_solid<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     (1, 1)
 }
 
-/// Counts by name, so that each kind of solid is known to be hit and missed.
+/// Counts hits and misses by name, and asserts that each kind of solid is both hit and missed.
 fn run<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     solids: impl Fn(&mut Rng) -> Vec<Solid<N, D>>,
     pose: impl Fn(&mut Rng) -> Isometry<N, R, D>,
@@ -225,8 +227,8 @@ fn solids_far_from_the_world_origin_agree_with_the_oracle() {
     run(space_solids::<f64>, |rng| pose3(rng, 1e6), 13);
 }
 
-/// A ray from far away, aimed at a point of the solid or past it, still finds the boundary to the
-/// accuracy that its own numbers have.
+/// A ray from far away, aimed at a solid or past it, finds the boundary as precisely as its own
+/// coordinates are.
 fn far_rays<N: Space<D>, const D: usize>(solids: Vec<Solid<N, D>>, away: f64) {
     let mut rng = Rng::new(5);
     for solid in solids.iter().filter(|solid| solid.name != "plane") {
@@ -255,8 +257,8 @@ fn rays_from_afar_find_the_boundary() {
     far_rays(space_solids::<f32>(&mut Rng::new(4)), 1e3);
 }
 
-/// In the plane a ray hits a segment iff the ends lie on different sides of it and the crossing is
-/// ahead: by Cramer's rule.
+/// Parameters of the crossing on the ray and on a segment in 2D, by Cramer's rule. The ray hits if
+/// the first is not negative and the second lies in 0..=1.
 fn segment_by_cramer<const D: usize>(
     flat: &[Vector<f64, 2>],
     origin: &Vector<f64, 2>,
@@ -296,7 +298,7 @@ fn segments_of_the_plane_agree_with_cramer() {
     assert!((0.3..=0.7).contains(&rate), "{hits} of {clear}");
 }
 
-/// By Cramer's rule on `origin + t · dir = a + u · (b − a) + v · (c − a)`.
+/// Parameters of `origin + t · dir = a + u · (b − a) + v · (c − a)` by Cramer's rule.
 fn triangle_by_cramer(
     corners: &[Vector<f64, 3>],
     origin: &Vector<f64, 3>,
@@ -351,7 +353,8 @@ fn triangles_of_space_agree_with_cramer() {
     triangles_of_space::<f32>();
 }
 
-/// Rays at the common side, and at the common corner, of triangles around a point: one is hit.
+/// A ray at the common side or the common corner of triangles around a point hits at least one of
+/// them.
 fn no_gap<N: Real>() {
     let mut rng = Rng::new(13);
     for _ in 0..300 {
@@ -382,7 +385,7 @@ fn rays_do_not_slip_between_triangles() {
     no_gap::<f64>();
 }
 
-/// Dividing or multiplying all lengths by a power of two does the same to the answers, to the bit.
+/// Scaling all lengths by a power of two scales the results exactly.
 fn scaling<N: Space<D>, const D: usize>(solids: impl Fn(&mut Rng) -> Vec<Solid<N, D>>, power: i32) {
     let factor = N::lit(2_f64.powi(power));
     let plain = solids(&mut Rng::new(3));

@@ -1,5 +1,5 @@
-//! Worlds have no preferred size: where all lengths are multiplied by a power of two, all lengths
-//! that come out are too, bit by bit, and nothing else changes.
+//! Tests that worlds have no preferred size: if all lengths are scaled by a power of two, all
+//! resulting lengths are scaled to the bit, and everything else stays the same.
 
 use crate::support::scene_stage;
 
@@ -10,7 +10,7 @@ use impinge::world::CollisionGroups;
 use impinge_scenes::{Scene, mixed_shapes, mixed_sizes, pile, sparse_drift, tower};
 use scene_stage::{Play, Player, World};
 
-/// The powers of two: far to both sides, and odd ones.
+/// Exponents of the factors: far to both sides, and odd ones.
 const POWERS: [i32; 4] = [-20, -7, 9, 20];
 
 fn power_of_two(k: i32) -> f64 {
@@ -18,7 +18,7 @@ fn power_of_two(k: i32) -> f64 {
     if k < 0 { 1.0 / power(k.unsigned_abs()) } else { power(k.unsigned_abs()) }
 }
 
-/// Two numbers have the same bits once the first is multiplied by `scale`, but for the sign of zero.
+/// Whether `x * scale` and `y` have the same bits, up to the sign of zero.
 fn is_scaled<N: Real>(x: N, y: N, scale: N) -> bool {
     (x * scale).bits() == y.bits() || x == N::ZERO && y == N::ZERO
 }
@@ -30,7 +30,7 @@ fn check_lengths<N: Real>(lengths: &[N], scaled: &[N], scale: N, place: &str) {
     }
 }
 
-/// All lengths of two manifolds are in proportion, and all else is the same.
+/// Asserts that all lengths of two manifolds are in proportion, and that everything else is equal.
 fn check_manifolds<N: Real, const D: usize>(
     usual: &ContactManifold<N, D>,
     scaled: &ContactManifold<N, D>,
@@ -54,14 +54,15 @@ fn check_manifolds<N: Real, const D: usize>(
     }
 }
 
-/// Two worlds say the same but for lengths. Answers how many contacts there are.
+/// Asserts that two worlds report the same except for the scale of lengths; returns the number of
+/// contacts.
 fn check_worlds<N: Play<D>, const D: usize>(
     usual: &World<N, D>,
     scaled: &World<N, D>,
     scale: N,
     place: &str,
 ) -> usize {
-    // In words: the handles of two worlds differ, and read alike.
+    // Compared as text: the handles of two worlds differ, but print alike.
     let events = [usual, scaled]
         .map(|world| format!("{:?} {:?}", world.contact_events(), world.proximity_events()));
     assert_eq!(events[0], events[1], "{place}");
@@ -82,7 +83,8 @@ fn check_worlds<N: Play<D>, const D: usize>(
     manifolds.iter().map(|(.., manifold)| manifold.len()).sum()
 }
 
-/// Rays, points and boxes through the worlds find the same; times of rays are in proportion.
+/// Rays, points and boxes find the same objects in both worlds; the times of rays are in
+/// proportion.
 fn check_queries<N: Play<D>, const D: usize>(
     usual: &World<N, D>,
     scaled: &World<N, D>,

@@ -1,5 +1,5 @@
-//! Answers about single pairs have no preferred size either: shapes with corners on a grid, whose features meet in every
-//! degenerate way, and all of their sizes times a power of two.
+//! Tests that queries of single pairs have no preferred size: shapes with corners on a grid, whose
+//! features meet in every degenerate way, are scaled by powers of two.
 
 use crate::support::query_support;
 
@@ -11,15 +11,15 @@ use impinge::shape::{
 };
 use query_support::random::Random;
 
-/// The powers of two.
+/// Exponents of the factors.
 const POWERS: [i32; 5] = [-20, -7, 5, 9, 20];
 
-/// A corner on the grid, in quarters of the unit.
+/// A corner on a grid of spacing 0.25.
 fn corner<const D: usize>(random: &mut Random) -> [f64; D] {
     std::array::from_fn(|_| (random.signed() * 4.5).round() * 0.25)
 }
 
-/// Corners, and from them shapes of any size.
+/// Random corners, from which shapes of any size are made.
 struct Draw<const D: usize> {
     corners: Vec<[f64; D]>,
     kind: usize,
@@ -44,7 +44,7 @@ impl<const D: usize> Draw<D> {
         Vector::<N, D>::from(sizes)
     }
 
-    /// One of the shapes that both dimensions have.
+    /// The shape of this kind among those of both dimensions.
     fn shape<N: Space<D>>(&self, scale: f64) -> Option<ShapeHandle<N, D>> {
         let p = self.points::<N>(scale);
         Some(match self.kind {
@@ -69,7 +69,8 @@ impl<const D: usize> Draw<D> {
     }
 }
 
-/// All lengths of the answers about two shapes, and all words.
+/// Results of queries of two shapes: all lengths, all numbers that do not scale, and all discrete
+/// results as text.
 fn answers2<N: Space<2, Isometry = Isometry2<N>>>(
     shapes: [&dyn Shape<N, 2>; 2],
     offset: Vector<N, 2>,
@@ -105,7 +106,7 @@ fn answers2<N: Space<2, Isometry = Isometry2<N>>>(
     (lengths, plain, words)
 }
 
-/// As [`answers2`].
+/// The results of [`answers2`] in 3D.
 fn answers3<N: Space<3, Isometry = Isometry3<N>>>(
     shapes: [&dyn Shape<N, 3>; 2],
     offset: Vector<N, 3>,
@@ -141,14 +142,14 @@ fn answers3<N: Space<3, Isometry = Isometry3<N>>>(
     (lengths, plain, words)
 }
 
-/// The same bits, but for the sign of zero.
+/// Whether all numbers are in proportion to the bit, up to the sign of zero.
 fn are_scaled<N: Real>(usual: &[N], scaled: &[N], scale: N) -> bool {
     let is_scaled =
         |(a, b): (&N, &N)| (*a * scale).bits() == b.bits() || *a == N::ZERO && *b == N::ZERO;
     usual.len() == scaled.len() && usual.iter().zip(scaled).all(is_scaled)
 }
 
-/// Holds the answers about drawn shapes against those about the shapes at other sizes.
+/// Compares the results for random shapes with those for the shapes at other scales.
 fn hold<N: Space<D>, const D: usize>(
     seed: u64,
     answers: impl Fn([&dyn Shape<N, D>; 2], Vector<N, D>, N) -> (Vec<N>, Vec<N>, String),
@@ -189,7 +190,7 @@ fn answers_on_a_grid_of_space_scale() {
     hold::<f64, 3>(54, answers3);
 }
 
-/// By the numbers of a report, at sizes that are no powers of two as well.
+/// The numbers of a report, also at sizes that are not powers of two.
 #[test]
 fn segments_that_cross_and_touch_have_the_depth_of_the_crossing() {
     fn check<N: Space<2, Isometry = Isometry2<N>>>() {
@@ -211,7 +212,7 @@ fn segments_that_cross_and_touch_have_the_depth_of_the_crossing() {
     check::<f64>();
 }
 
-/// Height fields among them: over one line of heights.
+/// Height fields over one row of heights.
 #[test]
 fn height_fields_scale() {
     let random = &mut Random(55, false);

@@ -1,4 +1,5 @@
-//! Scaled shapes against their scaled points; and how what contacts cost grows with the parts within reach.
+//! Compares scaled shapes with their scaled points, and tests how the cost of contacts grows with
+//! the parts within reach.
 
 use crate::support::query_support;
 
@@ -15,7 +16,7 @@ use query_support::random::Random;
 
 type Handle<N, const D: usize> = ShapeHandle<N, D>;
 
-/// How far each part reaches along a direction; a shape that is no composite is its own part.
+/// Farthest extent of each part along a direction; a shape that is no composite is its only part.
 fn reaches<N: Real, const D: usize>(shape: &Handle<N, D>, direction: &Vector<N, D>) -> Vec<f64> {
     let reach = |pose: &Pose<N, D>, geometry: Geometry<'_, N, D>| {
         let map = geometry.as_support_map().expect("convex");
@@ -32,7 +33,7 @@ fn reaches<N: Real, const D: usize>(shape: &Handle<N, D>, direction: &Vector<N, 
     (0..composite.num_parts()).map(part).collect()
 }
 
-/// A scaled solid reaches along a direction as far as the solid does along the scaled direction.
+/// A scaled solid extends along a direction as far as the solid does along the scaled direction.
 fn check<N: Real, const D: usize>(shape: &Handle<N, D>, factors: [f64; D], random: &mut Random) {
     let scale = Vector::<N, D>::from_fn(|axis, _| N::lit(factors[axis]));
     let scaled =
@@ -54,7 +55,7 @@ fn check<N: Real, const D: usize>(shape: &Handle<N, D>, factors: [f64; D], rando
     }
 }
 
-/// Not through the type: what the shape says itself.
+/// The error of scaling the shape through its handle, not through its type.
 fn refused<const D: usize>(shape: &Handle<f64, D>, factors: [f64; D]) -> ScaleError {
     shape.scaled(&Vector::<f64, D>::from(factors)).expect_err("no such shape")
 }
@@ -141,7 +142,7 @@ fn shapes_of_the_plane_reach_where_their_scaled_points_do() {
     check_plane::<f64>();
 }
 
-/// A point is in the half-space if and only if the scaled point is in the scaled one.
+/// A point is in the half-space if and only if the scaled point is in the scaled half-space.
 #[test]
 fn half_spaces_keep_their_points() {
     let mut random = Random(93, false);
@@ -192,7 +193,7 @@ fn faces_of_mirrored_polytopes_point_out() {
     }
 }
 
-/// One-sided surfaces keep their front on the side that the scaled front is on.
+/// The front of a scaled one-sided surface is on the side of the scaled front.
 #[test]
 fn fronts_are_scaled_too() {
     let p = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]].map(Point::<f64, 3>::from);
@@ -235,7 +236,7 @@ fn compounds_are_scaled_where_no_child_is_sheared() {
             Handle::new(Compound3::<f64>::new(vec![(anywhere(&mut random), loose.clone())]));
         check(&nested, factors, &mut random);
     }
-    // Quarter turns take axes to axes.
+    // Quarter turns map axes to axes, so any factors are possible.
     let quarter = std::f64::consts::FRAC_PI_2;
     let turned = |axis: usize, angle: f64| {
         let mut about = Vector::<f64, 3>::zeros();
@@ -250,7 +251,7 @@ fn compounds_are_scaled_where_no_child_is_sheared() {
             check(&square(twice), factors, &mut random);
         }
     }
-    // Around y, across which the factors are the same, any turn will do.
+    // Around y any rotation is possible, because the factors across y are equal.
     for factors in AXIAL {
         check(&square(turned(1, 0.7)), factors, &mut random);
     }
@@ -309,7 +310,7 @@ fn what_cannot_be_is_refused() {
             let is_named = matches!(refused(shape, factors), ScaleError::BadFactor { axis: at, .. } if at == axis);
             assert!(is_named, "{factors:?} for {shape:?}");
         }
-        // Nothing holds a height of 1e300 times 1e300.
+        // Scaling twice by 1e300 overflows every shape with a size.
         let huge = shape
             .scaled(&Vector::<f64, 3>::repeat(1e300))
             .and_then(|huge| huge.scaled(&Vector::<f64, 3>::repeat(1e300)));

@@ -1,4 +1,5 @@
-//! Flat solids that share a corner to the bit, or that meet in any other way on a grid, touch.
+//! Tests that flat solids touch if they share a corner to the bit, or meet in any other way on a
+//! grid.
 
 use crate::support::query_support;
 
@@ -10,7 +11,7 @@ use impinge::shape::{
 };
 use query_support::random::Random;
 
-/// Points on one side of a plane through a corner that they are drawn around, and the corner.
+/// Random points around a corner, on one side of a plane through it, and the corner itself.
 fn around<N: Real, const D: usize>(
     random: &mut Random,
     corner: &[f64; D],
@@ -25,7 +26,7 @@ fn around<N: Real, const D: usize>(
             if on_grid { (x / 20.0).round() * 20.0 } else { x }
         });
         let height: f64 = way.iter().zip(side).map(|(x, y)| x * y).sum();
-        // Clearly on that side, so that rounding does not bring them to the other.
+        // Clearly on that side, so that rounding does not move them to the other.
         if height > 20.0 {
             points.push(point(std::array::from_fn(|axis| corner[axis] + way[axis])));
         }
@@ -35,13 +36,13 @@ fn around<N: Real, const D: usize>(
     points
 }
 
-/// Two lists of points that have the same corner, on the two sides of a plane through it.
+/// Two lists of points with a common corner, on opposite sides of a plane through it.
 fn meeting<N: Real, const D: usize>(random: &mut Random, round: usize) -> [Vec<Point<N, D>>; 2] {
     let on_grid = round.is_multiple_of(2);
     let far = [1.0, 400.0, 1e5][round % 3];
     let corner = std::array::from_fn(|_| {
         let x = random.signed() * far;
-        // A corner of both scalars.
+        // A corner that both scalars represent exactly.
         N::lit(if on_grid { (x / 20.0).round() * 20.0 } else { x }).as_f64()
     });
     let side = random.direction::<f64, D>();
@@ -49,7 +50,7 @@ fn meeting<N: Real, const D: usize>(random: &mut Random, round: usize) -> [Vec<P
     [around(random, &corner, &side, on_grid), around(random, &corner, &other, on_grid)]
 }
 
-/// The shapes of some points, of which the first three are those of the flat ones.
+/// Shapes made from some points; the flat ones use the first three.
 fn shapes2<N: Space<2>>(p: &[Point<N, 2>]) -> Vec<ShapeHandle<N, 2>> {
     let identity = N::isometry(&impinge::math::Pose::identity());
     let triangle = ShapeHandle::new(Triangle::new(p[0], p[1], p[2]));
@@ -81,7 +82,7 @@ fn shapes3<N: Space<3>>(p: &[Point<N, 3>]) -> Vec<ShapeHandle<N, 3>> {
     shapes
 }
 
-/// All questions about two shapes that touch say so; `false` if they do not.
+/// Whether each of four queries reports that two shapes touch.
 macro_rules! touch {
     ($isometry:ident, $one:expr, $other:expr, $zero:expr) => {{
         let (here, one, other) = ($isometry::identity(), &**$one, &**$other);
@@ -113,7 +114,7 @@ fn corners2<N: Space<2, Isometry = Isometry2<N>>>() {
     }
 }
 
-/// The shape has a corner among some points; only segments may lack the one that is shared.
+/// Whether a segment has an end among the points; other shapes always contain the shared corner.
 fn is_in<N: Space<D>, const D: usize>(shape: &ShapeHandle<N, D>, points: &[Point<N, D>]) -> bool {
     shape
         .as_shape::<Segment<N, D>>()
@@ -146,10 +147,10 @@ fn solids_of_space_that_share_a_corner_touch() {
     corners3::<f64>();
 }
 
-/// Points of a grid: one, the ends of a segment, or the corners of a triangle.
+/// A point, a segment or a triangle with corners on a grid.
 type Piece = Vec<[i64; 2]>;
 
-/// Twice the area of a triangle of the grid, exactly.
+/// Twice the signed area of a triangle, exactly.
 fn turn(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -159,14 +160,14 @@ fn sides(piece: &Piece) -> Vec<[[i64; 2]; 2]> {
     (0..count).map(|at| [piece[at], piece[(at + 1) % piece.len()]]).collect()
 }
 
-/// A point is on a segment.
+/// Whether a point is on a segment, exactly.
 fn is_on([a, b]: [[i64; 2]; 2], p: [i64; 2]) -> bool {
     let is_within =
         |axis: usize| a[axis].min(b[axis]) <= p[axis] && p[axis] <= a[axis].max(b[axis]);
     turn(a, b, p) == 0 && is_within(0) && is_within(1)
 }
 
-/// Two segments have a point in common.
+/// Whether two segments have a point in common, exactly.
 fn cross(one: [[i64; 2]; 2], other: [[i64; 2]; 2]) -> bool {
     let parted = |[a, b]: [[i64; 2]; 2], [c, d]: [[i64; 2]; 2]| {
         turn(a, b, c).signum() * turn(a, b, d).signum() < 0
@@ -189,7 +190,8 @@ fn meet(one: &Piece, other: &Piece) -> bool {
     pairs.any(|(a, b)| cross(a, b)) || holds(one, other[0]) || holds(other, one[0])
 }
 
-/// Pieces of a grid, which meet at corners and on sides, touch where they do by integers.
+/// Pieces on a grid, which often meet at corners and on sides, touch exactly where integer
+/// arithmetic says so.
 fn grids<N: Space<2, Isometry = Isometry2<N>>>() -> u32 {
     let random = &mut Random(63, false);
     let mut touching = 0;
@@ -230,7 +232,7 @@ fn pieces_of_a_grid_touch_by_integers() {
     assert!(found.iter().all(|&touching| touching > 7000), "{found:?} touch");
 }
 
-/// A pair of polygons, as triangles, by the numbers of a report.
+/// A pair of polygons cut into triangles, with the numbers of a report.
 #[test]
 fn polygons_that_share_a_vertex_touch() {
     let quad = |corners: [[f64; 2]; 4], triangles: [[u32; 3]; 2]| {

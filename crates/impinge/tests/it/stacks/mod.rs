@@ -1,6 +1,6 @@
-//! A solver stands on the contacts: solids at rest, falling, sliding and shaken, in 2D and 3D, `f32` and `f64`. Scenes,
-//! solver and measures are those of `impinge-stacks`. Bounds are in units of the scenes, whose solids have a size and
-//! a density of about 1 under a gravity of 10.
+//! Tests of contacts under a solver: solids at rest, falling, sliding and shaken, in 2D and 3D, with `f32` and `f64`.
+//! Scenes, solver and measures come from `impinge-stacks`. Bounds are in units of the scenes, whose solids have a size
+//! and a density of about 1 under a gravity of 10.
 
 mod fall;
 mod rest;
@@ -9,7 +9,7 @@ mod slide;
 
 use impinge_stacks::{Choices, Impinge, Memory, Outcome, Solver, Stack, Stage, play};
 
-/// Plays a scene with impulses found by ids alone.
+/// Plays a scene with a solver that finds its impulses by contact ids only.
 fn played<N: Stage<D>, const D: usize>(
     stack: &Stack<D>,
     choices: Choices,
@@ -18,7 +18,7 @@ fn played<N: Stage<D>, const D: usize>(
     play(stack, &mut Impinge::<N, D>::new(stack, choices), Solver::new(Memory::by_ids()), steps)
 }
 
-/// Numbers above their bounds, in words.
+/// Descriptions of the numbers above their bounds.
 fn above<const N: usize>(name: &str, numbers: [(&str, f64, f64); N]) -> Vec<String> {
     let is_above = |(_, number, bound): &(&str, f64, f64)| number > bound || number.is_nan();
     let faults = numbers.into_iter().filter(is_above);
@@ -27,7 +27,7 @@ fn above<const N: usize>(name: &str, numbers: [(&str, f64, f64); N]) -> Vec<Stri
         .collect()
 }
 
-/// Fails with all faults.
+/// Asserts that there are no faults, and prints all of them otherwise.
 fn assert_none(faults: &[String]) {
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
 }

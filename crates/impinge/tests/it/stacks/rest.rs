@@ -1,18 +1,20 @@
-//! Solids that stand stay where they are, with the same contacts.
+//! Solids at rest stay at their positions and keep their contacts.
 
 use impinge_stacks::{Choices, Kind, Outcome, Stack, Stage, stacks2, stacks3};
 
 use super::{above, assert_none, played};
 
-/// Five seconds; the last two count.
+/// Five seconds; the last two are measured.
 const STEPS: usize = 300;
-/// The ten-thousandth part of the energy that lifts a solid by its size, for each unit of mass: high stacks still sway.
+/// Energy for each unit of mass: 1/10000 of that needed to lift a solid by its size, since high
+/// stacks still sway.
 const ENERGY: f64 = 1e-3;
-/// A tenth of the size of a solid.
+/// Greatest drift: a tenth of the size of a solid.
 const DRIFT: f64 = 0.1;
-/// The ten overlaps of 0.005 that the solver leaves in a stack of ten, and a little more.
+/// Greatest sinking: ten overlaps of 0.005, which the solver leaves in a stack of ten, and a little
+/// more.
 const SINKING: f64 = 0.06;
-/// The share of contacts that may have new ids.
+/// Greatest share of contacts with new ids.
 const NEW: f64 = 0.005;
 
 fn faults<const D: usize>(stack: &Stack<D>, outcome: &Outcome, mass: f64) -> Vec<String> {
@@ -45,7 +47,7 @@ fn rest<N: Stage<D>, const D: usize>(stacks: &[Stack<D>], choices: Choices) {
     assert_none(&faults.collect::<Vec<_>>());
 }
 
-/// Every other scene, for choices that are not the usual ones.
+/// Every other scene, for choices other than the defaults.
 fn some<const D: usize>(stacks: Vec<Stack<D>>) -> Vec<Stack<D>> {
     stacks.into_iter().step_by(2).collect()
 }

@@ -1,10 +1,10 @@
-//! Two solids that are shaken as if by rounding keep the ids and the places of their contacts.
+//! Two solids shaken as if by rounding keep the ids and the positions of their contacts.
 
 use impinge_stacks::{Choices, Impinge, Stack, Stage, pairs2, pairs3, shake};
 
 use super::{above, assert_none};
 
-/// How often a solid is shaken.
+/// Number of times a solid is shaken.
 const STEPS: usize = 250;
 
 fn shaken<N: Stage<D>, const D: usize>(pairs: &[Stack<D>], choices: Choices) {

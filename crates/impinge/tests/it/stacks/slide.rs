@@ -1,14 +1,15 @@
-//! Solids that slide without friction over thousands of triangles feel a plane, and keep their contacts.
+//! Solids that slide without friction over thousands of triangles move as on a plane, and keep
+//! their contacts.
 
 use impinge_stacks::{Choices, Kind, Stack, Stage, stacks2, stacks3};
 
 use super::{above, assert_none, played};
 
-/// Ten seconds at five units a second: a hundred cells.
+/// Ten seconds at five units for each second: a hundred cells.
 const STEPS: usize = 600;
-/// A thousandth of the speed: no bump, no brake.
+/// Greatest change of velocity: a thousandth of the speed, so there is neither a bump nor a brake.
 const BUMP: f64 = 5e-3;
-/// The share of contacts that may have new ids: one of two in one step.
+/// Greatest share of contacts with new ids: about one of two in a single step.
 const NEW: f64 = 0.002;
 
 fn slide<N: Stage<D>, const D: usize>(stacks: &[Stack<D>]) {

@@ -1,4 +1,4 @@
-//! What tests share.
+//! Helpers that several tests share.
 
 pub(crate) mod broad_phase_model;
 pub(crate) mod composite_support;

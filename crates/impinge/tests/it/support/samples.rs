@@ -1,6 +1,7 @@
-//! How much a test by samples tries: decided here for all of them.
+//! Number of samples of a test, decided here for all tests.
 
-/// `some` samples, or as many times that as the variable `IMPINGE_SAMPLES` says: 10 in `.ci/run`, 1000 for a night.
+/// `some` samples, times the value of the variable `IMPINGE_SAMPLES`: 10 in `.ci/run`, 1000 for a
+/// run overnight.
 ///
 /// # Panics
 /// If the variable is not a whole number.

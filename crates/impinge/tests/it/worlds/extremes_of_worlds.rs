@@ -1,4 +1,4 @@
-//! Worlds far from the origin, crowded, emptied and filled again within one step.
+//! Tests worlds far from the origin, crowded, emptied, and refilled within one step.
 
 use crate::support::scene_stage;
 use crate::support::world_stage;
@@ -16,8 +16,8 @@ use world_stage::{Stage, add, ball, contacts, cube, near, step};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// The scene with all places on a grid that is as fine as `f32` resolves a million units away, moved
-/// there by a shift on that grid: every place keeps its bits relative to all others.
+/// The scene with all positions on a grid that `f32` resolves a million units away (1/8), moved by
+/// a shift on that grid: all differences of positions keep their bits.
 fn shifted<const D: usize>(mut scene: Scene<D>, shift: f64) -> Scene<D> {
     let on_grid = |x: f64| (x * 8.0).round() / 8.0;
     for wave in scene.objects.iter_mut().flat_map(|object| &mut object.motion.place) {
@@ -28,7 +28,7 @@ fn shifted<const D: usize>(mut scene: Scene<D>, shift: f64) -> Scene<D> {
     scene
 }
 
-/// The contacts of a step: between which objects, how many points, how deep, in which direction.
+/// A contact of a step: the objects, the number of points, the depth and the normal.
 type Seen<N, const D: usize> = ((usize, usize), usize, N, Vector<N, D>);
 
 fn contacts_seen<N: Play<D>, const D: usize>(player: &Player<N, D>) -> Vec<Seen<N, D>> {
@@ -40,8 +40,8 @@ fn contacts_seen<N: Play<D>, const D: usize>(player: &Player<N, D>) -> Vec<Seen<
     pairs.collect()
 }
 
-/// The same scene around the origin and a million units away: the same contacts, to the bit but for
-/// the rounding of the points in the world.
+/// A scene around the origin and one moved by 2^20 have equal contacts to the bit, except for the
+/// rounding of world points.
 fn far_from_the_origin<N: Play<D>, const D: usize>() {
     let shift = f64::from(1_u32 << 20);
     let mut here = Player::<N, D>::new(shifted(mixed_shapes(120), 0.0), 1.0);
@@ -52,7 +52,7 @@ fn far_from_the_origin<N: Play<D>, const D: usize>() {
         there.step();
         let (near, far) = (contacts_seen(&here), contacts_seen(&there));
         assert_eq!(near, far, "step {step}");
-        // In words: the handles of two worlds differ, and read alike.
+        // Compared as text: the handles of two worlds differ, but print alike.
         let events = [&here.world, &there.world]
             .map(|world| format!("{:?} {:?}", world.contact_events(), world.proximity_events()));
         assert_eq!(events[0], events[1], "step {step}");
@@ -77,7 +77,7 @@ fn a_million_units_away() {
     far_from_the_origin::<f64, 3>();
 }
 
-/// One object far away changes nothing for the others.
+/// An object far away changes nothing for the others.
 fn one_far_object<N: Stage<D>, const D: usize>() {
     let fill = |world: &mut World<N, D>| {
         for n in 0..60 {
@@ -104,7 +104,7 @@ fn one_far_object<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// A hundred thousand objects come and go within one step, with and without an update between.
+/// 100000 objects come and go within one step, with and without an update between.
 fn mass_arrival<N: Stage<D>, const D: usize>(count: u32) {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let shape = ball(0.25);
@@ -141,7 +141,7 @@ fn a_hundred_thousand_come_and_go() {
     mass_arrival::<f64, 3>(100_000);
 }
 
-/// An object that comes and goes between two updates was never there.
+/// An object added and removed between two updates causes no events.
 fn between_two_updates<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let shape = ball(1.0);
@@ -153,7 +153,7 @@ fn between_two_updates<N: Stage<D>, const D: usize>() {
     world.remove(&[brief]);
     assert_eq!(step(&mut world), [], "nothing happened");
     assert!(world.proximity_events().is_empty(), "nothing happened");
-    // The index is used again within the same step, several times.
+    // The index is reused several times within one step.
     let mut last = add(&mut world, 0.5, &shape, contacts(0.0));
     for _ in 0..5 {
         world.remove(&[last]);
@@ -166,8 +166,8 @@ fn between_two_updates<N: Stage<D>, const D: usize>() {
     assert!(world.is_empty(), "empty");
 }
 
-/// A removal during contact, and another object on the freed index in the same step: first the old
-/// one stops, then the new one starts, under other names.
+/// An object is removed during contact, and another one takes its index in the same step: the old
+/// pair stops first, then the new one starts with other contact ids.
 fn removal_and_reuse_at_once<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let floor = add(&mut world, 0.0, &cube(1.0), contacts(0.0));

@@ -1,4 +1,4 @@
-//! Collision worlds: rules, events, queries, against models.
+//! Tests of collision worlds: rules, events and queries, also against models.
 
 mod extremes_of_worlds;
 mod world_ball_in_room;

@@ -1,4 +1,4 @@
-//! The guide's main program prints what the guide says, in the plane and in space.
+//! Tests that the guide's main program prints what the guide shows, in 2D and 3D.
 
 #[path = "../../../../impinge-first/src/bin/ball_in_room2.rs"]
 mod plane;

@@ -1,4 +1,4 @@
-//! The scripts of the corpus: what went wrong in the worlds of others.
+//! Runs the scripts of the corpus: cases in which worlds of other libraries failed.
 
 use crate::support::query_support;
 use crate::support::world_stage;
@@ -21,10 +21,10 @@ use world_stage::{Stage, ball, contacts, half_space, step, vector};
 
 const CASES: &str = include_str!("../../data/regression_cases.json");
 
-/// Scripts that say in words what to do.
+/// Scripts with steps in words; each has its own test below.
 const IN_WORDS: [&str; 2] = ["parry-409-remove-to-single-leaf", "melonjs-1580-octree-depth"];
 
-/// What an object belongs to, in the one script that asks.
+/// Parent of an object, in the one script that filters by it.
 type Parent = Option<String>;
 
 fn numbers<const D: usize>(value: &Value) -> [f64; D] {
@@ -54,7 +54,7 @@ fn shape<N: Real, const D: usize>(value: &Value) -> ShapeHandle<N, D> {
     }
 }
 
-/// The filter of the corpus is a whitelist.
+/// Groups from masks; the filter of the corpus is a whitelist.
 fn groups(step: &Value) -> CollisionGroups {
     let list = |key: &str| {
         let mask = step[key].as_u64()?;
@@ -66,7 +66,7 @@ fn groups(step: &Value) -> CollisionGroups {
     groups
 }
 
-/// Objects of one parent do not interact.
+/// Filter that refuses pairs of objects with a common parent.
 struct OfTwoParents;
 
 impl OfTwoParents {
@@ -146,14 +146,15 @@ where
                 let handle = self.handle(&value["id"]);
                 let object = self.world.collision_object_mut(handle).expect("it is there");
                 *object.data_mut() = value["parent"].as_str().map(str::to_owned);
-                // What a filter depends on has changed.
+                // Setting the groups makes the world filter the object's pairs again, since the
+                // filter depends on the data.
                 let groups = *object.collision_groups();
                 self.world.set_collision_groups(handle, groups);
             }
             "remove" => self.remove(value),
             "move_slowly" => self.move_slowly(value),
             "update" => self.log = step(&mut self.world),
-            // There are no snapshots of worlds; the rest of the script holds without.
+            // Worlds have no snapshots to serialize; the rest of the script is valid without them.
             "serialize_roundtrip" | "note" => (),
             _ => self.expect(value),
         }
@@ -167,7 +168,7 @@ where
         assert_eq!(done, expected, "{value}");
     }
 
-    /// Moves in steps, with an update after each; collects the events of all.
+    /// Moves an object in steps with an update after each, and collects all events.
     fn move_slowly(&mut self, value: &Value) {
         let (from, to) = (numbers::<D>(&value["from"]), numbers::<D>(&value["to"]));
         let steps = number(&value["steps"]);
@@ -271,8 +272,8 @@ fn world_scenarios_f64() {
     assert_eq!(run_all::<f64>(), 12, "all scripts in operations");
 }
 
-/// Removes in this order from a world of so many balls; after each the rest is found, and can be
-/// put back.
+/// Removes the balls of a world in this order. After each removal the others are still found, and
+/// finally a ball can be added again.
 fn remove_in_order<N: Stage<3>>(world: &mut CollisionWorld<N, 3, ()>, order: &[u32]) {
     let add = |world: &mut CollisionWorld<N, 3, ()>, place: u32| {
         let position = <N as Stage<3>>::on_x(f64::from(place) * 1.5);
@@ -296,7 +297,7 @@ fn remove_in_order<N: Stage<3>>(world: &mut CollisionWorld<N, 3, ()>, order: &[u
     world.remove(&[again]);
 }
 
-/// The permutations of numbers, one after the other (Heap's algorithm).
+/// Visits all permutations (Heap's algorithm).
 fn each_order(order: &mut Vec<u32>, count: usize, visit: &mut dyn FnMut(&[u32])) {
     if count <= 1 {
         return visit(order);
@@ -321,7 +322,7 @@ fn parry_409_remove_to_single_leaf() {
         });
     }
     assert_eq!(orders, 1 + 2 + 6 + 24 + 120 + 720 + 5040, "all orders");
-    // Of the many orders of nine some.
+    // Some of the 362880 orders of nine.
     let (mut order, random) = ((0..9).collect::<Vec<_>>(), &mut Random(9, false));
     for _ in 0..500 {
         order.sort_by_cached_key(|_| random.bits());
@@ -329,7 +330,8 @@ fn parry_409_remove_to_single_leaf() {
     }
 }
 
-/// Random boxes on a grid, so that touching is exact, that move: their pairs are all pairs.
+/// Moving random boxes on a grid, so that touching is exact: the pairs are those of a scan of all
+/// pairs.
 fn all_pairs<N: Stage<3>>() {
     let random = &mut Random(1580, false);
     let mut quarter = |range: f64| (random.signed() * range * 4.0).round() / 4.0;
@@ -372,7 +374,7 @@ fn melonjs_1580_octree_depth() {
     all_pairs::<f64>();
 }
 
-/// Every question about a world, by how many answers it has.
+/// Number of results of every query of a world with a filter.
 fn answers<N: Stage<3, Isometry = Isometry3<N>>>(
     world: &CollisionWorld<N, 3, ()>,
     point: &Point<N, 3>,
@@ -398,7 +400,7 @@ fn answers<N: Stage<3, Isometry = Isometry3<N>>>(
     ]
 }
 
-/// The same for the questions that ask by groups.
+/// Number of results of the queries that take groups.
 fn answers_to_groups<N: Stage<3>>(
     world: &CollisionWorld<N, 3, ()>,
     point: &Point<N, 3>,
@@ -433,7 +435,7 @@ fn empty_worlds<N: Stage<3, Isometry = Isometry3<N>>>() {
             assert_eq!(answers(&world, &point, filter), [0; 13], "filtered out");
         }
         assert_eq!(answers_to_groups(&world, &point, &nobody), [0; 4], "filtered out");
-        // A cast of what overlaps from the start, and parts, hits nothing.
+        // The last two are casts of shapes that overlap at the start and part, so they hit nothing.
         let seen = answers(&world, &point, &QueryFilter::new());
         assert_eq!(seen[..11], [1; 11], "the ball is there");
         assert_eq!(answers_to_groups(&world, &point, &all), [1; 4], "the ball is there");
@@ -441,7 +443,8 @@ fn empty_worlds<N: Stage<3, Isometry = Isometry3<N>>>() {
     }
 }
 
-/// The one case that asks a world about a point, in an empty world and in one that is filtered out.
+/// The one case that queries a world with a point, in an empty world and in one whose objects are
+/// all filtered out.
 #[test]
 fn world_point_projection() {
     empty_worlds::<f32>();

@@ -1,4 +1,4 @@
-//! What those who write engines ask of a world, one scenario each.
+//! Tests the methods for authors of engines, one scenario each.
 
 use crate::support::world_stage;
 
@@ -14,7 +14,7 @@ use ContactEvent::{Started, Stopped};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// The objects that have a pair with one.
+/// The objects that have a pair with the given one.
 fn partners<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     handle: CollisionObjectHandle,
@@ -74,7 +74,7 @@ fn queries_and_phases_do_not_mind_fixed_objects<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [], "a new broad phase");
     world.set_narrow_phase(Box::new(DefaultNarrowPhase::<N, D>::new()));
     assert_eq!(step(&mut world), [], "a new narrow phase");
-    // The mark goes with the object, not with its index.
+    // The fixed mark belongs to the object, not to its index.
     world.remove(&[fixed[1]]);
     let other = add(&mut world, 0.5, &ball(1.0), contacts(0.0));
     assert_eq!(other.uid(), fixed[1].uid(), "the index is used again");
@@ -124,7 +124,7 @@ fn a_prediction_pairs_what_may_meet_on_the_way<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [], "no contact");
     assert_eq!(partners(&world, left), [right], "what is not on the way has no pair");
 
-    // Queries see the position alone.
+    // Queries use the position only, not the prediction.
     let shape = ball::<N, D>(1.0);
     let filter = QueryFilter::new();
     let hit = |world: &World<N, D>, x| {
@@ -144,7 +144,7 @@ fn a_prediction_pairs_what_may_meet_on_the_way<N: Stage<D>, const D: usize>() {
     assert_eq!(partners(&world, left), [right], "whatever else changes, the prediction holds");
     assert_eq!(world.predicted_position(left), Some(&N::on_x(8.0)), "as it was given");
 
-    // Both moved out of their boxes, which shrink.
+    // Both move out of their predicted boxes, which shrink at the update.
     for (bullet, x) in [(left, -9.0), (right, 9.0)] {
         world.set_position(bullet, N::on_x(x));
         assert_eq!(world.predicted_position(bullet), None, "the prediction is over");
@@ -220,7 +220,8 @@ fn a_lent_filter_decides_with_what_it_borrows<N: Stage<D>, const D: usize>() {
     world.update_with(&mut |one, _| one.handle() == a);
     assert_eq!(world.contact_events(), [Started(a, c), Stopped(b, c)], "all pairs anew");
 
-    // Groups and marks come before it, and a removed object is refused.
+    // Groups and fixed marks are tested before the filter, and pairs of removed objects are not
+    // filtered.
     asked.clear();
     world.set_fixed(a, true);
     world.set_fixed(b, true);
@@ -271,7 +272,7 @@ fn events_of_two_updates_are_kept_in_their_order<N: Stage<D>, const D: usize>() 
     assert!(world.proximity_events().is_empty(), "of all events");
 }
 
-/// A world whose data tell when they are dropped.
+/// A world whose data show when they are dropped.
 type Counted<N, const D: usize> = CollisionWorld<N, D, Rc<u8>>;
 
 fn removed_objects_stay_beside_their_events<N: Stage<D>, const D: usize>() {
@@ -309,7 +310,7 @@ fn removed_objects_stay_beside_their_events<N: Stage<D>, const D: usize>() {
     assert!(!kept(&world, b), "no event names it any more");
     assert_eq!(Rc::strong_count(&counter), 2, "and its data are gone");
 
-    // Removed while the events of the last update are read, some of which name it.
+    // An object is removed while the events of the last update are read, some of which refer to it.
     world.set_position(a, N::on_x(9.0));
     let d = add(&mut world, 9.0);
     world.update();

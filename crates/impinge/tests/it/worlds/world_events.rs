@@ -1,4 +1,4 @@
-//! Events, one scenario each: what starts, what stops, when, in which order.
+//! Tests events, one scenario each: what starts, what stops, when and in which order.
 
 use crate::support::world_stage;
 
@@ -21,7 +21,7 @@ fn transitions<N: Space<D>, const D: usize>(world: &World<N, D>) -> Vec<(Proximi
     world.proximity_events().iter().map(|event| (event.prev_status, event.new_status)).collect()
 }
 
-/// The names of all contacts of a pair.
+/// The ids of all contacts of a pair.
 fn ids<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     handle1: CollisionObjectHandle,
@@ -188,7 +188,8 @@ fn changes_in_place_are_followed<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [Stopped(both.0, both.1)], "changed and partner removed");
 }
 
-/// The narrow phase keeps copies of small solids: they are made anew.
+/// Replacing a solid by one of the same kind has an effect, although the narrow phase keeps copies
+/// of small solids.
 fn another_solid_of_the_same_kind_is_seen<N: Stage<D>, const D: usize>() {
     let kinds: [fn(f64) -> ShapeHandle<N, D>; 2] = [ball, cube];
     for (kind, partner) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
@@ -288,7 +289,7 @@ fn half_spaces_overlap_without_points<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [Started(ground, ceiling)], "antiparallel ones do touch");
 }
 
-/// Which pairs are open, by the events alone: each starts and stops in turn.
+/// The open pairs according to the events: each must start and stop in turn.
 #[derive(Default)]
 struct Ledger {
     touching: Vec<(CollisionObjectHandle, CollisionObjectHandle)>,
@@ -327,8 +328,8 @@ impl Ledger {
     }
 }
 
-/// Worlds that lose some objects, and all, again and again: whatever started stops once, also of objects
-/// that went and came under the same index between two updates.
+/// Worlds are cleared partly and completely, again and again: whatever started stops once, also for
+/// objects that went and whose index was reused between two updates.
 fn clearing_and_retaining_end_every_pair_once<N: Stage<D>, const D: usize>() {
     let (mut random, mut world) = (Random::new(3), World::<N, D>::default());
     let (mut ledger, mut handles) = (Ledger::default(), Vec::new());

@@ -1,5 +1,5 @@
-//! Bad input is refused with an error that names it, and leaves the world as it was; lookups of what
-//! is gone answer `None`.
+//! Tests that bad input is refused with an error that reports it and leaves the world unchanged,
+//! and that lookups of removed objects return `None`.
 
 use crate::support::world_stage;
 
@@ -14,7 +14,7 @@ use world_stage::{Stage, add, ball, contacts, cube, half_space, near, step, vect
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// Two balls in contact, and a handle that has become stale.
+/// Two balls in contact, and a stale handle.
 fn pair<N: Stage<D>, const D: usize>() -> (World<N, D>, [CollisionObjectHandle; 3]) {
     let mut world = World::<N, D>::new(N::lit(0.02));
     let shape = ball(1.0);
@@ -26,7 +26,7 @@ fn pair<N: Stage<D>, const D: usize>() -> (World<N, D>, [CollisionObjectHandle; 
     (world, [first, second, stale])
 }
 
-/// Nothing has changed since [`pair`].
+/// Asserts that nothing has changed since [`pair`].
 fn check_unchanged<N: Stage<D>, const D: usize>(
     world: &mut World<N, D>,
     [first, second, stale]: [CollisionObjectHandle; 3],
@@ -42,7 +42,7 @@ fn check_unchanged<N: Stage<D>, const D: usize>(
     assert_eq!(next.uid(), stale.uid(), "the free index is still free");
 }
 
-/// Whatever is asked of the world, it does not know the handle.
+/// Asserts that every method refuses the handle as stale.
 fn check_unknown<N: Stage<D>, const D: usize>(
     world: &mut World<N, D>,
     first: CollisionObjectHandle,
@@ -80,7 +80,8 @@ fn stale_handles_are_refused<N: Stage<D>, const D: usize>() {
     check_unchanged(&mut world, handles);
 }
 
-/// Worlds side by side, filled alike: as a server and its clients are, or a prediction.
+/// Worlds side by side with equal contents, as on a server and its clients: a handle of one is
+/// refused by the others.
 fn handles_of_other_worlds_are_refused<N: Stage<D>, const D: usize>() {
     let mut worlds: Vec<_> = (0..4).map(|_| pair::<N, D>()).collect();
     for round in 0..2 {

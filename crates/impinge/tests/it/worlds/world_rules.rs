@@ -1,4 +1,5 @@
-//! Groups, filters and margins: which pairs exist, and what never changes an answer.
+//! Tests groups, filters and margins: which pairs exist, and which settings must not affect
+//! results.
 
 use crate::support::world_stage;
 
@@ -53,7 +54,7 @@ fn groups_decide_who_meets<N: Stage<D>, const D: usize>() {
     assert_eq!(world.contact_pairs().count(), 1, "not even in the broad phase");
 }
 
-/// Same parity of the indices.
+/// Filter that accepts pairs whose indices have the same parity.
 struct Parity;
 
 impl<N: Real, T> dim2::world::BroadPhasePairFilter<N, T> for Parity {
@@ -117,7 +118,7 @@ fn filters_hear_of_new_pairs_that_the_groups_allow() {
     add(&mut world, groups(&[1], &[1], &[]));
     add(&mut world, groups(&[2], &[2], &[]));
     step(&mut world);
-    // `step` asks the filters again to check the world.
+    // `step` calls the filters once more to validate the world.
     calls.store(0, Ordering::Relaxed);
     world.update();
     world.set_position(first, <f64 as Stage<3>>::on_x(0.001));
@@ -130,7 +131,7 @@ fn filters_hear_of_new_pairs_that_the_groups_allow() {
 
 type Log = Vec<(Vec<ContactEvent>, Vec<ProximityEvent>, usize)>;
 
-/// A swarm on random walks; what happens in it.
+/// Random walks of a swarm; returns the log of all events and contacts.
 fn swarm<N: Stage<D>, const D: usize>(margin: f64) -> Log {
     let mut random = Random::new(11);
     let mut world = World::<N, D>::new(N::lit(margin));
@@ -162,7 +163,7 @@ fn margins_never_change_an_answer<N: Stage<D>, const D: usize>() {
     let events: usize = log.iter().map(|(contacts, near, _)| contacts.len() + near.len()).sum();
     assert!(events > 200, "much happens: {events}");
     for margin in [0.02, 0.5, 8.0] {
-        // In words: the handles of two worlds differ, and read alike.
+        // Compared as text: the handles of two worlds differ, but print alike.
         let other = swarm::<N, D>(margin);
         assert_eq!(format!("{other:?}"), format!("{log:?}"), "margin {margin}");
     }
@@ -191,8 +192,8 @@ fn order_is_canonical<N: Stage<D>, const D: usize>() {
     assert_eq!(world.contact_manifolds().count(), pairs.len(), "each with a contact");
 }
 
-/// What one object is told is what all pairs say of it, seen from its side; nothing of stale handles and of
-/// objects that no update has seen.
+/// The contacts of one object equal those of all pairs that contain it, seen from its side. Stale
+/// handles and objects that no update has seen have none.
 fn an_object_sees_its_pairs_from_its_side<N: Stage<D>, const D: usize>() {
     let (mut random, mut world) = (Random::new(5), World::<N, D>::new(N::lit(0.02)));
     for number in 0..60 {
@@ -253,7 +254,7 @@ in_tests! {
     an_object_sees_its_pairs_from_its_side,
 }
 
-/// The world is what the user's data are.
+/// A world is `Send` and `Sync` if its data are.
 #[test]
 fn worlds_are_sent_and_shared_with_their_data() {
     fn is_send_and_sync<S: Send + Sync>(_: &S) {}

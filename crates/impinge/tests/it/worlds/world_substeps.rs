@@ -1,4 +1,4 @@
-//! Single pairs between updates, and contacts with skins.
+//! Tests single pairs computed between updates, and contacts with skins.
 
 use crate::support::world_stage;
 
@@ -27,12 +27,12 @@ fn capsule<N: Real, const D: usize>() -> ShapeHandle<N, D> {
     ShapeHandle::new(Capsule::<N, D>::new(N::ONE, N::HALF))
 }
 
-/// One shape of each way in which contacts are kept and read.
+/// A shape for each representation of contacts.
 fn shapes<N: Stage<D>, const D: usize>() -> [ShapeHandle<N, D>; 4] {
     [ball(1.0), cube(1.0), capsule(), table()]
 }
 
-/// A pose above the origin, moved sideways.
+/// The pose at height `y`, moved sideways by `x`.
 fn above<N: Stage<D>, const D: usize>(x: f64, y: f64) -> N::Isometry {
     let mut coordinates = [0.0; D];
     (coordinates[0], coordinates[1]) = (x, y);
@@ -49,7 +49,7 @@ fn points<N: Space<D>, const D: usize>(
     pair.views().flat_map(ManifoldView::contacts).collect()
 }
 
-/// Every reader tells the same of a pair as its views.
+/// Asserts that every way of reading a pair gives the points of its views.
 fn check_readers<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     one: CollisionObjectHandle,
@@ -81,7 +81,8 @@ fn check_readers<N: Space<D>, const D: usize>(
     assert_eq!(seen.collect::<Vec<_>>(), all, "seen from the second");
 }
 
-/// A pair computed between updates is what an update would make of it, and all else stays as it is.
+/// Computing a pair between updates gives the result of an update for it and leaves everything else
+/// unchanged.
 fn a_pair_is_computed_as_an_update_would<N: Stage<D>, const D: usize>() {
     for reuses in [false, true] {
         for (index, shape) in shapes::<N, D>().into_iter().enumerate() {
@@ -142,7 +143,8 @@ fn check_substep<N: Stage<D>, const D: usize>(
     assert_eq!(substeps.contact_events(), [], "{name:?}: it touched all along");
 }
 
-/// Computes the pair with the first of two objects, the handles in both orders.
+/// Computes the pair of `moving` and the first of two objects twice, with the handles in both
+/// orders: the second time changes nothing.
 fn break_off<N: Stage<D>, const D: usize>(
     world: &mut World<N, D>,
     moving: CollisionObjectHandle,
@@ -181,7 +183,7 @@ fn transitions_in_substeps_are_told_once<N: Stage<D>, const D: usize>() {
     assert_eq!(world.proximity_events().len(), 3, "of the area, too");
     assert_eq!(step(&mut world), [], "once");
 
-    // What a substep began, a removal ends; what it ended, does not end again.
+    // A removal ends the pair that a substep began; a pair that a substep ended does not end again.
     world.set_position(fast, N::on_x(2.5));
     assert!(world.update_pair(post, fast), "kept");
     world.set_position(fast, N::on_x(1.0));
@@ -229,7 +231,7 @@ fn an_object_with_itself_is_a_pair<N: Stage<D>, const D: usize>() {
     assert_eq!(points(&world, knot, knot), after, "as the update has it");
 }
 
-/// The world of two shapes, the second at a pose.
+/// A world of two shapes, the second one at a pose.
 fn two<N: Stage<D>, const D: usize>(
     shapes: [&ShapeHandle<N, D>; 2],
     at: N::Isometry,
@@ -241,7 +243,7 @@ fn two<N: Stage<D>, const D: usize>(
     (world, [one, other])
 }
 
-/// Contacts with skins are those of shapes that are rounded by as much.
+/// Contacts with skins equal those of shapes rounded by the same radius.
 fn skins_round_shapes<N: Stage<D>, const D: usize>() {
     let (skins, slack) = ([0.25, 0.125], N::lit(64.0) * N::EPSILON);
     let rounded = |shape: &ShapeHandle<N, D>, radius: f64| -> ShapeHandle<N, D> {
@@ -287,7 +289,8 @@ fn deepest<N: Space<D>, const D: usize>(
     points.reduce(|best, next| if next.contact.depth > best.contact.depth { next } else { best })
 }
 
-/// [`check_readers`], if there is a pair; kinematics at the poses of the update give the contact.
+/// Calls [`check_readers`] if there is a pair, and asserts that kinematics at the poses of the
+/// update give the contact.
 fn check_readers_of_pair<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     one: CollisionObjectHandle,
@@ -338,7 +341,7 @@ fn skins_grow_parts_of_composites<N: Stage<D>, const D: usize>() {
             assert_eq!((contact.normal[1], point.part1), (N::ONE, 1), "up, from the second part");
         }
         assert_eq!(world.contacts_with(floor).count(), 1 << (D - 1), "the lower face");
-        // Between updates, too.
+        // The skins also count between updates.
         world.set_position(solid, above::<N, D>(1.5, 1.875));
         assert!(world.update_pair(one, two), "kept");
         check_readers_of_pair(&world, one, two);
@@ -373,7 +376,7 @@ fn skins_change_in_place<N: Stage<D>, const D: usize>() {
     assert_eq!(step(&mut world), [Stopped(floor, cube)], "an eighth is missing");
     assert_eq!(world.skin(floor), Some(N::lit(0.125)), "kept");
 
-    // Queries and boxes are those of the shape.
+    // Queries and boxes use the shape without its skin.
     let object = world.collision_object(floor).expect("alive");
     assert!(object.shape().aabb(&N::pose(object.position())).maxs()[0] <= N::lit(0.01), "its own");
     world.remove(&[cube]);
@@ -390,7 +393,7 @@ fn skins_change_in_place<N: Stage<D>, const D: usize>() {
     assert!(world.contains(area), "it was there all along");
 }
 
-/// Skins of zero, and skins of others, change no bit of a pair.
+/// Skins of zero, and skins of other objects, change no bit of a pair.
 fn worlds_without_skins_are_as_before<N: Stage<D>, const D: usize>() {
     let mut worlds = [0, 1].map(|_| World::<N, D>::new(N::lit(0.125)));
     for world in &mut worlds {

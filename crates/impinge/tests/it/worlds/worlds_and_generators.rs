@@ -1,7 +1,8 @@
-//! Hulls, boxes and meshes that are followed step by step: a world, which updates many pairs in one batch, has to the
-//! bit the contacts that a generator computes of each pair alone, also where both keep contacts.
+//! Follows hulls, boxes and meshes step by step: the contacts of a world, which updates many pairs
+//! in one batch, equal to the bit those of a generator for each pair alone, also when both reuse
+//! contacts.
 //!
-//! The generator of a pair has the same history and knows nothing but poses and shapes.
+//! The generator of a pair has the same history, but only gets poses and shapes.
 
 use impinge::math::na::{Translation3, UnitQuaternion};
 use impinge::math::{Isometry3, Point, Real, Space, Vector};
@@ -13,7 +14,7 @@ use impinge::query::ContactManifold;
 use impinge::shape::{Capsule, ConvexHull, Cuboid, Cylinder, ShapeHandle, TriMesh};
 use impinge::world::{CollisionGroups, CollisionWorld};
 
-/// Numbers between −1 and 1.
+/// Random numbers from -1 to 1.
 struct Noise(u64);
 
 impl Noise {
@@ -29,7 +30,7 @@ impl Noise {
     }
 }
 
-/// Where a solid is, in double precision: what the worlds are told is rounded.
+/// Pose of a solid in `f64`; the world gets it rounded.
 #[derive(Clone, Copy)]
 struct Place {
     at: [f64; 3],
@@ -54,7 +55,7 @@ impl Place {
     }
 }
 
-/// A patch of triangles that are not level, about as large as the other shapes.
+/// A patch of uneven triangles, about as large as the other shapes.
 fn mesh<N: Space<3>>(noise: &mut Noise, scale: f64) -> ShapeHandle<N, 3> {
     let mut vertex = |n: u32| {
         let [x, z] = [n % 4, n / 4].map(|k| f64::from(k) * 0.6 - 0.9);
@@ -70,7 +71,7 @@ fn shape<N: Space<3>>(noise: &mut Noise, kind: usize, scale: f64) -> ShapeHandle
     let scaled = |v: [f64; 3]| Vector::<N, 3>::from(v.map(|x| N::lit(x * scale)));
     let point = |noise: &mut Noise| {
         let v = noise.vector();
-        // On a sphere, or of a grid, which has faces that are flush.
+        // Points on a sphere, or on a grid, which makes faces flush.
         let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let v = if kind == 1 { v.map(|x| x / length) } else { v.map(|x| (x * 1.6).round()) };
         Point::from(scaled(v.map(|x| x * 0.6)))
@@ -91,13 +92,13 @@ fn shape<N: Space<3>>(noise: &mut Noise, kind: usize, scale: f64) -> ShapeHandle
     ShapeHandle::new(Cuboid::new(scaled([0.5, 0.4, 0.6])))
 }
 
-/// What a manifold says, but for the numbers of its points.
+/// Contacts and kinematics of manifolds as text, without the ids.
 fn facts<N: Real>(manifolds: &[&ContactManifold<N, 3>]) -> Vec<String> {
     let contacts = manifolds.iter().flat_map(|manifold| manifold.contacts());
     contacts.map(|tracked| format!("{:?} {:?}", tracked.contact, tracked.kinematic)).collect()
 }
 
-/// What a world says of a pair.
+/// The facts about a pair in a world.
 fn said_of<N: Space<3>>(
     world: &CollisionWorld<N, 3, ()>,
     [one, other]: [CollisionObjectHandle; 2],
@@ -108,7 +109,7 @@ fn said_of<N: Space<3>>(
     facts(&own.map(|(_, _, manifold)| manifold).collect::<Vec<_>>())
 }
 
-/// A pair in the world, and its twin.
+/// A pair in the world, and its separate generator.
 struct Twins<N: Space<3>> {
     places: [Place; 2],
     shapes: [ShapeHandle<N, 3>; 2],
@@ -116,14 +117,15 @@ struct Twins<N: Space<3>> {
     twin: PairManifoldGenerator<N, 3>,
 }
 
-/// How far a step goes: mostly little, now and then to somewhere else or nowhere.
+/// Size of a step: mostly small; every sixteenth step jumps, and some steps do not move.
 fn size(noise: &mut Noise, step: usize) -> f64 {
     const SIZES: [f64; 8] = [1e-3, 3e-4, 1e-3, 0.0, 1e-5, 2e-3, 1e-3, 1e-7];
     let is_jump = step % 16 == 15;
     if is_jump { noise.next() * 0.2 } else { SIZES[step % 8] * noise.next().abs() }
 }
 
-/// Has a world without objects keep contacts within a tolerance, if that is not zero; returns a generator that does so.
+/// Makes an empty world reuse contacts within a tolerance, if that is positive; returns a generator
+/// for its pairs.
 fn keeping<N: Space<3>>(
     world: &mut CollisionWorld<N, 3, ()>,
     tolerance: N,
@@ -136,8 +138,8 @@ fn keeping<N: Space<3>>(
     generator.reusing(tolerance)
 }
 
-/// Follows pairs for some steps, of which contacts are kept within a tolerance, if that is not zero; answers how many
-/// manifolds were compared.
+/// Follows pairs for some steps, reusing contacts within the tolerance if that is positive; returns
+/// how many manifolds were compared.
 fn follow<N: Space<3, Isometry = Isometry3<N>>>(
     seed: u64,
     [scale, tolerance]: [f64; 2],
@@ -155,7 +157,8 @@ fn follow<N: Space<3, Isometry = Isometry3<N>>>(
         let corner = [far + 8.0 * f64::from(u32::try_from(index).expect("few")), 0.0, 0.0];
         let here = Place { at: corner, turn: UnitQuaternion::identity() };
         let there = here.moved(noise, [0.0, 1.0][index % 2]);
-        // Above, as if it stood there, or to either side: the order of the two may change on the way.
+        // Above as if resting there, or to either side, so that the order of the two may change on
+        // the path.
         let away = [[0.0, 0.95, 0.0], [0.05, 1.0, 0.2], [0.7, 0.6, 0.1], [-0.001, 0.9, 0.3]];
         let at = std::array::from_fn(|axis| corner[axis] + away[index % 4][axis]);
         let places = [here, Place { at, ..there }];
@@ -189,7 +192,8 @@ fn follow<N: Space<3, Isometry = Isometry3<N>>>(
             twin.contacts(&mut expected);
             assert_eq!(said[index], facts(&expected), "pair {index} in step {step}");
             compared += usize::from(!expected.is_empty());
-            // Another shape, now and then; a world computes a pair anew for an equal one, too.
+            // Sometimes another shape; not where it is equal, since a world then computes the pair
+            // anew, unlike the generator.
             let is_equal = index / 6 % 3 == 0 && tolerance > 0.0;
             if step % 40 == 20 && index % 6 == 0 && !is_equal {
                 twins.shapes[1] = shape(noise, index / 6 % 3, scale);

@@ -65,7 +65,7 @@ fn a_chain_of_capsules_holds() {
     chain_holds::<Impinge>();
 }
 
-/// What the solver starts from: the same points have the same names, step after step.
+/// Points of contact keep their feature ids from step to step, so the solver is warm-started.
 #[test]
 fn contacts_keep_their_names() {
     let mut app = app::<Impinge>();
@@ -86,7 +86,7 @@ fn contacts_keep_their_names() {
     assert_eq!(bare(names(&app)), bare(before));
 }
 
-/// The same bits in each run.
+/// Two runs give equal bits.
 #[test]
 fn runs_repeat() {
     let run = || {

@@ -9,7 +9,8 @@ use bevy_transform::prelude::*;
 
 use crate::scenes2::{Backend, Impinge, app, dynamic, fixed, line, place, steps, strip, velocity};
 
-/// How fast a body goes up and down at most that moves along a flat floor, how far, and how fast it is in the end.
+/// Moves a body along a flat floor. Returns the largest vertical speed, the largest vertical displacement, and the
+/// final speed along x.
 fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction: f32) -> [f32; 3] {
     let mut app = app::<B>();
     fixed::<B>(&mut app, floor, Vec2::ZERO);

@@ -229,7 +229,7 @@ fn nothing_panics() {
     assert!((place(&app, body).y - 0.5).abs() < 0.02, "on the floor");
 }
 
-/// What the page of the crate says of Avian's own colliders beside these; the day this no longer panics it may say less.
+/// Avian's schedule refuses two back ends, as the README says. If this no longer panics, change the README.
 #[cfg(feature = "parry")]
 #[test]
 #[should_panic(expected = "indeterminate execution order")]

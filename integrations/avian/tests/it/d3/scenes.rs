@@ -69,7 +69,7 @@ fn a_chain_of_capsules_holds() {
     chain_holds::<Impinge>();
 }
 
-/// What the solver starts from: the same points have the same names, step after step.
+/// Points of contact keep their feature ids from step to step, so the solver is warm-started.
 #[test]
 fn contacts_keep_their_names() {
     let mut app = app::<Impinge>();
@@ -97,7 +97,7 @@ fn contacts_keep_their_names() {
     assert!(velocity(&app, cubes[2]).length() < 1e-2);
 }
 
-/// The same bits in each run, whatever the threads do.
+/// Two runs give equal bits.
 #[test]
 fn runs_repeat() {
     let run = || {

@@ -93,7 +93,7 @@ fn heights_are_given_along_x_first() {
     assert!(Collider::heightfield(vec![vec![0.0; 3], vec![0.0; 2]], Vec3::ONE).error().is_some());
 }
 
-/// What cannot be scaled exactly becomes a hull; what cannot be scaled at all stays.
+/// A shape that cannot be scaled exactly becomes a hull; a scale of zero is refused.
 #[test]
 fn scales() {
     let mut cylinder = Collider::cylinder(0.5, 1.0);

@@ -10,8 +10,8 @@ use avian_impinge::d3;
 
 use crate::scenes3::{Backend, Impinge, app, dynamic, fixed, place, sheet, steps, velocity};
 
-/// How fast a body goes up and down at most that moves along a flat floor, askew to its lines; how far; and how fast it
-/// goes along x in the end.
+/// Moves a body along a flat floor, not parallel to its edges. Returns the largest vertical speed, the largest vertical
+/// displacement, and the final speed along x.
 fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction: f32) -> [f32; 3] {
     let mut app = app::<B>();
     fixed::<B>(&mut app, floor, Vec3::ZERO);
@@ -78,7 +78,7 @@ fn ground(x: f32, _: f32) -> f32 {
 #[derive(Component)]
 struct Walker;
 
-/// Forwards, down to the ground, and on it: what a character does, with Avian's positions and impinge's casts.
+/// Moves characters forwards and down to the ground by shape casts.
 fn walk(
     spatial: d3::SpatialQuery<'_, '_>,
     mut walkers: Query<'_, '_, (Entity, &Walker, &mut Transform)>,
@@ -121,7 +121,7 @@ fn a_character_walks_up_a_mesh() {
     assert!(last.x > 3.5, "{last}");
 }
 
-/// What is kinematic pushes what is dynamic, over a mesh.
+/// A kinematic capsule pushes a dynamic box over a mesh.
 #[test]
 fn a_kinematic_body_pushes_a_box() {
     let mut app: App = app::<Impinge>();

@@ -1,21 +1,28 @@
-//! The candidates of some pairs, each in a slot of its own, and which of them count.
+//! Candidates of `L` pairs, each in a slot of its own, and the rule that admits them.
+//!
+//! ```text
+//!                lane 0  lane 1  ...                     masks of a slot: one bit per lane
+//!   slot 0       x       -       ...   flat, height      valid: the slot holds a candidate
+//!   slot 1       -       x       ...   distances         level: its distance is the gap,
+//!   ...                                points1                  up to rounding
+//! ```
 
 use crate::math::lanes::{bits, norm};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The places of `L` pairs, and for each of them a bit of a mask.
+/// The slots of `L` pairs, with two masks for each slot.
 pub(super) struct Slots<N: Real, const D: usize, const COUNT: usize, const L: usize> {
-    /// Seen along the normal; in 2D the second coordinate is always zero.
+    /// Coordinates in the plane perpendicular to the normal; in 2D the second is always zero.
     pub(super) flat: [[[N; L]; COUNT]; 2],
-    /// Above the face or side below.
+    /// Height above the reference face or side.
     pub(super) height: [[N; L]; COUNT],
-    /// Of the candidates that count: the point on the first box, in its frame, and the distance.
+    /// For admitted candidates: the point on the first box, in its frame, and the distance.
     pub(super) points1: [[[N; L]; D]; COUNT],
     pub(super) distances: [[N; L]; COUNT],
-    /// The lanes where the slot holds a candidate.
+    /// Lanes where the slot holds a candidate.
     pub(super) valid: [u8; COUNT],
-    /// Those where its distance is the smallest but for rounding.
+    /// Lanes where its distance is the smallest up to rounding.
     pub(super) level: [u8; COUNT],
 }
 
@@ -32,21 +39,22 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> Slots<N, D, CO
     }
 }
 
-/// What the candidates are held against.
+/// Numbers that the candidates are compared with.
 #[derive(Clone, Copy)]
 pub(super) struct Limits<V> {
-    /// The distance that the axis says, which the lowest candidate must have.
+    /// Signed distance along the separating axis, which the lowest candidate must have.
     pub(super) gap: V,
     pub(super) prediction: V,
-    /// Of the angle that the boxes may turn by.
+    /// Sine of the angle by which the boxes may turn.
     pub(super) sine: V,
+    /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
 }
 
-/// The candidates of all pairs as they are found.
+/// State of the admission while candidates are found.
 ///
-/// A candidate counts up to the prediction; beyond it, where turning brings it as near. The boxes turn about the
-/// middle of the candidates that are lowest but for rounding:
+/// A candidate is admitted up to the prediction; beyond it, if turning brings it that near. The
+/// boxes turn about the middle of the candidates that are lowest up to rounding:
 ///
 /// ```text
 ///     other box     .-o   height <= prediction + sine * arm
@@ -56,17 +64,19 @@ pub(super) struct Limits<V> {
 /// ```
 pub(super) struct Admission<V> {
     limits: Limits<V>,
-    /// The lowest candidate so far.
+    /// Height of the lowest candidate so far.
     lowest: V,
-    /// The largest distance that counts without turning, and the largest that is level with the gap.
+    /// Largest height admitted without turning, and largest that is level with the gap.
     most: V,
     level: V,
-    /// The sum of the places of the level candidates, and their number.
+    /// Sum of the coordinates of the level candidates, and their number.
     sum: [V; 2],
+    /// Number of level candidates, as a number of the scalar type.
     count: V,
 }
 
 impl<V> Admission<V> {
+    /// State without a candidate.
     #[inline(always)]
     pub(super) fn new<S: Simd, N: Real>(simd: S, limits: Limits<V>) -> Self
     where
@@ -74,11 +84,12 @@ impl<V> Admission<V> {
     {
         let (zero, infinity) = (V::all(simd, N::ZERO), V::all(simd, N::INFINITY));
         let (most, level) = (limits.prediction + limits.tolerance, limits.gap + limits.tolerance);
+        // If the gap is within the tolerance of the prediction, all up to the prediction are level.
         let level = limits.prediction.simd_le(level).select(most, level);
         Self { limits, lowest: infinity, most, level, sum: [zero; 2], count: zero }
     }
 
-    /// Stores where a candidate is seen and its height, where there is one.
+    /// Stores coordinates and height of a candidate in the lanes of `is_there`.
     #[inline(always)]
     pub(super) fn store<S: Simd, N: Real, M, const D: usize, const COUNT: usize, const L: usize>(
         &mut self,
@@ -105,7 +116,7 @@ impl<V> Admission<V> {
         slots.level[slot] = bits(is_level);
     }
 
-    /// The lanes where the lowest candidate has the gap for its height.
+    /// Returns the lanes where the height of the lowest candidate is the gap.
     #[inline(always)]
     pub(super) fn is_found<S: Simd, N: Real>(&self) -> V::Mask
     where
@@ -114,8 +125,8 @@ impl<V> Admission<V> {
         (self.lowest - self.limits.gap).abs().simd_le(self.limits.tolerance)
     }
 
-    /// Leaves the candidates that count. Says of these where they are, and how far: `place` gets where a candidate
-    /// is seen and how high.
+    /// Removes the candidates that are not admitted; stores points and distances of the others.
+    /// `place` maps coordinates and height to the point on the first box.
     #[inline(always)]
     pub(super) fn admit<S: Simd, N: Real, const D: usize, const COUNT: usize, const L: usize>(
         &self,
@@ -126,6 +137,7 @@ impl<V> Admission<V> {
         V: Wide<S, Scalar = N>,
     {
         let Limits { gap, prediction, sine, .. } = self.limits;
+        // NaN in lanes without a level candidate, where turning admits nothing.
         let pivot = [self.sum[0] / self.count, self.sum[1] / self.count];
         for slot in 0..COUNT {
             if slots.valid[slot] == 0 {
@@ -145,7 +157,7 @@ impl<V> Admission<V> {
             for (row, along) in slots.points1[slot].iter_mut().zip(place(flat, height)) {
                 along.store(row);
             }
-            // Distances are never less than the gap, and rounding makes none more than the prediction.
+            // Distances are at least the gap, and rounding puts none beyond the prediction.
             let distance = height.larger(gap);
             let distance = is_near.select(distance.smaller(prediction), distance);
             distance.store(&mut slots.distances[slot]);

@@ -1,4 +1,13 @@
-//! From the filled slots of one pair to its manifold: the rules of `choose`, without moving anything.
+//! Builds the manifold of one pair from its filled slots: the rules of `choose`, without moving any
+//! candidate. A set of slots is a `u32`: bit `slot` of each.
+//!
+//! ```text
+//!   code of a point   31        12            5         0
+//!                     [1 | faces | parts       | slot   ]   layout of the middle: `Naming::code`
+//! ```
+//!
+//! Bit 31 is always set, so no code is 0, which stands for points without a slot
+//! (`raw_manifold.rs`).
 
 use super::admit::Slots;
 use crate::collide::manifold::ids::{in_order, is_same_point, near_scale, normals_agree};
@@ -12,28 +21,34 @@ use crate::shape::FeatureId;
 
 /// The slots of one pair.
 pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, const L: usize> {
+    /// Slots of all lanes, of which this pair's are read.
     pub(super) slots: &'a Slots<N, D, COUNT, L>,
+    /// Lane of the pair.
     pub(super) lane: usize,
-    /// The slots that hold a candidate, by bits.
+    /// Bits of the slots that hold a candidate.
     pub(super) valid: u32,
-    /// Those with the smallest distance but for rounding.
+    /// Bits of the slots with the smallest distance, up to rounding.
     pub(super) level: u32,
+    /// Signed distance of the boxes, which the deepest point takes.
     pub(super) gap: N,
+    /// Lengths up to this are rounding errors.
     pub(super) tolerance: N,
-    /// Of the pair, for what is in proportion to it.
+    /// Size of the pair, as `collide::size` defines it.
     pub(super) size: N,
+    /// Normals of all lanes, from the first box to the second, in the frame of the first.
     pub(super) normal: &'a [[N; L]; D],
 }
 
-/// How the slots of one pair are named.
+/// Features and codes of the slots of one pair.
 pub(super) trait Naming {
-    /// The features of a candidate, of the first and the second box.
+    /// Returns the features of a candidate: of the first and the second box.
     fn features(&self, slot: usize) -> [FeatureId; 2];
 
-    /// The candidate with the features of a point, among those that there are.
+    /// Returns the slot in `valid` whose candidate has the features of a point.
     fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize>;
 
-    /// The candidates that lie on a feature of the second box, if it is a vertex; else none.
+    /// Returns the candidates in `among` on a feature of the second box; none unless it is a
+    /// vertex.
     #[inline(always)]
     fn on_vertex(&self, feature: FeatureId, among: u32) -> u32 {
         if !matches!(feature, FeatureId::Vertex(_)) {
@@ -43,36 +58,38 @@ pub(super) trait Naming {
         Ones::<SLOTS_OF_CODE>(among).filter(is_on).fold(0, |slots, slot| slots | 1 << slot)
     }
 
-    /// A number, not zero, that no candidate of any pair has but in this slot with these features;
-    /// the slot is in the lowest bits.
+    /// Returns a code that no other slot and no other features of any pair have. It is not zero;
+    /// the slot is in its lowest bits.
     fn code(&self, slot: usize) -> u32;
 }
 
-/// The bits of a code that are the slot.
+/// Mask of the slot in a code.
 const SLOT_BITS: u32 = 31;
-/// A code tells one of so many slots.
+/// Number of slots that a code distinguishes.
 const SLOTS_OF_CODE: usize = 32;
 
-/// The slot that a code tells.
+/// Decodes the slot.
 #[inline(always)]
 const fn slot_of(code: u32) -> usize {
     (code & SLOT_BITS) as usize
 }
 
-/// The ids of the old points, for the slots that continue them.
+/// Ids of old points, by the slots that continue them.
 struct KeptSlots<const COUNT: usize> {
+    /// Bits of the slots that continue an old point.
     slots: u32,
-    /// All of the old points are candidates again, and in the same slots.
+    /// All old points are candidates again, in the same slots.
     is_still: bool,
-    /// The old points that are not, by bits.
+    /// Bits of the old points that no slot continues.
     left: u32,
+    /// Id of each slot in `slots`.
     ids: [u32; COUNT],
-    /// The slots of old points that are, by place in the manifold.
+    /// Slot that continues each old point, by index in the manifold.
     heirs: [u8; COUNT],
 }
 
 impl<const COUNT: usize> KeptSlots<COUNT> {
-    /// Leaves the ids of some slots, and the old points whose ids these have not.
+    /// Keeps the ids of `slots` only; updates `left`.
     fn retain<N: Real, const D: usize>(&mut self, slots: u32, old: &[RawPoint<N, D>]) {
         self.slots &= slots;
         self.left = 0;
@@ -84,7 +101,15 @@ impl<const COUNT: usize> KeptSlots<COUNT> {
 }
 
 impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_, N, D, COUNT, L> {
-    /// Replaces the points of a manifold, and its normal, by at most `limit` of the candidates.
+    /// Replaces the points of a manifold, and its normal, by at most `limit` candidates.
+    ///
+    /// 1. Old points find their slots by code, else by features ([`Self::kept`]).
+    /// 2. Slots that jumped lose their ids ([`Self::drop_jumped`]).
+    /// 3. Old points that are left give their ids by position ([`Self::match_places`]).
+    /// 4. If there are too many candidates, some are chosen, with a preference for old points
+    ///    ([`Self::chosen`]); ids of the others pass to chosen ones near them.
+    /// 5. If nothing changed but positions, points are updated in place ([`Self::put_all`]); else
+    ///    new ones get ids, and all are written in the order of ids ([`Self::replace`]).
     #[inline(always)]
     pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
         let mut kept = self.kept(&raw.points, naming);
@@ -92,14 +117,16 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
             self.drop_jumped(&raw.points, &mut kept);
         }
         let normal = self.normal();
+        // By position, only if the normal turned by at most 45°.
         let may_match = normals_agree(&raw.normal, &normal);
         if may_match && kept.left != 0 && kept.slots != self.valid {
             self.match_places(naming, raw, self.valid, &mut kept);
         }
+        // Up to four candidates are all kept, as by `manifold::choose`.
         let is_full = self.valid.count_ones() as usize <= limit.min(ALL);
         let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
         if may_match && !is_full && !raw.points.is_empty() && slots & !kept.slots != 0 {
-            // The ids of candidates that are not chosen go to chosen ones near them.
+            // Ids of candidates that are not chosen go to chosen ones near them.
             kept.retain(slots, &raw.points);
             if kept.left != 0 {
                 self.match_places(naming, raw, slots, &mut kept);
@@ -117,7 +144,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         raw.normal = normal;
     }
 
-    /// The ids of old points on the same features; no two old points share their names, nor do two slots.
+    /// Finds the slots of old points by their features; features of points, and of slots, are
+    /// distinct.
     #[inline(always)]
     fn kept(&self, old: &[RawPoint<N, D>], naming: &impl Naming) -> KeptSlots<COUNT> {
         let mut kept =
@@ -125,6 +153,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         for (at, point) in old.iter().enumerate() {
             let own = slot_of(point.code);
             let is_same = point.code == naming.code(own) && self.valid >> own & 1 == 1;
+            // A slot continues one old point at most.
             let free = self.valid & !kept.slots;
             let slot = if is_same { Some(own) } else { naming.slot(point, free) };
             kept.is_still &= is_same;
@@ -139,7 +168,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         kept
     }
 
-    /// Takes the ids of old points back from slots that are too far from them ([`is_same_point`]).
+    /// Takes ids back from slots that are too far from their old points ([`is_same_point`]).
     #[inline(always)]
     fn drop_jumped(&self, old: &[RawPoint<N, D>], kept: &mut KeptSlots<COUNT>) {
         for (at, point) in old.iter().enumerate() {
@@ -151,13 +180,13 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// A candidate at a place, with the features of an old point, is the same.
+    /// Returns whether a candidate at `place`, with the features of `old`, is the same point.
     #[inline(always)]
     fn is_same(&self, old: &RawPoint<N, D>, place: &Point<N, D>) -> bool {
         is_same_point([old.feature1, old.feature2], &(place - old.point1), || self.size)
     }
 
-    /// Gives those of some slots that have no ids those of the old points that are left, by place.
+    /// Gives the ids of the remaining old points to slots of `some` without an id, by position.
     #[inline(never)]
     fn match_places(
         &self,
@@ -187,13 +216,14 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         )
     }
 
-    /// Nothing has changed but places.
+    /// Updates positions and distances: slots, features and order have not changed.
     #[inline(always)]
     fn put_all(&self, deepest: usize, raw: &mut RawManifold<N, D>) {
         let mut has_jumped = false;
         for point in &mut raw.points {
             let old = *point;
             self.place(slot_of(point.code), deepest, point);
+            // A crossing of two edges that jumped is a new contact.
             if !self.is_same(&old, &point.point1) {
                 (point.id, has_jumped) = (raw.ids.next(), true);
             }
@@ -203,7 +233,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Puts the points of some slots, by bits, in the place of those there are.
+    /// Replaces the points by those of `slots`.
     #[inline(always)]
     fn replace(
         &self,
@@ -223,7 +253,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Gives some slots new ids.
+    /// Gives new ids to the slots `new`, in the order in which the builder for one pair numbers
+    /// points.
     #[inline(never)]
     fn begin(&self, new: u32, kept: &mut KeptSlots<COUNT>, raw: &mut RawManifold<N, D>) {
         for (_, slot) in in_order(Ones::<COUNT>(new).map(|slot| (slot, self.point1(slot)))) {
@@ -231,11 +262,12 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Some slots in the order of their ids, and how many there are.
+    /// Returns the slots in the order of their ids, and their number.
     #[inline(always)]
     fn by_ids(slots: u32, kept: &KeptSlots<COUNT>) -> ([usize; COUNT], usize) {
         let (mut order, mut count) = ([0; COUNT], 0);
         for slot in Ones::<COUNT>(slots) {
+            // Insertion sort of a few slots.
             let mut at = count;
             while at > 0 && kept.ids[order[at - 1]] > kept.ids[slot] {
                 order[at] = order[at - 1];
@@ -247,7 +279,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         (order, count)
     }
 
-    /// Says where the candidate of a slot is.
+    /// Writes position and distance of the candidate of a slot.
     #[inline(always)]
     fn place(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
         point.point1 = self.point1(slot);
@@ -275,8 +307,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         Vector::<N, 2>::new(x[slot][lane], y[slot][lane])
     }
 
-    /// Of some slots the one that stands for the witness: of those whose distance is the smallest but for
-    /// rounding one that the previous manifold held, then the deepest.
+    /// Returns the slot that stands for the witness: among those with the smallest distance up to
+    /// rounding one that continues an old point; then the deepest.
     #[inline(always)]
     fn deepest(&self, slots: u32, kept: u32) -> usize {
         let level = self.level & slots;
@@ -284,7 +316,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         self.lowest(preferred.into_iter().find(|&slots| slots != 0).unwrap_or(slots))
     }
 
-    /// The first of some slots with the smallest distance of them.
+    /// Returns the first slot with the smallest distance.
     #[inline(always)]
     fn lowest(&self, slots: u32) -> usize {
         let (mut lowest, mut distance) = (slots.trailing_zeros() as usize, N::INFINITY);
@@ -299,16 +331,17 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         lowest
     }
 
-    /// At most `limit` slots, by bits, as `reduce::chosen` has them.
+    /// Returns at most `limit` slots, chosen as `reduce::chosen` does.
     #[inline(always)]
     fn chosen(&self, limit: usize, kept: u32) -> u32 {
+        // Without a candidate at the gap, the lowest ones are level.
         let mut level = self.level;
         if level == 0 {
             let least = self.distance(self.lowest(self.valid));
             let lowest = Ones::<COUNT>(self.valid).filter(|&slot| self.distance(slot) <= least);
             level = lowest.fold(0, |slots, slot| slots | 1 << slot);
         }
-        // An old point that is the deepest needs none to stand for it.
+        // If an old point is the deepest, no other has to stand for it.
         let has_old = level & kept != 0;
         let slack =
             if has_old { -N::INFINITY } else { slack_level(self.gap, self.size, self.tolerance) };

@@ -1,10 +1,13 @@
 //! Boxes against boxes.
 //!
-//! What depends on the pair is chosen by masks, and a corner of the common area has a slot of its own whether it is
-//! there or not ([`admit`]). Only the choice of the points ([`choose`]) goes pair by pair. Flat boxes, and pairs
-//! whose nearest points are off the faces that face each other, fall back to the builder for one pair.
+//! Branches on the pair become masks. Each possible corner of the common area has a slot of its
+//! own, filled or not ([`admit`]): 4 slots in 2D ([`plane`]), 24 in 3D ([`space`]). Only the choice
+//! of the points ([`choose`]) goes pair by pair. Flat boxes, and pairs whose nearest points lie off
+//! the faces that face each other, fall back to the builder for one pair.
 //!
-//! The angle by which boxes may turn is a number in the test of each corner.
+//! The angle by which boxes may turn is a number in the test of each corner. Of [`Inputs`] the
+//! kernels read both poses, the half extents in `ends[0][0]` and `ends[1][0]`, `prediction` and
+//! `sine`.
 
 mod admit;
 mod choose;
@@ -21,7 +24,7 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
 impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
-    /// Two boxes and where they are; answers whether both are.
+    /// Puts two boxes and their poses into a lane; `false` for other kinds.
     #[inline(always)]
     fn put_boxes(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
         let [Solid::Cuboid(box1), Solid::Cuboid(box2)] = pair.solids else { return false };
@@ -32,7 +35,7 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         true
     }
 
-    /// The boxes, the second of each pair in the frame of the first.
+    /// Loads the boxes, the second of each pair in the frame of the first.
     #[inline(always)]
     fn boxes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Boxes<V, D> {
         let (pose12, half1, half2) =
@@ -41,17 +44,19 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
     }
 }
 
-/// Pairs of boxes, the second of each placed in the frame of the first.
+/// Pairs of boxes, the second of each in the frame of the first.
 pub(super) struct Boxes<V, const D: usize> {
-    /// By columns: the axes of the second box.
+    /// Columns of the rotation: the axes of the second box.
     pub(super) rotation: [[V; D]; D],
+    /// Centre of the second box in the frame of the first.
     pub(super) translation: [V; D],
+    /// Half extents of the first box, and of the second.
     pub(super) half1: [V; D],
     pub(super) half2: [V; D],
 }
 
-/// What a box of the pair sees of the other, the second where the mask says so: the other's axes and
-/// its translation, as `Pose::inverse` has them for the second.
+/// Returns axes and translation of the other box in the frame of one box: of the second box in the
+/// first, or, where `is_second`, of the first in the second, as `Pose::inverse` computes them.
 #[inline(always)]
 pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
     boxes: &Boxes<V, D>,
@@ -76,7 +81,7 @@ pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
     (rotation, shift)
 }
 
-/// Lengths below this are rounding errors, as for the general builder.
+/// Returns the length up to which differences are rounding, as in the builder for one pair.
 #[inline(always)]
 pub(super) fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -86,13 +91,13 @@ pub(super) fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
     lit::<S, N, V>(simd, ROUNDING_ERRORS) * V::all(simd, N::EPSILON) * size
 }
 
-/// The size of each pair: half the diagonal of the smaller box.
+/// Returns the size of each pair: half the diagonal of the smaller box.
 #[inline(always)]
 pub(super) fn smaller_size<S: Simd, V: Wide<S>, const D: usize>(boxes: &Boxes<V, D>) -> V {
     norm(&boxes.half1).smaller(norm(&boxes.half2))
 }
 
-/// The lanes all of whose numbers are finite, and so is the sum of their magnitudes.
+/// Returns the lanes where the sum of the absolute values of the pose is finite.
 #[inline(always)]
 pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -105,7 +110,7 @@ pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
     all.simd_lt(V::all(simd, N::INFINITY))
 }
 
-/// The sum of the magnitudes.
+/// Sum of the absolute values.
 #[inline(always)]
 fn size<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
     let mut sum = v[0].abs();

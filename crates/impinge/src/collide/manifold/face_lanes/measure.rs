@@ -1,5 +1,16 @@
-//! What a solid and eight triangles show along the normals, and how far inside of the sides of the one the corners of the
-//! other are.
+//! Measures what a solid and eight triangles show along the normals: the distances of the corners
+//! of each outline from the sides of the other, and the distances between both along the normal.
+//!
+//! ```text
+//!      v3 ──────────── v2     seen along the normal n of the lane, which points into the page
+//!       │               │     inside   distance of c1 from the line of side v1 v2, across n;
+//!       │    c1 ─inside─┤              positive on the inner side of the outline
+//!       │               │     within   inside > tolerance;  beyond: inside < -tolerance
+//!      v0 ──────────── v1     depth    distance along n from c1 to the plane of the face
+//! ```
+//!
+//! Everything is in the frame of the solid. A row `[N; LANES]` has a number for each triangle, a
+//! byte a bit.
 
 use super::super::frame::ROUNDING_ERRORS;
 use super::FaceSolid;
@@ -11,16 +22,19 @@ use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 use crate::shape::{CLEARLY_LARGER, FACING_SINE_SQUARED, FaceRing, THIN_SQUARED};
 
-/// As many corners as a face has here.
+/// Most corners of a face.
 const MAX: usize = FaceRing::<f32>::MAX;
 
-/// How far the corners of a ring are inside of the sides of the other, by corner and side, with bits for the lanes in
-/// which that is by more than rounding.
+/// Distances of the corners of one outline from the sides of the other, by corner and side, and
+/// masks of the lanes in which they exceed the rounding error.
 pub(super) struct SideHeights<N, const CORNERS: usize, const SIDES: usize> {
+    /// Signed distances, positive on the inner side.
     inside: [[[N; LANES]; SIDES]; CORNERS],
+    /// The lanes in which `inside` is above the tolerance, and below its opposite. NaN is neither.
     within: [[u8; SIDES]; CORNERS],
     beyond: [[u8; SIDES]; CORNERS],
-    /// The lanes in which a corner is beyond a side, and those in which it lies on the line of one.
+    /// The lanes in which a corner is beyond some side, and in which it is on the line of some
+    /// side.
     pub(super) is_beyond: [u8; CORNERS],
     pub(super) is_on: [u8; CORNERS],
 }
@@ -32,6 +46,7 @@ impl<N: Real, const CORNERS: usize, const SIDES: usize> SideHeights<N, CORNERS, 
         Self { inside, within: none, beyond: none, is_beyond: blank, is_on: blank }
     }
 
+    /// Stores the distances of one corner from one side. Side 0 resets the masks of the corner.
     #[inline(always)]
     fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -49,49 +64,53 @@ impl<N: Real, const CORNERS: usize, const SIDES: usize> SideHeights<N, CORNERS, 
         self.is_on[corner] |= !(within | beyond);
     }
 
-    /// The lanes in which a corner lies on the line of a side.
+    /// The lanes in which a corner is on the line of a side, within the tolerance.
     pub(super) const fn on(&self, corner: usize, side: usize) -> u8 {
         !(self.within[corner][side] | self.beyond[corner][side])
     }
 
-    /// The lanes in which two corners lie on different sides of a line.
+    /// The lanes in which two corners lie on different sides of the line of a side, both off it.
     fn parted(&self, [from, to]: [usize; 2], side: usize) -> u8 {
         self.within[from][side] & self.beyond[to][side]
             | self.beyond[from][side] & self.within[to][side]
     }
 
-    /// Where on the way from one corner to another the line of a side is crossed.
+    /// The share of the way from one corner to another at which it crosses the line of a side.
     pub(super) fn share(&self, [from, to]: [usize; 2], side: usize, lane: usize) -> N {
         let [from, to] = [self.inside[from][side][lane], self.inside[to][side][lane]];
         from / (from - to)
     }
 }
 
-/// A face and eight triangles, measured along the normals.
+/// A face and eight triangles, measured along the normals. Of an edge or corner of the solid, the
+/// ring holds two points or one.
 pub(in crate::collide) struct FaceClip<N: Real> {
     pub(super) ring: FaceRing<N>,
-    /// The corners of the triangles, and how far along the normal the face is from them.
+    /// The corners of the triangles, and the signed distances along the normal from these to the
+    /// plane of the face; negative where they overlap. Unused unless the ring is a face.
     pub(super) corners: [[[N; LANES]; 3]; 3],
     pub(super) depths: [[N; LANES]; 3],
-    /// How far along the normal the corners of the face are from the plane of the triangle.
+    /// The signed distances along the normal from the planes of the triangles to the corners of the
+    /// ring.
     pub(super) vertex_depths: [[N; LANES]; MAX],
-    /// The corners of the triangles among the sides of the face, and the other way round.
+    /// The corners of the triangles against the sides of the ring, and the reverse.
     pub(super) in_face: SideHeights<N, 3, MAX>,
     pub(super) in_triangle: SideHeights<N, MAX, 3>,
-    /// Lengths below this are rounding errors.
+    /// Bound of the rounding errors of lengths.
     pub(super) tolerance: [N; LANES],
     pub(super) shown: ShownBits,
-    /// The lanes in which both rings have an extent.
+    /// The lanes in which the shown feature is certain and all sides are longer than two
+    /// tolerances.
     pub(super) plain: u8,
-    /// Those in which a side of the triangle, given first, and one of the face cross.
+    /// The lanes in which a side of the triangle, the first index, and a side of the ring cross.
     pub(super) crossed: [[u8; MAX]; 3],
 }
 
-/// The lanes in which a triangle shows its face, and of its corners and sides those of what it shows.
+/// The lanes in which a triangle shows its face, and the corners and sides of the shown feature.
 #[derive(Clone, Copy, Default)]
 pub(super) struct ShownBits {
     pub(super) face: u8,
-    /// The face is the back.
+    /// The lanes in which the face is the back.
     pub(super) back: u8,
     pub(super) corners: [u8; 3],
     pub(super) sides: [u8; 3],
@@ -114,7 +133,7 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// Measures some lanes.
+    /// Measures the lanes of a run.
     pub(super) fn measure(
         &mut self,
         run: Run,
@@ -161,7 +180,7 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// Sides cross where each has its ends on different sides of the other.
+    /// Two sides cross where each has its ends on different sides of the other.
     fn find_crossings(&mut self) {
         let (count, sides) = (self.ring.count, self.sides());
         for (side, crossed) in self.crossed.iter_mut().enumerate() {
@@ -173,8 +192,8 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// How far inside of the sides of the face the corners of the triangles are, and how far from its plane; answers
-    /// where the sides have an extent.
+    /// Measures the corners of the triangles against the sides and the plane of the ring. Returns
+    /// the lanes in which all its sides are longer than two tolerances.
     #[inline(always)]
     fn measure_face<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -203,7 +222,7 @@ impl<N: Real> FaceClip<N> {
         is_long
     }
 
-    /// How far inside of the sides of the triangles the corners of the face are, and how far from their planes.
+    /// Measures the corners of the ring against the sides and the planes of the triangles.
     #[inline(always)]
     fn measure_triangles<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -224,14 +243,14 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// The number of sides of what the solid shows: of a corner none, of an edge one.
+    /// The number of sides of the ring: one of an edge, none of a corner.
     #[inline(always)]
     pub(super) const fn sides(&self) -> usize {
         let count = self.ring.count;
         if count < 3 { count - 1 } else { count }
     }
 
-    /// A corner of what the solid shows.
+    /// A corner of the ring.
     #[inline(always)]
     pub(super) fn vertex(&self, at: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.ring.corners;
@@ -239,17 +258,18 @@ impl<N: Real> FaceClip<N> {
     }
 }
 
-/// Triangles and the normals that they are seen along.
+/// Eight triangles and their normals.
 struct SeenTriangles<V> {
     corners: [[V; 3]; 3],
     normal: [V; 3],
-    /// The sides and their squared lengths, and the product of the first two.
+    /// From each corner to the next, the squared lengths, and the cross product of the first two.
     sides: [[V; 3]; 3],
     squared: [V; 3],
     across: [V; 3],
-    /// Twice the area that is seen; negative from behind.
+    /// Twice the area projected along the normal; negative if the solid is behind the triangle.
     rise: V,
-    /// Unit, across the normal, into the triangle, and the lengths of the sides as they are seen.
+    /// Unit, perpendicular to the normal and a side, into the triangle; and the projected lengths
+    /// of the sides.
     inward: [[V; 3]; 3],
     lengths: [V; 3],
 }
@@ -267,6 +287,7 @@ impl<V> SeenTriangles<V> {
         let across = cross(&sides[0], &sides[1]);
         let rise = dot(&across, normal);
         let one: V = lit(simd, 1.0);
+        // Seen from the back, the sides run clockwise.
         let turn = rise.simd_lt(V::all(simd, N::ZERO)).select(-one, one);
         let (mut inward, mut lengths) = (sides, squared);
         for (own, length) in inward.iter_mut().zip(&mut lengths) {
@@ -277,8 +298,9 @@ impl<V> SeenTriangles<V> {
         Self { corners: *corners, normal: *normal, sides, squared, across, rise, inward, lengths }
     }
 
-    /// What the triangles show along the normals, by the rule of
-    /// [`core_feature`](crate::shape::SupportMap::core_feature), and where that is clear and has an extent.
+    /// Returns the features that the triangles show along the normals, by the rule of
+    /// [`core_feature`](crate::shape::SupportMap::core_feature), and the lanes in which rounding
+    /// cannot change them and they are not degenerate.
     #[inline(always)]
     fn shown<S: Simd, N: Real>(&self, simd: S, tolerance: V) -> (ShownBits, V::Mask)
     where
@@ -290,10 +312,13 @@ impl<V> SeenTriangles<V> {
         let (area, rise) = (dot(&self.across, &self.across), self.rise * self.rise);
         let is_wide = area.simd_gt(lit::<S, N, V>(simd, THIN_SQUARED) * longest * longest)
             & longest.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()));
+        // A face is shown if the squared cosine of its tilt is above 1 - `FACING_SINE_SQUARED`.
+        // Close cases are neither `is_face` nor `is_steep`.
         let upright = lit::<S, N, V>(simd, 1.0 - FACING_SINE_SQUARED) * area;
         let is_face = is_wide & upright.simd_lt(rise * less);
         let is_steep = is_wide & rise.simd_lt(upright * less);
-        // The corner that is farthest along the normal, and how steep the sides at it are.
+        // The farthest corner along the normal, and the squared sines of the slopes of the sides at
+        // it.
         let climbs = [
             dot(&self.sides[0], &self.normal),
             dot(&self.sides[1], &self.normal),
@@ -310,6 +335,7 @@ impl<V> SeenTriangles<V> {
         let at = |of: [V; 3]| tops[0].select(of[0], tops[1].select(of[1], of[2]));
         let (out, back) = (at(slopes), at([slopes[2], slopes[0], slopes[1]]));
         let is_back = back.simd_lt(out);
+        // The flatter of the two sides at the farthest corner is shown if it is flat enough.
         let (least, other) = (is_back.select(back, out), is_back.select(out, back));
         let is_corner = is_steep & limit.simd_lt(least * less);
         let is_side = is_steep & least.simd_lt(limit * less) & least.simd_lt(other * less);
@@ -328,7 +354,7 @@ impl<V> SeenTriangles<V> {
             bits_of.corners[side] |= bits(is_shown | (is_corner & tops[side]));
             bits_of.corners[(side + 1) % 3] |= bits(is_shown);
         }
-        // A face without width counts as a segment.
+        // A face seen nearly edge-on, at most two tolerances wide, is degenerate.
         let width = (tolerance + tolerance) * longest.sqrt();
         (bits_of, is_plain & (self.rise.abs().simd_gt(width) | !is_face))
     }

@@ -1,18 +1,20 @@
-//! Contacts of a face, an edge or a corner of one solid with up to eight triangles, each along a normal of its own.
+//! Contacts of a face, an edge or a corner of one solid with up to eight triangles, each along a
+//! normal of its own.
 //!
 //! ```text
-//!        v3────────────v2        The face of the solid, v, and a triangle, c, seen along the normal. The
-//!        │      c2     │         corners of what they share are corners of the triangle in the face (c1),
-//!        │    ╱   ╲    │         corners of the face in the triangle (v0), and crossings of two sides
-//!        │  ╱  c1───╲──┼         (x). Each candidate is a point of the triangle, and how far along the
-//!   c0───x╱──────────╲x│         normal the face is from it.
+//!        v3────────────v2     The face of the solid, v, and a triangle, c, seen along the normal.
+//!        │      c2     │      Corners of their overlap are corners of the triangle in the face
+//!        │    ╱   ╲    │      (c1), corners of the face in the triangle (v0), and crossings of
+//!        │  ╱  c1───╲──┼      two sides (x). A candidate is a point of the triangle, with its
+//!   c0───x╱──────────╲x│      distance from the face along the normal.
 //!        v0────────────v1
 //! ```
 //!
-//! That is the clip of [`clip`](super::clip) for what a solid and a triangle show along the normal: a face, a side or a
-//! corner each, of which one at least is a face. A lane is one triangle. The kernel measures how far inside of each
-//! side of the one ring the corners of the other are; few of all candidates count, and these are made one by one.
-//! Lanes whose rings have hardly an extent along the normal, or show neither clearly, are left to the clip of the pair.
+//! The result is that of [`clip`](super::clip) for the features that a solid and a triangle show
+//! along the normal: a face, a side or a corner each, at least one of them a face. A lane is one
+//! triangle. [`measure`] computes how far inside each side of one outline the corners of the other
+//! are, in lanes. Few candidates count, and [`points`] makes these one by one. Lanes with a
+//! degenerate outline, or whose shown feature is uncertain, are left to the clip of the pair.
 //!
 //! All is in the frame of the solid.
 
@@ -28,21 +30,22 @@ use crate::math::simd::Level;
 use crate::math::{Matrix, Real, Vector};
 use crate::shape::{FaceRing, FeatureId, Geometry, Kind, SupportMap};
 
-/// What is asked of one triangle.
+/// The input of the clip for one triangle.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct TriangleAsked<N: Real> {
-    /// Unit, from the triangle to the solid.
+    /// Unit, from the triangle to the solid, in the frame of the solid.
     pub(in crate::collide) normal: Vector<N, 3>,
-    /// The part of the solid that is seen against the normal.
+    /// The feature of the solid that faces the triangle, against the normal.
     part: FeatureId,
-    /// How near the nearest points are, if they have this normal. One of the points is that near, or there are none.
+    /// The distance of the nearest points, if they have this normal. Then no point gets a smaller
+    /// distance, and the clip is undecided if none is that near.
     pub(in crate::collide) nearest: Option<N>,
-    /// Points nearer than this by more than rounding are left out, others are as near as this.
+    /// Points nearer than this by more than rounding are dropped; others are at least this far.
     pub(in crate::collide) least: N,
 }
 
 impl<N: Real> TriangleAsked<N> {
-    /// `None` of solids other than boxes and hulls, and of flat boxes.
+    /// `None` for solids other than boxes and hulls, and for flat boxes.
     pub(in crate::collide) fn new(
         solid: Kind<'_, N, 3>,
         normal: Vector<N, 3>,
@@ -53,19 +56,22 @@ impl<N: Real> TriangleAsked<N> {
     }
 }
 
-/// A solid and how the triangles lie to it.
+/// A solid and its placement among the triangles.
 pub(in crate::collide) struct FaceSolid<'a, N: Real> {
     pub(in crate::collide) solid: Kind<'a, N, 3>,
-    /// Its axes in the frame of the triangles, as columns, and where it is.
+    /// The rotation from the frame of the solid to that of the triangles, whose columns are the
+    /// axes of the solid, and the origin of the solid in the frame of the triangles.
     pub(in crate::collide) turn: &'a Matrix<N, 3>,
     pub(in crate::collide) origin: Vector<N, 3>,
-    /// Points farther than this are left out.
+    /// Points farther than this are dropped.
     pub(in crate::collide) prediction: N,
 }
 
 impl<N: Real> FaceSolid<'_, N> {
-    /// Appends the points of each of up to eight triangles and calls with the number of the triangle and the least
-    /// distance of its points; with `None` where the clip of the pair is needed.
+    /// Appends the points of each of up to eight triangles, given in their own frame. Calls `visit`
+    /// with the lane and the least distance of its points, infinite without points, or with `None`
+    /// if the clip of the pair has to decide. The order of lanes is by the feature that the solid
+    /// shows.
     pub(in crate::collide) fn each_clip(
         &self,
         triangles: &PartPacket<N, 3>,
@@ -77,7 +83,8 @@ impl<N: Real> FaceSolid<'_, N> {
         self.each_clip_at(Level::new(), (triangles, asked), clip, points, visit);
     }
 
-    /// [`Self::each_clip`] with the vectors of an instruction set; the numbers do not depend on it.
+    /// [`Self::each_clip`] with the vectors of an instruction set; the result does not depend on
+    /// it.
     pub(super) fn each_clip_at(
         &self,
         level: Level,
@@ -93,6 +100,7 @@ impl<N: Real> FaceSolid<'_, N> {
             }
         }
         let mut left = u8::MAX >> (LANES - asked.len());
+        // Lanes in which the solid shows one feature share a ring.
         while left != 0 {
             let part = asked[left.trailing_zeros() as usize].part;
             let is_same = |lane: &usize| asked[*lane].part == part;
@@ -116,12 +124,13 @@ impl<N: Real> FaceSolid<'_, N> {
         }
     }
 
+    /// The bounding radius of the core of the solid around its origin.
     fn reach(&self) -> N {
         Geometry(self.solid).as_support_map().map_or(N::ZERO, SupportMap::reach)
     }
 }
 
-/// The lanes of some bits.
+/// The lanes of a mask.
 fn ones(bits: u8) -> Ones<LANES> {
     Ones(bits.into())
 }

@@ -1,4 +1,4 @@
-//! The points of one triangle, made of what is measured.
+//! Makes the contact points of one triangle from the measured distances.
 
 use super::TriangleAsked;
 use super::measure::FaceClip;
@@ -7,8 +7,8 @@ use crate::math::{Point, Real, Vector, max, min};
 use crate::shape::FeatureId;
 
 impl<N: Real> FaceClip<N> {
-    /// Appends the points of one triangle, and answers their least distance; `None` where the clip of the pair is
-    /// needed.
+    /// Appends the points of one triangle and returns their least distance, infinite without
+    /// points. `None`, with nothing appended, if the clip of the pair has to decide.
     pub(super) fn points_of(
         &self,
         lane: usize,
@@ -17,7 +17,7 @@ impl<N: Real> FaceClip<N> {
         points: &mut RawPoints<N, 3>,
     ) -> Option<N> {
         let is_plain = self.plain >> lane & 1 == 1;
-        // Two edges may be parallel, two corners coincide.
+        // Without an area on either side, edges may be parallel or corners coincide.
         let has_area = self.ring.count > 2 || self.shown.face >> lane & 1 == 1;
         if !(is_plain && has_area) {
             return None;
@@ -37,41 +37,44 @@ impl<N: Real> FaceClip<N> {
     }
 }
 
-/// The points of one triangle as they are found.
+/// The points of one triangle found so far.
 struct FoundPoints<'a, N: Real> {
     asked: &'a TriangleAsked<N>,
+    /// Points farther than this by more than the tolerance are dropped.
     prediction: N,
     tolerance: N,
     points: &'a mut RawPoints<N, 3>,
-    /// The number of its first point.
+    /// The index of its first point.
     first: usize,
 }
 
 impl<N: Real> FoundPoints<'_, N> {
-    /// The least distance, infinite of no points. `None` if the nearest points are known, and none is that near.
+    /// Returns the least distance; infinite without points. If `nearest` is known, the deepest
+    /// point gets that distance; `None` if no point is that near.
     fn lowest(&mut self) -> Option<N> {
         let new = &mut self.points[self.first..];
         let lowest = new.iter().fold(N::INFINITY, |lowest, point| min(point.distance, lowest));
         let Some(nearest) = self.asked.nearest else { return Some(lowest) };
-        // NaN is not near.
+        // False for NaN.
         let is_reached = lowest <= nearest + self.tolerance;
         let deepest = new.iter_mut().find(|point| point.distance == lowest)?;
         deepest.distance = nearest;
         is_reached.then_some(nearest)
     }
 
-    /// Adds a point of the triangle, from which the face of the solid is a distance away, if that is asked for.
+    /// Adds the point `point` of the triangle, at the signed `distance` from the face of the solid
+    /// along the normal, unless it is beyond the prediction, below `least`, or already known.
     fn push(&mut self, point: &Vector<N, 3>, distance: N, [feature1, feature2]: [FeatureId; 2]) {
         let TriangleAsked { normal, nearest, least, .. } = self.asked;
         let mut distance = max(distance, nearest.unwrap_or(distance));
-        // NaN is not near.
+        // False for NaN.
         let is_near = distance <= self.prediction + self.tolerance;
         if !is_near || distance < *least - self.tolerance {
             return;
         }
         distance = max(min(distance, self.prediction), *least);
         let point1 = Point::from(point + normal * distance);
-        // What coincides is found from both.
+        // A corner on a corner is found from both outlines.
         let near = N::lit(4.0) * self.tolerance;
         let is_same = |old: &RawPoint<N, 3>| {
             let way = old.point1 - point1;
@@ -85,7 +88,7 @@ impl<N: Real> FoundPoints<'_, N> {
     }
 }
 
-/// One lane of a clip.
+/// One lane of a clip: a triangle.
 struct LaneClip<'a, N: Real> {
     clip: &'a FaceClip<N>,
     lane: usize,
@@ -93,16 +96,19 @@ struct LaneClip<'a, N: Real> {
 }
 
 impl<N: Real> LaneClip<'_, N> {
+    /// Whether a mask has this lane.
     fn has(&self, bits: u8) -> bool {
         bits >> self.lane & 1 == 1
     }
 
+    /// A corner of the triangle, in the frame of the solid.
     fn corner(&self, corner: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.clip.corners[corner];
         Vector::<N, 3>::new(x[self.lane], y[self.lane], z[self.lane])
     }
 
-    /// Corners of what the triangle shows in the face; `None` if one lies on the line of the edge that the solid shows.
+    /// Adds the corners that the triangle shows within the face. `None` if the solid shows an edge
+    /// and a corner of the triangle is on its line.
     fn corners(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
         let FaceClip { ring, in_face, shown, depths, .. } = self.clip;
         if ring.count < 3 {
@@ -120,7 +126,8 @@ impl<N: Real> LaneClip<'_, N> {
         Some(())
     }
 
-    /// Corners of the face in that of the triangle; `None` if one lies on the line of a side that the triangle shows.
+    /// Adds the corners of the ring within the face of the triangle. `None` if the triangle shows
+    /// no face and a corner of the ring is on the line of a shown side.
     fn vertices(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
         let FaceClip { ring, in_triangle, shown, vertex_depths, .. } = self.clip;
         let face = FeatureId::Face(u32::from(self.has(shown.back)));
@@ -139,7 +146,8 @@ impl<N: Real> LaneClip<'_, N> {
         Some(())
     }
 
-    /// The side or corner of the triangle that a corner of the face lies on.
+    /// Returns the side or corner of the triangle that a corner of the ring projects to; `None` if
+    /// it projects to the inside.
     fn part_of_triangle(&self, vertex: usize, at: &Vector<N, 3>) -> Option<FeatureId> {
         let in_triangle = &self.clip.in_triangle;
         if !self.has(in_triangle.is_on[vertex]) {
@@ -153,7 +161,8 @@ impl<N: Real> LaneClip<'_, N> {
         self.part_with(at, sides, |side| [named(side), named((side + 1) % 3)])
     }
 
-    /// The side or corner of the face that a corner of the triangle faces.
+    /// Returns the side or corner of the face that a corner of the triangle projects to; `None` if
+    /// it projects to the inside.
     fn part_of_face(&self, corner: usize, at: &Vector<N, 3>) -> Option<FeatureId> {
         let FaceClip { ring, in_face, .. } = self.clip;
         if !self.has(in_face.is_on[corner]) {
@@ -164,7 +173,8 @@ impl<N: Real> LaneClip<'_, N> {
         self.part_with(at, sides, |side| [named(side), named((side + 1) % ring.count)])
     }
 
-    /// Sides that cross well inside both.
+    /// Adds the crossings of a side of the triangle and one of the ring. The ends of each are off
+    /// the line of the other by more than the tolerance.
     fn crossings(&self, found: &mut FoundPoints<'_, N>) {
         let FaceClip { ring, in_face, in_triangle, crossed, .. } = self.clip;
         for side in 0..3 {
@@ -183,8 +193,9 @@ impl<N: Real> LaneClip<'_, N> {
         }
     }
 
-    /// The part of a ring that a place lies on which is on the lines of some of its sides: of the last of them a corner
-    /// or the side itself. Each side is given by its corners, each with its name and that of the side that leaves it.
+    /// Returns the side or corner of an outline that the point `at` projects to, which is on the
+    /// lines of `sides`; the last of these decides. `ends` gives the two corners of a side, each
+    /// with its id and that of the side that leaves it.
     fn part_with(
         &self,
         at: &Vector<N, 3>,
@@ -192,6 +203,7 @@ impl<N: Real> LaneClip<'_, N> {
         ends: impl Fn(usize) -> [(Vector<N, 3>, FeatureId, FeatureId); 2],
     ) -> Option<FeatureId> {
         let room = N::TWO * self.clip.tolerance[self.lane];
+        // Projects along the normal.
         let flat = |v: Vector<N, 3>| v - self.normal * self.normal.dot(&v);
         let mut part = None;
         for side in sides {

@@ -1,4 +1,4 @@
-//! Faces of any number of corners in 3D: their contacts are the corners of the common area.
+//! Faces of any number of corners in 3D: contacts are the corners of the common area.
 
 use super::super::build3;
 use super::scene::fact;
@@ -8,7 +8,7 @@ use crate::shape::{Capsule, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triang
 
 pub(super) type Outline = Vec<[f64; 2]>;
 
-/// A regular polygon about a place, counter-clockwise.
+/// A regular polygon around a centre, counter-clockwise.
 pub(super) fn regular(count: usize, [x, y]: [f64; 2], radius: f64, turn: f64) -> Outline {
     let corner = |at: usize| {
         let angle = turn + at as f64 * core::f64::consts::TAU / count as f64;
@@ -27,7 +27,7 @@ pub(super) fn prism<N: Real>(outline: &Outline, [low, high]: [f64; 2]) -> Convex
     ConvexHull::from_points(&at(low).chain(at(high)).collect::<Vec<_>>())
 }
 
-/// What of one convex outline lies in another, by the method of Sutherland and Hodgman.
+/// Intersection of two convex outlines, by the method of Sutherland and Hodgman.
 pub(super) fn common(one: &Outline, other: &Outline) -> Outline {
     let mut kept = one.clone();
     for (at, from) in other.iter().enumerate() {
@@ -59,7 +59,7 @@ fn manifold<N: Real>(pair: &Pair<'_, N, 3>, points: usize) -> RawManifold<N, 3> 
     out
 }
 
-/// Each expected corner is a contact and each contact one of them.
+/// Asserts that each expected corner is a contact, and each contact an expected corner.
 fn has_corners<N: Real>(found: &RawManifold<N, 3>, expected: &Outline, room: f64, what: &str) {
     let off = |point: &Point<N, 3>, [x, y]: &[f64; 2]| {
         (point.x.as_f64() - x).abs().max((point.y.as_f64() - y).abs())
@@ -110,7 +110,7 @@ fn faces_of_any_number_of_corners_are_clipped() {
     prisms::<f64>(1e-13);
 }
 
-/// What has no width counts as the segment that it is, and what is a point as that.
+/// A face without width counts as a segment, one without length as a point.
 fn degenerate<N: Real>(room: f64) {
     let p = |x: f64, y: f64| Point::<N, 3>::new(N::lit(x), N::lit(y), N::ZERO);
     let floor = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::ONE, N::ONE));

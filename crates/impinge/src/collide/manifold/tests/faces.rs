@@ -1,4 +1,4 @@
-//! Contacts of faces with triangles, eight at a time: what the two share, seen along the normal.
+//! Contacts of faces with triangles, eight at a time, against the exact overlap of both outlines.
 
 use super::clip::{Outline, common, prism, regular};
 use crate::collide::manifold::face_lanes::{FaceClip, FaceSolid, TriangleAsked};
@@ -11,16 +11,16 @@ use crate::shape::{Cuboid, FeatureId, Shape};
 
 type Corners<N> = [Point<N, 3>; 3];
 
-/// Eight triangles in the frame of the solid, and what is asked of each; of those that the solid shows a face along.
+/// Triangles in the frame of a solid, and the input of the clip for each.
 struct Scene<N: Real> {
     triangles: Vec<Corners<N>>,
     asked: Vec<TriangleAsked<N>>,
 }
 
-/// What is found of one triangle: its points, unless the lanes leave it.
+/// The points of one triangle; `None` if the lanes leave it undecided.
 type Found<N> = Option<Vec<RawPoint<N, 3>>>;
 
-/// The normal of a triangle on the side of the solid, which is above it.
+/// The unit normal of a triangle with a positive z.
 fn upward<N: Real>([a, b, c]: &Corners<N>) -> Vector<N, 3> {
     let normal = cross(&(b - a), &(c - a)).normalize();
     if normal.z < N::ZERO { -normal } else { normal }
@@ -38,7 +38,8 @@ impl<N: Real> Scene<N> {
         scene
     }
 
-    /// What is found with the triangles in a frame of their own, in which the solid is turned and somewhere.
+    /// Clips all triangles, given to the kernel in a frame of their own. There the solid is at
+    /// `turn` and `origin`; the points are in the frame of the solid.
     fn found(
         &self,
         level: Level,
@@ -77,7 +78,7 @@ fn as_seen<N: Real>(point: &Point<N, 3>, normal: &Vector<N, 3>) -> [f64; 2] {
     [point.coords.dot(&u).as_f64(), point.coords.dot(&v).as_f64()]
 }
 
-/// Twice the area of the hull of some places.
+/// Twice the area of the convex hull of some points.
 fn hull_area(places: &[[f64; 2]]) -> f64 {
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
@@ -109,13 +110,13 @@ fn outline_area(outline: &Outline) -> f64 {
     outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
 }
 
-/// The bottom of a solid that stands on the plane z = 0, counter-clockwise seen from above.
+/// The bottom of a solid that stands on the plane z = 0, in the order of its outline.
 fn bottom(outline: &Outline) -> Vec<Point<f64, 3>> {
     outline.iter().map(|&[x, y]| Point::<f64, 3>::new(x, y, 0.0)).collect()
 }
 
-/// The points found span all that a triangle and the bottom of a solid share, each lies on both, as far apart as it
-/// says, and bears the names of where it lies.
+/// Checks the points of one triangle. They span the overlap of the triangle and the bottom of the
+/// solid, each lies on both at its distance, and has the ids of the features it lies on.
 fn check<N: Real>(
     outline: &Outline,
     corners: &Corners<N>,
@@ -156,7 +157,8 @@ fn check<N: Real>(
     }
 }
 
-/// Frames for the triangles: that of the solid, and one turned and far away by as much as rounding allows.
+/// Two frames for the triangles: that of the solid, and one that is turned and translated at
+/// random.
 fn frames<N: Real>(noise: &mut Noise) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
     let (normal, _) = (noise.vector::<N>(1.0).normalize(), 0);
     let (u, v) = orthonormal_basis(&normal);
@@ -164,8 +166,8 @@ fn frames<N: Real>(noise: &mut Noise) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
     [(Matrix::<N, 3>::identity(), Vector::<N, 3>::zeros()), (turn, noise.vector(2.0))]
 }
 
-/// Triangles about the plane z = 0 along whose normals a solid on it shows its bottom; on a grid, whose lines the sides
-/// of boxes lie on, or anywhere.
+/// Random triangles close to the plane z = 0, nearly horizontal, so that a solid on the plane shows
+/// its bottom. On a grid, corners and sides of the outlines coincide.
 fn triangles<N: Real>(noise: &mut Noise, on_grid: bool) -> Vec<Corners<N>> {
     let mut corner = |at: usize| {
         let mut place = noise.vector::<N>(2.0);
@@ -185,7 +187,8 @@ fn triangles<N: Real>(noise: &mut Noise, on_grid: bool) -> Vec<Corners<N>> {
     all.filter(is_wide).collect()
 }
 
-/// Checks a solid over some triangles, which the solid sees `lift` lower; how many the lanes leave, and how many not.
+/// Checks a solid over some triangles, moved down by `lift` in the frame of the solid. Returns how
+/// many the lanes leave undecided, and how many not.
 fn check_all<N: Real>(
     outline: &Outline,
     (solid, lift): (&dyn Shape<N, 3>, N),
@@ -213,7 +216,7 @@ fn all_is_shared<N: Real>() {
     let mut noise = Noise(11);
     let square: Outline = vec![[-1.0, -1.5], [1.0, -1.5], [1.0, 1.5], [-1.0, 1.5]];
     let (triangle, octagon) = (regular(3, [0.1, 0.0], 1.5, 0.3), regular(8, [0.0, 0.2], 1.2, 0.1));
-    // A box has its middle at the origin.
+    // The centre of a box is at the origin.
     let cuboid = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::lit(1.5), N::ONE));
     let hulls = [&triangle, &octagon].map(|outline| prism::<N>(outline, [0.0, 2.0]));
     let solids: [(&Outline, &dyn Shape<N, 3>, N); 3] = [

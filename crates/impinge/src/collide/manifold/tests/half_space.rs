@@ -1,4 +1,4 @@
-//! The corners of solids above half-spaces, each on its own.
+//! Corners of solids above half-spaces, each on its own.
 
 use super::super::build3;
 use super::scene::{Random, Scene, describe, fact, request};
@@ -8,7 +8,7 @@ use crate::shape::{
     Capsule, ConvexHull, Cuboid, FeatureId, Kind, Plane, Rounded, Segment, Shape, Triangle,
 };
 
-/// A solid and the corners that count: vertices, or the ends of a capsule's axis and its radius.
+/// A solid and its expected corners: vertices, or the ends of a capsule's axis with the radius.
 type Cornered<N> = (Box<dyn Shape<N, 3>>, Vec<Point<N, 3>>, N);
 
 fn solid<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Cornered<N> {
@@ -52,8 +52,8 @@ fn solid<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Cornered<N> {
     }
 }
 
-/// All corners within the prediction are contacts, at their places, and no others; over some steps each keeps
-/// its number.
+/// Asserts that all corners within the prediction are contacts, at their positions, and no others,
+/// and that each keeps its id over some steps.
 fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     let (random, mut points) = (&mut Random(seed), 0);
     for round in 0..700_usize {
@@ -91,12 +91,14 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
             for corner in &corners {
                 let height = normal.dot(&(corner.coords - pair.pose12.translation));
                 let distance = -height - radius;
-                // Over a capsule's raised end the surface is a little nearer than the ball around it.
+                // Over a capsule's raised end the surface is a little nearer than the ball around
+                // the end.
                 let reach =
                     asked.prediction + if radius > N::ZERO { N::lit(-0.05 * scale) } else { room };
                 let is_near = |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= room;
                 let has_it = raw.points.iter().any(|point| is_near(point.point1));
-                // If there are more than four corners, those on the outline count, and old ones that span most of it.
+                // With more than four corners, those on the outline count, and old ones that span
+                // most of it.
                 let is_inner = before.points.len() >= 4 || is_among(corner, &raw, &normal);
                 let is_far = distance > reach - room - room;
                 assert!(has_it || is_far || is_inner, "{corner} at {distance}, {what}");
@@ -109,7 +111,8 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     assert!(points > 1000, "{points} points");
 }
 
-/// Seen along the normal, a place lies within the outline of the points of a manifold.
+/// Returns whether a point, projected along the normal, is inside the outline of a manifold's
+/// points.
 fn is_among<N: Real>(place: &Point<N, 3>, raw: &RawManifold<N, 3>, normal: &Vector<N, 3>) -> bool {
     let (u, v) = orthonormal_basis(normal);
     let mut directions = (-8..=8).flat_map(|x| (-8..=8).map(move |y| [x, y].map(f64::from)));
@@ -127,7 +130,7 @@ fn corners_near_a_half_space_are_its_contacts() {
     }
 }
 
-/// A rounded box shows its face: four corners, on the rounded surface.
+/// A rounded box touches with four corners of its face, on the rounded surface.
 #[test]
 fn a_rounded_box_lies_on_four_corners() {
     let solid = Rounded::new(Cuboid::new(Vector::<f64, 3>::new(1.0, 0.5, 2.0)), 0.25);

@@ -1,4 +1,4 @@
-//! Names that last while solids slide and spin slowly.
+//! Ids persist while solids slide and spin slowly.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +13,9 @@ fn names<N: Scene<D>, const D: usize>(raw: &RawManifold<N, D>) -> Names {
     raw.points.iter().map(|point| ([point.feature1, point.feature2], point.id)).collect()
 }
 
-/// A thousand steps of a box on some ground: a number stays with its features, one that goes to other features was
-/// there a step before, and one that ended never comes back. Answers how many numbers were given.
+/// Moves a box on a half-space or box for a thousand steps. An id stays with its features; if it
+/// goes to others, it was near these a step before; an ended id never returns. Returns the number
+/// of ids given.
 fn slide<N: Scene<D>, const D: usize>(ground: &dyn Shape<N, D>, top: f64) -> usize {
     let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
     let (mut raw, mut old) = (RawManifold::default(), Names::new());
@@ -75,8 +76,8 @@ fn a_box_sliding_over_an_edge_keeps_its_names_on_new_features() {
     assert!(on_box::<f64, 3>(0.45) <= 6, "{} numbers", on_box::<f64, 3>(0.45));
 }
 
-/// Equal boxes one on the other, shifted along one side so that two pairs of sides fall together:
-/// rounding-level noise on every step changes no name.
+/// Equal boxes one on the other, shifted along one side so that two pairs of sides coincide: errors
+/// of the size of rounding in every step change no id.
 fn stack_rests<N: Scene<D>, const D: usize>(shift: f64) {
     let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
     let (mut raw, mut random) = (RawManifold::default(), Random(11));
@@ -108,7 +109,7 @@ fn a_stack_at_rest_keeps_its_names() {
     }
 }
 
-/// Contacts that ended come back under new numbers.
+/// Contacts that ended come back with new ids.
 #[test]
 fn a_number_is_never_given_twice() {
     let solid = Cuboid::new(Vector::<f64, 2>::new(0.5, 0.5));

@@ -1,4 +1,4 @@
-//! What every manifold must be, over random poses and in scenes worked out by hand.
+//! Properties of every manifold, at random poses and in scenes computed by hand.
 
 mod clip;
 mod faces;

@@ -1,4 +1,4 @@
-//! What holds for every pair of solids at any pose.
+//! Properties of every pair of solids at any pose.
 
 use super::scene::{Scene, describe, fact, for_all_pairs, manifold, off_surface, request};
 use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};
@@ -90,8 +90,8 @@ fn is_same<N: Real, const D: usize>(
     (a - b.point1).norm() <= N::lit(3e-3) && features == [b.feature1, b.feature2]
 }
 
-/// The share of pairs whose points do not come back flipped, with the same features, when the solids
-/// are swapped. Of several equally good reductions rounding may choose another.
+/// Counts the pairs whose points are not flipped, with the same features, if the solids are
+/// swapped, and all pairs. Among equally good reductions rounding may choose another.
 fn swap_losses<N: Scene<D>, const D: usize>(wish: &ManifoldRequest<N>) -> (usize, usize) {
     let (mut lost, mut total) = (0, 0);
     for_all_pairs::<N, D>(60, 1.0, |pair| {

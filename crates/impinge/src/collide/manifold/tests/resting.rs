@@ -1,4 +1,4 @@
-//! Solids at rest on each other: how many points delimit the area, counted by hand.
+//! Solids at rest on each other: the number of points that span the area, counted by hand.
 
 use super::scene::{Scene, fact, manifold, request};
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
@@ -9,8 +9,8 @@ use crate::shape::{
     TaperedCapsule, Tetrahedron,
 };
 
-/// A solid and the ground under it, whose top is at height zero. Plane, box, turn of the solid and
-/// height of its origin.
+/// A solid at rest on a surface whose top is at height zero: height of its origin, and its
+/// rotation.
 struct Rest<'a, const D: usize> {
     solid: &'a dyn Shape<f32, D>,
     height: f32,
@@ -38,7 +38,7 @@ where
         manifold(&pair, wish).1
     }
 
-    /// The number of points on a half-space and on a large box.
+    /// Returns the number of points on a half-space and on a large box.
     fn counts(&self, wish: &ManifoldRequest<f32>) -> [usize; 2] {
         let plane = Plane::new(Unit::new_normalize(Self::up()));
         let mut half_extents = Vector::<f32, D>::repeat(5.0);
@@ -48,7 +48,7 @@ where
     }
 }
 
-/// Rounding-level turns that a solid at rest may have.
+/// Rotations of the size of rounding that a solid at rest may have.
 const TILTS: [f64; 5] = [0.0, 3e-8, -1e-7, 1.5e-7, -2e-7];
 
 fn box_rests<const D: usize>(expected: usize)
@@ -60,7 +60,7 @@ where
         for sunk in [0.0, 1e-8, 1e-3] {
             let rest = Rest { solid: &solid, height: 0.25 - sunk, turn: [tilt, 0.0, tilt] };
             let [on_plane, on_box] = rest.counts(&request(0.0, 0.0));
-            // Where they just touch, rounding decides whether they do; if so, all corners count.
+            // If they only touch, rounding decides whether they do; if so, all corners count.
             let is_right = |count| count == expected || sunk < 1e-7 && count == 0;
             assert!(is_right(on_plane), "{on_plane} points on a plane: {tilt} {sunk}");
             assert!(is_right(on_box), "{on_box} points on a box: {tilt} {sunk}");
@@ -126,7 +126,7 @@ fn ellipsoids_tapered_capsules_and_rounded_boxes_rest() {
         Rounded::<f32, 3>::new(Cuboid::new(Vector::<f32, 3>::new(0.5, 0.125, 0.25)), 0.125),
         Rounded::<f32, 2>::new(Cuboid::new(Vector::<f32, 2>::new(0.5, 0.125)), 0.125),
     );
-    // The side leans by the sine 0.6, so on it the axis leans by as much; the small end is 0.25 high.
+    // The side is tilted by the sine 0.6, and so is the axis on it; the small end is 0.25 high.
     let club = TaperedCapsule::<f32, 3>::new(0.625, 0.25, 1.0);
     let flat_club = TaperedCapsule::<f32, 2>::new(0.625, 0.25, 1.0);
     let lying = [0.0, 0.0, -(0.8_f64.atan2(0.6))];
@@ -230,7 +230,7 @@ fn an_octagon_keeps_its_deepest_point_and_a_wide_area() {
     assert!(area(&few) > 0.6 * area(&all), "{} of {}", area(&few), area(&all));
 }
 
-/// The area around points in convex position, seen along y.
+/// Area of points in convex position, projected along y.
 fn area(raw: &RawManifold<f64, 3>) -> f64 {
     let mut points: Vec<Point<f64, 3>> = raw.points.iter().map(|point| point.point1).collect();
     points.sort_by(|a, b| a.z.atan2(a.x).total_cmp(&b.z.atan2(b.x)));
@@ -277,7 +277,7 @@ fn half_spaces_back_to_back_touch_in_one_point() {
     assert!(raw.points.is_empty(), "no contact where the overlap has no bound");
 }
 
-/// A prism whose ends are regular polygons of twenty sides, of radius 1, from y = 0 to y = 1.
+/// A prism with regular polygons of twenty sides as ends, of radius 1, from y = 0 to y = 1.
 fn prism() -> ConvexHull<f32> {
     let places = (0_u8..20).map(|i| f64::from(i) * std::f64::consts::TAU / 20.0);
     let points: Vec<Point<f32, 3>> = places
@@ -299,7 +299,7 @@ fn a_prism_of_many_sides_stands_on_four_points() {
     assert_eq!(standing.counts(&wish), [20; 2], "all of them, if asked for");
 }
 
-/// A flat tent: its ridge is the nearest to the ground, the near vertices belong to two faces.
+/// A flat tent: its ridge is nearest to the half-space, and the near vertices belong to two faces.
 #[test]
 fn near_vertices_of_several_faces_count_above_a_half_space() {
     let corners = [[-1.0, 0.01, 0.0], [1.0, 0.01, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];

@@ -1,5 +1,5 @@
-//! Segments and capsules against solids with flat faces, cylinders and cones: closed forms against the general
-//! algorithm.
+//! Segments and capsules against flat-faced solids, cylinders and cones: closed forms compared with
+//! the general algorithm.
 
 use super::scene::{Random, Scene, describe};
 use crate::collide::Pair;
@@ -53,13 +53,13 @@ fn is_round<N: Real>(pair: &Pair<'_, N, 3>) -> bool {
     matches!(pair.second, Kind::Cylinder(..) | Kind::Cone(..))
 }
 
-/// What counts as rounding; the general algorithm knows curved solids to 2⁻⁴⁰ of their size.
+/// Returns the tolerance; the general algorithm is accurate to 2⁻⁴⁰ of the size for curved solids.
 fn room<N: Real>(pair: &Pair<'_, N, 3>, scale: f64) -> N {
     let least = if is_round(pair) { N::lit(8.0e-12) } else { N::ZERO };
     max(N::lit(256.0) * N::EPSILON, least) * N::lit(scale)
 }
 
-/// Turns: any, none, hardly any, along a face.
+/// Rotations: any, none, almost none, along a face.
 fn turn(round: usize, random: &mut Random) -> [f64; 3] {
     let any = random.turn();
     match round % 5 {
@@ -70,7 +70,7 @@ fn turn(round: usize, random: &mut Random) -> [f64; 3] {
     }
 }
 
-/// The separation by the general algorithm.
+/// Returns the separation by the general algorithm.
 fn truth<N: Scene<3>>(pair: &Pair<'_, N, 3>) -> Separation<N, 3> {
     let [first, second] =
         [pair.first, pair.second].map(|kind| Geometry(kind).as_support_map().expect("a solid"));
@@ -102,7 +102,7 @@ fn visit<N: Scene<3>>(
     }
 }
 
-/// The distances agree, and the answer says what it means.
+/// Asserts that the distances agree, and that normal and points match the distance.
 fn separations<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     visit::<N>((seed, scale), |pair, round, _| {
         let room = room(pair, scale);

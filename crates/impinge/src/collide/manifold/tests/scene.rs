@@ -69,7 +69,7 @@ impl<N: Real> Scene<3> for N {
     }
 }
 
-/// Twelve points around the origin.
+/// Returns twelve points around the origin.
 fn cloud<N: Real, const D: usize>(scale: f64, random: &mut Random) -> Vec<Point<N, D>> {
     let mut place = || random.vector::<f64, D>(1.0).map(|x| N::lit(x * scale));
     (0..12).map(|_| Point::from(place())).collect()
@@ -95,7 +95,7 @@ impl Random {
     }
 }
 
-/// One solid of each kind, in the order of kinds, of random sizes around `scale`.
+/// Returns one solid of each kind, in the order of kinds, of random sizes around `scale`.
 pub(crate) fn solids<N: Scene<D>, const D: usize>(
     scale: f64,
     random: &mut Random,
@@ -117,7 +117,7 @@ pub(crate) fn solids<N: Scene<D>, const D: usize>(
     all
 }
 
-/// The one fact about a pair, also against a half-space.
+/// Returns the separation of a pair, also from a half-space.
 pub(crate) fn fact<N: Scene<D>, const D: usize>(pair: &Pair<'_, N, D>) -> Separation<N, D> {
     let first = Geometry(pair.first).as_support_map().expect("the first is no half-space");
     let Kind::Plane(plane) = pair.second else {
@@ -130,7 +130,7 @@ pub(crate) fn fact<N: Scene<D>, const D: usize>(pair: &Pair<'_, N, D>) -> Separa
     Separation { distance, normal, point1, point2: point1 + normal * distance }
 }
 
-/// The signed distance of a point from the surface of a solid, all in the solid's frame.
+/// Returns the signed distance of a point from the surface of a solid, in the solid's frame.
 pub(crate) fn off_surface<N: Scene<D>, const D: usize>(
     kind: Kind<'_, N, D>,
     point: &Point<N, D>,
@@ -143,7 +143,7 @@ pub(crate) fn off_surface<N: Scene<D>, const D: usize>(
     convex::separation(solid, &Ball::new(N::ZERO), &at, N::INFINITY).expect("finite").distance
 }
 
-/// The manifold of a pair on its own, with its separation.
+/// Builds the manifold of a pair alone, from its separation.
 pub(crate) fn manifold<N: Scene<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -157,8 +157,8 @@ pub(crate) fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N>
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Poses for which the distance of the solids is a random number between `low` and `high`, roughly if
-/// they overlap: the second is placed apart and moved along the normal.
+/// Returns a pose at which the distance of the solids is a random number between `low` and `high`,
+/// roughly if they overlap. The second solid is placed apart and moved along the normal.
 pub(crate) fn near_pose<N: Scene<D>, const D: usize>(
     solids: [Kind<'_, N, D>; 2],
     (scale, low, high): (f64, f64, f64),

@@ -1,4 +1,4 @@
-//! Flat-sided 2D solids: their contacts span the overlap of the sides that face each other.
+//! Flat-sided 2D solids: contacts span the overlap interval of the sides that face each other.
 
 use super::scene::{Random, Scene, describe, near_pose, off_surface, solids};
 use crate::collide::separation::separation_in_plane;
@@ -23,7 +23,7 @@ fn contacts<N: Real>(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>) -> Raw
     raw
 }
 
-/// A solid whose upper side is at the height zero, from one place to another, and where its frame is.
+/// A solid whose upper side is at height zero, from one coordinate to another, and its origin.
 type Bench<N> = (Box<dyn Shape<N, 2>>, [f64; 2]);
 
 /// One of each kind; the radius of the round ones is 1/8.
@@ -43,7 +43,8 @@ fn benches<N: Real>([low, high]: [f64; 2]) -> Vec<Bench<N>> {
     ]
 }
 
-/// Where the frame of a solid is, turned by an angle about the world's origin and then moved.
+/// Returns the pose of a solid at `[x, y]`, rotated by an angle about the world's origin and then
+/// moved.
 fn placed<N: Real>([x, y]: [f64; 2], angle: f64, by: [f64; 2]) -> Pose<N, 2> {
     let own = Isometry2::new(Vector::<f64, 2>::new(x, y), 0.0);
     let turned = Isometry2::new(Vector::<f64, 2>::new(by[0], by[1]), angle) * own;
@@ -51,13 +52,13 @@ fn placed<N: Real>([x, y]: [f64; 2], angle: f64, by: [f64; 2]) -> Pose<N, 2> {
     Pose { rotation: exact.rotation.map(N::lit), translation: exact.translation.map(N::lit) }
 }
 
-/// A side upon another, as the world sees it.
+/// A side on another, in world coordinates.
 struct Stack {
-    /// From where to where the lower side goes, and the upper one.
+    /// Ends of the lower side and of the upper one.
     sides: [[f64; 2]; 2],
-    /// Between them, at the lower end of the overlap.
+    /// Gap between them at the lower end of the overlap.
     gap: f64,
-    /// By which the upper one is turned about its point above that end.
+    /// Angle by which the upper one is turned about its point above that end.
     tilt: f64,
 }
 
@@ -71,7 +72,7 @@ impl Stack {
     fn visit<N: Real>(&self, mut visit: impl FnMut(&Pair<'_, N, 2>, &Pose<N, 2>)) {
         let [[low, high], [left, right]] = self.sides;
         let pivot = self.overlap()[0];
-        // The upper solid is turned upside down, so its side runs the other way.
+        // The upper solid is turned upside down, so its side runs in the opposite direction.
         let (sine, cosine) = Real::sine_cosine(self.tilt);
         let by = [pivot - cosine * pivot, self.gap - sine * pivot];
         for (lower, at1) in benches::<N>([low, high]) {
@@ -86,7 +87,7 @@ impl Stack {
     }
 }
 
-/// Points and features are those of the pair the other way round.
+/// Asserts that swapping the pair gives the same points and features.
 fn is_flipped<N: Real>(
     pair: &Pair<'_, N, 2>,
     raw: &RawManifold<N, 2>,
@@ -171,7 +172,8 @@ fn flat_sided<N: Scene<2>>(random: &mut Random) -> Vec<Box<dyn Shape<N, 2>>> {
     shapes
 }
 
-/// Near each other anyhow, or on a grid and hardly turned, so that sides and corners coincide.
+/// Poses near each other at random, or on a grid and almost unturned, so that sides and corners
+/// coincide.
 fn pose_of<N: Scene<2>>(
     kinds: [Kind<'_, N, 2>; 2],
     round: usize,

@@ -1,36 +1,38 @@
-//! Cores in lanes: their support points, and how far the feature there extends.
+//! Cores in lanes: support points, and the feature that is as far along a direction.
 
 use crate::math::lanes::{dot, either, minus, spread, times};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide};
 use crate::shape::{Polytope, SupportMap};
 
-/// The core of one solid of each pair, in its own frame and in units of the pair. All lanes have the same kind.
+/// Core of one solid of each pair, in its own frame and in units of the pair. All lanes have the
+/// same kind.
 pub(super) enum LaneCore<'a, N: Real, V> {
     /// The half extents.
     Cuboid([V; 3]),
-    /// Vertices that all lanes share, in the units of the shape, and the factor to those of each pair.
+    /// Vertices shared by all lanes, in units of the shape; `shrink` scales them to each pair's
+    /// units.
     Points { points: CorePoints<'a, N>, shrink: V },
 }
 
-/// The vertices of a core.
+/// Vertices of a triangle or hull.
 #[derive(Clone, Copy)]
 pub(super) struct CorePoints<'a, N: Real> {
     pub(super) vertices: &'a [Point<N, 3>],
-    /// The hull that they are of, which finds them sooner for a lone pair.
+    /// The hull that owns the vertices; a lone pair finds support points faster by it.
     pub(super) hull: Option<&'a Polytope<N, 3>>,
 }
 
-/// The vertices that are as far along a direction as any, up to a tolerance.
+/// Vertices as far along a direction as the farthest one, up to a tolerance.
 pub(super) struct LaneTies<V> {
-    /// How many there are, as a number of the type.
+    /// Number of tied vertices, as a number of the scalar type.
     pub(super) count: V,
-    /// From one to another where there are two. Vertices at one place may count twice.
+    /// Vector between the two vertices if there are two. Coinciding vertices may count twice.
     pub(super) along: [V; 3],
 }
 
 impl<N: Real, V> LaneCore<'_, N, V> {
-    /// A vertex farthest along a direction: the first of equals.
+    /// Returns the vertex farthest along `direction`; the first of equals.
     #[inline(always)]
     pub(super) fn support<S: Simd>(&self, simd: S, direction: &[V; 3]) -> [V; 3]
     where
@@ -55,7 +57,7 @@ impl<N: Real, V> LaneCore<'_, N, V> {
         }
     }
 
-    /// The vertices that are as far along a unit vector as the farthest.
+    /// Returns the vertices within `tolerance` of the farthest along the unit vector `direction`.
     #[inline(always)]
     pub(super) fn ties<S: Simd>(&self, simd: S, direction: &[V; 3], tolerance: V) -> LaneTies<V>
     where
@@ -68,7 +70,7 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                 let mut along = [V::all(simd, N::ZERO); 3];
                 for axis in 0..3 {
                     let rise = direction[axis].abs() * half[axis] * two;
-                    // A box without extent along an axis has its corners twice.
+                    // A box without extent along an axis has each corner twice there.
                     let is_level = rise.simd_le(tolerance) & (half[axis] * two).simd_gt(tolerance);
                     count = is_level.select(count + count, count);
                     let unit = Vector::<N, 3>::ith(axis, N::ONE);
@@ -87,14 +89,15 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                     count = is_level.select(count + one, count);
                     other = either(is_level, &vertex, &other);
                 }
-                // The last of them, or the one before where that is the support point.
+                // `other` is the last tied vertex: the support point is the first, or `along` is
+                // zero.
                 LaneTies { count, along: minus(&other, &best) }
             }
         }
     }
 }
 
-/// The farthest of some vertices along a direction, the first of equals.
+/// Returns the vertex farthest along a direction; the first of equals.
 #[inline(always)]
 fn farthest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -113,7 +116,7 @@ fn farthest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// The same of the hull of a lone pair, whose vertices are in lanes.
+/// Returns the support point of a hull for one pair, by the hull's own lookup.
 #[inline(always)]
 fn lone_support<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

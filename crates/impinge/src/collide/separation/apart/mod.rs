@@ -1,11 +1,12 @@
-//! Triangles, boxes and hulls in 3D that are well apart: the nearest points of their cores, of one
-//! pair or of eight at a time, by the same source and so with the same bits.
+//! Nearest points of triangles, boxes and hulls in 3D that are well apart, for one pair or for
+//! eight pairs at a time. Both run the same source and so give the same bits.
 //!
-//! The search is that of E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the Distance Between
-//! Complex Objects in Three-Dimensional Space", 1988), without branches: each step computes all features of the
-//! simplex at its newest corner and selects ([`simplex`]). What it gives is proved: the nearest points lie as far
-//! apart as two supporting planes. Anything else is left to the algorithm of the pair's kinds: cores that are nearer
-//! than 2⁻⁶ of the pair or overlap, several pairs of nearest points, bounds that do not meet.
+//! The search is that of E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the
+//! Distance Between Complex Objects in Three-Dimensional Space", 1988), without branches: each step
+//! computes all features of the simplex at its newest corner and selects the nearest ([`simplex`]).
+//! An answer is returned only with a proof: its points are as far apart as two supporting planes.
+//! Without a proof the pair goes to the algorithm of its kinds: cores nearer than 2⁻⁶ of the pair's
+//! size (`MIN_GAP`) or overlapping, several pairs of nearest points, bounds that do not meet.
 //!
 //! ```text
 //!        core 1             core 2        normal = nearest / |nearest|
@@ -13,6 +14,9 @@
 //!      |        a*-------b*  \            upper bound: |b* − a*|
 //!      +--------+          \__\           both agree up to rounding, or there is no answer
 //! ```
+//!
+//! `packet` lays out [`LANES`] pairs by rows, `core` has the support points, `search` the loop. The
+//! packets are cut from the runs of equal kinds in `collide/batch/convex.rs`.
 
 mod core;
 mod packet;
@@ -27,7 +31,7 @@ use self::search::MIN_GAP;
 use self::search::{LaneCores, LaneGap};
 use super::boxes::cuboid_cuboid;
 use super::flat_core::FlatCore;
-use super::{Algorithm, hulls};
+use super::{Algorithm, hulls, triangles};
 use crate::collide::Pair;
 use crate::convex::{Separation, Units, safe_reach};
 use crate::math::lanes::{LanePose, minus};
@@ -36,17 +40,18 @@ use crate::math::simd::Level;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{Kind, SupportMap};
 
-/// How many pairs are treated at once.
+/// Pairs in one packet: the width of the vectors in `math::simd`.
 const LANES: usize = 8;
 
-/// Hulls of more vertices are left to algorithms that do not visit all of them in each step.
+/// Hulls with more vertices go to algorithms that do not visit every vertex in each step.
 const MAX_VERTICES: usize = 128;
 
-/// The separation of two triangles, boxes or hulls: of those that are well
-/// apart by the search, of others by the algorithm of their kinds.
+/// Returns the separation of two triangles, boxes or hulls: by the search if they are well apart,
+/// else by the algorithm of their kinds.
 ///
-/// Boxes within reach of each other mostly touch, and their axes say so in less time than the search takes to give
-/// up. Axes of hulls take longer than it.
+/// Two boxes take their separating axis test first if `limit` is finite: most of them touch, and
+/// the test proves it in less time than the search needs to give up. The test for hulls takes
+/// longer than the search.
 #[inline]
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     if limit < N::INFINITY
@@ -55,7 +60,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     {
         return found;
     }
-    // What the search proves is apart, which is beyond such a limit.
+    // The search only proves distances above zero, which are all beyond this limit.
     if limit <= N::ZERO
         && let (Kind::Triangle(_), Kind::Triangle(_)) = (pair.first, pair.second)
     {
@@ -64,13 +69,13 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     result(pair, limit, false).separation(pair, limit)
 }
 
-/// The distance in [`separation`], or zero if the cores certainly overlap.
+/// Returns the distance of [`separation`], or zero if the cores certainly overlap.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     result(pair, limit, limit >= N::ZERO).distance(pair, limit)
 }
 
-/// Of up to eight pairs of the same kinds what [`separation`] has of each, to the bit; `None` for those
-/// that have to be asked one by one.
+/// Computes [`separation`] for up to [`LANES`] pairs of the same kinds, to the bit. The outer
+/// `None` marks pairs that have to be computed one by one.
 pub(crate) fn separations<'p, 'a: 'p, N: Real>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
     limit: N,
@@ -78,7 +83,8 @@ pub(crate) fn separations<'p, 'a: 'p, N: Real>(
     each(pairs, limit, false, |result, pair| result.separation(pair, limit))
 }
 
-/// The same of [`distance`], for a limit of zero or more.
+/// Computes [`distance`] for up to [`LANES`] pairs of the same kinds, for a `limit` of zero or
+/// more.
 pub(crate) fn distances<'p, 'a: 'p, N: Real>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
     limit: N,
@@ -86,7 +92,8 @@ pub(crate) fn distances<'p, 'a: 'p, N: Real>(
     each(pairs, limit, true, |result, pair| result.distance(pair, limit))
 }
 
-/// What follows from the result of each of up to eight pairs.
+/// Searches up to [`LANES`] pairs and applies `settle` to the result of each. All `None` without
+/// vectors, or if the pairs do not share the vertices of their hulls.
 #[inline]
 fn each<'p, 'a: 'p, N: Real, T: Copy>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
@@ -95,7 +102,7 @@ fn each<'p, 'a: 'p, N: Real, T: Copy>(
     settle: impl Fn(&GapResult<N>, &Pair<'a, N, 3>) -> Option<T>,
 ) -> [Option<Option<T>>; LANES] {
     let mut settled = [None; LANES];
-    let Level::Wide(vectors) = Level::new() else { return settled };
+    let Some(vectors) = Level::new().vectors() else { return settled };
     if let Some(results) = packet::results(vectors, pairs.clone(), limit, with_overlap) {
         for ((settled, result), pair) in settled.iter_mut().zip(&results).zip(pairs) {
             *settled = Some(settle(result, pair));
@@ -104,24 +111,26 @@ fn each<'p, 'a: 'p, N: Real, T: Copy>(
     settled
 }
 
-/// A triangle, a box or a hull.
+/// Returns whether a solid is a triangle, a box or a hull.
 pub(crate) const fn is_faceted<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
     matches!(kind, Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// The algorithm for a pair of these kinds that may touch or overlap.
+/// Returns the algorithm for a pair of these kinds that may touch or overlap.
 fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
     match (pair.first, pair.second) {
         (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::separation,
+        (Kind::Triangle(_), Kind::Triangle(_)) => triangles::pair::separation,
         _ => hulls::separation,
     }
 }
 
-/// What is known of a pair.
+/// Result of the search for one pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum GapResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
+    /// The separation of the solids, proved.
     Apart(Separation<N, 3>),
     /// The cores certainly overlap.
     Overlap,
@@ -130,7 +139,7 @@ enum GapResult<N: Real> {
 }
 
 impl<N: Real> GapResult<N> {
-    /// The separation of the pair that this is known of.
+    /// Returns the separation; unproved pairs are computed by the algorithm of their kinds.
     #[inline]
     fn separation(&self, pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
         match self {
@@ -140,7 +149,7 @@ impl<N: Real> GapResult<N> {
         }
     }
 
-    /// Its distance, or zero if the cores certainly overlap.
+    /// Returns the distance, or zero if the cores certainly overlap.
     #[inline]
     fn distance(&self, pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
         let distance = match self {
@@ -156,7 +165,7 @@ impl<N: Real> GapResult<N> {
     }
 }
 
-/// The result of the search for a lone pair.
+/// Runs the search for one pair, in one lane.
 #[inline(never)]
 fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapResult<N> {
     let Some(solids) = FlatPair::of(pair) else { return GapResult::Unproved };
@@ -174,14 +183,17 @@ fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapRe
 /// Two solids with flat cores.
 struct FlatPair<'a, N: Real> {
     solids: [FlatCore<'a, N, 3>; 2],
+    /// Radii around both cores.
     radii: [N; 2],
+    /// Unit of length in which the cores are about 1 large.
     units: Units<N>,
-    /// The middles of the cores in their own frames, in units of the pair.
+    /// Centres of the cores in their own frames, in units of the pair.
     middles: [Vector<N, 3>; 2],
 }
 
 impl<'a, N: Real> FlatPair<'a, N> {
-    /// `None` for other solids, and where the numbers end.
+    /// `None` for other kinds, for hulls of more than [`MAX_VERTICES`] vertices, and if the unit of
+    /// the pair is not finite.
     #[inline]
     fn of(pair: &Pair<'a, N, 3>) -> Option<Self> {
         if !(is_faceted(&pair.first) && is_faceted(&pair.second)) {
@@ -205,8 +217,8 @@ impl<'a, N: Real> FlatPair<'a, N> {
         })
     }
 
-    /// A limit of the solids as one of their cores, in units of the pair, that nothing within the limit exceeds by
-    /// rounding.
+    /// Returns the limit for the distance of the cores, in units of the pair, raised so that
+    /// rounding rejects nothing within `limit`.
     #[inline]
     fn limit_of_cores(&self, limit: N) -> N {
         let limit = (limit + self.radii[0] + self.radii[1]) * self.units.shrink;
@@ -227,8 +239,8 @@ impl<'a, N: Real> FlatPair<'a, N> {
         }
     }
 
-    /// The result from what is known of the cores: whether they are beyond the limit, overlap, or are apart by a
-    /// separation in units of the pair.
+    /// Returns the result for the solids: `core` is the separation of the cores in units of the
+    /// pair, used if they are apart.
     #[inline]
     fn result(
         &self,
@@ -260,7 +272,7 @@ impl<'a, N: Real> FlatPair<'a, N> {
     }
 }
 
-/// The vertices of a solid that has more than ends or half extents.
+/// Returns the vertices of a triangle or hull; `None` for other kinds.
 #[inline]
 fn vertices<'a, N: Real>(solid: &FlatCore<'a, N, 3>) -> Option<CorePoints<'a, N>> {
     match *solid {

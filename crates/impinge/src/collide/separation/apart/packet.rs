@@ -1,4 +1,15 @@
 //! Eight pairs side by side, gathered for the search.
+//!
+//! ```text
+//!                 lane 0  lane 1  ...  lane 7
+//!   rotation  x   pair 0  pair 1  ...  pair 7      rows of coordinates; `rotation` by columns
+//!   rotation  y   pair 0  pair 1  ...  pair 7
+//!   ...                                            lanes without a pair: zeros, results unread
+//!   shrink        pair 0  pair 1  ...  pair 7
+//!   limit         pair 0  pair 1  ...  pair 7      hulls and triangles: same vertices in all lanes
+//! ```
+//!
+//! A lane is the pair's index in the packet of `collide/batch/convex.rs`.
 
 use super::core::LaneCore;
 use super::search::LaneCores;
@@ -10,35 +21,43 @@ use crate::math::lanes::{LanePose, load, minus, with_vectors};
 use crate::math::simd::{Simd, SimdMask, Vectors};
 use crate::math::{Point, Real, Vector, Wide, filled};
 
-/// A vector in each lane, by coordinates.
+/// One vector per lane, stored by coordinate.
 type LaneVectors<N> = [[N; LANES]; 3];
 
-/// The numbers of up to eight pairs of the same kinds; lanes beyond those taken hold a copy of the first.
+/// Input of up to eight pairs of the same kinds. Lanes without a pair stay zero.
 struct Packet<'a, N: Real> {
+    /// Both solids of each pair; `None` for lanes without a pair.
     pairs: [Option<FlatPair<'a, N>>; LANES],
-    /// By columns.
+    /// Columns of the rotations of `pose12`.
     rotation: [LaneVectors<N>; 3],
+    /// Translations of `pose12`, in units of each pair.
     translation: LaneVectors<N>,
-    /// Those of boxes.
+    /// Half extents of boxes; zero for other kinds.
     half_extents: [LaneVectors<N>; 2],
+    /// Centres of the cores in their own frames, in units of each pair.
     middles: [LaneVectors<N>; 2],
+    /// Factor from lengths of the shapes to units of each pair.
     shrink: [N; LANES],
+    /// Largest distance of the cores of interest, in units of each pair.
     limit: [N; LANES],
 }
 
-/// What the search found of each lane, in units of its pair.
+/// Output of the search, in units of each lane's pair.
 struct PacketGap<N: Real> {
     distance: [N; LANES],
+    /// Unit, from the first core to the second, in the frame of the first.
     normal: LaneVectors<N>,
+    /// Nearest points of both cores, in the frame of the first.
     points: [LaneVectors<N>; 2],
-    /// A bit for each lane.
+    /// One bit per lane, as in the other two masks.
     is_apart: u64,
     is_beyond: u64,
     is_overlap: u64,
 }
 
-/// The results of up to eight pairs of the same kinds as [`super::result`] has them, to the bit, with the vectors of an
-/// instruction set, on which they do not depend; `None` if the pairs do not fit into lanes.
+/// Computes the results of up to eight pairs of the same kinds, with the bits of [`super::result`].
+/// They do not depend on the instruction set. `None` if the pairs do not share the vertices of
+/// their hulls.
 pub(super) fn results<'p, 'a: 'p, N: Real>(
     vectors: Vectors,
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>>,
@@ -70,7 +89,7 @@ impl<N: Real> PacketGap<N> {
         }
     }
 
-    /// The result of one lane.
+    /// Returns the result of one lane.
     #[inline]
     fn result(&self, lane: usize, solids: &FlatPair<'_, N>) -> GapResult<N> {
         let is = |lanes: u64| lanes >> lane & 1 == 1;
@@ -88,6 +107,7 @@ impl<N: Real> PacketGap<N> {
 }
 
 impl<'a, N: Real> Packet<'a, N> {
+    /// Gathers up to [`LANES`] pairs; more are ignored.
     fn new<'p>(given: impl Iterator<Item = &'p Pair<'a, N, 3>>, limit: N) -> Self
     where
         'a: 'p,
@@ -108,7 +128,7 @@ impl<'a, N: Real> Packet<'a, N> {
         packet
     }
 
-    /// Puts a pair into its lane.
+    /// Puts a pair into its lane; a pair without flat cores leaves it empty.
     fn put(&mut self, lane: usize, pair: &Pair<'a, N, 3>, limit: N) {
         let Some(solids) = FlatPair::of(pair) else { return };
         let (pose12, shrink) = (&pair.pose12, solids.units.shrink);
@@ -127,7 +147,8 @@ impl<'a, N: Real> Packet<'a, N> {
         self.pairs[lane] = Some(solids);
     }
 
-    /// Solids with vertices are the same in all lanes.
+    /// Returns whether hulls and triangles are the same object in all lanes, so that their vertices
+    /// need no gathering.
     fn shares_vertices(&self) -> bool {
         let mut solids = self.pairs.iter().flatten();
         let Some(first) = solids.next() else { return false };
@@ -170,6 +191,7 @@ impl<'a, N: Real> Packet<'a, N> {
         out.is_overlap = found.is_overlap.to_bitmask();
     }
 
+    /// Loads the core of one solid: vertices shared by all lanes, or half extents.
     #[inline(always)]
     fn core<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, which: usize) -> LaneCore<'a, N, V> {
         let solid = self.pairs.iter().flatten().next().map(|solids| solids.solids[which]);

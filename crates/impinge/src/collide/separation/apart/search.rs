@@ -1,4 +1,12 @@
-//! The search for the nearest points of two cores, in lanes.
+//! Searches the nearest points of two cores, in lanes.
+//!
+//! ```text
+//!   along = nearest / |nearest|     the next direction of search, unit
+//!   corner                          the lowest point of core 2 - core 1 along `along`
+//!   upper = |nearest|               two points of the cores are this far apart
+//!   lower = along · corner          supporting planes: no two points are nearer
+//!   upper - lower <= tolerance      the lane is closed: proved
+//! ```
 
 use super::core::LaneCore;
 use super::simplex::{LaneCorner, LaneSimplex};
@@ -11,45 +19,49 @@ use crate::math::{Real, Wide, max};
 /// Cap on the number of support points. Most pairs take five or six.
 const ROUNDS: usize = 32;
 
-/// Cores nearer than this, in units of the pair, are left to algorithms that decide about touching: 2⁻⁶.
+/// Cores nearer than this, in units of the pair, go to algorithms that decide about touching: 2⁻⁶.
 pub(super) const MIN_GAP: f64 = 1.0 / 64.0;
 
-/// Edges that turn by less than this from each other count as parallel: the square of the sine is 2⁻²⁰.
+/// Edges count as parallel if the squared sine of their angle is below this: 2⁻²⁰.
 const PARALLEL: f64 = 1.0 / 1_048_576.0;
 
-/// The gap between the bounds of a distance that is down to rounding: 2⁻¹⁹ in `f32`, 2⁻⁴⁶ in `f64`.
+/// Returns the gap between both bounds of a distance that counts as rounding, in units of the pair:
+/// 2⁻¹⁹ in `f32`, 2⁻⁴⁶ in `f64`.
 fn tolerance<N: Real>() -> N {
     max(N::lit(16.0) * N::EPSILON, N::lit(1.0 / 70_368_744_177_664.0))
 }
 
-/// Two cores in units of the pair, and how the second lies in the frame of the first.
+/// Two cores in units of the pair, and the pose of the second in the frame of the first.
 pub(super) struct LaneCores<'a, N: Real, V> {
     pub(super) cores: [LaneCore<'a, N, V>; 2],
     pub(super) pose12: LanePose<V, 3>,
-    /// From the middle of the first core to that of the second.
+    /// Vector from the middle of the first core to the middle of the second: the first direction.
     pub(super) between: [V; 3],
-    /// Lanes whose cores are farther apart need no answer.
+    /// Largest distance of interest, in units of the pair. Lanes beyond it need no answer.
     pub(super) limit: V,
 }
 
-/// What the search found, in units of the pair and in the frame of the first core.
+/// Result of the search, in units of the pair and in the frame of the first core.
 pub(super) struct LaneGap<V, M> {
+    /// Lower bound of the distance of the cores; equal to the distance, up to rounding, where
+    /// apart.
     pub(super) distance: V,
     /// Unit, from the first core to the second.
     pub(super) normal: [V; 3],
+    /// Nearest points of both cores.
     pub(super) points: [[V; 3]; 2],
-    /// The lanes whose cores are apart, where all this is proved.
+    /// Lanes whose cores are apart; only there the other fields are proved.
     pub(super) is_apart: M,
-    /// The lanes that are farther apart than the limit.
+    /// Lanes whose cores are farther apart than the limit.
     pub(super) is_beyond: M,
-    /// The lanes whose cores certainly overlap.
+    /// Lanes whose cores certainly overlap.
     pub(super) is_overlap: M,
 }
 
 impl<N: Real, V: Copy> LaneCores<'_, N, V> {
-    /// Runs the search; without `with_overlap` lanes that come nearer than [`MIN_GAP`] are given up at once.
+    /// Runs the search. Without `with_overlap`, lanes nearer than [`MIN_GAP`] are given up at once.
     ///
-    /// A lane that is done keeps what it has, so that no lane depends on its neighbours.
+    /// A lane that is done keeps its values, so no lane depends on its neighbours.
     #[inline(always)]
     pub(super) fn gap<S: Simd>(&self, simd: S, with_overlap: bool) -> LaneGap<V, V::Mask>
     where
@@ -92,7 +104,8 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
         LaneGap { distance, normal, points, is_apart, is_beyond, is_overlap }
     }
 
-    /// The point of the difference of the cores that lies lowest along a unit vector.
+    /// Returns the point of the difference (second core minus first) that is lowest along a unit
+    /// vector.
     #[inline(always)]
     fn corner<S: Simd>(&self, simd: S, along: &[V; 3]) -> LaneCorner<V>
     where
@@ -104,8 +117,9 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
         LaneCorner { point: minus(&on2, &on1), on1 }
     }
 
-    /// The lanes with one pair of nearest points only: no face or edge of the one is parallel to one of the other.
-    /// Where there are several, the middle of them is wanted, which is found elsewhere.
+    /// Returns the lanes with a single pair of nearest points: no face or edge of one core is
+    /// parallel to a face or edge of the other. Where there are several pairs their middle is
+    /// wanted, which other algorithms find.
     #[inline(always)]
     fn is_unique<S: Simd>(&self, simd: S, normal: &[V; 3]) -> V::Mask
     where
@@ -130,7 +144,7 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
 }
 
 impl<V: Copy> LaneSimplex<V> {
-    /// This one, or another in some lanes.
+    /// Selects `other` in the lanes of `is_other`.
     #[inline(always)]
     fn or<S: Simd>(&self, other: &Self, is_other: V::Mask) -> Self
     where
@@ -149,7 +163,7 @@ impl<V: Copy> LaneSimplex<V> {
         }
     }
 
-    /// The nearest points of the first and the second core.
+    /// Returns the nearest points of the first and the second core.
     #[inline(always)]
     fn points<S: Simd>(&self) -> [[V; 3]; 2]
     where

@@ -1,4 +1,5 @@
-//! The point nearest to the origin on the faces of a tetrahedron that meet in its newest corner, in lanes.
+//! Nearest point to the origin on the faces of a tetrahedron that meet in its newest corner, in
+//! lanes.
 //!
 //! ```text
 //!            w  newest            candidates: the edges w p0, w p1, w p2 and the inside of the faces
@@ -9,23 +10,26 @@
 //!           p2
 //! ```
 //!
-//! The old face p0 p1 p2 is not looked at: the newest corner lies beyond it, toward the origin.
+//! The old face p0 p1 p2 is skipped: the newest corner lies beyond it, toward the origin.
 
 use crate::math::lanes::{cross, dot, either, either_mask, lit, minus, negated, plus, times};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The planes of a simplex that holds the origin clearly are farther than this from it: 2⁻¹⁰ of the pair.
+/// The origin is clearly inside a simplex if it is farther than this from each plane: 2⁻¹⁰ of the
+/// pair.
 const CLEAR: f64 = 1.0 / 1024.0;
 
-/// A point of the difference of two cores, and the point of the first core that it belongs to.
+/// A point of the difference of two cores, and the point of the first core that it comes from.
 #[derive(Clone, Copy)]
 pub(super) struct LaneCorner<V> {
+    /// Second core minus first, in units of the pair and in the frame of the first core.
     pub(super) point: [V; 3],
     pub(super) on1: [V; 3],
 }
 
 impl<V> LaneCorner<V> {
+    /// Selects `other` in the lanes of `is_other`.
     #[inline(always)]
     pub(super) fn or<S: Simd>(&self, other: &Self, is_other: V::Mask) -> Self
     where
@@ -41,24 +45,26 @@ impl<V> LaneCorner<V> {
 /// Up to three corners and the point of their hull nearest to the origin.
 #[derive(Clone, Copy)]
 pub(super) struct LaneSimplex<V> {
+    /// In lanes with fewer corners the last is repeated, with weight zero.
     pub(super) corners: [LaneCorner<V>; 3],
-    /// What the corners contribute, of sum 1.
+    /// Barycentric weights of the corners; their sum is 1.
     pub(super) weights: [V; 3],
+    /// Nearest point to the origin, and its squared length.
     pub(super) nearest: [V; 3],
     pub(super) squared: V,
 }
 
-/// The best of the candidates so far.
+/// The nearest of the candidates so far.
 struct BestFeature<V> {
     nearest: [V; 3],
     squared: V,
-    /// The weights of the two old corners, and which these are: 0, 1, 2.
+    /// Weights of up to two old corners, and their indices 0, 1 or 2.
     weights: [V; 2],
     places: [V; 2],
 }
 
 impl<V> BestFeature<V> {
-    /// This one, or another that is nearer and admitted.
+    /// Selects `other` where it is nearer and admitted.
     #[inline(always)]
     fn or_nearer<S: Simd>(self, (other, is_admitted): (Self, V::Mask)) -> Self
     where
@@ -74,19 +80,20 @@ impl<V> BestFeature<V> {
     }
 }
 
-/// The newest corner of a simplex, and the others as seen from there.
+/// The newest corner of a simplex, and its edges to the old corners.
 struct Fan<'a, V> {
     old: &'a LaneSimplex<V>,
     newest: &'a LaneCorner<V>,
+    /// Vectors from the newest corner to the old ones.
     edges: [[V; 3]; 3],
-    /// The squares of the lengths of the edges.
+    /// Squared lengths of the edges.
     squares: [V; 3],
-    /// The cross products of the way to the origin with the edges.
+    /// Cross products of the vector from the newest corner to the origin with the edges.
     turns: [[V; 3]; 3],
 }
 
 impl<V: Copy> LaneSimplex<V> {
-    /// A single corner.
+    /// A simplex of a single corner.
     #[inline(always)]
     pub(super) fn new<S: Simd, N: Real>(simd: S, corner: LaneCorner<V>) -> Self
     where
@@ -101,11 +108,11 @@ impl<V: Copy> LaneSimplex<V> {
         }
     }
 
-    /// The simplex around the nearest point after one more corner, and the lanes in which all four corners
-    /// hold a ball around the origin.
+    /// Adds a corner: returns the simplex around the new nearest point, and the lanes in which all
+    /// four corners contain a ball around the origin.
     ///
-    /// The third corner of a lane that has two is a copy, and copies add no nearer point: they are passed over where no
-    /// lane has three.
+    /// In a lane with two corners the third is a copy, which adds no nearer point. Its features are
+    /// skipped if no lane has three.
     #[inline(always)]
     pub(super) fn with<S: Simd, N: Real>(&self, simd: S, newest: &LaneCorner<V>) -> (Self, V::Mask)
     where
@@ -144,7 +151,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         Self { old, newest, edges, squares, turns }
     }
 
-    /// An edge from the newest corner, its ends included, and the lanes in which it has a length.
+    /// Nearest point on the edge to an old corner, ends included, and the lanes in which it has a
+    /// length.
     #[inline(always)]
     fn edge<S: Simd, N: Real>(&self, simd: S, old: usize) -> (BestFeature<V>, V::Mask)
     where
@@ -166,8 +174,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         (feature, has_length)
     }
 
-    /// A face at the newest corner, and the lanes in which the point of its plane that is nearest to the origin lies
-    /// within it.
+    /// Nearest point on a face at the newest corner, and the lanes in which it lies inside the
+    /// face.
     #[inline(always)]
     fn face<S: Simd, N: Real>(&self, simd: S, [one, two]: [usize; 2]) -> (BestFeature<V>, V::Mask)
     where
@@ -195,7 +203,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         (feature, is_within)
     }
 
-    /// The lanes in which the origin is inside of the tetrahedron, clearly on the inner side of each face.
+    /// Returns the lanes in which the origin is clearly on the inner side of each face of the
+    /// tetrahedron.
     #[inline(always)]
     fn holds_origin<S: Simd, N: Real>(&self, simd: S) -> V::Mask
     where
@@ -213,7 +222,7 @@ impl<'a, V: Copy> Fan<'a, V> {
         holds
     }
 
-    /// The corners of a feature.
+    /// Returns the simplex reduced to the corners of a feature.
     #[inline(always)]
     fn reduced<S: Simd, N: Real>(&self, simd: S, best: &BestFeature<V>) -> LaneSimplex<V>
     where
@@ -228,7 +237,7 @@ impl<'a, V: Copy> Fan<'a, V> {
         }
     }
 
-    /// The old corner of an index.
+    /// Returns the old corner of an index.
     #[inline(always)]
     fn at<S: Simd, N: Real>(&self, simd: S, place: V) -> LaneCorner<V>
     where
@@ -239,8 +248,8 @@ impl<'a, V: Copy> Fan<'a, V> {
     }
 }
 
-/// The lanes in which the origin and another point lie on the same side of a plane, the origin clearly: of
-/// both the height along a normal that is not of unit length.
+/// Returns the lanes in which the origin and another point lie on the same side of a plane, the
+/// origin clearly. `of_origin` and `of_point` are their heights times the length of `normal`.
 #[inline(always)]
 fn is_clear<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -255,7 +264,7 @@ fn is_clear<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     is_far & both
 }
 
-/// The index of an old corner as a number of the type.
+/// Returns the index of an old corner as a number of the scalar type.
 #[inline(always)]
 fn index<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, old: usize) -> V {
     lit(simd, [0.0, 1.0, 2.0][old])

@@ -3,7 +3,7 @@ use crate::collide::separation::hulls::tests::Random;
 use crate::math::simd::Level;
 use crate::shape::{ConvexHull, Cuboid, Shape, Triangle};
 
-/// Triangles, boxes and hulls, flat and thin ones too.
+/// Triangles, boxes and hulls, including flat and thin ones.
 fn solids<N: Real>(random: &mut Random) -> Vec<Box<dyn Shape<N, 3>>> {
     let mut point = || Point::<N, 3>::from(random.vector::<N>());
     let many: Vec<_> = (0..48).map(|_| point()).collect();
@@ -31,7 +31,7 @@ fn poses<N: Real>(random: &mut Random, count: usize) -> Vec<Pose<N, 3>> {
     (0..count).map(pose).collect()
 }
 
-/// Calls with every two solids, in their order, and poses.
+/// Calls `visit` with the pairs of every two solids, in the order of kinds, at all poses.
 fn each_pair<N: Real>(mut visit: impl FnMut(&[Pair<'_, N, 3>])) {
     let random = &mut Random(9);
     let solids = solids::<N>(random);

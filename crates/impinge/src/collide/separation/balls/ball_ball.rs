@@ -1,4 +1,4 @@
-//! Ball against ball: in closed form, in any dimension.
+//! Ball against ball, in closed form, in any dimension.
 
 use crate::collide::Pair;
 use crate::collide::separation::projection::first_axis;
@@ -7,9 +7,10 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::Kind;
 
-/// The separation of two balls.
+/// Returns the separation of two balls.
 ///
-/// Balls with a common centre are parted along the first axis of the world, as they are not turned.
+/// Balls with a common centre have the first axis as normal; a ball does not turn, so it is the
+/// first axis of the world.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -28,7 +29,7 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     })
 }
 
-/// The distance in [`separation`].
+/// Returns the distance of [`separation`].
 #[inline]
 pub(in crate::collide::separation) fn distance<N: Real, const D: usize>(
     center2: &Vector<N, D>,
@@ -37,7 +38,7 @@ pub(in crate::collide::separation) fn distance<N: Real, const D: usize>(
     apart(center2).1 - radii[0] - radii[1]
 }
 
-/// The direction of a centre that is seen from another, and how far it is.
+/// Returns the unit direction from the origin to the other centre, and the distance.
 #[inline]
 fn apart<N: Real, const D: usize>(center2: &Vector<N, D>) -> (Vector<N, D>, N) {
     unit(center2).unwrap_or((first_axis(), center2.norm()))

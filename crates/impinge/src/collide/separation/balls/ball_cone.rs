@@ -1,4 +1,10 @@
 //! Ball against cone: a triangle in the half-plane of the axis and the centre.
+//!
+//! ```text
+//!    y |\ apex (0, h)             one half of the axial section: `x` from the axis, `y` up
+//!      | \     slant: unit normal of the side
+//!      |__\ rim (r, -h)
+//! ```
 
 use super::ball_cylinder::HalfPlane;
 use crate::collide::Pair;
@@ -9,10 +15,10 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, unit};
 use crate::shape::{Cone, Kind};
 
-/// The separation of a ball from a cone.
+/// Returns the separation of a ball from a cone.
 ///
-/// A centre inside leaves through the nearer of base and side, through the base if equally near, and
-/// from the axis towards positive x.
+/// A centre inside leaves through the nearer of base and side, through the base if equally near. On
+/// the axis the side is left towards positive x.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -24,11 +30,12 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     project(cone, &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// The half of the cone's section on one side of the axis: `x` away from the axis, `y` up.
+/// Half of the cone's axial section: `x` is the distance from the axis, `y` the height.
 struct Section<N: Real> {
+    /// Corners of the section: the apex and the rim.
     apex: Vector<N, 2>,
     rim: Vector<N, 2>,
-    /// The unit normal of the slanted side; a cone of no size looks sideways.
+    /// Unit normal of the slanted side; the x axis for a cone of no size.
     slant: Vector<N, 2>,
 }
 
@@ -43,15 +50,15 @@ impl<N: Real> Section<N> {
         }
     }
 
-    /// How far `p` is above the section along `outward`, which does not point towards the axis.
+    /// Height of `p` above the section along `outward`, which must not point towards the axis.
     fn height(&self, outward: &Vector<N, 2>, p: &Vector<N, 2>) -> N {
         outward.dot(p) - max(outward.dot(&self.apex), outward.dot(&self.rim))
     }
 
-    /// How far `p` is above a side at least, and the normal of that side.
+    /// Returns the largest height of `p` above a side, and the normal of that side.
     ///
     /// Sideways and up are tried too, after the sides: a cone without height or radius has no side
-    /// there, and its end would not be seen.
+    /// there, and its end would be missed.
     fn highest(&self, p: &Vector<N, 2>) -> (N, Vector<N, 2>) {
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
         let mut best = (self.height(&-y, p), -y);
@@ -64,7 +71,7 @@ impl<N: Real> Section<N> {
         best
     }
 
-    /// The point of the outline nearest to `p`.
+    /// Returns the point of the outline nearest to `p`.
     fn nearest(&self, p: &Vector<N, 2>) -> Vector<N, 2> {
         let p = Point::from(*p);
         let (rim, apex) = (Point::from(self.rim), Point::from(self.apex));
@@ -76,7 +83,7 @@ impl<N: Real> Section<N> {
     }
 }
 
-/// A point seen from a cone.
+/// Projects a point onto a cone.
 pub(in crate::collide::separation) fn project<N: Real>(
     cone: &Cone<N>,
     center: &Point<N, 3>,
@@ -87,7 +94,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if flat > N::ZERO {
         let point = section.nearest(&p);
         let (offset, distance) = unit(&(p - point)).unwrap_or((outward, flat));
-        // Close by, the offset is mostly rounding: the flat sides may know better.
+        // Close to the surface the offset is mostly rounding, and the normal of a flat side may be
+        // better.
         let noise = noise(section.rim.norm() + p.norm());
         let certain = offset.x >= N::ZERO && section.height(&offset, &p) + noise >= flat;
         let outward = if certain { offset } else { outward };

@@ -1,4 +1,4 @@
-//! Ball against box: in closed form, in any dimension.
+//! Ball against box, in closed form, in any dimension.
 
 use crate::collide::Pair;
 use crate::collide::separation::projection::{Projection, center_in_second};
@@ -7,10 +7,10 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, min, unit};
 use crate::shape::Kind;
 
-/// The separation of a ball from a box.
+/// Returns the separation of a ball from a box.
 ///
-/// A centre inside leaves through the nearest face: of equally near faces the one of the first axis,
-/// and of its two the one on the positive side.
+/// A centre inside leaves through the nearest face. Ties: the face of the first axis, and of its
+/// two faces the one on the positive side.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -22,7 +22,7 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     project(cuboid.half_extents(), &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// A point seen from a box.
+/// Projects a point onto a box.
 #[inline]
 pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
     half_extents: &Vector<N, D>,
@@ -35,7 +35,7 @@ pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
     }
 }
 
-/// A point in the box, its surface included.
+/// Projects a point inside the box or on its surface.
 fn project_inside<N: Real, const D: usize>(
     half_extents: &Vector<N, D>,
     center: &Point<N, D>,

@@ -7,10 +7,10 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, min, unit};
 use crate::shape::{Cylinder, Kind};
 
-/// The separation of a ball from a cylinder.
+/// Returns the separation of a ball from a cylinder.
 ///
-/// A centre inside leaves through the nearer of cap and side, through the cap if equally near, and
-/// from the axis towards positive x.
+/// A centre inside leaves through the nearer of cap and side, through the cap if equally near. On
+/// the axis the side is left towards positive x.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -22,11 +22,12 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     project(cylinder, &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// A point in cylindrical coordinates: its distance from the y axis, its height, and the direction
-/// away from the axis (positive x on the axis).
+/// A point in cylindrical coordinates: distance from the y axis, height, and the unit direction
+/// away from the axis, positive x for points on it.
 pub(in crate::collide::separation) struct HalfPlane<N: Real> {
     /// `x` is the distance from the axis, `y` the height.
     pub(in crate::collide::separation) point: Vector<N, 2>,
+    /// Unit vector away from the axis, as (x, z).
     away: Vector<N, 2>,
 }
 
@@ -37,12 +38,12 @@ impl<N: Real> HalfPlane<N> {
         Self { point: Vector::<N, 2>::new(radial, point.y), away }
     }
 
-    /// A vector of the half-plane, in 3D.
+    /// Maps a vector of the half-plane to 3D.
     pub(in crate::collide::separation) fn lift(&self, v: &Vector<N, 2>) -> Vector<N, 3> {
         Vector::<N, 3>::new(self.away.x * v.x, v.y, self.away.y * v.x)
     }
 
-    /// The projection found in the half-plane, in 3D.
+    /// Maps a projection found in the half-plane to 3D.
     pub(in crate::collide::separation) fn projection(
         &self,
         distance: N,
@@ -54,7 +55,7 @@ impl<N: Real> HalfPlane<N> {
     }
 }
 
-/// A point seen from a cylinder.
+/// Projects a point onto a cylinder.
 #[inline]
 pub(in crate::collide::separation) fn project<N: Real>(
     cylinder: &Cylinder<N>,

@@ -7,13 +7,13 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, max_component, min, unit};
 use crate::shape::{Ellipsoid, Kind, SupportMap};
 
-/// Cap on the number of steps. They converge from one side, at last quadratically: about six are
-/// taken, up to twenty close to the middle of a flat one.
+/// Cap on the Newton steps. They converge from one side, in the end quadratically: about six are
+/// taken, up to twenty close to the middle of a flat ellipsoid.
 const STEPS: usize = 64;
 
-/// The separation of a ball from an ellipsoid.
+/// Returns the separation of a ball from an ellipsoid.
 ///
-/// From the middle the ball leaves along the shortest half axis: of equal ones the first, towards its
+/// From the middle the ball leaves along the shortest half axis: the first of equals, towards its
 /// positive side.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -26,14 +26,15 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     project(ellipsoid, &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// A point seen from an ellipsoid.
+/// Projects a point onto an ellipsoid.
 ///
-/// After D. Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid" (2013):
-/// the nearest point `x` of the surface to `y` has `x = e² y / (e² + s)` in each coordinate, and the
-/// root `s` of one convex function tells the rest. Here the root is counted from the shortest half
-/// axis, so that flat and needle-like ellipsoids are as accurate as round ones, and Newton's method
-/// runs on the inverse of the function's square root, which is nearly straight (J. Moré and
-/// D. Sorensen, "Computing a Trust Region Step", 1983).
+/// After D. Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid"
+/// (2013): the point `x` of the surface nearest to `y` has `x = e² y / (e² + s)` in each
+/// coordinate, where `e` is the half axis and `s` the root of one convex function. Here
+/// `t = s + least²` is solved for, counted from the shortest half axis, so that flat and
+/// needle-like ellipsoids are as accurate as round ones. Newton's method runs on the inverse of the
+/// function's square root, which is nearly straight (J. Moré and D. Sorensen, "Computing a Trust
+/// Region Step", 1983).
 pub(crate) fn project<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,
@@ -53,7 +54,7 @@ pub(crate) fn project<N: Real, const D: usize>(
     }
 }
 
-/// Of a point so far away that only its direction counts; or of an ellipsoid that is a point.
+/// Projects a point so far away that only its direction counts, or onto an ellipsoid of size zero.
 fn from_afar<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,
@@ -63,12 +64,12 @@ fn from_afar<N: Real, const D: usize>(
     Projection { distance, outward, point: nearest }
 }
 
-/// An ellipsoid whose longest half axis is about 1, and a point.
+/// An ellipsoid scaled so that its longest half axis is about 1, and a point.
 struct ScaledEllipsoid<N: Real, const D: usize> {
     half_axes: Vector<N, D>,
-    /// The shortest of them.
+    /// The shortest half axis.
     least: N,
-    /// How much the square of each exceeds that of the shortest.
+    /// Square of each half axis minus the square of the shortest.
     excess: Vector<N, D>,
     point: Vector<N, D>,
 }
@@ -80,6 +81,7 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         Self { half_axes: *half_axes, least, excess, point: *point }
     }
 
+    /// Projects the point, by the root or, where the shortest axis alone decides, directly.
     fn project(&self) -> Projection<N, D> {
         let low = (0..D).fold(N::ZERO, |low, axis| {
             let alone = self.half_axes[axis] * self.point[axis].abs() - self.excess[axis];
@@ -89,7 +91,7 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
             return self.across();
         }
         let root = self.root(low);
-        // The normal is this vector, not a difference of points: it is right on the surface too.
+        // The normal is this vector, not a difference of points, so it is exact on the surface too.
         let normal =
             Vector::<N, D>::from_fn(|axis, _| quotient(self.point[axis], root + self.excess[axis]));
         let (outward, length) = unit(&normal).unwrap_or_else(|| (first_axis(), N::ZERO));
@@ -100,13 +102,14 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         }
     }
 
-    /// The point of the surface whose normal is proportional to `normal`, given of the right length.
+    /// Returns the point of the surface whose normal is proportional to `normal`, of the right
+    /// length.
     fn at(&self, normal: &Vector<N, D>) -> Point<N, D> {
         Point::from(normal.zip_map(&self.half_axes, |n, half| half * (half * n)))
     }
 
-    /// For a root `t`, how far outside the surface the point found is, as the square of its size in
-    /// units of the half axes; and half of how fast that falls.
+    /// Returns the squared size of the point for `t`, in units of the half axes: above 1 it is
+    /// outside. Also half the rate at which that falls.
     fn level(&self, t: N) -> (N, N) {
         let (mut level, mut fall) = (N::ZERO, N::ZERO);
         for axis in 0..D {
@@ -118,7 +121,7 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         (level, fall)
     }
 
-    /// The root from below: at `t` the level is 1 or more.
+    /// Finds the root from below: the level at `t` is 1 or more.
     fn root(&self, mut t: N) -> N {
         for _ in 0..STEPS {
             let (level, fall) = self.level(t);
@@ -132,8 +135,8 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         t
     }
 
-    /// The nearest point where the shortest half axis alone decides: the point is in the middle plane
-    /// across it, close enough to the middle, or the ellipsoid has no thickness there.
+    /// Projects where the shortest half axis alone decides: the point lies in the middle plane
+    /// across that axis, close enough to the middle, or the ellipsoid has no thickness there.
     fn across(&self) -> Projection<N, D> {
         let shortest = |axis: &usize| self.excess[*axis] == N::ZERO;
         let first = (0..D).find(shortest).unwrap_or(0);
@@ -157,7 +160,7 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
     }
 }
 
-/// A quotient whose numerator is zero is zero, whatever it is divided by.
+/// Returns the quotient, or zero if either number is zero.
 fn quotient<N: Real>(numerator: N, denominator: N) -> N {
     if numerator == N::ZERO || denominator == N::ZERO { N::ZERO } else { numerator / denominator }
 }

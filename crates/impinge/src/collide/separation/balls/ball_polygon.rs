@@ -8,10 +8,10 @@ use crate::convex::Separation;
 use crate::math::{Point, Real};
 use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
-/// The separation of a ball from a convex polygon.
+/// Returns the separation of a ball from a convex polygon.
 ///
-/// As from a convex hull in 3D: inside, the nearest side is the way out; outside, the nearest
-/// point lies on a side that sees the centre in front of it. Cost: linear in the number of sides.
+/// Inside, the nearest side is the way out. Outside, the nearest point lies on a side that has the
+/// centre in front of it. Cost: linear in the number of sides.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,
@@ -23,7 +23,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     project(polygon, &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// A point seen from a polygon.
+/// Projects a point onto a polygon.
 pub(in crate::collide::separation) fn project<N: Real>(
     polygon: &Polytope<N, 2>,
     center: &Point<N, 2>,
@@ -38,8 +38,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
     Projection { distance, outward, point: center - outward * distance }
 }
 
-/// A point outside, which is highest above the line of a given side: mostly the nearest point lies on
-/// that very side, and the supporting line there proves it.
+/// Projects a point outside, which is highest above the side `highest`. Mostly the nearest point
+/// lies on that side, and the supporting line there proves it.
 fn project_from_outside<N: Real>(
     polygon: &Polytope<N, 2>,
     center: &Point<N, 2>,
@@ -59,14 +59,14 @@ fn project_from_outside<N: Real>(
             best = seen;
         }
     }
-    // The offset from a corner is mostly rounding where the point is close: a side may know better.
+    // Close to a corner the offset is mostly rounding, and the normal of a side may be better.
     if certain(&best) + noise < highest.height_of(center) {
         best.outward = highest.normal;
     }
     best
 }
 
-/// A point seen from a side that it is in front of.
+/// Projects a point onto a side that it is in front of.
 fn project_on_side<N: Real>(
     polygon: &Polytope<N, 2>,
     side: &PolytopeFace<N, 2>,

@@ -8,11 +8,11 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, cross};
 use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
-/// The separation of a ball from a convex hull.
+/// Returns the separation of a ball from a convex hull.
 ///
-/// Inside, the nearest face is the way out, and its plane's distance the exact depth. Outside, the
-/// nearest point lies on one of the faces that see the centre in front of them: each is projected
-/// on. Cost: linear in the number of faces.
+/// Inside, the nearest face is the way out, and the distance of its plane the exact depth. Outside,
+/// the nearest point lies on one of the faces that have the centre in front of them; the centre is
+/// projected onto each. Cost: linear in the number of faces.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -24,7 +24,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     project(hull, &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// A point seen from a convex hull.
+/// Projects a point onto a convex hull.
 pub(in crate::collide::separation) fn project<N: Real>(
     hull: &Polytope<N, 3>,
     center: &Point<N, 3>,
@@ -37,9 +37,10 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if distance > N::ZERO { project_from_outside(hull, center, highest, &flat) } else { flat }
 }
 
-/// A point outside; `flat` is how the plane of the face that it is highest above sees it.
+/// Projects a point outside; `flat` is its projection onto the plane of the face `highest`, which
+/// it is highest above.
 ///
-/// Mostly the nearest point lies on that very face, and the supporting plane there proves it.
+/// Mostly the nearest point lies on that face, and the supporting plane there proves it.
 fn project_from_outside<N: Real>(
     hull: &Polytope<N, 3>,
     center: &Point<N, 3>,
@@ -62,14 +63,14 @@ fn project_from_outside<N: Real>(
         }
     }
     let mut best = best.unwrap_or(*flat);
-    // The offset from a side is mostly rounding where the point is close: a face may know better.
+    // Close to a side the offset is mostly rounding, and the normal of a face may be better.
     if certain(&best) + noise < flat.distance {
         best.outward = flat.outward;
     }
     best
 }
 
-/// A point seen from a face that it is in front of.
+/// Projects a point onto a face that it is in front of.
 fn project_on_face<N: Real>(
     hull: &Polytope<N, 3>,
     face: &PolytopeFace<N, 3>,

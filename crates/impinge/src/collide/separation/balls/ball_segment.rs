@@ -1,4 +1,4 @@
-//! Ball against segment or capsule: in closed form, in any dimension.
+//! Ball against segment or capsule, in closed form, in any dimension.
 
 use crate::collide::Pair;
 use crate::collide::separation::projection::{
@@ -9,10 +9,10 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::{Kind, Segment};
 
-/// The separation of a ball from a segment or capsule.
+/// Returns the separation of a ball from a segment or capsule.
 ///
-/// A centre on the segment leaves it along a fixed perpendicular; one at the place of a segment of
-/// no length along the first axis of the segment's frame.
+/// A centre on the segment leaves it along a fixed perpendicular. If the segment has no length and
+/// the centre coincides with it, along the first axis of the segment's frame.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -27,7 +27,7 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     seen.of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// How far a point is from a segment, for which no direction is needed.
+/// Returns the distance of a point from a segment, without computing a direction.
 #[inline]
 pub(in crate::collide::separation) fn distance_from<N: Real, const D: usize>(
     segment: &Segment<N, D>,
@@ -36,7 +36,7 @@ pub(in crate::collide::separation) fn distance_from<N: Real, const D: usize>(
     Foot::new([*segment.a(), *segment.b()], center).distance
 }
 
-/// A point seen from a segment.
+/// Projects a point onto a segment.
 pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
     ends: &[Point<N, D>; 2],
     center: &Point<N, D>,
@@ -44,18 +44,20 @@ pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
     Foot::new(*ends, center).projection()
 }
 
-/// Where a point is nearest to a segment.
+/// Nearest point of a segment to a given point.
 pub(in crate::collide::separation) struct Foot<N: Real, const D: usize> {
     ends: [Point<N, D>; 2],
+    /// The nearest point of the segment.
     point: Point<N, D>,
-    /// From there to the point that sees it, and how long that is.
+    /// Vector from `point` to the given point; `distance` is its length.
     offset: Vector<N, D>,
     pub(in crate::collide::separation) distance: N,
-    /// Between the ends.
+    /// `point` lies between the ends.
     is_inside: bool,
 }
 
 impl<N: Real, const D: usize> Foot<N, D> {
+    /// Finds the nearest point of the segment to `center`.
     #[inline]
     pub(in crate::collide::separation) fn new(
         ends: [Point<N, D>; 2],
@@ -66,11 +68,13 @@ impl<N: Real, const D: usize> Foot<N, D> {
         Self { ends, point, offset, distance: offset.norm(), is_inside }
     }
 
-    /// With the direction, which takes longer to find than all else.
+    /// Adds the direction, which costs more than all else.
     pub(in crate::collide::separation) fn projection(&self) -> Projection<N, D> {
         Projection { distance: self.distance, outward: self.outward(), point: self.point }
     }
 
+    /// Returns the unit direction from the segment to the point; a perpendicular of the segment
+    /// where the offset is rounding.
     fn outward(&self) -> Vector<N, D> {
         let direct = if self.is_inside { None } else { unit(&self.offset) };
         if let Some((outward, _)) = direct {

@@ -1,4 +1,4 @@
-//! Ball against tapered capsule: in closed form, in any dimension.
+//! Ball against tapered capsule, in closed form, in any dimension.
 
 use crate::collide::Pair;
 use crate::collide::separation::projection::{
@@ -9,10 +9,10 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::{FeatureId, Kind, TaperedCapsule};
 
-/// The separation of a ball from a tapered capsule.
+/// Returns the separation of a ball from a tapered capsule.
 ///
-/// A centre on the axis leaves along a fixed perpendicular, one at an end away from the other; one at the
-/// centre of the larger ball, where that holds the other, along the first axis of the solid's frame.
+/// A centre on the axis leaves along a fixed perpendicular, a centre at an end away from the other
+/// end. If one ball contains the other, the centre of the larger one leaves along the first axis.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -24,11 +24,11 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     project(capsule, &center).0.of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// A point seen from a tapered capsule, and the part of the surface that it is nearest to.
+/// Projects a point onto a tapered capsule; also returns the nearest part of its surface.
 ///
-/// In the half-plane through axis and point the side is a segment. The perpendiculars at its ends tell
-/// to which part the point belongs, inside as well as outside: they pass through the centres of the
-/// balls.
+/// In the half-plane through axis and point the side is a segment. The perpendiculars at its ends
+/// pass through the centres of the balls and bound the region of the side, inside as well as
+/// outside.
 pub(crate) fn project<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     point: &Point<N, D>,
@@ -53,8 +53,8 @@ pub(crate) fn project<N: Real, const D: usize>(
     (Projection { distance, outward, point: nearest }, FeatureId::Edge(0))
 }
 
-/// A point seen from one of the balls; `fallback` is the way out from its centre, which also serves
-/// where the offset from there is mostly rounding.
+/// Projects a point onto one of the balls. `fallback` is the direction at its centre, also used if
+/// the offset from the centre is mostly rounding.
 fn around_end<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     end: usize,
@@ -76,7 +76,7 @@ mod tests {
 
     type P = Point<f64, 3>;
 
-    /// The side rises by 3 on 4: its normal leans back by the sine 0.6.
+    /// The side rises by 3 on 4: its normal is tilted by the sine 0.6.
     fn club() -> TaperedCapsule<f64, 3> {
         TaperedCapsule::try_from_ends(P::origin(), P::new(0.0, 5.0, 0.0), [1.0, 4.0])
             .expect("finite")

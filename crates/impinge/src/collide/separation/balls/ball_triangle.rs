@@ -10,10 +10,10 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross, max, unit};
 use crate::shape::Kind;
 
-/// The separation of a ball from a triangle in 3D.
+/// Returns the separation of a ball from a triangle in 3D.
 ///
-/// A centre on the triangle leaves on the side that sees the corners counter-clockwise; on a
-/// triangle without area, as it would leave the nearest side.
+/// A centre on the triangle leaves on the side from which the corners run counter-clockwise; on a
+/// triangle without area, as from its longest side.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (Kind::Ball(ball), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
         wrong_kinds(pair)
@@ -22,7 +22,7 @@ pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     project(triangle.corners(), &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// A point seen from a triangle; the distance is never negative.
+/// Projects a point onto a triangle; the distance is never negative.
 pub(in crate::collide::separation) fn project<N: Real>(
     corners: &[Point<N, 3>; 3],
     center: &Point<N, 3>,
@@ -34,7 +34,7 @@ pub(in crate::collide::separation) fn project<N: Real>(
         return Projection { distance, outward, point: center - outward * distance };
     }
     let mut seen = on_nearest_side(corners, center).projection();
-    // Close to a side the offset is mostly rounding: the triangle's own normal may be better.
+    // Close to a side the offset is mostly rounding, and the normal of the triangle may be better.
     let normal = toward(&front, &(center - corners[0]));
     if height(&normal, corners, center)
         > height(&seen.outward, corners, center) + noise(reach(corners, center))
@@ -44,7 +44,7 @@ pub(in crate::collide::separation) fn project<N: Real>(
     seen
 }
 
-/// The distance in [`project`].
+/// Returns the distance of [`project`].
 pub(in crate::collide::separation) fn distance_from<N: Real>(
     corners: &[Point<N, 3>; 3],
     center: &Point<N, 3>,
@@ -54,8 +54,8 @@ pub(in crate::collide::separation) fn distance_from<N: Real>(
     over.map_or_else(|| on_nearest_side(corners, center).distance, |(distance, _)| distance)
 }
 
-/// How far a point is from the triangle that it projects into, whose front normal is `front`, and the normal
-/// on its side; `None` if it projects elsewhere.
+/// Returns the distance of a point that projects into the triangle, and the normal towards it.
+/// `front` is the triangle's front normal. `None` if the point projects elsewhere.
 fn height_over<N: Real>(
     corners: &[Point<N, 3>; 3],
     front: &Vector<N, 3>,
@@ -66,18 +66,18 @@ fn height_over<N: Real>(
     is_over.then(|| (max((center - corners[0]).dot(&normal), N::ZERO), normal))
 }
 
-/// Where a triangle that is a segment up to rounding is nearest: the other sides lie on the longest one; one
-/// that is a point has no direction.
+/// Nearest point of a triangle that is a segment up to rounding: the other sides lie on the
+/// longest.
 fn on_longest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let side = longest_side(corners);
     Foot::new([corners[side], corners[(side + 1) % 3]], center)
 }
 
-/// The unit normal on the side that sees the corners counter-clockwise; `None` for a triangle that is
-/// a segment up to rounding.
+/// Returns the unit normal on the side from which the corners run counter-clockwise; `None` for a
+/// triangle that is a segment up to rounding.
 ///
-/// From the longest side and what is perpendicular to it: however thin the triangle, the normal is
-/// then off by rounding only in the direction in which the triangle is thin.
+/// It is computed from the longest side and the perpendicular to it: however thin the triangle, the
+/// normal is inexact only in the direction in which the triangle is thin.
 fn front<N: Real>(corners: &[Point<N, 3>; 3]) -> Option<Vector<N, 3>> {
     let side = |at: usize| corners[(at + 1) % 3] - corners[at % 3];
     let longest = longest_side(corners);
@@ -88,14 +88,14 @@ fn front<N: Real>(corners: &[Point<N, 3>; 3]) -> Option<Vector<N, 3>> {
     unit(&cross(&along, &inward)).filter(|_| !thin).map(|(front, _)| front)
 }
 
-/// The number of the longest side, the first of equals.
+/// Index of the longest side, the first of equals.
 fn longest_side<N: Real>(corners: &[Point<N, 3>; 3]) -> usize {
     let squared = |at: usize| (corners[(at + 1) % 3] - corners[at]).norm_squared();
     let longer = |a: usize, b: usize| if squared(b) > squared(a) { b } else { a };
     longer(longer(0, 1), 2)
 }
 
-/// The nearest of the three sides, the first of equals.
+/// Nearest point of the three sides, the first of equals.
 fn on_nearest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let [a, b, c] = *corners;
     let mut best = Foot::new([a, b], center);
@@ -108,12 +108,12 @@ fn on_nearest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) ->
     best
 }
 
-/// `normal` or its opposite, whichever does not point away from `direction`.
+/// Returns `normal` or its opposite, whichever does not point away from `direction`.
 fn toward<N: Real>(normal: &Vector<N, 3>, direction: &Vector<N, 3>) -> Vector<N, 3> {
     if normal.dot(direction) < N::ZERO { -normal } else { *normal }
 }
 
-/// The point projects into the triangle, whose front normal is `front`.
+/// Returns whether `p` projects into the triangle with the front normal `front`.
 fn lies_over<N: Real>(corners: &[Point<N, 3>; 3], front: &Vector<N, 3>, p: &Point<N, 3>) -> bool {
     (0..3).all(|side| {
         let (from, to) = (corners[side], corners[(side + 1) % 3]);
@@ -121,12 +121,12 @@ fn lies_over<N: Real>(corners: &[Point<N, 3>; 3], front: &Vector<N, 3>, p: &Poin
     })
 }
 
-/// A length that no corner and not `p` exceeds in distance from the origin.
+/// Returns a bound of the distance of the corners and `p` from the origin.
 fn reach<N: Real>(corners: &[Point<N, 3>; 3], p: &Point<N, 3>) -> N {
     corners.iter().fold(p.coords.norm(), |most, corner| max(corner.coords.norm(), most))
 }
 
-/// How far `p` is above the highest corner along `direction`.
+/// Signed height of `p` above the highest corner along `direction`.
 fn height<N: Real>(direction: &Vector<N, 3>, corners: &[Point<N, 3>; 3], p: &Point<N, 3>) -> N {
     corners.iter().fold(N::INFINITY, |least, corner| {
         let above = direction.dot(&(p - corner));

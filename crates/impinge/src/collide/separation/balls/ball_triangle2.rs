@@ -1,4 +1,4 @@
-//! Ball against triangle in 2D: by the side or corner that is nearest to the centre.
+//! Ball against triangle in 2D: by the side or corner nearest to the centre.
 
 use crate::collide::Pair;
 use crate::collide::separation::polygons::polygon_polygon;
@@ -8,8 +8,8 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross2, max, max_component, perp, unit};
 use crate::shape::Kind;
 
-/// The separation of a ball from a triangle of the plane; of one that is a segment up to rounding as of
-/// outlines.
+/// Returns the separation of a ball from a triangle in 2D. A triangle that is a segment up to
+/// rounding goes to [`polygon_polygon`].
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,
@@ -26,10 +26,11 @@ pub(in crate::collide::separation) fn separation<N: Real>(
 /// A side of a triangle whose inside is on its left.
 #[derive(Clone, Copy)]
 struct DirectedEdge<N: Real> {
+    /// Start of the side, unit direction to its end, and its length.
     from: Point<N, 2>,
     along: Vector<N, 2>,
     length: N,
-    /// How far the point is above the line of the side.
+    /// Signed height of the point above the line of the side.
     height: N,
 }
 
@@ -44,29 +45,29 @@ impl<N: Real> DirectedEdge<N> {
         -perp(&self.along)
     }
 
-    /// The point lies above the side itself, not only above its line.
+    /// Returns whether the point lies above the side itself, not only above its line.
     fn is_below(&self, center: &Point<N, 2>) -> bool {
         let way = self.along.dot(&(center - self.from));
         self.height > N::ZERO && way > N::ZERO && way < self.length
     }
 
-    /// Seen from the side's line.
+    /// Projects the point onto the line of the side.
     fn projection(&self, center: &Point<N, 2>) -> Projection<N, 2> {
         let (distance, outward) = (self.height, self.outward());
         Projection { distance, outward, point: center - outward * distance }
     }
 }
 
-/// A point seen from a triangle, whose corners come in either order; `None` for one that is a segment up to
-/// rounding, and for NaN.
+/// Projects a point onto a triangle, whose corners may be in either order; `None` for a triangle
+/// that is a segment up to rounding, and for NaN.
 ///
-/// Inside, the nearest side is the way out: of equally near ones the first of the outline, which begins
-/// with the first corner.
+/// Inside, the nearest side is the way out: the first of equals in the outline, which begins with
+/// the first corner.
 pub(in crate::collide::separation) fn project<N: Real>(
     &[a, b, c]: &[Point<N, 2>; 3],
     center: &Point<N, 2>,
 ) -> Option<Projection<N, 2>> {
-    // By a power of two, so that the product is a number of the type.
+    // Scaled by a power of two, so that the product neither overflows nor underflows.
     let size = max(max_component(&(b - a)), max_component(&(c - a))).power_of_two_below();
     let turns_left = cross2(&((b - a) / size), &((c - a) / size)) >= N::ZERO;
     let [a, b, c] = if turns_left { [a, b, c] } else { [a, c, b] };
@@ -88,11 +89,11 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if highest.height > N::ZERO {
         return Some(from_corner(&[a, b, c], center, &highest));
     }
-    // NaN, of which nothing is known, is no depth.
+    // NaN gives no depth.
     (highest.height <= N::ZERO).then(|| highest.projection(center))
 }
 
-/// Not all corners lie on the longest side, up to rounding; nothing that is not a number has an area.
+/// Returns whether a corner lies off the longest side by more than rounding; `false` for NaN.
 fn has_area<N: Real>(sides: &[DirectedEdge<N>; 3]) -> bool {
     let [side, next, last] = sides;
     let longest = max(max(side.length, next.length), last.length);
@@ -101,8 +102,8 @@ fn has_area<N: Real>(sides: &[DirectedEdge<N>; 3]) -> bool {
     area > N::lit(64.0) * N::EPSILON
 }
 
-/// Seen from the nearest corner, the first of equals; where that is so close that the direction is mostly
-/// rounding, along the normal of the highest side.
+/// Projects the point onto the nearest corner, the first of equals. If it is so close that the
+/// direction is mostly rounding, the normal of the highest side is used.
 fn from_corner<N: Real>(
     corners: &[Point<N, 2>; 3],
     center: &Point<N, 2>,
@@ -156,7 +157,7 @@ mod tests {
         assert_eq!(project(&corners, &p(f64::NAN, 1.0)), None, "nowhere");
     }
 
-    /// As outlines see it, all around triangles of all shapes.
+    /// Compares with the separation of outlines, all around triangles of all shapes.
     #[test]
     fn as_outlines_have_it() {
         let (mut inside, mut tried) = (0, 0);

@@ -1,4 +1,5 @@
-//! Balls against all other solids: a ball is a point with a radius, so each is a closed form for a point.
+//! Balls against all other solids. A ball is a point with a radius, so each file projects a point
+//! onto one kind of solid.
 
 pub(super) mod ball_ball;
 pub(super) mod ball_cone;

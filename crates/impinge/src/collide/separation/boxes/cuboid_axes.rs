@@ -1,50 +1,62 @@
-//! The separating axis test of two boxes in 3D.
+//! Separating axis test of two boxes in 3D.
 //!
-//! Gottschalk, Lin and Manocha, "`OBBTree`" (1996): two boxes are apart iff one of 15 directions says
-//! so, and if not, the one that says so least badly is the direction of the shortest way out.
+//! Gottschalk, Lin and Manocha, "`OBBTree`" (1996): two boxes are apart iff one of 15 directions
+//! separates them; otherwise the one with the least overlap is the shortest way out.
+//!
+//! ```text
+//!   Face1(i)       axis i of box 1                    3 directions
+//!   Face2(j)       axis j of box 2                    3
+//!   Edges(i, j)    axis i of box 1 x axis j of box 2  9; nearly parallel axes are skipped
+//! ```
+//!
+//! The eight-pair form of this test is in `collide/batch/boxes/`.
 
 use crate::math::{Matrix, Pose, Real, Vector, cross, max, min};
 
-/// Two boxes, the second placed in the frame of the first.
+/// Two boxes, the second at `pose12` in the frame of the first.
 pub(crate) struct BoxPair<N: Real> {
+    /// Half extents of both boxes.
     pub(crate) half1: Vector<N, 3>,
     pub(crate) half2: Vector<N, 3>,
     pub(crate) pose12: Pose<N, 3>,
 }
 
-/// Which of the 15 directions it is.
+/// One of the 15 directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AxisKind {
     /// The normal of a face of the first box.
     Face1(usize),
     /// The normal of a face of the second box.
     Face2(usize),
-    /// Perpendicular to an edge of each.
+    /// Perpendicular to an edge of each box, along these axes.
     Edges(usize, usize),
 }
 
-/// A unit direction from the first box to the second, and the gap it leaves between them.
+/// A unit direction from the first box to the second, and the signed gap along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BoxAxis<N: Real> {
     pub(crate) kind: AxisKind,
+    /// Unit, from the first box to the second, in the frame of the first.
     pub(crate) normal: Vector<N, 3>,
+    /// Signed distance along the normal.
     pub(crate) gap: N,
 }
 
 impl<N: Real> BoxPair<N> {
-    /// What arithmetic on these numbers cannot resolve.
+    /// Returns the rounding error of lengths of this pair.
     pub(crate) fn noise(&self) -> N {
         let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();
         N::lit(4.0) * N::EPSILON * size
     }
 
-    /// An axis of the second box in the frame of the first.
+    /// Returns an axis of the second box in the frame of the first.
     pub(crate) fn axis2(&self, axis: usize) -> Vector<N, 3> {
         self.pose12.rotation.column(axis).into_owned()
     }
 
-    /// The direction of the largest gap. Faces of the first box come before those of the second, and
-    /// an edge pair must beat the best face by more than rounding: faces give better points.
+    /// Returns the direction of the largest gap. Faces of the first box come before faces of the
+    /// second. A pair of edges must exceed the best face by more than rounding, as faces give
+    /// better points.
     pub(crate) fn best_axis(&self) -> BoxAxis<N> {
         let leans = self.pose12.rotation.abs();
         let (face, gap) = self.best_face(&leans);
@@ -54,7 +66,7 @@ impl<N: Real> BoxPair<N> {
         }
     }
 
-    /// The face normal that leaves the largest gap; `leans` is the rotation without signs.
+    /// Returns the face normal with the largest gap; `leans` holds the rotation's absolute values.
     fn best_face(&self, leans: &Matrix<N, 3>) -> (AxisKind, N) {
         let (t, mut best, mut gap) = (&self.pose12.translation, AxisKind::Face1(0), N::ZERO);
         for i in 0..3 {
@@ -75,12 +87,13 @@ impl<N: Real> BoxPair<N> {
         (best, gap)
     }
 
-    /// The pair of edges that leaves the largest gap, if that is more than `least`.
+    /// Returns the pair of edges with the largest gap, if it exceeds `least`.
     ///
-    /// The cross product of two axes has the sine of their angle for its length. Where the gap along
-    /// it is negative, dividing by that can only make it smaller, so most pairs need no root. How it leans
-    /// on the axes of the second box is a difference of two products, which is small where the sine is: the
-    /// entry of the rotation that equals it is not, up to rounding, and that is divided by the sine too.
+    /// The cross product of two axes has the length of the sine of their angle. A negative gap can
+    /// only shrink when divided by it, so most pairs need no root. The product's components on the
+    /// axes of the second box are differences of two products, small where the sine is. They equal
+    /// entries of the rotation only up to rounding, and that error would be divided by the sine
+    /// too; so the differences are used.
     fn best_edges(&self, leans: &Matrix<N, 3>, least: N) -> Option<(AxisKind, N)> {
         let (r, t) = (&self.pose12.rotation, &self.pose12.translation);
         let (mut best, mut bound) = (None, least);
@@ -98,7 +111,7 @@ impl<N: Real> BoxPair<N> {
                     continue;
                 }
                 let sine = (r[(i1, j)] * r[(i1, j)] + r[(i2, j)] * r[(i2, j)]).sqrt();
-                // Of parallel edges nothing new is learnt: the faces suffice.
+                // Parallel edges add nothing: the faces suffice.
                 if sine > N::lit(16.0) * N::EPSILON && slack > bound * sine {
                     (best, bound) = (Some(AxisKind::Edges(i, j)), slack / sine);
                 }
@@ -107,7 +120,7 @@ impl<N: Real> BoxPair<N> {
         best.map(|edges| (edges, bound))
     }
 
-    /// An axis with its direction, turned to point from the first box to the second.
+    /// Returns an axis with its direction, pointing from the first box to the second.
     fn axis(&self, kind: AxisKind, gap: N) -> BoxAxis<N> {
         let direction = match kind {
             AxisKind::Face1(axis) => Vector::<N, 3>::ith(axis, N::ONE),

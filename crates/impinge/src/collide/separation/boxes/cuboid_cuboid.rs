@@ -10,10 +10,10 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, min};
 use crate::shape::Kind;
 
-/// The separation of two boxes.
+/// Returns the separation of two boxes.
 ///
-/// Where they overlap the separating axis test is exact. Where they are apart it gives a bound, and
-/// the distance if the nearest points lie on a face or between edges; in the other cases (two
+/// For overlapping boxes the separating axis test is exact. For boxes apart it gives a bound, and
+/// the distance if the nearest points lie on a face or between edges. In the other cases (two
 /// corners, a corner and an edge) the general algorithm decides.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
@@ -23,7 +23,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     along_best(pair, limit, &boxes, &boxes.best_axis())
 }
 
-/// [`separation`] where the axes alone decide: the boxes overlap, or are farther apart than a limit (`Some(None)`).
+/// Returns [`separation`] if the axes decide: the boxes overlap, or exceed `limit` (`Some(None)`).
 pub(in crate::collide::separation) fn decided_by_axes<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -34,7 +34,7 @@ pub(in crate::collide::separation) fn decided_by_axes<N: Real>(
     is_decided.then(|| along_best(pair, limit, &boxes, &best))
 }
 
-/// The distance in [`separation`]; where the boxes overlap the axes know it, without points.
+/// Returns the distance of [`separation`]; for overlapping boxes it is the gap, without points.
 pub(in crate::collide::separation) fn distance<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -55,7 +55,7 @@ fn of_pair<N: Real>(pair: &Pair<'_, N, 3>) -> BoxPair<N> {
     BoxPair { half1, half2, pose12: pair.pose12 }
 }
 
-/// The separation, given the axis of the largest gap.
+/// Returns the separation, given the axis of the largest gap.
 fn along_best<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -74,12 +74,12 @@ fn along_best<N: Real>(
     general::of_flat_cores_near(pair, limit, &best.normal)
 }
 
-/// The gap along an axis exceeds a limit by more than rounding.
+/// Returns whether the gap along an axis exceeds `limit` by more than rounding.
 fn is_beyond<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>, limit: N) -> bool {
     axis.gap > limit + N::lit(16.0) * boxes.noise()
 }
 
-/// The points where the boxes face each other along an axis.
+/// Returns the points of both boxes along an axis, with the gap as distance.
 fn along<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
     let (normal, distance) = (axis.normal, axis.gap);
     let (point1, point2) = match axis.kind {
@@ -99,7 +99,8 @@ fn along<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
     Separation { distance, normal, point1, point2 }
 }
 
-/// The nearest points of the two edges, of given directions, that face each other along `normal`.
+/// Returns the nearest points of the two edges along these axes that face each other along
+/// `normal`.
 fn between_edges<N: Real>(
     boxes: &BoxPair<N>,
     axis1: usize,
@@ -111,7 +112,7 @@ fn between_edges<N: Real>(
     nearest_of_segments(&edge1, &edge2.mapped(|end| boxes.pose12.point(&end)))
 }
 
-/// The edge of a box along one of its axes that lies farthest in a direction.
+/// Returns the edge of a box along `axis` that lies farthest in a direction.
 fn edge_toward<N: Real>(
     half: &Vector<N, 3>,
     axis: usize,
@@ -123,7 +124,7 @@ fn edge_toward<N: Real>(
     [Point::from(low), Point::from(high)]
 }
 
-/// A face of a box, in its own frame: at `axis`, on the side that `toward` has the sign of.
+/// A face of a box in its own frame: normal to `axis`, on the side of the sign of `toward`.
 struct BoxReferenceFace<N: Real> {
     half: Vector<N, 3>,
     axis: usize,
@@ -135,7 +136,7 @@ impl<N: Real> BoxReferenceFace<N> {
         if self.toward < N::ZERO { -N::ONE } else { N::ONE }
     }
 
-    /// How far a point is in front of the face.
+    /// Signed height of a point above the face.
     fn height(&self, point: &Point<N, 3>) -> N {
         self.sign() * point[self.axis] - self.half[self.axis]
     }
@@ -148,7 +149,7 @@ impl<N: Real> BoxReferenceFace<N> {
         below
     }
 
-    /// The part of a polygon that is above the face, or beside it by a slack at most.
+    /// Clips a polygon to the side planes of the face, moved outwards by `slack`.
     fn above(&self, polygon: &Polygon<N>, slack: N) -> Polygon<N> {
         let across = [(self.axis + 1) % 3, (self.axis + 2) % 3];
         across.iter().fold(polygon.clone(), |polygon, &axis| {
@@ -157,7 +158,7 @@ impl<N: Real> BoxReferenceFace<N> {
         })
     }
 
-    /// The lowest of some points, if all others are higher by more than a slack.
+    /// Returns the lowest of the points, if all others are higher by more than `slack`.
     fn alone(&self, points: &[Point<N, 3>], slack: N) -> Option<Point<N, 3>> {
         let lower = |a, b| if self.height(b) < self.height(a) { b } else { a };
         let lowest = points.iter().reduce(lower)?;
@@ -166,14 +167,14 @@ impl<N: Real> BoxReferenceFace<N> {
         (low.count() == 1).then_some(*lowest)
     }
 
-    /// Whether a point lies over the face or under it, not beside it.
+    /// Returns whether a point lies over or under the face, not beside it.
     fn is_below(&self, point: &Point<N, 3>) -> bool {
         let across = [(self.axis + 1) % 3, (self.axis + 2) % 3];
         across.iter().all(|&axis| point[axis].abs() <= self.half[axis])
     }
 
-    /// The middle of the lowest points of the other box among those above this face; `pose` is the
-    /// other box's in the frame of this one, `distance` how low its lowest point is known to be.
+    /// Returns the middle of the lowest points of the other box over this face. `pose` is the pose
+    /// of the other box in the frame of this one, `distance` its known signed height.
     fn deepest(&self, other: &Vector<N, 3>, pose: &Pose<N, 3>, distance: N) -> Point<N, 3> {
         let direction = Vector::<N, 3>::ith(self.axis, -self.sign());
         let facing = face_toward(other, &pose.inverse_vector(&direction));
@@ -181,12 +182,14 @@ impl<N: Real> BoxReferenceFace<N> {
         let size = self.half.sum() + other.sum() + distance.abs();
         let noise = N::lit(16.0) * N::EPSILON * size;
         if let Some(corner) = self.alone(&facing, noise) {
-            // A corner beside the face of a box that is apart: there are no points that lie across.
+            // If the boxes are apart and the lowest corner lies beside the face, no point lies
+            // across.
             if distance > N::ZERO || self.is_below(&corner) {
                 return corner;
             }
         }
-        // Up to rounding, no point may be above a face without width; none is if the boxes are apart.
+        // Rounding may leave no point over a face without width. If the boxes are apart there may
+        // be none.
         let mut above = self.above(&facing, N::ZERO);
         if above.is_empty() {
             above = self.above(&facing, noise);
@@ -199,9 +202,11 @@ impl<N: Real> BoxReferenceFace<N> {
     }
 }
 
+/// Corners of a convex polygon; clipping a face with four planes gives at most eight.
 type Polygon<N> = SmallVec<[Point<N, 3>; 8]>;
 
-/// The corners, in a row, of the face of a box whose normal is most aligned with a direction.
+/// Returns the corners, in order, of the face of a box whose normal is most aligned with a
+/// direction.
 fn face_toward<N: Real>(half: &Vector<N, 3>, direction: &Vector<N, 3>) -> [Point<N, 3>; 4] {
     let axis = direction.iamax();
     let sign = if direction[axis] < N::ZERO { -N::ONE } else { N::ONE };
@@ -214,8 +219,8 @@ fn face_toward<N: Real>(half: &Vector<N, 3>, direction: &Vector<N, 3>) -> [Point
     })
 }
 
-/// The part of a polygon where `sign · coordinate ≤ bound` on an axis (Sutherland and Hodgman,
-/// "Reentrant polygon clipping", 1974).
+/// Clips a polygon to `sign · coordinate ≤ bound` on an axis (Sutherland and Hodgman, "Reentrant
+/// polygon clipping", 1974).
 fn clipped<N: Real>(polygon: &Polygon<N>, axis: usize, sign: N, bound: N) -> Polygon<N> {
     let inside = |p: &Point<N, 3>| bound - sign * p[axis];
     let mut kept = Polygon::new();

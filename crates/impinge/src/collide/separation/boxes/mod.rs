@@ -1,4 +1,4 @@
-//! Boxes against boxes and segments, by their axes.
+//! Boxes against boxes and segments, by separating axes.
 
 pub(crate) mod cuboid_axes;
 pub(super) mod cuboid_cuboid;

@@ -1,9 +1,9 @@
-//! The separating axis test of two 2D boxes.
+//! Separating axis test of two boxes in 2D.
 
 use crate::collide::separation::polygons::polygon_polygon::Axis;
 use crate::math::{Pose, Real, Vector};
 
-/// Two boxes, the second placed in the frame of the first.
+/// Two boxes, the second at `pose12` in the frame of the first.
 pub(in crate::collide::separation) struct Rectangles<N: Real> {
     pub(in crate::collide::separation) half1: Vector<N, 2>,
     pub(in crate::collide::separation) half2: Vector<N, 2>,
@@ -11,10 +11,11 @@ pub(in crate::collide::separation) struct Rectangles<N: Real> {
 }
 
 impl<N: Real> Rectangles<N> {
-    /// The normal of a side that leaves the largest gap, turned to point from the first box to the second.
+    /// Returns the normal of a side with the largest gap, pointing from the first box to the
+    /// second.
     ///
-    /// Equal gaps: the sides of the first box come before those of the second, each in the order of
-    /// its outline, which starts below and goes round counter-clockwise.
+    /// Ties: sides of the first box come before sides of the second, each in the order of its
+    /// outline, which starts below and is counter-clockwise.
     pub(in crate::collide::separation) fn best_axis(&self) -> Axis<N> {
         let leans = self.pose12.rotation.abs();
         let offset = self.pose12.translation;
@@ -46,7 +47,7 @@ impl<N: Real> Rectangles<N> {
     }
 }
 
-/// Where a side stands in the outline: below, right, above, left.
+/// Position of a side in the outline: below, right, above, left.
 const fn rank(axis: usize, is_positive: bool) -> usize {
     match (axis, is_positive) {
         (0, true) => 1,
@@ -56,9 +57,10 @@ const fn rank(axis: usize, is_positive: bool) -> usize {
     }
 }
 
+/// Gap, position in the outline, axis, and whether the other box is on its positive side.
 type FoundAxis<N> = (N, usize, usize, bool);
 
-/// The larger gap; of equals the one that comes first.
+/// Returns the larger gap; of equals the one that comes first.
 fn better<N: Real>(one: FoundAxis<N>, other: FoundAxis<N>) -> FoundAxis<N> {
     if other.0 > one.0 || other.0 == one.0 && other.1 < one.1 { other } else { one }
 }

@@ -1,10 +1,21 @@
 //! Segments and capsules against boxes in 3D.
 //!
-//! The squared distance of a point from a box is a sum over the axes, so that along a segment its slope is
-//! linear between the places where the segment crosses the planes of faces: the nearest place is found
-//! between two of these. Where the two overlap, the separating axis test over three faces and three pairs of
-//! edges is exact. What is not proved by two points that lie as far apart as supporting planes is left to
-//! the general algorithm. The test of [`hulls`](crate::collide::separation::hulls) takes twice as long.
+//! The squared distance of a point from a box is a sum over the axes. Along a segment its slope is
+//! piecewise linear, with breaks where the segment crosses the planes of faces, so the nearest
+//! point is found between two of them. If the two overlap, the separating axis test over three
+//! faces and three pairs of edges is exact. Answers whose points are not as far apart as supporting
+//! planes go to the general algorithm. The test of [`hulls`](crate::collide::separation::hulls)
+//! takes twice as long.
+//!
+//! ```text
+//!   slope of the squared distance along the segment, by share of its length
+//!
+//!            |           .--          zero between two breaks: the nearest point
+//!      ------+------.---+------       breaks: crossings of the six face planes
+//!            |  .--'
+//!            |-'
+//!            0                  1
+//! ```
 
 use crate::collide::Pair;
 use crate::collide::separation::segments::nearest::{core, nearest_of_segments};
@@ -13,7 +24,7 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Kind, SupportMap};
 
-/// The separation of a segment or capsule from a box.
+/// Returns the separation of a segment or capsule from a box.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -38,45 +49,48 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
 }
 
-/// A segment in the frame of a solid, in units in which neither of the two, nor the way between their
-/// origins, is larger than 2.
+/// A segment in the frame of a solid, scaled by a power of two so that the segment, the solid and
+/// the distance between their origins are at most 2.
 struct LocalSegment<'a, N: Real> {
     ends: [Vector<N, 3>; 2],
-    /// From the first end to the second.
+    /// Vector from the first end to the second.
     along: Vector<N, 3>,
+    /// Pose of the solid in the frame of the segment, in lengths of the caller.
     pose12: &'a Pose<N, 3>,
+    /// Length of one unit: a power of two.
     scale: N,
     /// 1 / `scale`, exactly.
     shrink: N,
 }
 
-/// How the two are parted, or how deep the one is in the other, in the frame and the units of a
-/// [`LocalSegment`].
+/// A separation in the frame and the units of a [`LocalSegment`].
 #[derive(Clone, Copy, Debug)]
 struct Parting<N: Real> {
-    /// Unit, from the solid to the segment.
+    /// Unit vector from the solid to the segment.
     outward: Vector<N, 3>,
+    /// Points of the segment and of the solid, across from each other.
     on_segment: Vector<N, 3>,
     on_solid: Vector<N, 3>,
+    /// Signed distance of the core from the solid.
     distance: N,
 }
 
-/// The result of the closed form.
+/// Result of the closed form.
 enum SegmentResult<N: Real> {
-    /// The core is farther from the solid than was asked for.
+    /// The core is farther from the solid than the limit.
     Beyond,
     Found(Parting<N>),
     /// No answer is proved.
     Unproved,
 }
 
-/// What arithmetic on numbers of size 2 cannot resolve.
+/// Returns the rounding error of arithmetic on numbers of size 2.
 fn noise<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
 impl<'a, N: Real> LocalSegment<'a, N> {
-    /// `None` where the numbers end.
+    /// `None` if the size of the pair, or its reciprocal, is zero or not finite.
     fn new(ends: [&Point<N, 3>; 2], pose12: &'a Pose<N, 3>, reach: N) -> Option<Self> {
         let of_ends = max(max_component(&ends[0].coords), max_component(&ends[1].coords));
         let size = max(max(reach, max_component(&pose12.translation)), of_ends);
@@ -89,12 +103,12 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         let place = |end: &Point<N, 3>| {
             pose12.rotation.tr_mul(&((end.coords - pose12.translation) * shrink))
         };
-        // From the ends as given, which loses nothing to the way between the origins.
+        // From the ends as given: the distance between the origins costs no digits then.
         let along = pose12.rotation.tr_mul(&((ends[1] - ends[0]) * shrink));
         Some(Self { ends: [place(ends[0]), place(ends[1])], along, pose12, scale, shrink })
     }
 
-    /// The point at a share of the way, measured from the nearer end.
+    /// Returns the point at parameter `share` from 0 to 1, computed from the nearer end.
     fn at(&self, share: N) -> Vector<N, 3> {
         if share <= N::HALF {
             self.ends[0] + self.along * share
@@ -103,13 +117,13 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         }
     }
 
-    /// How far along a vector the end lies that is farthest against it.
+    /// Returns the lower coordinate of the two ends along a vector.
     fn low(&self, along: &Vector<N, 3>) -> N {
         min(along.dot(&self.ends[0]), along.dot(&self.ends[1]))
     }
 
-    /// Two points along a unit vector, if they lie across from each other as far apart as supporting planes;
-    /// `level` is how far along it the solid reaches.
+    /// Returns the separation along the unit vector `outward`, if both points are as far apart
+    /// along it as the supporting planes. `level` is the extent of the solid along it.
     fn proved(
         &self,
         outward: Vector<N, 3>,
@@ -122,7 +136,7 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         is_proved.then_some(Parting { outward, on_segment, on_solid, distance })
     }
 
-    /// In the frame of the segment and the caller's units, without any radius.
+    /// Returns the separation of the cores in the frame of the segment and the caller's units.
     fn restored(&self, found: &Parting<N>) -> Separation<N, 3> {
         let placed = |point: Vector<N, 3>| self.pose12.point(&Point::from(point * self.scale));
         Separation {
@@ -134,13 +148,15 @@ impl<'a, N: Real> LocalSegment<'a, N> {
     }
 }
 
-/// A box and the segment.
+/// A box and the segment in its frame.
 struct LocalBox<'a, N: Real> {
     segment: &'a LocalSegment<'a, N>,
+    /// Half extents of the box, in units of the segment.
     half: Vector<N, 3>,
 }
 
 impl<N: Real> LocalBox<'_, N> {
+    /// Returns the result for the core; distances above `most` are beyond.
     fn solve(&self, most: N) -> SegmentResult<N> {
         let (axis, sign, gap) = self.best_face();
         if gap > most {
@@ -158,7 +174,8 @@ impl<N: Real> LocalBox<'_, N> {
         found.map_or(SegmentResult::Unproved, SegmentResult::Found)
     }
 
-    /// The axis and side of the face that the segment is highest above, and how high; the first of equals.
+    /// Returns axis, sign and gap of the face that the segment is highest above; the first of
+    /// equals.
     fn best_face(&self) -> (usize, N, N) {
         let [a, b] = &self.segment.ends;
         let mut best = (0, N::ONE, -N::INFINITY);
@@ -173,8 +190,8 @@ impl<N: Real> LocalBox<'_, N> {
         best
     }
 
-    /// The axis of the edges that leave the largest gap, if it is larger than `least`, the unit vector along
-    /// which they do, and the gap.
+    /// Returns the axis of the edges that leave the largest gap, the unit vector of that gap, and
+    /// the gap; `None` unless it exceeds `least`.
     fn best_edge(&self, least: N) -> Option<(usize, Vector<N, 3>, N)> {
         let (from, along) = (&self.segment.ends[0], &self.segment.along);
         let (mut best, mut bound) = (None, least);
@@ -183,7 +200,7 @@ impl<N: Real> LocalBox<'_, N> {
             let height = x * from[one] + y * from[other];
             let reach = x.abs() * self.half[one] + y.abs() * self.half[other];
             let sine = (x * x + y * y).sqrt();
-            // Written so that what is parallel to the axis, or no number, says nothing.
+            // Written so that NaN and segments parallel to the axis are skipped.
             let is_plain = sine > noise() && (height.abs() - reach) > bound * sine;
             if is_plain {
                 let turned = if height < N::ZERO { -sine } else { sine };
@@ -196,14 +213,14 @@ impl<N: Real> LocalBox<'_, N> {
         best
     }
 
-    /// How far along a vector the box reaches.
+    /// Returns the extent of the box along a vector.
     fn level(&self, along: &Vector<N, 3>) -> N {
         along[0].abs() * self.half[0]
             + along[1].abs() * self.half[1]
             + along[2].abs() * self.half[2]
     }
 
-    /// The answer along the normal of a face that the segment reaches below.
+    /// Returns the answer along the normal of a face that the segment crosses.
     fn at_face(&self, axis: usize, sign: N, gap: N) -> Option<Parting<N>> {
         let [a, b] = &self.segment.ends;
         let climb = (b[axis] - a[axis]) * sign;
@@ -222,7 +239,7 @@ impl<N: Real> LocalBox<'_, N> {
         is_over.then_some(Parting { outward, on_segment, on_solid, distance: gap })
     }
 
-    /// The middle of the part of the segment that lies over a face.
+    /// Returns the middle of the part of the segment over a face.
     fn middle_over(&self, face: usize) -> Option<Vector<N, 3>> {
         let (from, along) = (&self.segment.ends[0], &self.segment.along);
         let (mut first, mut last) = (N::ZERO, N::ONE);
@@ -237,7 +254,7 @@ impl<N: Real> LocalBox<'_, N> {
         (first <= last).then(|| self.segment.at((first + last) * N::HALF))
     }
 
-    /// The answer along the common perpendicular of the segment and the edges along an axis.
+    /// Returns the answer along the common perpendicular of the segment and the edges along `axis`.
     fn at_edge(&self, axis: usize, outward: &Vector<N, 3>, gap: N) -> Option<Parting<N>> {
         let mut ends = [Point::origin(); 2];
         for at in 0..3 {
@@ -252,7 +269,7 @@ impl<N: Real> LocalBox<'_, N> {
         is_across.then_some(Parting { outward: *outward, on_segment, on_solid, distance: gap })
     }
 
-    /// The nearest points of the two, which are apart.
+    /// Returns the nearest points of the two, which are apart.
     fn nearest(&self) -> Option<Parting<N>> {
         let share = self.nearest_share();
         let on_segment = self.segment.at(share);
@@ -279,8 +296,9 @@ impl<N: Real> LocalBox<'_, N> {
         self.segment.proved(outward, self.level(&outward), points)
     }
 
-    /// Of a way off that leads from an edge of the box, the direction perpendicular to it and the segment:
-    /// right to the last bits however near the two are. `None` off a corner or a face, or where these are
+    /// Returns the separating direction when the nearest feature of the box is an edge:
+    /// perpendicular to that edge and to the segment. It is accurate to rounding at any distance.
+    /// `None` if the nearest feature is a vertex or a face, or if edge and segment are nearly
     /// parallel.
     fn perpendicular(&self, away: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let (axis, one, other) = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
@@ -301,7 +319,7 @@ impl<N: Real> LocalBox<'_, N> {
         Some(outward)
     }
 
-    /// The share of the way along the segment at which it is nearest to the box.
+    /// Returns the parameter of the point of the segment nearest to the box.
     fn nearest_share(&self) -> N {
         let (from, along) = (&self.segment.ends[0], &self.segment.along);
         let slope = |share: N| {
@@ -323,7 +341,7 @@ impl<N: Real> LocalBox<'_, N> {
             (0..3).flat_map(|axis| [-self.half[axis], self.half[axis]].mapped(|at| (axis, at)));
         for (axis, side) in sides {
             let share = (side - from[axis]) / along[axis];
-            // NaN counts as passed over.
+            // NaN is skipped.
             if share > low.0 && share < high.0 {
                 let slope = slope(share);
                 let end = if slope < N::ZERO { &mut low } else { &mut high };

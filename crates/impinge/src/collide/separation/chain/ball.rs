@@ -1,4 +1,4 @@
-//! Eight segments at once against a ball.
+//! Eight segments against a ball.
 
 use super::super::balls::ball_segment;
 use super::{ChainQuestion, EightSegments, Links};
@@ -9,7 +9,8 @@ use crate::math::simd::{Level, Simd};
 use crate::math::{Real, Wide, min};
 use crate::shape::{Ball, Kind, Segment};
 
-/// The separations of a ball from segments; `None` where the numbers end.
+/// Computes the separations of a ball from the segments; `None` if a length is close to underflow
+/// or overflow.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -34,8 +35,8 @@ pub(super) fn links<N: Real>(
     Some(())
 }
 
-/// Which segments are beyond the limit, and how near the nearest is to the middle, by the vectors of an
-/// instruction set, on which the answer does not depend.
+/// Returns the segments beyond the limit, and the least distance from the centre, with the vectors
+/// of an instruction set, on which the result does not depend.
 fn at<N: Real>(
     level: Level,
     tiles: &PartPacket<N, 2>,
@@ -45,7 +46,7 @@ fn at<N: Real>(
     with_lanes!(level, simd => beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius))
 }
 
-/// By the distances that [`ball_segment`] finds.
+/// Compares with the distances that [`ball_segment`] computes.
 #[inline(always)]
 fn beyond<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

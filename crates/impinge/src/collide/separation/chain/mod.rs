@@ -1,8 +1,18 @@
-//! The segments of a chain in 2D against one solid, eight side by side.
+//! Segments of a chain in 2D against one solid, eight at a time.
 //!
-//! The algorithms of [`polygon_polygon`](super::polygons::polygon_polygon), [`segment_lanes`](super::segments::segment_lanes) and
-//! [`ball_segment`](super::balls::ball_segment), in the same order of operations, so that the answers have the same bits:
-//! most segments are culled as beyond the limit, the rest computed from what is known then.
+//! The kernels run the algorithms of [`polygon_polygon`](super::polygons::polygon_polygon),
+//! [`segment_lanes`](super::segments::segment_lanes) and
+//! [`ball_segment`](super::balls::ball_segment) in the same order of operations, so the answers
+//! have the same bits. Most segments are culled as beyond the limit; the others are computed from
+//! the axis already known.
+//!
+//! ```text
+//!   question.tiles   [0 1 2 3 4 5 6 7] [8 9 . . . . . .]    corners 0 and 1 of each `PartPacket`
+//!   links.found      (index, separation) for each segment within the limit:
+//!                    index = tile * 8 + lane, below `count`
+//! ```
+//!
+//! Caller: `collide/mesh/chain.rs`, which gathers the tiles.
 
 mod ball;
 mod polygon;
@@ -20,43 +30,47 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::shape::Kind;
 
-/// Some segments, and a solid among them.
+/// Segments of a chain, and a solid near them.
 pub(crate) struct ChainQuestion<'a, N: Real> {
+    /// Corners of the segments, eight per packet, in the frame of the chain.
     pub(crate) tiles: &'a [PartPacket<N, 2>],
-    /// How many segments there are; what is left of the last tiles counts for nothing.
+    /// Number of segments; the rest of the last tile is ignored.
     pub(crate) count: usize,
-    /// Where pairs of a segment and the solid are seen from.
+    /// Origin that the segments are taken relative to.
     pub(crate) origin: Vector<N, 2>,
     pub(crate) solid: Kind<'a, N, 2>,
-    /// That of the pairs: of the solid in the frame of the segments, but of these in the frame of a ball or
-    /// segment, which comes first.
+    /// Pose of the second solid of each pair in the frame of the first. The segment comes first, so
+    /// this is the pose of the solid; a ball or a segment comes before it, so this is the pose of
+    /// the chain.
     pub(crate) pose12: Pose<N, 2>,
-    /// The solid's middle, in the frame of the segments.
+    /// Centre of the solid in the frame of the chain.
     pub(crate) center: Point<N, 2>,
-    /// Separations beyond this are of no interest.
+    /// Largest separation of interest.
     pub(crate) limit: N,
 }
 
-/// What is found of segments.
+/// Separations found between segments and the solid.
 pub(crate) struct Links<N: Real> {
-    /// The least distance from the solid's middle, but for rounding.
+    /// Least distance of the segments from the centre of the solid, up to rounding.
     pub(crate) from_middle: N,
-    /// Those within the limit, by their number.
+    /// Separations within the limit, by index of the segment.
     pub(crate) found: SmallVec<[(usize, Separation<N, 2>); 6]>,
 }
 
 impl<N: Real> Links<N> {
-    /// None, where nothing else is nearer to the solid's middle.
+    /// No separations yet; `from_middle` is the least distance known so far.
     pub(crate) fn new(from_middle: N) -> Self {
         Self { from_middle, found: SmallVec::new() }
     }
 }
 
-/// The separations of segments from a solid; `None` where the usual ways do not lead to one.
+/// Computes the separations of the segments from the solid; `None` if a lane has no result, and all
+/// have to be computed one by one.
 pub(crate) fn links<N: Real>(question: &ChainQuestion<'_, N>, links: &mut Links<N>) -> Option<()> {
     links_at(Level::new(), question, links)
 }
 
+/// Runs [`links`] with the vectors of an instruction set.
 fn links_at<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -76,24 +90,25 @@ fn links_at<N: Real>(
 }
 
 impl<N: Real> ChainQuestion<'_, N> {
-    /// A bit for each segment of some tiles.
+    /// Returns the bits of the lanes of a tile that hold segments.
     fn lanes_of(&self, block: usize) -> u8 {
         u8::MAX >> (LANES - (self.count - block * LANES).min(LANES))
     }
 }
 
-/// Eight segments as seen from the origin of the pairs.
+/// Eight segments relative to the origin of the pairs.
 struct EightSegments<V> {
+    /// First and second ends.
     ends: [[V; 2]; 2],
-    /// From the first end to the second, and the square of that.
+    /// Vector from the first end to the second, and its squared length.
     side: [V; 2],
     squared: V,
-    /// The squared distances from the solid's middle.
+    /// Squared distances from the centre of the solid.
     from_middle: V,
 }
 
 impl<V> EightSegments<V> {
-    /// `None` if a length is no usual number.
+    /// Loads the segments of a tile; `None` if a squared length is close to underflow or overflow.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
@@ -118,7 +133,7 @@ impl<V> EightSegments<V> {
         Some(Self { ends: [a, b], side, squared, from_middle: dot(&offset, &offset) })
     }
 
-    /// The least of the distances from the solid's middle.
+    /// Returns the least distance from the centre of the solid.
     #[inline(always)]
     fn least<S: Simd, N: Real>(&self) -> N
     where

@@ -1,4 +1,4 @@
-//! Eight segments at once against a polygon of up to eight vertices, inflated or not.
+//! Eight segments against a polygon of up to eight vertices, with or without a radius.
 
 use super::super::polygons::outline::{PolygonOutline, Row};
 use super::super::polygons::polygon_polygon::{Axis, of_axis};
@@ -9,7 +9,7 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide, min};
 use crate::shape::Segment;
 
-/// The separations of segments from a polygon; `None` where the usual ways do not lead to one.
+/// Computes the separations of the segments from a polygon; `None` if a lane has no result.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -18,6 +18,7 @@ pub(super) fn links<N: Real>(
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, links))
 }
 
+/// Culls eight segments at a time by their best axis, then computes the rest one by one along it.
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -49,18 +50,22 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     Some(())
 }
 
-/// A polygon in the frame of the segments, and how far it reaches along its own directions.
+/// A polygon in the frame of the segments, with its extents along its own directions.
 struct PolygonExtents<N: Real> {
     outline: PolygonOutline<N>,
+    /// Bound of the distance of its vertices from the origin.
     size: N,
+    /// Extent along the normal of each side.
     reaches: Row<N>,
+    /// Direction of the tip at each vertex, and the extent along it.
     tips: [Row<N>; 2],
     tip_reaches: Row<N>,
-    /// A bit for each vertex with a tip.
+    /// Bit of each vertex with a tip.
     are_tips: u64,
 }
 
 impl<N: Real> PolygonExtents<N> {
+    /// Computes the extents of a polygon along its own directions.
     #[inline(always)]
     fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: PolygonOutline<N>) -> Self {
         let (mut tips, mut tip_reaches) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
@@ -81,23 +86,26 @@ impl<N: Real> PolygonExtents<N> {
     }
 }
 
-/// The best directions from segments to a polygon.
+/// Best directions from eight segments to a polygon.
 struct SegmentAxes<N> {
+    /// Signed distance along the best direction of each segment.
     gaps: Row<N>,
+    /// Unit, from the segment to the polygon.
     normals: [Row<N>; 2],
+    /// Rounding error of lengths of each pair.
     noise: Row<N>,
-    /// A bit for each segment that is beyond the limit.
+    /// Bit of each segment that is beyond the limit.
     beyond: u8,
 }
 
-/// The direction that leaves the largest gap so far.
+/// Direction of the largest gap so far.
 struct BestDirection<V> {
     gap: V,
     normal: [V; 2],
 }
 
 impl<V> BestDirection<V> {
-    /// Tries another direction; of equals the first counts.
+    /// Tries another direction; the first of equals counts.
     #[inline(always)]
     fn attempt<S: Simd>(&mut self, gap: V, normal: &[V; 2])
     where
@@ -110,6 +118,7 @@ impl<V> BestDirection<V> {
 }
 
 impl<N: Real> SegmentAxes<N> {
+    /// Tries the directions of the segments, then those of the polygon.
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -126,7 +135,8 @@ impl<N: Real> SegmentAxes<N> {
         let noise = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
         let room = noise + V::all(simd, N::EPSILON * rounding);
         let reach = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * room;
-        // A lower bound: what it rejects by more than rounding is out of reach.
+        // The gap is a lower bound: a gap beyond the limit by more than rounding rejects the
+        // segment.
         let beyond = (best.gap - V::all(simd, rounding)).simd_gt(reach);
         let (beyond, zeros) = (bits(beyond), [N::ZERO; LANES]);
         let mut axes = Self { gaps: zeros, normals: [zeros; 2], noise: zeros, beyond };
@@ -143,7 +153,7 @@ impl<N: Real> SegmentAxes<N> {
     }
 }
 
-/// The best of the segments' own directions: the normals to both sides and the ways out at both ends.
+/// Returns the best of the segments' own directions: both normals and both tips.
 #[inline(always)]
 fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -155,7 +165,7 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let length = squared.sqrt();
     let front = [side[1] / length, -(side[0] / length)];
     let back = negated(&front);
-    // As the tips of an outline with two sides.
+    // Computed as the tips of an outline with two sides.
     let tip = [front[1] - back[1], back[0] - front[0]];
     let tip = over(&tip, dot(&tip, &tip).sqrt());
     let (low, high) = heights(simd, &front, solid);
@@ -169,7 +179,7 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// How low and how high a polygon lies along directions.
+/// Returns the lowest and highest coordinate of a polygon along directions.
 #[inline(always)]
 fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -185,7 +195,7 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (low, high)
 }
 
-/// The polygon's directions, each a side's before its tip.
+/// Tries the polygon's directions: for each vertex the normal of its side, then its tip.
 #[inline(always)]
 fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -203,7 +213,7 @@ fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     }
 }
 
-/// A direction out of the polygon, and the polygon's extent along it.
+/// Tries a direction out of the polygon, along which the polygon extends to `extent`.
 #[inline(always)]
 fn add<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -1,4 +1,4 @@
-//! Eight segments at once against a segment or capsule.
+//! Eight segments against a segment or capsule.
 
 use super::super::polygons::polygon_polygon;
 use super::super::segments::segment_lanes::SegmentGap;
@@ -11,7 +11,8 @@ use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Real, Vector, Wide, min};
 use crate::shape::{Kind, Segment};
 
-/// The separations of segments from another with a radius; `None` where the numbers end.
+/// Computes the separations of the segments from a core with a radius; `None` if a length is close
+/// to underflow or overflow.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -40,7 +41,7 @@ pub(super) fn links<N: Real>(
     Some(())
 }
 
-/// The separation of one segment of the chain of which [`SegmentGap`] does not know it.
+/// Computes one segment of the chain whose [`SegmentGap`] is not known.
 #[inline(never)]
 fn alone<N: Real>(
     question: &ChainQuestion<'_, N>,
@@ -53,18 +54,22 @@ fn alone<N: Real>(
     polygon_polygon::separation_of_outlines(&pair, question.limit)
 }
 
-/// What separates eight segments from another, by rows.
+/// Separations of eight segments from another, by rows.
 struct SegmentGaps<N> {
+    /// Signed distances of the cores.
     gaps: [N; LANES],
+    /// Unit normals from the first core of each pair to the second.
     normals: [[N; LANES]; 2],
+    /// Nearest points of both cores, in the frame of the first.
     points: [[[N; LANES]; 2]; 2],
-    /// A bit for each lane.
+    /// Bit of each lane whose values hold.
     known: u8,
-    /// The least distance from the solid's middle.
+    /// Least distance from the centre of the solid.
     least: N,
 }
 
 impl<N: Real> SegmentGaps<N> {
+    /// Computes the gaps of a packet, with the cores in the order of each pair.
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -100,7 +105,7 @@ impl<N: Real> SegmentGaps<N> {
         Some(gaps)
     }
 
-    /// That of one segment; `None` where it is not known.
+    /// Returns the separation in one lane; `None` where it is not known.
     fn separation(&self, lane: usize) -> Option<Separation<N, 2>> {
         let vector = |rows: &[[N; LANES]; 2]| Vector::<N, 2>::new(rows[0][lane], rows[1][lane]);
         let [point1, point2] = [0, 1].map(|which| Point::from(vector(&self.points[which])));

@@ -1,5 +1,15 @@
-//! Queries of edges: faces of the Minkowski difference where the solids overlap, nearest points where they
-//! are apart.
+//! Edge queries: faces of the Minkowski difference if the solids overlap, nearest points of edges
+//! if they are apart.
+//!
+//! ```text
+//!    Gauss map: each edge is the arc between the normals of its two faces.
+//!
+//!         n1a                     A pair of edges is a face of the difference if the arc of one
+//!          |                      crosses the negated arc of the other: the ends of each lie on
+//!   -n2a --+-- -n2b               opposite sides of the other's great circle, whose normal is the
+//!          |                      direction of the edge. Signs of four dot products decide.
+//!         n1b
+//! ```
 
 use super::face::ReferenceFace;
 use super::polyhedral::Polyhedral;
@@ -12,12 +22,13 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, cross, filled, unit};
 use crate::shape::PolytopeEdge;
 
-/// As many edges as 32 vertices may have.
+/// Capacity for edges: 32 vertices have at most 3 · 32 - 6.
 pub(super) const MAX_EDGES: usize = 90;
 
-/// An edge of the solid with the reference face, in its frame.
+/// An edge of the solid with the reference face, in the frame of that solid.
 pub(super) struct ReferenceEdge<N: Real> {
     pub(super) index: usize,
+    /// First end, vector to the second end, and its squared length; in units of the pair.
     pub(super) from: Vector<N, 3>,
     pub(super) along: Vector<N, 3>,
     pub(super) squared: N,
@@ -25,13 +36,14 @@ pub(super) struct ReferenceEdge<N: Real> {
 
 /// Eight edges of the other solid, in the same frame.
 pub(super) struct EdgeBlock<N: Real> {
+    /// Index of the edge in each lane.
     pub(super) indices: [u8; LANES],
     pub(super) from: [[N; LANES]; 3],
     pub(super) along: [[N; LANES]; 3],
 }
 
 impl<N: Real> EdgeBlock<N> {
-    /// Up to eight edges of a solid. The rest are copies of the first.
+    /// Gathers up to eight edges of a solid; spare lanes are copies of the first.
     #[inline(always)]
     pub(super) fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -58,25 +70,26 @@ impl<N: Real> EdgeBlock<N> {
     }
 }
 
-/// The indices of some edges, ascending.
+/// Indices of edges, ascending.
 pub(super) struct CandidateEdges {
     indices: [u8; MAX_EDGES],
     len: usize,
 }
 
 impl CandidateEdges {
+    /// Collects the indices of the edges that `is_candidate` accepts.
     #[inline(always)]
     pub(super) fn of(edges: &[PolytopeEdge], is_candidate: impl Fn(&PolytopeEdge) -> bool) -> Self {
         let mut candidates = Self { indices: [0; MAX_EDGES], len: 0 };
         for (index, edge) in (0_u8..).zip(edges) {
-            // Without a branch: the next edge takes the place of one that is no candidate.
+            // Without a branch: an edge that is no candidate is overwritten by the next.
             candidates.indices[candidates.len] = index;
             candidates.len += usize::from(is_candidate(edge));
         }
         candidates
     }
 
-    /// Those that end at one of some vertices, given as bits.
+    /// Edges that end at one of the vertices given as bits.
     #[inline(always)]
     fn at(edges: &[PolytopeEdge], vertices: u32) -> Self {
         Self::of(
@@ -91,17 +104,17 @@ impl CandidateEdges {
     }
 }
 
-/// An edge of each solid that are a face of the Minkowski difference.
+/// A pair of edges that forms a face of the Minkowski difference: own edge, other edge.
 pub(super) struct EdgeQuery<N> {
     edges: [usize; 2],
-    /// How far the solids are apart along its normal.
+    /// Signed distance of the solids along the pair's common perpendicular.
     pub(super) separation: N,
 }
 
 impl<N: Real> ReferenceFace<'_, '_, N> {
-    /// The edges of each solid that may hold the points of the answer, if these are no farther from
-    /// each other than `reach`: along the normal, points of one are hardly beyond all points of the
-    /// other.
+    /// Returns the edges of each solid that can hold the points of an answer whose points are no
+    /// farther apart than `reach`: those with an end close enough to the other solid along the
+    /// normal.
     #[inline(always)]
     fn candidates<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -118,6 +131,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         ]
     }
 
+    /// Loads an edge of the solid with the reference face.
     #[inline(always)]
     fn edge(&self, index: u8) -> ReferenceEdge<N> {
         let index = usize::from(index);
@@ -126,13 +140,14 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         ReferenceEdge { index, from, along, squared: along.norm_squared() }
     }
 
-    /// The outward normals of the two faces beside an edge.
+    /// Outward normals of the two faces beside an edge.
     #[inline(always)]
     fn normals_beside(&self, edge: usize) -> [Vector<N, 3>; 2] {
         self.own.solid.edges[edge].faces.map(|face| self.own.solid.normal(face as usize))
     }
 
-    /// The outward normals of the two faces beside each edge of a block.
+    /// Outward normals of the two faces beside each edge of a block, in the frame of the reference
+    /// face.
     #[inline(always)]
     fn normals_beside_block<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -153,8 +168,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         [pose.vector(&load(simd, &normals[0])), pose.vector(&load(simd, &normals[1]))]
     }
 
-    /// Queries the edge directions: the pair of edges that is a face of the Minkowski difference and parts
-    /// the solids most, if by more than the reference face does, and more than rounding errors.
+    /// Queries the edge directions: returns the pair of edges that forms a face of the Minkowski
+    /// difference and separates the solids most; `None` unless it does so more than the reference
+    /// face, by more than rounding.
     #[inline(always)]
     pub(super) fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -188,7 +204,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         best
     }
 
-    /// The answer where the common perpendicular of two edges meets both, if it is proved.
+    /// Returns the answer at the nearest points of two edges along their common perpendicular, if
+    /// proved.
     #[inline(always)]
     pub(super) fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -202,7 +219,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         self.proved::<S, V>(simd, &if is_outward { normal } else { -normal }, points)
     }
 
-    /// The nearest points of the edges of two solids that are apart, if supporting planes prove them.
+    /// Returns the answer at the nearest edges of two solids that are apart, if supporting planes
+    /// prove it.
     #[inline(always)]
     pub(super) fn nearest_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -230,15 +248,15 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         self.proved::<S, V>(simd, &normal_between(&points, &across)?, points)
     }
 
-    /// The nearest points of two edges, and a vector perpendicular to both, to either side.
+    /// Nearest points of two edges, and a vector perpendicular to both, of either sign.
     fn nearest_points(&self, [edge1, edge2]: [usize; 2]) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
         let ends1 = self.own.solid.ends(self.own.vertices, edge1);
         let ends2 = self.other.solid.ends(self.other.vertices, edge2);
         nearest_points(&ends1, &ends2)
     }
 
-    /// The answer along a unit vector, if it is proved: two points lie along it as far apart as
-    /// supporting planes.
+    /// Returns the answer along the unit vector `normal`, if proved: both points are as far apart
+    /// along it as the supporting planes.
     #[inline(always)]
     fn proved<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -252,7 +270,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     }
 }
 
-/// The nearest points of two edges, and a vector perpendicular to both, to either side.
+/// Nearest points of two edges, and a vector perpendicular to both, of either sign.
 pub(super) fn nearest_points<N: Real>(
     ends1: &[Vector<N, 3>; 2],
     ends2: &[Vector<N, 3>; 2],
@@ -262,8 +280,10 @@ pub(super) fn nearest_points<N: Real>(
     ([point1.coords, point2.coords], across)
 }
 
-/// The direction from the first to the second of the nearest points of two edges: their common perpendicular,
-/// which is right to the last bits however near the points are, if it leads from one to the other.
+/// Returns the unit direction from the first to the second nearest point of two edges: their common
+/// perpendicular, if it leads from one point to the other. It is accurate to rounding at any
+/// distance; the difference of the points is not. `None` if the points coincide and the edges are
+/// parallel.
 pub(super) fn normal_between<N: Real>(
     [from, to]: &[Vector<N, 3>; 2],
     across: &Vector<N, 3>,
@@ -279,8 +299,8 @@ pub(super) fn normal_between<N: Real>(
     }
 }
 
-/// The answer along a unit vector with this distance of supporting planes, if two points lie along it as far
-/// apart.
+/// Returns the answer along a unit vector, if the two points lie as far apart along it as the
+/// supporting planes, which are `distance` apart.
 pub(super) fn proved<N: Real>(
     normal: &Vector<N, 3>,
     distance: N,
@@ -292,8 +312,9 @@ pub(super) fn proved<N: Real>(
     is_proved.then_some(Separation { distance, normal: *normal, point1, point2 })
 }
 
-/// The separations of the solids along the common perpendiculars of eight pairs of edges: of those that are a
-/// face of the Minkowski difference, of the others minus infinity; `None` if no pair is one.
+/// Returns the separations of the solids along the common perpendiculars of eight pairs of edges,
+/// and minus infinity for pairs that are no face of the Minkowski difference. `None` if no pair is
+/// one.
 #[inline(always)]
 fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -303,8 +324,8 @@ fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let zero = V::all(simd, N::ZERO);
     let (along1, along2): ([V; 3], [V; 3]) =
         (spread(simd, &edge1.along), load(simd, &edges2.along));
-    // A pair is one if the arcs between the normals beside each edge cross on the Gauss map, those of the
-    // second solid negated.
+    // A pair is a face if the arcs between the normals beside each edge cross on the Gauss map,
+    // with the arc of the second solid negated.
     let left1 = dot(&along2, &spread(simd, &normals1[0])).simd_lt(zero);
     let right1 = dot(&along2, &spread(simd, &normals1[1])).simd_lt(zero);
     let left2 = dot(&along1, &normals2[0]).simd_lt(zero);
@@ -322,14 +343,14 @@ fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     );
     let height = dot(&across, &away) / squared.sqrt();
     let outward = left1.select(-height, height);
-    // Parallel edges have no perpendicular, and faces that part as much.
+    // Parallel edges have no perpendicular; faces separate the solids as much.
     let tiny = V::all(simd, N::lit(64.0) * N::EPSILON * N::EPSILON * edge1.squared);
     let is_crossing = squared.simd_gt(dot(&along2, &along2) * tiny);
     Some((is_face & is_crossing).select(outward, V::all(simd, -N::INFINITY)))
 }
 
-/// The squared distances of eight pairs of edges: C. Ericson, "Real-Time Collision Detection" (2005),
-/// 5.1.9. Edges of no length count as their first ends.
+/// Returns the squared distances of eight pairs of edges: C. Ericson, "Real-Time Collision
+/// Detection" (2005), 5.1.9. An edge without length counts as its first end.
 #[inline(always)]
 pub(super) fn squared_distances<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

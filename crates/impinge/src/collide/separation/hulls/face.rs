@@ -1,4 +1,4 @@
-//! The reference face, and what of the other solid lies over it.
+//! Reference face of the test, and the part of the other solid over it.
 
 use core::ops::ControlFlow;
 
@@ -10,35 +10,42 @@ use crate::convex::Separation;
 use crate::math::simd::Simd;
 use crate::math::{Mapped, Point, Pose, Real, Vector, Wide, cross, max, min};
 
-/// A solid in the frame of the one with the reference face.
+/// One of the two solids, in the frame of the solid with the reference face.
 pub(super) struct LocalSolid<'s, 'a, N: Real> {
     pub(super) solid: &'s Polyhedral<'a, N>,
+    /// Vertices in the frame of the reference face, in units of the pair.
     pub(super) vertices: &'s Vertices<N>,
-    /// Of the vertices, along the normal of the face or, of its own solid, against it.
+    /// Heights of the vertices: along the normal of the face for the other solid, against it for
+    /// its own.
     pub(super) heights: Heights<N>,
 }
 
-/// The face of all that the other solid lies farthest above, or least deep below.
+/// The face that the other solid lies farthest above, or least deep below, with both solids.
 pub(super) struct ReferenceFace<'s, 'a, N: Real> {
     pub(super) own: LocalSolid<'s, 'a, N>,
     pub(super) other: LocalSolid<'s, 'a, N>,
-    /// The pose of the other solid.
+    /// Pose of the other solid in the frame of the face's own solid.
     pub(super) pose: Pose<N, 3>,
+    /// Index of the face among those of its solid.
     index: usize,
+    /// Outward unit normal of the face.
     normal: Vector<N, 3>,
+    /// Factor from lengths of the shapes to units of the pair.
     shrink: N,
 }
 
 /// The lowest point of the other solid along the normal of the face.
 enum LowestPoint<N: Real> {
-    /// It lies over the face, up to rounding errors.
+    /// A point over the face, up to rounding.
     Over(Vector<N, 3>),
-    /// It lies beside the face; a length that the distance of the solids, or their depth, does not exceed.
+    /// No point lies over the face. Holds an upper bound of the distance of the solids, or of their
+    /// depth.
     Beside(N),
 }
 
 impl<'s, 'a, N: Real> ReferenceFace<'s, 'a, N> {
-    /// The face of this index of the first solid; both solids come with their vertices in its frame.
+    /// Creates the reference face with index `index` of the first solid; both solids come with
+    /// their vertices in its frame.
     #[inline(always)]
     pub(super) fn new<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -58,10 +65,10 @@ impl<'s, 'a, N: Real> ReferenceFace<'s, 'a, N> {
 }
 
 impl<N: Real> ReferenceFace<'_, '_, N> {
-    /// The answer; `None` if it is not proved.
+    /// Returns the answer; `None` without a proof.
     ///
-    /// Edges are queried twice: first those near the plane, which mostly decide and are few, then all
-    /// within reach. No closures: those are not inlined into vector code.
+    /// Edges are queried twice: first the few near the plane, which mostly decide, then all within
+    /// reach. No closures: they are not inlined into vector code.
     #[inline(always)]
     pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -85,7 +92,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         None
     }
 
-    /// The answer by edges within a reach, unless more of them may have a better one.
+    /// Returns the answer by edges within `reach`; continues if farther edges may have a better
+    /// one.
     #[inline(always)]
     fn within<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -118,9 +126,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         if is_decided { ControlFlow::Break(found) } else { ControlFlow::Continue(()) }
     }
 
-    /// Whether an answer of edges is one whatever other edges there are: the solids are apart, or
-    /// have a point in common, so that none farther from the plane than the way out along the normal of
-    /// the face can be better.
+    /// Returns whether an answer by edges holds whatever edges lie farther away. It does if the
+    /// solids are apart, or have a point in common: then edges farther from the plane than the
+    /// depth along the normal of the face cannot be better.
     #[inline(always)]
     fn is_certain<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -131,7 +139,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         found.distance > N::ZERO || self.is_common::<S, V>(simd, &middle)
     }
 
-    /// Whether both solids contain a point, up to rounding errors.
+    /// Returns whether both solids contain a point, up to rounding.
     #[inline(always)]
     fn is_common<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, point: &Vector<N, 3>) -> bool {
         let in_other = self.pose.rotation.tr_mul(&(point - self.pose.translation));
@@ -140,25 +148,25 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
             && height_above::<S, N, V>(simd, other, self.shrink, &in_other) <= noise()
     }
 
-    /// How far the other solid lies above the plane of the face.
+    /// Signed height of the other solid above the plane of the face.
     pub(super) fn separation(&self) -> N {
         self.other.heights.low - self.offset()
     }
 
-    /// How far along its normal the face lies.
+    /// Offset of the face's plane along its normal, in units of the pair.
     pub(super) fn offset(&self) -> N {
         self.own.solid.offset(self.index) * self.shrink
     }
 
-    /// The answer with a point of the other solid that lies over the face.
+    /// Returns the answer along the normal of the face, with a point of the other solid over it.
     fn at(&self, point: &Vector<N, 3>) -> Separation<N, 3> {
         let distance = self.separation();
         let (point1, point2) = (Point::from(point - self.normal * distance), Point::from(*point));
         Separation { distance, normal: self.normal, point1, point2 }
     }
 
-    /// The first of the lowest vertices that lies over the face, or, of edges and faces that are lowest,
-    /// some point that does.
+    /// Returns the first of the lowest vertices (bits) that lies over the face. If an edge or a
+    /// face is lowest, it may be another of its points.
     fn lowest_point(&self, lowest: u32) -> LowestPoint<N> {
         let (mut reach, mut rest) = (N::INFINITY, lowest);
         while rest != 0 {
@@ -173,15 +181,15 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         among.map_or(LowestPoint::Beside(reach), LowestPoint::Over)
     }
 
-    /// The vertices of the other solid that are lowest, up to rounding errors, as bits.
+    /// Returns the lowest vertices of the other solid, up to rounding, as bits.
     #[inline(always)]
     fn lowest_vertices<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> u32 {
         self.other.heights.up_to::<S, V>(simd, self.other.heights.low + noise())
     }
 
-    /// The answer where no edges are better than the face by more than rounding errors, though the lowest
-    /// vertex lies beside it: the solids are almost coplanar there, and an edge that is as low but for
-    /// rounding errors has a part over the face.
+    /// Returns the answer where the lowest vertex lies beside the face, but no edge is better than
+    /// the face by more than rounding. The solids are almost coplanar there: an edge as low up to
+    /// rounding has a part over the face.
     #[inline(always)]
     fn nearly_over<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 3>> {
         let most = self.other.heights.low + N::lit(3.0) * noise();
@@ -203,8 +211,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         None
     }
 
-    /// The ends of the sides of the face, and the inward normals of its side planes, as long as the sides. The
-    /// side of a triangle, which runs forth and back, also has planes across its ends.
+    /// Ends of the sides of the face with the inward normals of their side planes, as long as the
+    /// sides. The side face of a triangle, an edge there and back, also has planes across both
+    /// ends.
     fn sides(&self) -> impl Iterator<Item = ([Vector<N, 3>; 2], Vector<N, 3>)> {
         let ring = self.own.solid.ring(self.index);
         let at = |vertex: u32| self.own.vertices.at(vertex as usize);
@@ -222,8 +231,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         around.chain(across)
     }
 
-    /// The distance from the face of a point that does not lie over it; `None` of one that does, up
-    /// to rounding errors.
+    /// Returns the distance from the face of a point beside it; `None` for a point over it, up to
+    /// rounding.
     fn distance_beside(&self, point: &Vector<N, 3>) -> Option<N> {
         let mut least: Option<N> = None;
         for (ends, inward) in self.sides() {
@@ -239,8 +248,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         least.map(N::sqrt)
     }
 
-    /// A point of the edges between some vertices that lies over the face; or, of the faces between
-    /// them, over a corner of the face.
+    /// Returns a point over the face that lies on an edge between the vertices `lowest`, or on a
+    /// face between them, above a corner of the reference face.
     fn point_among(&self, lowest: u32) -> Option<Vector<N, 3>> {
         let solid = self.other.solid;
         let is_lowest = |vertex: &u32| lowest >> *vertex & 1 == 1;
@@ -252,7 +261,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
             return Some(point);
         }
         let corner = self.own.vertices.at(self.own.solid.ring(self.index)[0] as usize);
-        // The side of a triangle covers nothing.
+        // A triangle's side faces have no area.
         let has_area = |face: &usize| solid.ring(*face).len() > 2;
         let is_low = |face: &usize| solid.ring(*face).iter().all(is_lowest);
         let mut faces = (0..solid.faces()).filter(has_area).filter(is_low);
@@ -261,13 +270,13 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
             .then(|| corner + self.normal * self.separation())
     }
 
-    /// The middle of the part of an edge that lies over the face.
+    /// Middle of the part of an edge that lies over the face; `None` if there is none.
     fn clipped(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
         let (from, to) = self.span([a, b])?;
         Some(a + (b - a) * ((from + to) * N::HALF))
     }
 
-    /// Where the part of an edge that lies over the face begins and ends, as shares of the edge.
+    /// Interval of an edge that lies over the face, as parameters from 0 at `a` to 1 at `b`.
     fn span(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<(N, N)> {
         let (mut from, mut to) = (N::ZERO, N::ONE);
         for (ends, inward) in self.sides() {
@@ -284,11 +293,11 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         (from <= to).then_some((from, to))
     }
 
-    /// Whether a face of the other solid that is coplanar lies over a point.
+    /// Returns whether a face of the other solid, coplanar with this one, covers a point.
     fn is_under(&self, face: usize, point: &Vector<N, 3>) -> bool {
         let ring = self.other.solid.ring(face);
         let at = |corner: usize| self.other.vertices.at(ring[corner % ring.len()] as usize);
-        // It faces the other way, so it runs clockwise about the normal.
+        // It faces the opposite way, so its ring is clockwise about the normal.
         (0..ring.len()).all(|corner| {
             let (from, to) = (at(corner), at(corner + 1));
             cross(&self.normal, &(to - from)).dot(&(point - from)) <= N::ZERO

@@ -1,21 +1,41 @@
-//! The separating axis test between two convex polyhedra of few parts: triangles, boxes and hulls, and segments
-//! against triangles and hulls ([`segment`]).
+//! Separating axis test of two convex polyhedra with few features: triangles, boxes and hulls.
+//! [`segment`] tests segments against triangles and hulls.
 //!
-//! That of D. Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013), with vertices,
-//! planes and edges in lanes of eight:
+//! The test is that of D. Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC
+//! 2013), with vertices, planes and edges in lanes of eight:
 //!
-//! 1. The faces of both solids are queried for the one that the other solid lies farthest above, the
-//!    reference face ([`vertices`]).
-//! 2. If the lowest vertex of the other solid lies over that face, it is the answer ([`face`]).
-//! 3. Else edges are queried ([`edges`]), only those with an end near enough to the plane of the reference
-//!    face: of solids that overlap the pairs of edges that are a face of the Minkowski difference, found by
-//!    their arcs on the Gauss map; of solids that are apart the nearest points of edges.
+//! 1. The faces of both solids are queried for the reference face: the face that the other solid
+//!    lies farthest above, or least deep below ([`vertices`]).
+//! 2. If the lowest vertex of the other solid lies over that face and above its plane, it gives the
+//!    answer ([`face`]).
+//! 3. Otherwise edges are queried ([`edges`]), but only those with an end near enough to the plane
+//!    of the reference face. If the solids overlap, these are the pairs of edges that form a face
+//!    of the Minkowski difference, found by their arcs on the Gauss map; if they are apart, the
+//!    nearest points of edges.
 //!
-//! An answer is accepted only if it is proved: its two points lie as far apart as a pair of supporting
-//! planes. Otherwise the pair falls back to the general algorithm. There is no iteration and no state: the
-//! answer depends on the pair alone.
+//! ```text
+//!            other solid
+//!             \   /                      normal of the reference face
+//!              \ /                        ^
+//!      low  ----*----------------------   |   separation = low - offset
+//!   offset  =========== reference face    |   queried: own edges with an end above low - reach,
+//!          |  own solid |                     other edges with an end below offset + reach
+//! ```
 //!
-//! A triangle is a prism without height. Thin triangles, flat boxes and large hulls fall back as well.
+//! An answer is accepted only with a proof: its two points are as far apart as a pair of supporting
+//! planes. Otherwise the pair falls back to the general algorithm. There is no iteration and no
+//! state: the answer depends on the pair alone.
+//!
+//! The capacities belong together: 32 vertices are the bits of a `u32` ([`vertices`]), 64 faces
+//! those of a `u64` ([`segment`]), and 90 edges have indices of a `u8` ([`edges`]). 32 vertices
+//! have at most 3 · 32 - 6 = 90 edges and 2 · 32 - 4 = 60 faces. [`LANES`] is the block size of
+//! [`Polytope`]'s vertices and planes and of the
+//! [`PartPacket`](crate::collide::packet::PartPacket)s in `triangles`.
+//!
+//! [`Polytope`]: crate::shape::Polytope
+//!
+//! A triangle is a prism without height ([`polyhedral`]). Thin triangles, flat boxes and large
+//! hulls fall back as well.
 
 mod edges;
 mod face;
@@ -35,18 +55,19 @@ use crate::math::lanes::with_lanes;
 use crate::math::simd::{Level, Simd};
 use crate::math::{Pose, Real, Wide};
 
-/// How many vertices, faces or edges are treated at once.
+/// Vertices, faces or edges in one block.
 const LANES: usize = 8;
-/// Blocks for 32 vertices, and for the 60 faces that as many vertices may have.
+/// Blocks for 32 vertices, and for the 60 faces that 32 vertices have at most.
 const BLOCKS: usize = 4;
+/// Blocks of planes: 64 faces, the bits of a `u64` in `segment`.
 pub(super) const PLANE_BLOCKS: usize = 8;
 
-/// The separation of two solids with flat faces: triangles, boxes and convex hulls.
+/// Returns the separation of two solids with flat faces: triangles, boxes and convex hulls.
 ///
-/// Of equal faces those of the first solid come before those of the second, in their order, and all
-/// before edges; of equal pairs of edges that of the lower indices counts. Cost: the product of the
-/// numbers of vertices and faces, in packets of eight; thin triangles, flat boxes and larger hulls fall back to the
-/// general algorithm.
+/// Ties: faces of the first solid come before faces of the second, each in order, and faces before
+/// edges; of pairs of edges the one with the lower indices. Cost: the product of the numbers of
+/// vertices and faces, in blocks of eight. Thin triangles, flat boxes and larger hulls fall back to
+/// the general algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     match result(Level::new(), pair, limit) {
         SatResult::Beyond => None,
@@ -57,7 +78,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     }
 }
 
-/// The result of the test for a pair.
+/// Runs the test; `Unproved` also for solids that do not fit the lanes or have no width.
 fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
     let features = [LocalFeatures::of(pair.first), LocalFeatures::of(pair.second)];
     let first = Polyhedral::of(pair.first, features[0].as_ref());
@@ -77,24 +98,25 @@ fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N
 enum SatResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
+    /// The separation of the cores or solids, proved.
     Found(Separation<N, 3>),
     /// No answer is proved.
     Unproved,
 }
 
-/// What arithmetic cannot resolve, in units of the pair.
+/// Returns the rounding error of lengths, in units of the pair: 8 epsilon.
 pub(super) fn noise<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// What a lower bound has to exceed to be out of reach, in units of the pair: a limit of the caller's, and
-/// rounding.
+/// Returns what a lower bound has to exceed to be beyond the caller's `limit`: the limit plus
+/// rounding, in units of the pair.
 pub(super) fn out_of_reach<N: Real>(units: &Units<N>, limit: N) -> N {
     let limit = limit * units.shrink;
     limit + N::lit(16.0) * noise::<N>() * (N::ONE + limit.abs())
 }
 
-/// The test with the vectors of an instruction set; the result does not depend on it.
+/// Runs the test with the vectors of an instruction set; the result does not depend on it.
 fn sat<N: Real>(
     level: Level,
     solids: [&Polyhedral<'_, N>; 2],
@@ -107,6 +129,7 @@ fn sat<N: Real>(
     with_lanes!(level, simd => sat_in_lanes::<_, N, N::Lanes<_>>(simd, solids, pose12, limit))
 }
 
+/// Queries the faces of both solids, then resolves the better one.
 #[inline(always)]
 fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -130,7 +153,7 @@ fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     if face2.separation > beyond {
         return SatResult::Beyond;
     }
-    // The other solid is placed in the frame of the one with the reference face.
+    // The other solid is placed in the frame of the solid with the reference face.
     let is_second = face2.separation > face1.separation + noise();
     let (index, solids, pose) = if is_second {
         (face2.index, [(second, &own2), (first, &placed1)], in_second)
@@ -143,8 +166,8 @@ fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     SatResult::Found(if is_second { in_first_frame(&found, pose12) } else { found })
 }
 
-/// An answer found in the frame of the second solid, in that of the first, at which it lies at
-/// `pose12`.
+/// Transforms an answer from the frame of the second solid, with the second solid first, to the
+/// frame of the first; `pose12` is the pose of the second solid.
 pub(super) fn in_first_frame<N: Real>(
     found: &Separation<N, 3>,
     pose12: &Pose<N, 3>,

@@ -1,5 +1,13 @@
-//! Convex polyhedra, hulls, boxes and triangles alike: vertices and face planes in lanes, edges, and the rings
-//! of faces.
+//! Hulls, boxes and triangles as one type of convex polyhedron: vertices and face planes in lanes,
+//! edges, and rings of faces.
+//!
+//! ```text
+//!   triangle: prism of height 0        faces 0 front, 1 back, 2..5 the sides 01, 12, 20
+//!                                      edges 0..3 front, 3..6 back: two along each side
+//!         2                            rings 012, 021, and 10, 21, 02 for the sides
+//!        / \
+//!       0---1     box: vertices, faces and edges with the numbers of `Cuboid`
+//! ```
 
 use super::edges::MAX_EDGES;
 use super::vertices::Vertices;
@@ -7,29 +15,31 @@ use super::{BLOCKS, LANES, PLANE_BLOCKS, noise};
 use crate::math::{Mapped, Real, Vector, cross, filled, max, max_component, min};
 use crate::shape::{Cuboid, Kind, Planes, Polytope, PolytopeEdge, SupportMap, Triangle};
 
-/// A convex polyhedron in its own frame.
+/// A convex polyhedron in its own frame and in units of the shape.
 pub(in crate::collide::separation) struct Polyhedral<'a, N: Real> {
-    /// The vertices, eight at a time; the last one fills the rest.
+    /// Vertices in blocks of eight; the last vertex fills the rest.
     pub(in crate::collide::separation) blocks: &'a [[[N; LANES]; 3]],
+    /// Number of vertices.
     pub(in crate::collide::separation) vertices: usize,
-    /// The planes of the faces, eight at a time; the last one fills the rest.
+    /// Planes of the faces in blocks of eight; the last plane fills the rest.
     pub(in crate::collide::separation) planes: &'a [Planes<N, 3>],
     pub(in crate::collide::separation) edges: &'a [PolytopeEdge],
     rings: Rings<'a, N>,
+    /// Largest distance of a vertex from the origin.
     pub(in crate::collide::separation) reach: N,
-    /// The least width of a box or height of a triangle.
+    /// Least half extent of a box or height of a triangle; infinite for hulls.
     thickness: N,
 }
 
-/// The vertices around the faces.
+/// Vertices around each face.
 enum Rings<'a, N: Real> {
     Polytope(&'a Polytope<N, 3>),
     Fixed(&'static [&'static [u32]]),
 }
 
 impl<'a, N: Real> Polyhedral<'a, N> {
-    /// Of a hull, or of a solid with these features; `None` for a polytope with more features than the lanes
-    /// hold.
+    /// Wraps a hull, or the features of another solid; `None` for a hull with more features than
+    /// the lanes hold, and without features.
     pub(in crate::collide::separation) fn of(
         kind: Kind<'a, N, 3>,
         features: Option<&'a LocalFeatures<N>>,
@@ -56,13 +66,13 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         })
     }
 
-    /// Whether no width is as small as rounding errors beside a solid of this reach: faces without width have
-    /// sides without direction.
+    /// Returns whether the width exceeds rounding beside another solid of this `reach`. Faces
+    /// without width have sides without direction.
     pub(super) fn has_width(&self, reach: N) -> bool {
         self.thickness > noise::<N>() * (self.reach + reach)
     }
 
-    /// The number of faces.
+    /// Number of faces.
     pub(in crate::collide::separation) fn faces(&self) -> usize {
         match self.rings {
             Rings::Polytope(polytope) => polytope.faces().len(),
@@ -70,7 +80,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         }
     }
 
-    /// The vertices around a face, counter-clockwise seen from outside.
+    /// Vertices around a face, counter-clockwise seen from outside.
     pub(in crate::collide::separation) fn ring(&self, face: usize) -> &[u32] {
         match self.rings {
             Rings::Polytope(polytope) => polytope.face_vertices(&polytope.faces()[face]),
@@ -78,14 +88,14 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         }
     }
 
-    /// The ends of an edge, among the vertices in some frame.
+    /// Ends of an edge, among the vertices in some frame.
     #[inline(always)]
     pub(super) fn ends(&self, vertices: &Vertices<N>, edge: usize) -> [Vector<N, 3>; 2] {
         let [from, to] = self.edges[edge].vertices;
         [vertices.at(from as usize), vertices.at(to as usize)]
     }
 
-    /// A vertex.
+    /// Returns a vertex.
     #[inline(always)]
     pub(in crate::collide::separation) fn vertex(&self, vertex: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.blocks[vertex / LANES];
@@ -93,7 +103,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         Vector::<N, 3>::new(x[lane], y[lane], z[lane])
     }
 
-    /// The outward unit normal of a face.
+    /// Outward unit normal of a face.
     #[inline(always)]
     pub(in crate::collide::separation) fn normal(&self, face: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.planes[face / LANES].normals;
@@ -101,14 +111,14 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         Vector::<N, 3>::new(x[lane], y[lane], z[lane])
     }
 
-    /// How far from the origin the plane of a face lies.
+    /// Offset of a face's plane from the origin along its normal.
     #[inline(always)]
     pub(in crate::collide::separation) fn offset(&self, face: usize) -> N {
         self.planes[face / LANES].offsets[face % LANES]
     }
 }
 
-/// The vertices and face planes, in lanes, of a box or a triangle, which do not keep them.
+/// Vertices and face planes in lanes for boxes and triangles, which do not store them.
 pub(in crate::collide::separation) struct LocalFeatures<N: Real> {
     blocks: [[[N; LANES]; 3]; 1],
     planes: [Planes<N, 3>; 1],
@@ -120,7 +130,7 @@ pub(in crate::collide::separation) struct LocalFeatures<N: Real> {
 }
 
 impl<N: Real> LocalFeatures<N> {
-    /// `None` of other solids, and of thin triangles.
+    /// Computes the features of a box or triangle; `None` for other solids and thin triangles.
     pub(in crate::collide::separation) fn of(kind: Kind<'_, N, 3>) -> Option<Self> {
         match kind {
             Kind::Cuboid(cuboid) => Some(Self::of_cuboid(cuboid)),
@@ -133,7 +143,8 @@ impl<N: Real> LocalFeatures<N> {
         let half = cuboid.half_extents();
         let signed = |axis: usize, bit: usize| if bit == 0 { -half[axis] } else { half[axis] };
         let vertices = filled(|axis| filled(|vertex| signed(axis, vertex >> axis & 1)));
-        // Faces 2 · axis on the positive side, one more on the negative side; the last one fills up.
+        // Face 2 · axis is on the positive side of the axis, the next on the negative; the last
+        // fills up.
         let face = |lane: usize| if lane < 6 { lane } else { 5 };
         let along = |axis: usize, lane: usize| match face(lane) {
             face if face / 2 != axis => N::ZERO,
@@ -155,20 +166,20 @@ impl<N: Real> LocalFeatures<N> {
         }
     }
 
-    /// A prism without height, whose front and back are the triangle and whose other faces are the sides, along
-    /// each of which two edges lie. `None` of a triangle that is thin, whose normal would be off by more than
-    /// rounding errors.
+    /// Features of a prism without height: front and back are the triangle, the other faces its
+    /// sides, and two edges lie along each side. `None` for a thin triangle, whose normal would be
+    /// off by more than rounding.
     fn of_triangle(triangle: &Triangle<N, 3>) -> Option<Self> {
         let [a, b, c] = triangle.corners();
         let sides = [b - a, c - b, a - c];
-        // Of length about 1, so that squares stay numbers of the type.
+        // Scaled to length about 1, so that squares neither overflow nor underflow.
         let scale = max(max_component(&sides[0]), max_component(&sides[1])).power_of_two_below();
         let sides = sides.mapped(|side| side / scale);
         let squared = sides.mapped(|side| side.norm_squared());
         let longest = max(max(squared[0], squared[1]), squared[2]);
         let across = cross(&sides[0], &sides[1]);
         let area = across.norm();
-        // Written so that NaN has no normal.
+        // Written so that NaN counts as thin.
         let is_wide = area > N::lit(THIN) * longest;
         if !is_wide {
             return None;
@@ -179,7 +190,7 @@ impl<N: Real> LocalFeatures<N> {
         // The last face fills up.
         let face = |lane: usize| if lane < 4 { lane } else { 4 };
         let corner = |lane: usize| &triangle.corners()[if lane < 2 { lane } else { 2 }];
-        // The plane of a side holds the corner that the side begins at.
+        // The plane of a side contains the corner at which the side begins.
         let on = [a, a, a, b, c];
         let planes = Planes {
             normals: filled(|axis| filled(|lane| faces[face(lane)][axis])),
@@ -209,10 +220,10 @@ impl<N: Real> LocalFeatures<N> {
     }
 }
 
-/// Triangles with a smaller ratio of their height to their longest side are thin.
+/// A triangle is thin if the ratio of its height to its longest side is at most this.
 pub(in crate::collide::separation) const THIN: f64 = 1.0 / 256.0;
 
-/// The edges of a triangle: of each side that of the front and that of the back.
+/// Edges of a triangle: for each side one of the front and one of the back.
 const TRIANGLE_EDGES: [PolytopeEdge; 6] = [
     PolytopeEdge { vertices: [0, 1], faces: [0, 2] },
     PolytopeEdge { vertices: [1, 2], faces: [0, 3] },
@@ -222,10 +233,10 @@ const TRIANGLE_EDGES: [PolytopeEdge; 6] = [
     PolytopeEdge { vertices: [2, 0], faces: [4, 1] },
 ];
 
-/// The vertices around the front, the back and the sides of a triangle.
+/// Vertices around the front, the back and the sides of a triangle.
 const TRIANGLE_RINGS: [&[u32]; 5] = [&[0, 1, 2], &[0, 2, 1], &[1, 0], &[2, 1], &[0, 2]];
 
-/// The edges of a box by their numbers; see [`Cuboid`].
+/// Edges of a box in the numbering of [`Cuboid`].
 const BOX_EDGES: [PolytopeEdge; 12] = {
     let mut edges = [PolytopeEdge { vertices: [0; 2], faces: [0; 2] }; 12];
     let mut number = 0_u32;
@@ -234,7 +245,7 @@ const BOX_EDGES: [PolytopeEdge; 12] = {
         let (next, after) = ((axis + 1) % 3, (axis + 2) % 3);
         let low = ((signs & 1) << next) | ((signs >> 1) << after);
         let faces = [2 * next + 1 - (signs & 1), 2 * after + 1 - (signs >> 1)];
-        // The normals of the two faces turn about the edge in its direction.
+        // The order of the faces lets the loop of the first run along the edge.
         let is_even = (signs & 1) == (signs >> 1);
         edges[number as usize] = PolytopeEdge {
             vertices: [low, low | (1 << axis)],
@@ -245,7 +256,7 @@ const BOX_EDGES: [PolytopeEdge; 12] = {
     edges
 };
 
-/// The vertices around the faces of a box by their numbers; see [`Cuboid`].
+/// Vertices around the faces of a box in the numbering of [`Cuboid`].
 const BOX_RINGS: [&[u32]; 6] =
     [&[1, 3, 7, 5], &[4, 6, 2, 0], &[2, 6, 7, 3], &[1, 5, 4, 0], &[4, 5, 7, 6], &[2, 3, 1, 0]];
 
@@ -254,7 +265,8 @@ mod tests {
     use super::*;
     use crate::math::Point;
 
-    /// Edges lie between their faces, and rings run counter-clockwise around those with an area.
+    /// Asserts that edges lie between their faces, and that rings with an area are
+    /// counter-clockwise.
     fn check(solid: &Polyhedral<'_, f64>) {
         let is_zero = |height: &f64| height.abs() < 1e-14;
         let at = |vertex: u32| {

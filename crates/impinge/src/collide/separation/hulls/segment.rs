@@ -1,10 +1,20 @@
-//! Segments and capsules against triangles and hulls: the separating axis test of a polyhedron of two vertices
-//! and one edge.
+//! Segments and capsules against triangles and hulls: the separating axis test with a polyhedron of
+//! two vertices and one edge.
 //!
-//! A segment has no faces, so the reference face is always the solid's. Over it the lower end is the answer. If
-//! that lies beside it, edges decide: where the two overlap those between a face that the segment climbs over
-//! and one that it does not, which with the segment are the faces of the Minkowski difference; where they are
-//! apart the nearest of the edges of faces that some point of the segment lies above.
+//! A segment has no faces, so the reference face belongs to the solid. If the lower end of the
+//! segment lies over that face, it gives the answer. Otherwise edges decide. If the two overlap,
+//! the candidates are edges between a face whose plane the segment climbs over and one that it does
+//! not: with the segment they form the faces of the Minkowski difference. If the two are apart, the
+//! candidates are the edges of the faces that some point of the segment lies above.
+//!
+//! ```text
+//!    b *            `climbed`: bit f set if b is higher above plane f than a
+//!       \  |normal  `visible`: bit f set if a or b is above plane f
+//!        \ |
+//!       a *|        answers are from the solid to the segment; `hulls::in_first_frame`
+//!    ------+-----   turns them round
+//!      solid
+//! ```
 
 use super::super::segments::nearest::core;
 use super::super::{general, shared_corner};
@@ -22,10 +32,10 @@ use crate::math::{
     Mapped, Point, Pose, Real, Vector, Wide, cross, filled, max, max_component, min,
 };
 
-/// The separation of a segment or capsule from a triangle or a convex hull.
+/// Returns the separation of a segment or capsule from a triangle or a convex hull.
 ///
-/// Cost: linear in the numbers of faces and edges, in packets of eight. Thin triangles, large hulls and what is not
-/// proved fall back to the general algorithm.
+/// Cost: linear in the numbers of faces and edges, in blocks of eight. Thin triangles, large hulls
+/// and unproved answers fall back to the general algorithm.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -41,7 +51,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
 }
 
-/// The result of the test for the cores of a pair.
+/// Runs the test for the cores of a pair.
 pub(super) fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
     let (ends, _) = core(pair, &pair.first);
     let features = LocalFeatures::of(pair.second);
@@ -50,7 +60,7 @@ pub(super) fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> 
         .map_or(SatResult::Unproved, |solid| sat(level, &ends, &solid, &pair.pose12, limit))
 }
 
-/// The test with the vectors of an instruction set; the result does not depend on it.
+/// Runs the test with the vectors of an instruction set; the result does not depend on it.
 fn sat<N: Real>(
     level: Level,
     ends: &[Point<N, 3>; 2],
@@ -69,7 +79,7 @@ fn sat<N: Real>(
     let query = SegmentQuery {
         solid,
         ends: [place(&ends[0]), place(&ends[1])],
-        // From the ends as given, which loses nothing to the way between the origins.
+        // From the ends as given: the distance between the origins costs no digits then.
         along: pose12.rotation.tr_mul(&((ends[1] - ends[0]) * units.shrink)),
         shrink: units.shrink,
     };
@@ -83,27 +93,32 @@ fn sat<N: Real>(
     }
 }
 
-/// A segment in the frame of a solid, in units of the pair. Answers are from the solid to the segment.
+/// A segment in the frame of a solid, in units of the pair. Answers are from the solid to the
+/// segment.
 struct SegmentQuery<'a, N: Real> {
     solid: &'a Polyhedral<'a, N>,
+    /// Ends in the frame of the solid, in units of the pair.
     ends: [Vector<N, 3>; 2],
-    /// From the first end to the second.
+    /// Vector from the first end to the second.
     along: Vector<N, 3>,
+    /// Factor from lengths of the shapes to units of the pair.
     shrink: N,
 }
 
-/// The segment and the planes of all faces.
+/// Heights of the segment above the planes of all faces.
 struct FaceHeights<N> {
-    /// The face that the segment is highest above, the first of equals, and how high.
+    /// The face that the lower end is highest above, the first of equals, and that height.
     index: usize,
+    /// Signed height of the segment's lower end above that face.
     separation: N,
-    /// A bit for each face: the second end is higher above its plane than the first.
+    /// Bit of each face: the second end is higher above its plane than the first.
     climbed: u64,
-    /// A bit for each face: some point of the segment is above its plane.
+    /// Bit of each face: some point of the segment is above its plane.
     visible: u64,
 }
 
 impl<N: Real> SegmentQuery<'_, N> {
+    /// Queries faces, then edges; returns the answer in the frame of the solid.
     #[inline(always)]
     fn sat_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, beyond: N) -> SatResult<N> {
         let faces = self.query_faces::<S, V>(simd);
@@ -151,7 +166,7 @@ impl<N: Real> SegmentQuery<'_, N> {
         faces
     }
 
-    /// The point at a share of the way, measured from the nearer end.
+    /// Returns the point at parameter `share` from 0 to 1, computed from the nearer end.
     fn at(&self, share: N) -> Vector<N, 3> {
         if share <= N::HALF {
             self.ends[0] + self.along * share
@@ -160,8 +175,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         }
     }
 
-    /// The answer along the normal of the highest face, if the lower end lies over it; of a segment along it
-    /// the middle of what lies over it.
+    /// Returns the answer along the normal of the highest face, if the lower end lies over it. If
+    /// the segment is parallel to the face, the middle of the part over it.
     fn over_face(
         &self,
         vertices: &Vertices<N>,
@@ -184,8 +199,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         Some(Separation { distance, normal, point1, point2 })
     }
 
-    /// Where the part of the segment that lies over a face begins and ends, as shares of the whole; `None` of a
-    /// face without an area, which nothing bounds along its length.
+    /// Returns the interval of the segment that lies over a face, as parameters from 0 to 1. `None`
+    /// also for a face without area, which has no inside along its length.
     fn span(&self, vertices: &Vertices<N>, face: usize, normal: &Vector<N, 3>) -> Option<(N, N)> {
         let ring = self.solid.ring(face);
         let (mut first, mut last) = (N::ZERO, N::ONE);
@@ -211,9 +226,9 @@ impl<N: Real> SegmentQuery<'_, N> {
         (first <= last).then_some((first, last))
     }
 
-    /// Queries the edge directions: the edge that with the segment is a face of the Minkowski difference and
-    /// parts the two most, if by more than the reference face does, and more than rounding errors; and by
-    /// how much.
+    /// Queries the edge directions: returns the edge that forms a face of the Minkowski difference
+    /// with the segment and separates the two most, with that separation. `None` unless it does so
+    /// more than the reference face, by more than rounding.
     #[inline(always)]
     fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -241,7 +256,7 @@ impl<N: Real> SegmentQuery<'_, N> {
                 |axis| end[axis] - V::load(simd, &block.from[axis]),
             );
             let height = dot(&across, &away) * V::load(simd, &outward) / squared.sqrt();
-            // Parallel edges have no perpendicular, and faces that part as much.
+            // Parallel edges have no perpendicular; faces separate the two as much.
             let separations = squared.simd_gt(tiny).select(height, V::all(simd, -N::INFINITY));
             let highest = highest_lane(separations);
             if highest > largest {
@@ -253,14 +268,16 @@ impl<N: Real> SegmentQuery<'_, N> {
         best.map(|edge| (edge, largest))
     }
 
-    /// One if the product of an edge and the segment leads out of the solid, else minus one: the edge runs
-    /// around its first face, so the product leads out if the segment climbs over that.
+    /// Returns the sign that turns the cross product of an edge and the segment out of the solid.
+    /// The edge runs around its first face, so the product points outwards if the segment climbs
+    /// over that face.
     fn outward(&self, edge: usize, climbed: u64) -> N {
         let [first, _] = self.solid.edges[edge].faces;
         if climbed >> first & 1 == 1 { N::ONE } else { -N::ONE }
     }
 
-    /// The answer where the common perpendicular of an edge and the segment meets both, if it is proved.
+    /// Returns the answer at the nearest points of an edge and the segment along their
+    /// perpendicular, if proved.
     #[inline(always)]
     fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -274,7 +291,7 @@ impl<N: Real> SegmentQuery<'_, N> {
         self.proved::<S, V>(simd, vertices, &normal, points)
     }
 
-    /// The nearest points of an edge and the segment, if supporting planes prove them.
+    /// Returns the answer at the nearest of the visible edges, if supporting planes prove it.
     #[inline(always)]
     fn nearest_edge<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -305,8 +322,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         self.proved::<S, V>(simd, vertices, &normal_between(&points, &across)?, points)
     }
 
-    /// The answer along a unit vector, if it is proved: two points lie along it as far apart as
-    /// supporting planes.
+    /// Returns the answer along the unit vector `normal`, if proved: both points are as far apart
+    /// along it as the supporting planes.
     #[inline(always)]
     fn proved<S: Simd, V: Wide<S, Scalar = N>>(
         &self,

@@ -1,4 +1,4 @@
-//! Against the general algorithm, and on every instruction set.
+//! Compares with the general algorithm, and one instruction set with another.
 
 use super::{SatResult, result, segment};
 use crate::collide::Pair;
@@ -30,7 +30,7 @@ impl Random {
         self.vector::<N>().try_normalize(N::lit(0.1)).unwrap_or_else(Vector::<N, 3>::x)
     }
 
-    /// Any turn, a quarter turn or a slight one.
+    /// A pose with any rotation, a quarter turn or a slight one.
     pub(crate) fn turn<N: Real>(&mut self) -> Pose<N, 3> {
         let size = [1.0, 1.0, 0.0, 1e-3, 1e-6][self.pick(5)];
         let [i, j, k] = [0; 3].map(|_: i32| self.next() * size);
@@ -76,7 +76,8 @@ fn count_f64(count: usize) -> f64 {
     f64::from(u32::try_from(count).expect("a small number"))
 }
 
-/// How far off an answer is: from the distance, by its own points, and by what its normal separates.
+/// Returns the error of an answer: of its distance, its points, and the separation along its
+/// normal.
 pub(in super::super) fn error<N: Real>(
     pair: &Pair<'_, N, 3>,
     found: &Separation<N, 3>,
@@ -97,7 +98,7 @@ pub(in super::super) fn error<N: Real>(
         .fold(0.0, |most, x| x.as_f64().max(most))
 }
 
-/// What is compared: two solids, and their test.
+/// The solids to compare, and their test.
 type Twin<N> =
     (fn(&mut Random) -> [Box<dyn Shape<N, 3>>; 2], fn(Level, &Pair<'_, N, 3>, N) -> SatResult<N>);
 
@@ -153,7 +154,7 @@ fn compare<N: Real>(seed: u64, rounds: usize, (shapes, result): Twin<N>) {
             }
         }
     }
-    // Of segments one in twelve has no length and no edge to be tested.
+    // One segment in twelve has no length, and so no edge to test.
     assert!(unproved * 10 < count, "{unproved} of {count} fall back to the general algorithm");
 }
 

@@ -1,4 +1,11 @@
-//! The vertices of a solid in lanes, and their heights along directions.
+//! Vertices of a solid in lanes, and their heights along directions.
+//!
+//! ```text
+//!   vertex  0..8      block 0   x[8] y[8] z[8]      bit v of a `u32` stands for vertex v:
+//!   vertex  8..16     block 1   x[8] y[8] z[8]      block v / 8, lane v % 8
+//!   ...                                             `count` vertices in `used` blocks; the last
+//!   vertex 24..32     block 3   x[8] y[8] z[8]      vertex fills the rest of its block
+//! ```
 
 use super::polyhedral::Polyhedral;
 use super::{BLOCKS, LANES, PLANE_BLOCKS};
@@ -10,20 +17,23 @@ use crate::shape::Planes;
 /// The vertices of a solid in some frame, in units of the pair.
 pub(super) struct Vertices<N: Real> {
     blocks: [[[N; LANES]; 3]; BLOCKS],
+    /// Number of blocks that hold vertices.
     used: usize,
+    /// Number of vertices.
     count: usize,
 }
 
-/// How far [`Vertices`] lie along a direction.
+/// Heights of [`Vertices`] along a direction, in their layout, and the lowest.
 pub(super) struct Heights<N: Real> {
     blocks: [[N; LANES]; BLOCKS],
     used: usize,
     count: usize,
+    /// Least height.
     pub(super) low: N,
 }
 
 impl<N: Real> Heights<N> {
-    /// The vertices that are not higher than this, as the bits of a number.
+    /// Returns the vertices that are not higher than `most`, as bits.
     #[inline(always)]
     pub(super) fn up_to<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, most: N) -> u32 {
         let mut bits = 0;
@@ -31,28 +41,28 @@ impl<N: Real> Heights<N> {
             let is_low = V::load(simd, block).simd_le(V::all(simd, most)).to_bitmask();
             bits |= is_low << (number * LANES);
         }
-        // Beyond the last vertex are copies of it.
+        // Copies of the last vertex fill the rest of its block.
         low_half(bits & !(u64::MAX << self.count))
     }
 }
 
-/// The low half of a number.
+/// Low 32 bits of a number.
 #[inline(always)]
 fn low_half(bits: u64) -> u32 {
     let [a, b, c, d, ..] = bits.to_le_bytes();
     u32::from_le_bytes([a, b, c, d])
 }
 
-/// The face of a solid that the other one lies farthest above, or least deep below.
+/// Result of a face query: the face that the other solid lies farthest above, or least deep below.
 #[derive(Clone, Copy)]
 pub(super) struct FaceQuery<N> {
     pub(super) index: usize,
-    /// The height of the other solid above its plane.
+    /// Signed height of the other solid's lowest vertex above the plane of the face.
     pub(super) separation: N,
 }
 
 impl<N: Real> Vertices<N> {
-    /// Those of a solid in its own frame.
+    /// Vertices of a solid in its own frame, scaled to units of the pair.
     #[inline(always)]
     pub(super) fn in_own_frame<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -71,7 +81,7 @@ impl<N: Real> Vertices<N> {
         vertices
     }
 
-    /// The same vertices in the outer frame of a pose.
+    /// Transforms the vertices by `pose`.
     #[inline(always)]
     pub(super) fn placed<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -92,12 +102,12 @@ impl<N: Real> Vertices<N> {
 
     #[inline(always)]
     pub(super) fn at(&self, vertex: usize) -> Vector<N, 3> {
-        // The remainder spares the compiler a check: there are no more vertices.
+        // The remainder avoids a bounds check: there are at most `BLOCKS` blocks.
         let (block, lane) = (&self.blocks[vertex / LANES % BLOCKS], vertex % LANES);
         Vector::<N, 3>::new(block[0][lane], block[1][lane], block[2][lane])
     }
 
-    /// How far the vertices lie along a vector.
+    /// Heights of the vertices along a vector.
     #[inline(always)]
     pub(super) fn heights<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -115,7 +125,7 @@ impl<N: Real> Vertices<N> {
         Heights { blocks, used, count, low: -highest_lane(-low) }
     }
 
-    /// How far along a vector the lowest vertex lies.
+    /// Lowest height of the vertices along a vector.
     #[inline(always)]
     pub(super) fn low<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, along: &Vector<N, 3>) -> N {
         let along: [V; 3] = spread(simd, along);
@@ -126,8 +136,8 @@ impl<N: Real> Vertices<N> {
         -highest_lane(-low)
     }
 
-    /// Queries the face directions of the other solid: the plane that lies farthest below all vertices, the
-    /// first of equals.
+    /// Queries the face directions of the other solid: returns the plane that these vertices lie
+    /// farthest above, or least deep below; the first of equals.
     #[inline(always)]
     pub(super) fn query_faces<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -156,7 +166,7 @@ impl<N: Real> Vertices<N> {
         FaceQuery { index, separation }
     }
 
-    /// The least height of the vertices along each of eight vectors.
+    /// Lowest height of the vertices along each of eight vectors.
     #[inline(always)]
     fn lowest_along<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, along: &[V; 3]) -> V {
         let mut low = V::all(simd, N::INFINITY);
@@ -172,7 +182,7 @@ impl<N: Real> Vertices<N> {
     }
 }
 
-/// How far a point lies above the highest of some planes.
+/// Height of a point above the highest of the planes: negative inside the solid.
 #[inline(always)]
 pub(super) fn height_above<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

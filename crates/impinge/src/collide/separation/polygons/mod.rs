@@ -1,4 +1,4 @@
-//! Polygons of the plane: the separating axis test of two outlines, and the nearest points where none parts them.
+//! Convex polygons in 2D: the separating axis test of two outlines, and their nearest points.
 
 pub(super) mod outline;
 pub(super) mod polygon_nearest;

@@ -1,4 +1,12 @@
-//! Convex outlines in 2D: what points, segments, triangles, boxes and polygons have in common.
+//! Convex outlines in 2D: the common form of points, segments, triangles, boxes and polygons.
+//!
+//! ```text
+//!       3 ---n2--- 2      vertex v: lane v % 8 of block v / 8, counter-clockwise
+//!       |          |      normals[v]: outward unit normal of the side from v to v + 1
+//!      n3          n1     a segment has two sides, there and back
+//!       |          |      the last vertex and normal fill the rest of a block
+//!       0 ---n0--- 1
+//! ```
 
 use smallvec::{SmallVec, smallvec};
 
@@ -8,22 +16,23 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
-/// How many vertices are looked at side by side.
+/// Vertices in a block; the lane count of [`Polytope`]'s blocks, which are copied.
 pub(in crate::collide::separation) const LANES: usize = 8;
 
-/// Outlines of more vertices are left to the general algorithm.
+/// Outlines with more blocks of vertices go to the general algorithm.
 const MAX_BLOCKS: usize = 4;
 
 /// A number for each of eight vertices.
 pub(in crate::collide::separation) type Row<N> = [N; LANES];
 
-/// A convex polygon in some frame, inflated by a radius.
+/// A convex polygon with a radius, in some frame.
 ///
-/// Counter-clockwise; a point, a segment (there and back again) and a flat triangle are outlines, too.
+/// Counter-clockwise. Points, segments (there and back) and flat triangles are outlines, too.
 pub(in crate::collide::separation) struct PolygonOutline<N: Real> {
     blocks: SmallVec<[OutlineBlock<N>; MAX_BLOCKS]>,
-    /// Of vertices.
+    /// Number of vertices.
     pub(in crate::collide::separation) count: usize,
+    /// Radius around the outline.
     pub(in crate::collide::separation) rounding: N,
 }
 
@@ -31,13 +40,13 @@ pub(in crate::collide::separation) struct PolygonOutline<N: Real> {
 #[derive(Clone, Copy)]
 pub(in crate::collide::separation) struct OutlineBlock<N> {
     pub(in crate::collide::separation) vertices: [Row<N>; 2],
-    /// The unit outward normals of the sides that start there; of a point anything.
+    /// Outward unit normals of the sides that start at the vertices; unspecified for a point.
     pub(in crate::collide::separation) normals: [Row<N>; 2],
 }
 
 impl<N: Real> PolygonOutline<N> {
-    /// The outline of a solid in its own frame; `None` of other kinds and of polygons of too many vertices, and
-    /// where the length of a side is no usual number.
+    /// Returns the outline of a solid in its own frame. `None` for other kinds, for polygons with
+    /// too many vertices, and if the squared length of a side is close to underflow or overflow.
     #[inline(always)]
     pub(in crate::collide::separation) fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -83,7 +92,7 @@ impl<N: Real> PolygonOutline<N> {
         Self::of_ends(simd, &vertices, &ends, 2, radius)
     }
 
-    /// The corners may be given in either order; equal ones count once.
+    /// The corners may be in either order; equal corners count once.
     #[inline(always)]
     fn of_triangle<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -130,7 +139,8 @@ impl<N: Real> PolygonOutline<N> {
         Some(Self { blocks: blocks.collect(), count: polygon.vertices().len(), rounding: N::ZERO })
     }
 
-    /// The outline of these vertices, of which the sides end there; `None` as above.
+    /// Outline of `vertices` whose sides end at `ends`; `None` if a squared length is close to
+    /// underflow or overflow.
     #[inline(always)]
     fn of_ends<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -149,7 +159,7 @@ impl<N: Real> PolygonOutline<N> {
         Some(Self::of_block(stored(vertices), stored(&normals), count, radius))
     }
 
-    /// The same outline seen from the frame in which its own has the given pose.
+    /// Transforms the outline by `pose`.
     #[inline(always)]
     pub(in crate::collide::separation) fn placed<S: Simd, V: Wide<S, Scalar = N>>(
         mut self,
@@ -170,7 +180,7 @@ impl<N: Real> PolygonOutline<N> {
         Point::<N, 2>::new(xs[vertex % LANES], ys[vertex % LANES])
     }
 
-    /// The outward normal of the side that starts at a vertex.
+    /// Outward unit normal of the side that starts at a vertex.
     #[inline(always)]
     pub(in crate::collide::separation) fn normal(&self, vertex: usize) -> Vector<N, 2> {
         let [xs, ys] = &self.blocks[vertex / LANES].normals;
@@ -192,7 +202,7 @@ impl<N: Real> PolygonOutline<N> {
         self.count < 2
     }
 
-    /// A length that no vertex exceeds in distance from the origin, within a factor of 2.
+    /// Returns a bound of the distance of all vertices from the origin, at most twice the largest.
     #[inline(always)]
     pub(in crate::collide::separation) fn size<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -205,7 +215,7 @@ impl<N: Real> PolygonOutline<N> {
         self.blocks.iter().fold(N::ZERO, |most, block| max(size(block), most))
     }
 
-    /// The vertex farthest along a direction, the first of equals, and how far.
+    /// Returns the largest coordinate along a direction and the first vertex that has it.
     #[inline(always)]
     pub(in crate::collide::separation) fn top<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -224,7 +234,7 @@ impl<N: Real> PolygonOutline<N> {
         (most, vertex)
     }
 
-    /// How far the outline reaches along each of eight directions.
+    /// Returns the largest coordinate of the vertices along each of eight directions.
     #[inline(always)]
     pub(in crate::collide::separation) fn reach<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -234,7 +244,7 @@ impl<N: Real> PolygonOutline<N> {
         let mut most = V::all(simd, -N::INFINITY);
         for (number, block) in self.blocks.iter().enumerate() {
             let [xs, ys] = &block.vertices;
-            // The last vertex fills the rest.
+            // The last vertex fills the rest, so half a block may be skipped.
             let halves = if self.count - number * LANES > LANES / 2 { 2 } else { 1 };
             for half in 0..halves {
                 for lane in 0..LANES / 2 {
@@ -247,17 +257,17 @@ impl<N: Real> PolygonOutline<N> {
         most
     }
 
-    /// All vertices, with the normals of the sides that start there, eight at a time.
+    /// All vertices with the normals of the sides that start there, eight per block.
     #[inline(always)]
     pub(in crate::collide::separation) fn blocks(&self) -> &[OutlineBlock<N>] {
         &self.blocks
     }
 
-    /// The directions half-way between the normals of the sides at each vertex of a block, and where they count:
-    /// where the angle is sharper than a right one.
+    /// Returns the tips of a block: the directions halfway between the normals beside each vertex,
+    /// and the lanes where they count, which are the corners sharper than a right angle.
     ///
-    /// Sides alone would leave gaps of more than a right angle between the directions, so that flat outlines that
-    /// point at each other would count as overlapping.
+    /// Normals of sides alone would leave gaps of more than a right angle between directions, and
+    /// flat outlines that point at each other would count as overlapping.
     #[inline(always)]
     pub(in crate::collide::separation) fn tips<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -286,7 +296,7 @@ fn stored<S: Simd, N: Real, V: Wide<S, Scalar = N>>(vectors: &[V; 2]) -> [Row<N>
     rows
 }
 
-/// All lanes but the first, and all but the first two.
+/// Masks of all lanes but the first, and of all but the first two.
 #[inline(always)]
 fn later_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> [V::Mask; 2] {
     let (no, yes) = (N::ZERO, N::ONE);
@@ -297,7 +307,7 @@ fn later_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> [V::Mask; 2
     ]
 }
 
-/// The greatest of eight numbers, and the first lane that has it.
+/// Returns the largest of eight numbers, and the first lane that has it.
 #[inline(always)]
 pub(in crate::collide::separation) fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -311,7 +321,7 @@ pub(in crate::collide::separation) fn highest<S: Simd, N: Real, V: Wide<S, Scala
     (most, (is_most.trailing_zeros() as usize).min(LANES - 1))
 }
 
-/// The vector in a lane.
+/// Returns the vector in a lane.
 #[inline(always)]
 pub(in crate::collide::separation) fn lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     vectors: &[V; 2],

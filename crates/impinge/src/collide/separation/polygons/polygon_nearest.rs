@@ -1,5 +1,6 @@
-//! The nearest points of two polygons, from their best axis: mostly a corner above a side, or two corners. Otherwise
-//! each end of the sides next to it is compared with each side of the other, eight at a time.
+//! Nearest points of two polygons, from their best axis: mostly a corner above a side, or two
+//! corners. Otherwise each end of the sides at one top is compared with each side at the other,
+//! eight at a time.
 
 use super::outline::{PolygonOutline, highest, lane};
 use super::polygon_polygon::{Axis, in_middle};
@@ -9,17 +10,19 @@ use crate::math::lanes::{dot, either, minus, spread};
 use crate::math::simd::Simd;
 use crate::math::{Point, Real, Vector, Wide, perp, unit};
 
-/// Two outlines and a direction from the first to the second that leaves a gap between them, perhaps below zero.
+/// Two outlines and the direction from the first to the second with its gap, which may be negative.
 pub(in crate::collide::separation) struct Facing<'a, N: Real> {
     outlines: [&'a PolygonOutline<N>; 2],
+    /// Unit direction from the first outline to the second, with its gap.
     axis: Axis<N>,
-    /// The vertex of each that is farthest toward the other.
+    /// The vertex of each outline that is farthest toward the other.
     tops: [usize; 2],
     /// Lengths up to this are rounding errors.
     noise: N,
 }
 
 impl<'a, N: Real> Facing<'a, N> {
+    /// Finds the tops of both outlines along an axis.
     #[inline(always)]
     pub(in crate::collide::separation) fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -32,7 +35,8 @@ impl<'a, N: Real> Facing<'a, N> {
         Self { outlines, axis: *axis, tops: [top1, top2], noise }
     }
 
-    /// The separation of the two; `None` if the axis is not the one of the nearest points.
+    /// Returns the separation of the outlines; `None` if the axis is not that of their nearest
+    /// points.
     #[inline(always)]
     pub(in crate::collide::separation) fn separation<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -46,9 +50,9 @@ impl<'a, N: Real> Facing<'a, N> {
         }
     }
 
-    /// The separation, where the axis is the normal of a side that a corner is above, where it leaves no doubt
-    /// that the two overlap, or where corners next to it are the nearest points. The axis need not be the best
-    /// one then: the normals of the sides will do.
+    /// Returns the separation in the clear cases: the axis is the normal of a side with a corner
+    /// above it, the outlines certainly overlap, or corners next to the axis are the nearest
+    /// points. In these cases the best normal of a side is enough as axis.
     #[inline(always)]
     pub(in crate::collide::separation) fn settled(&self) -> Option<Separation<N, 2>> {
         let gap = self.axis.gap;
@@ -80,15 +84,16 @@ impl<'a, N: Real> Facing<'a, N> {
         Separation { distance: self.axis.gap, normal: self.axis.normal, point1, point2 }
     }
 
-    /// How far a vertex of an outline is below its top.
+    /// Returns how far a vertex of an outline is below its top, along the axis.
     #[inline(always)]
     fn below(&self, which: usize, vertex: usize) -> N {
         let down = self.axis.normal.dot(&(self.top(which) - self.outlines[which].at(vertex)));
         if which == 0 { down } else { -down }
     }
 
-    /// Whether the axis is the normal of a side at the top of an outline and the top of the other one is above
-    /// that side; and the end of the side that is nearer to it, the top if there is no such side.
+    /// Returns whether the axis is the normal of a side at the top of an outline and the other
+    /// outline's top is above that side; and the end of the side nearer to it, or the top if there
+    /// is no such side.
     #[inline(always)]
     fn beside(&self, which: usize) -> (bool, usize) {
         let (outline, top) = (self.outlines[which], self.tops[which]);
@@ -107,7 +112,8 @@ impl<'a, N: Real> Facing<'a, N> {
         (after > N::ZERO && before > N::ZERO, if before < after { other } else { top })
     }
 
-    /// The separation, if these corners are the nearest points: each lies in front of both sides of the other.
+    /// Returns the separation if these corners are the nearest points: each lies in front of both
+    /// sides at the other.
     #[inline(always)]
     fn of_corners(&self, ends: [usize; 2]) -> Option<Separation<N, 2>> {
         let [point1, point2] = [self.outlines[0].at(ends[0]), self.outlines[1].at(ends[1])];
@@ -126,7 +132,7 @@ impl<'a, N: Real> Facing<'a, N> {
         Some(Separation { distance, normal, point1, point2 })
     }
 
-    /// Outlines that touch or overlap.
+    /// Separation of outlines that touch or overlap.
     #[inline(always)]
     fn overlapping(&self) -> Separation<N, 2> {
         let tangent = perp(&self.axis.normal);
@@ -135,8 +141,8 @@ impl<'a, N: Real> Facing<'a, N> {
         in_middle([low1, high1], [low2.0, high2.0], &self.axis)
     }
 
-    /// The lowest and highest, as measured along a tangent, of the top and those of its neighbours that are as
-    /// far along the normal.
+    /// Returns the lowest and the highest, along `tangent`, of the top and those neighbours of it
+    /// that are as far along the axis.
     #[inline(always)]
     fn feature(&self, which: usize, tangent: &Vector<N, 2>) -> [(N, Point<N, 2>); 2] {
         let (outline, top) = (self.outlines[which], self.tops[which]);
@@ -153,7 +159,8 @@ impl<'a, N: Real> Facing<'a, N> {
         [low, high]
     }
 
-    /// Outlines that are apart along the axis; `None` if it is not the one of the nearest points.
+    /// Separation of outlines that are apart along the axis; `None` if it is not that of the
+    /// nearest points.
     #[inline(always)]
     fn apart<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 2>> {
         let ([own, other], noise) = (self.outlines, self.noise);
@@ -177,18 +184,24 @@ impl<'a, N: Real> Facing<'a, N> {
     }
 }
 
-/// A vertex between the one before and the one after.
+/// A vertex between its predecessor and its successor.
 #[inline(always)]
 fn around<N: Real>(outline: &PolygonOutline<N>, vertex: usize) -> [Point<N, 2>; 3] {
     [outline.at(outline.previous(vertex)), outline.at(vertex), outline.at(outline.next(vertex))]
 }
 
-/// The nearest points of the sides at two vertices, each given with its neighbours; `None` where the
-/// numbers end.
+/// Returns the nearest points of the sides at two vertices, each given with its neighbours. `None`
+/// if the squared distances are not finite.
 ///
-/// Each end of a side against a side of the other outline: lane 4 is set for the second side of the
-/// first outline, lane 2 for that of the second, lane 1 for the second end. Of equals the first counts
-/// in the order of sides of the first, sides of the second, ends of the first, ends of the second.
+/// ```text
+///   lane     0  1  2  3  4  5  6  7      way1: that end of the first outline's side against the
+///   side 1   b  b  b  b  a  a  a  a      whole side of the second; way2: the other way round.
+///   side 2   b  b  a  a  b  b  a  a      b: side before the vertex, a: side after it
+///   end      f  t  f  t  f  t  f  t      f: from, t: to
+/// ```
+///
+/// The first of equals counts, in the order of sides of the first outline, sides of the second,
+/// ends of the first, ends of the second.
 #[inline(always)]
 pub(in crate::collide::separation) fn nearest_points<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -1,15 +1,16 @@
-//! Segments, triangles, boxes and polygons among themselves in 2D, rounded or not.
+//! Segments, triangles, boxes and polygons against each other in 2D, with or without a radius.
 //!
 //! The signed distance of two convex sets is the largest gap that any direction leaves between them
-//! (negative where every direction finds them overlapping). Where they overlap, a normal of one of
-//! their sides attains it. Where they are apart, the gap is a concave function of the direction
-//! while it is positive, so that the nearest points are ends of, or lie on, the sides next to the
-//! best normal.
+//! (negative if they overlap along all directions). If they overlap, a normal of one of their sides
+//! attains it. If they are apart, the gap is a concave function of the direction where it is
+//! positive, so the nearest points lie on the sides next to the best normal, ends included.
 //!
-//! Eight sides are tried at a time, each against all vertices of the other solid. Where their best normal leads to
-//! the nearest points, as it mostly does ([`Facing::settled`]), the tips of sharp corners are not looked at. What
-//! is not usual is left to the [general algorithm](crate::collide::separation::general): very many vertices, sides whose squared length
-//! is no number, and nearest points that do not meet the best axis.
+//! Eight sides are tried at a time, each against all vertices of the other solid. If the best
+//! normal leads to the nearest points, as it mostly does ([`Facing::settled`]), the tips of sharp
+//! corners are skipped. The rest goes to the [general
+//! algorithm](crate::collide::separation::general): outlines with too many vertices, sides whose
+//! squared length is close to underflow or overflow, and nearest points that do not lie along the
+//! best axis.
 
 use super::outline::{LANES, PolygonOutline, highest, lane};
 use super::polygon_nearest::Facing;
@@ -24,28 +25,28 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, max, min, unit};
 use crate::shape::Kind;
 
-/// A direction from the first outline to the second and the gap that it leaves between them.
+/// A unit direction from the first outline to the second, and the signed gap along it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::collide::separation) struct Axis<N: Real> {
     pub(in crate::collide::separation) gap: N,
     pub(in crate::collide::separation) normal: Vector<N, 2>,
 }
 
-/// How the search ended.
+/// Result of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum OutlineResult<N: Real> {
     /// The outlines are farther apart than the limit.
     Beyond,
     Found(Separation<N, 2>),
-    /// The usual ways do not lead to an answer.
+    /// The kernel has no answer.
     Undecided,
 }
 
-/// The separation of two outlines.
+/// Returns the separation of two outlines.
 ///
-/// Equal gaps: the sides of the first solid come before those of the second, in their order. Points
-/// at one place are parted along the first axis of the first solid's frame. Cost: the product of
-/// the numbers of vertices.
+/// Ties: sides of the first solid come before sides of the second, in their order. Two coinciding
+/// points have the first axis of the first solid's frame as normal. Cost: the product of the
+/// numbers of vertices.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,
@@ -56,7 +57,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     separation_of_outlines(pair, limit)
 }
 
-/// [`separation`] of pairs but two segments that are known to be apart.
+/// Computes [`separation`] without the closed form for two segments.
 pub(in crate::collide::separation) fn separation_of_outlines<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,
@@ -70,13 +71,13 @@ pub(in crate::collide::separation) fn separation_of_outlines<N: Real>(
     }
 }
 
-/// [`search`] with the vectors of an instruction set.
+/// Runs [`search`] with the vectors of an instruction set.
 fn between<N: Real>(level: Level, pair: &Pair<'_, N, 2>, limit: N) -> OutlineResult<N> {
     let known = known_axis(pair);
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, pair, known, limit))
 }
 
-/// The best axis of two boxes, which have their own way to it.
+/// Returns the best axis of two boxes, by their own formula; `None` for other kinds.
 fn known_axis<N: Real>(pair: &Pair<'_, N, 2>) -> Option<Axis<N>> {
     let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (&pair.first, &pair.second) else {
         return None;
@@ -85,6 +86,7 @@ fn known_axis<N: Real>(pair: &Pair<'_, N, 2>) -> Option<Axis<N>> {
     Some(Rectangles { half1, half2, pose12: pair.pose12 }.best_axis())
 }
 
+/// Tries the normals of sides, then the tips of corners if these do not decide.
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -107,7 +109,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         Some(known) => known,
         None => best_side::<S, N, V>(simd, &own, &other),
     };
-    // A lower bound: what it rejects by more than rounding is out of reach.
+    // The gap is a lower bound: beyond the limit by more than rounding it rejects the pair.
     let reach = limit + N::lit(16.0) * (noise + N::EPSILON * rounding);
     if sides.gap - rounding > reach {
         return OutlineResult::Beyond;
@@ -127,8 +129,8 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     found.map_or(OutlineResult::Undecided, OutlineResult::Found)
 }
 
-/// The separation of two outlines whose best axis is known; `None` if that is not the one of the nearest
-/// points.
+/// Returns the separation of two outlines along their best axis; `None` if it is not that of the
+/// nearest points.
 #[inline(always)]
 pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -141,8 +143,8 @@ pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scala
     Some(cores.rounded(outlines[0].rounding, outlines[1].rounding))
 }
 
-/// The direction of the largest gap among the normals of all sides, those of the first outline before those of
-/// the second; of two points the direction between them.
+/// Returns the normal of a side with the largest gap; sides of the first outline come first. For
+/// two points, the direction between them.
 #[inline(always)]
 fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -160,7 +162,7 @@ fn best_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     if second.gap > first.gap { Axis { gap: second.gap, normal: -second.normal } } else { first }
 }
 
-/// The side of one outline whose normal leaves the largest gap to another, the first of equals.
+/// Returns the normal of a side of `own` with the largest gap to `other`; the first of equals.
 #[inline(always)]
 fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -183,7 +185,7 @@ fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// The direction of the largest gap, where that among the normals of the sides is known.
+/// Returns the direction of the largest gap: `best`, the best normal of a side, or a tip.
 #[inline(always)]
 fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -203,7 +205,8 @@ fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// The same as [`best_side_of_one`] of the tips; `None` of an outline without any.
+/// Returns the tip of `own` with the largest gap to `other`, the first of equals; `None` without
+/// tips.
 #[inline(always)]
 fn best_tip_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -227,8 +230,8 @@ fn best_tip_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// The points in the middle of what two features have in common: the lowest and highest vertices of the
-/// first, and where along the tangent those of the second are.
+/// Returns the separation at the middle of the overlap interval of two features: lowest and highest
+/// vertex of the first with their coordinates along the tangent, and the coordinates of the second.
 pub(in crate::collide::separation) fn in_middle<N: Real>(
     [low1, high1]: [(N, Point<N, 2>); 2],
     [low2, high2]: [N; 2],

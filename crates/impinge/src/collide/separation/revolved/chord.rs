@@ -1,28 +1,32 @@
-//! The place of a chord that is nearest to a cylinder or a cone, or deepest inside.
+//! Nearest point of a chord to a cylinder or a cone, or the deepest inside.
 
 use super::profile::Profile;
 use super::{NearestHull, RevolvedPlace, still};
 use crate::math::{Real, Vector, max, min};
 
-/// Cap on the points looked at, about four of which are needed.
+/// Cap on the points tried; about four are needed.
 const STEPS: usize = 16;
-/// Cap on the bisections among them: there are none but where parts are passed over, and where the distance has a
-/// kink, inside the solid.
+/// Cap on the bisections among them, which occur where the nearest part changes in between and,
+/// inside the solid, at kinks of the distance.
 const HALVINGS: usize = 4;
 
-/// A search along a chord: the shares of the way between which the slope changes its sign.
+/// A search along a chord: `bounds` are the parameters between which the slope changes its sign.
 struct ChordSearch<N: Real> {
+    /// Ends in the frame of the round solid, in units of the pair.
     ends: [Vector<N, 3>; 2],
+    /// Vector from the first end to the second, and its length.
     along: Vector<N, 3>,
     length: N,
+    /// Parameters from 0 to 1 between which the slope changes its sign.
     bounds: [N; 2],
-    /// Whether the slope has been found to fall at the one and to rise at the other.
+    /// Whether the slope is known to fall at the lower bound and to rise at the upper one.
     is_known: [bool; 2],
+    /// Number of bisections so far.
     halvings: usize,
 }
 
 impl<N: Real> ChordSearch<N> {
-    /// `None` of a chord without length.
+    /// `None` for a chord without length.
     fn new(ends: [Vector<N, 3>; 2], falls: bool) -> Option<Self> {
         let along = ends[1] - ends[0];
         let length = along.norm();
@@ -30,13 +34,13 @@ impl<N: Real> ChordSearch<N> {
         (length > still()).then_some(Self { ends, along, length, bounds, is_known, halvings: 0 })
     }
 
-    /// Where the chord is nearest to the middle of the solid.
+    /// Returns the parameter of the point nearest to the middle of the solid.
     fn start(&self) -> N {
         let share = -self.ends[0].dot(&self.along) / (self.length * self.length);
         max(min(share, N::ONE), N::ZERO)
     }
 
-    /// The point at a share of the way, measured from the nearer end.
+    /// Returns the point at parameter `share` from 0 to 1, computed from the nearer end.
     fn at(&self, share: N) -> Vector<N, 3> {
         if share <= N::HALF {
             self.ends[0] + self.along * share
@@ -45,13 +49,14 @@ impl<N: Real> ChordSearch<N> {
         }
     }
 
-    /// Notes the slope at a share.
+    /// Records the slope at a parameter.
     fn note(&mut self, share: N, slope: N) {
         let rises = usize::from(slope > N::ZERO);
         (self.bounds[rises], self.is_known[rises]) = (share, true);
     }
 
-    /// Where to look after a share, if it is in doubt; ends that have not been looked at count.
+    /// Returns the parameter to try next: `target` if between the bounds, else the bound on its
+    /// side unless that is known.
     fn admitted(&self, target: N) -> Option<N> {
         let [low, high] = self.bounds;
         if target > low && target < high {
@@ -61,7 +66,7 @@ impl<N: Real> ChordSearch<N> {
         (!self.is_known[beyond]).then_some(self.bounds[beyond])
     }
 
-    /// Halfway, if that has not been tried too often.
+    /// Returns the middle of the bounds; `None` after [`HALVINGS`] bisections.
     fn halved(&mut self) -> Option<N> {
         self.halvings += 1;
         let [low, high] = self.bounds;
@@ -70,8 +75,8 @@ impl<N: Real> ChordSearch<N> {
 }
 
 impl<N: Real> Profile<N> {
-    /// The place of a chord that is nearest, and what of the chord is needed for it; `falls` tells that it is not
-    /// the first end.
+    /// Returns the nearest place of a chord, and the part of the chord needed for it. `falls` means
+    /// that the distance falls from the first end. `None` if the search does not converge.
     pub(super) fn along(
         &self,
         ends: [Vector<N, 3>; 2],
@@ -99,7 +104,7 @@ impl<N: Real> Profile<N> {
             let next = search.admitted(share + way.unwrap_or(ahead));
             share = match next {
                 Some(next) => next,
-                // Inside it is a kink.
+                // Inside, the distance has a kink here.
                 None if seen.distance < N::ZERO => return None,
                 None => {
                     let to_rim = seen.way_to_rim(self, &search.along);

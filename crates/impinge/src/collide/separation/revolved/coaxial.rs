@@ -1,9 +1,17 @@
-//! Solids of revolution about one axis, or nearly: how deep, from their outlines.
+//! Depth of solids of revolution about one axis, or nearly one, from their outlines.
 //!
-//! The difference of two solids about one axis is a solid about it too. In a half-plane of the axis its outline is
-//! that of the difference of two polygons, so the least depth is along the normal of a side of one of them, and as
-//! deep all around the axis. A search over directions has nothing to go by there. Where the axes differ a little,
-//! the best direction is near the ring of such a normal.
+//! The difference of two solids about one axis is a solid about that axis. In a half-plane of the
+//! axis its outline is that of the difference of two polygons. So the least depth is along the
+//! normal of a side of one of them, and the same all around the axis, where a search over
+//! directions has no gradient. If the axes differ a little, the best direction is near the ring of
+//! such a normal.
+//!
+//! ```text
+//!       axis |____ corners[0] (x, y)       x: distance from the axis, y: along it
+//!            |    \                        normals: caps (0, 1) and (0, -1), and the side's
+//!            |     \  side normal ->       a normal with x > 0 stands for a ring of directions
+//!            |______\ corners[1]
+//! ```
 
 use smallvec::SmallVec;
 
@@ -17,12 +25,12 @@ use crate::convex::{self, Peak, Peaks, Separation};
 use crate::math::{Mapped, Pose, Real, Vector, cross, max, perpendicular_to, unit};
 use crate::shape::{Geometry, Kind};
 
-/// Solids of about size 1 that lie no farther from having one axis are searched near it: 2⁻¹².
+/// Solids of about size 1 count as coaxial if they are no farther than this from one axis: 2⁻¹².
 const NEAR: f64 = 1.0 / 4096.0;
-/// Normals of rings that differ by less are looked for together.
+/// Normals of rings that differ by less than this are searched together.
 const SAME_RING: f64 = 1.0 / 16.0;
 
-/// The separation of two cylinders or cones by the general algorithm.
+/// Returns the separation of two cylinders or cones by the general algorithm.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -37,6 +45,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     found.filter(|found| found.distance <= limit)
 }
 
+/// Two solids of which the normals of an overlap are known if they are coaxial.
 struct CoaxialPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }
@@ -47,8 +56,9 @@ impl<N: Real> Peaks<N, 3> for CoaxialPeaks<'_, '_, N> {
     }
 }
 
-/// The best normal of the cores of a segment, capsule, cylinder or cone and another that overlap; `None` of other
-/// solids, and of those that are not about one axis. `shrink` takes lengths to units of the pair.
+/// Returns the normal of least depth for the overlapping cores of two coaxial solids, each a
+/// segment, capsule, cylinder or cone. `None` for other kinds and other axes. `shrink` scales
+/// lengths to units of the pair.
 pub(in crate::collide::separation) fn peak<N: Real>(
     pair: &Pair<'_, N, 3>,
     shrink: N,
@@ -59,18 +69,19 @@ pub(in crate::collide::separation) fn peak<N: Real>(
     Coaxial::new(first, second)?.peak()
 }
 
-/// A solid about an axis, in the frame of the first and units of the pair: in a half-plane of the axis the hull
-/// of two points and of those across the axis.
+/// A solid about an axis, in the frame of the first solid and in units of the pair: in a half-plane
+/// of the axis, the hull of both corners and their mirror images.
 struct AxialOutline<N: Real> {
+    /// Middle of the solid, in the frame of the first.
     middle: Vector<N, 3>,
-    /// Unit.
+    /// Unit vector along the axis.
     axis: Vector<N, 3>,
-    /// How far aside and along the axis: the upper one and the lower one.
+    /// Distance from the axis and coordinate along it, for the upper and the lower corner.
     corners: [Vector<N, 2>; 2],
 }
 
 impl<N: Real> AxialOutline<N> {
-    /// `None` of other kinds, and of one without a size.
+    /// `None` for other kinds, and for solids of size zero.
     fn of(kind: Kind<'_, N, 3>, pose: &Pose<N, 3>, shrink: N) -> Option<Self> {
         let place = pose.translation * shrink;
         if let Some(round) = Round::new(&kind, shrink) {
@@ -104,14 +115,14 @@ impl<N: Real> AxialOutline<N> {
         max(normal.dot(&self.corners[0]), normal.dot(&self.corners[1]))
     }
 
-    /// How far it reaches along a unit vector.
+    /// Returns the extent along a unit vector.
     fn extent(&self, along: &Vector<N, 3>) -> N {
         let up = along.dot(&self.axis);
         let aside = (along - self.axis * up).norm();
         along.dot(&self.middle) + self.level(&Vector::<N, 2>::new(aside, up))
     }
 
-    /// The normals of the caps, then that of the side.
+    /// Normals of the caps, then of the side.
     fn normals(&self) -> impl Iterator<Item = Vector<N, 2>> {
         let [top, bottom] = &self.corners;
         let up = Vector::<N, 2>::y();
@@ -120,12 +131,12 @@ impl<N: Real> AxialOutline<N> {
         caps.into_iter().chain([side.map(|(side, _)| side)]).flatten()
     }
 
-    /// A direction in the half-plane that holds the unit vector `aside`.
+    /// Maps a direction of the half-plane through the unit vector `aside` to 3D.
     fn lifted(&self, v: &Vector<N, 2>, aside: &Vector<N, 3>) -> Vector<N, 3> {
         aside * v.x + self.axis * v.y
     }
 
-    /// The corners that are farthest along a normal; on caps those across the axis as well.
+    /// Returns the corners farthest along a normal; for caps also their mirror images.
     fn touched(&self, normal: &Vector<N, 2>, aside: &Vector<N, 3>) -> SmallVec<[Vector<N, 3>; 8]> {
         let low = self.level(normal) - N::EPSILON.sqrt();
         let sides: &[N] = if normal.x > N::ZERO { &[N::ONE] } else { &[N::ONE, -N::ONE] };
@@ -140,15 +151,17 @@ impl<N: Real> AxialOutline<N> {
 /// Two solids about one axis.
 struct Coaxial<N: Real> {
     first: AxialOutline<N>,
-    /// Its axis runs as that of the first.
+    /// Second solid, its axis in the direction of the first.
     second: AxialOutline<N>,
-    /// From the middle of the first to that of the second, across the axis, and how far the solids are from having
-    /// one axis.
+    /// Offset of the second middle from the first, perpendicular to the axis; and a bound of how
+    /// far the solids are from one axis.
     offset: Vector<N, 3>,
     apart: N,
 }
 
 impl<N: Real> Coaxial<N> {
+    /// Turns the second axis into the direction of the first; `None` unless the solids are nearly
+    /// coaxial.
     fn new(first: AxialOutline<N>, mut second: AxialOutline<N>) -> Option<Self> {
         if first.axis.dot(&second.axis) < N::ZERO {
             let [top, bottom] = second.corners;
@@ -164,13 +177,14 @@ impl<N: Real> Coaxial<N> {
         (apart <= N::lit(NEAR)).then_some(Self { first, second, offset, apart })
     }
 
-    /// The unit vector away from the axis to where the second solid lies; if nowhere, anywhere.
+    /// Returns the unit vector from the first axis towards the second middle; any perpendicular if
+    /// they coincide.
     fn aside(&self) -> Vector<N, 3> {
         let beside = unit(&self.offset).filter(|(_, offset)| *offset > noise());
         beside.map_or_else(|| perpendicular_to(&self.first.axis), |(aside, _)| aside)
     }
 
-    /// The normal of a side of one of the two, which is given in its half-plane as one of the first.
+    /// Returns the exit along the normal of a side, given in the half-plane of its solid.
     fn direction(
         &self,
         normal: Vector<N, 2>,
@@ -183,7 +197,7 @@ impl<N: Real> Coaxial<N> {
         AxialExit { normal, along, depth }
     }
 
-    /// `None` where a ring of normals that differ may have a better one than the best that is known.
+    /// Returns the exit of least depth; `None` if another ring of normals may have a better one.
     fn peak(&self) -> Option<Peak<N, 3>> {
         let aside = self.aside();
         let own = self.first.normals().map(|n| self.direction(n, &self.first, &aside));
@@ -213,13 +227,14 @@ impl<N: Real> Coaxial<N> {
     }
 }
 
-/// A direction out of an overlap.
+/// A direction out of an overlap, with the depth along it.
 #[derive(Clone, Copy)]
 struct AxialExit<N: Real> {
-    /// In the half-plane of the axis.
+    /// The normal in the half-plane of the axis.
     normal: Vector<N, 2>,
-    /// Unit.
+    /// Unit vector in the frame of the first solid.
     along: Vector<N, 3>,
+    /// Depth of the overlap along the direction.
     depth: N,
 }
 
@@ -244,7 +259,7 @@ mod tests {
         }
     }
 
-    /// Solids about one axis but for an offset and a lean of this size, the second either way up.
+    /// Coaxial solids up to an offset and a tilt of this size, the second either way up.
     fn compare<N: Real>(seed: u64, slight: f64, accuracy: f64) {
         let random = &mut Random(seed);
         for round in 0..200 {

@@ -1,12 +1,12 @@
 //! Cylinder against cylinder.
 //!
-//! Directions that may be the answer's, each with a proof that takes a few products: the normals of
-//! the caps; across both axes; from an axis to the other's rim; from rim to rim. Where the solids are
-//! apart, two points as far apart as a pair of supporting planes are the proof. Where they overlap, a
-//! ball is: one whose centre is a point of one solid and that lies within the other says that no way out
-//! is shorter than its radius. A cap or a side that reaches at least as far beside the place as it is
-//! deep there holds such a ball. What is not proved is left to the general algorithm, such as two rims
-//! that overlap.
+//! Tries the directions that can give the answer, each with a proof of a few products: normals of
+//! caps; the common perpendicular of both axes; from an axis to the other rim; from rim to rim. If
+//! the solids are apart, two points as far apart as a pair of supporting planes are the proof. If
+//! they overlap, a ball is: if it is centred at a point of one solid and lies within the other, no
+//! way out is shorter than its radius. A cap or a side that extends at least as far beside the
+//! point as the depth there holds such a ball. Other cases, such as two overlapping rims, go to the
+//! general algorithm.
 
 use super::coaxial;
 use crate::collide::Pair;
@@ -16,12 +16,13 @@ use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
 use crate::shape::{Cylinder, Kind, SupportMap};
 
-/// Cap on the steps of Newton's method; from the direction between the middles about four are enough.
+/// Cap on the steps of Newton's method; about four are enough from the direction between the
+/// middles.
 const STEPS: usize = 10;
 
-/// The separation of two cylinders.
+/// Returns the separation of two cylinders.
 ///
-/// Of equal directions caps come before sides, and those of the first solid before those of the second.
+/// Ties: caps come before sides, and the first solid before the second.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -41,18 +42,18 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
 }
 
-/// How the search ended.
+/// Result of the search.
 pub(in crate::collide::separation) enum RevolvedResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
-    /// In the frame of the first solid, or that of the second.
+    /// The answer; `true` if it is in the frame of the second solid.
     Found(RevolvedFound<N>, bool),
     Undecided,
 }
 
 impl<N: Real> RevolvedResult<N> {
-    /// Tries one direction after the other until one is the answer, or parts the solids by more than
-    /// `beyond`; with each goes whether it is seen from the second solid.
+    /// Tries directions until one gives the answer or separates the solids by more than `beyond`.
+    /// The flag of each is `true` if it is in the frame of the second solid.
     fn of(tries: &[(Attempt<'_, N>, bool)], beyond: N) -> Self {
         for (attempt, is_second) in tries {
             let Some(tried) = attempt() else { continue };
@@ -66,8 +67,8 @@ impl<N: Real> RevolvedResult<N> {
         Self::Undecided
     }
 
-    /// The answer in the frame of the first solid and the lengths of the pair, which may be that there is none
-    /// within the limit; `None` if the search is undecided.
+    /// Returns the answer in the frame of the first solid and in lengths of the caller. The inner
+    /// `None` means beyond the limit, the outer one undecided.
     pub(in crate::collide::separation) fn answer(
         &self,
         units: &Units<N>,
@@ -89,7 +90,7 @@ impl<N: Real> RevolvedResult<N> {
 pub(in crate::collide::separation) struct RevolvedFound<N: Real> {
     pub(in crate::collide::separation) distance: N,
     pub(in crate::collide::separation) normal: Vector<N, 3>,
-    /// A point of the other solid; that of this one is across from it.
+    /// A point of the other solid; this solid's point lies across from it along `normal`.
     pub(in crate::collide::separation) on_other: Vector<N, 3>,
 }
 
@@ -105,37 +106,38 @@ impl<N: Real> RevolvedFound<N> {
     }
 }
 
-/// Half the height and the radius.
+/// Half height and radius.
 #[derive(Clone, Copy)]
 struct Size<N> {
     half: N,
     radius: N,
 }
 
-/// A cylinder about the y axis, and another one.
+/// A cylinder about the y axis, and the other one in its frame.
 struct CylinderView<N: Real> {
     own: Size<N>,
     other: Size<N>,
-    /// The middle of the other one, and the unit vector along its axis.
+    /// Middle of the other cylinder, and the unit vector along its axis.
     center: Vector<N, 3>,
     axis: Vector<N, 3>,
 }
 
-/// A direction from one solid to the other: how far it parts them, and the answer if that is it.
+/// A direction between the solids: the signed gap along it, and the answer if it is proved.
 struct Tried<N: Real> {
     height: N,
     found: Option<RevolvedFound<N>>,
 }
 
-/// A direction that is looked for when it is its turn.
+/// A direction, computed when it is tried.
 type Attempt<'a, N> = &'a dyn Fn() -> Option<Tried<N>>;
 
-/// Two cylinders, seen from each.
+/// Two cylinders, each in the frame of the other.
 struct CylinderPair<N: Real> {
     views: [CylinderView<N>; 2],
 }
 
 impl<N: Real> CylinderPair<N> {
+    /// Places each cylinder in the frame of the other, in units of the pair.
     fn new(first: &Cylinder<N>, second: &Cylinder<N>, pose12: &Pose<N, 3>, shrink: N) -> Self {
         let [size1, size2] = [first, second].mapped(|solid| Size {
             half: solid.half_height() * shrink,
@@ -158,6 +160,7 @@ impl<N: Real> CylinderPair<N> {
         }
     }
 
+    /// Tries the directions in order: caps, both axes, sides, rims.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let [first, second] = &self.views;
         let tries: [(Attempt<'_, N>, bool); 6] = [
@@ -173,7 +176,7 @@ impl<N: Real> CylinderPair<N> {
 }
 
 impl<N: Real> CylinderView<N> {
-    /// The normal of the cap that faces the other solid.
+    /// Tries the normal of the cap that faces the other solid.
     fn cap(&self) -> Tried<N> {
         let up = if self.center.y < N::ZERO { -N::ONE } else { N::ONE };
         let normal = Vector::<N, 3>::new(N::ZERO, up, N::ZERO);
@@ -193,15 +196,17 @@ impl<N: Real> CylinderView<N> {
         Tried { height, found: is_above.then_some(found) }
     }
 
-    /// Of the points of the other solid that are lowest along the normal of a cap, up to noise, the one
-    /// in the middle of those above it; `sine` is that of the angle between the axes.
+    /// Returns the lowest point of the other solid along the normal of a cap. Up to `noise` several
+    /// are lowest: then the middle of those above the cap. `sine` is that of the angle between the
+    /// axes.
     fn lowest_above_cap(&self, normal: &Vector<N, 3>, sine: N) -> Vector<N, 3> {
         let lean = normal.dot(&self.axis);
         let end = if lean < N::ZERO { self.axis } else { -self.axis } * self.other.half;
         if sine * self.other.radius <= noise() {
             return self.over_disk(&(self.center + end));
         }
-        // Down along the other one's cap: the normal against the axis, without a difference.
+        // Direction down along the other cap: the normal minus its axial part, without a
+        // difference.
         let aside = radial(&self.axis) * (lean / sine * self.other.radius);
         let down = lifted(&aside) - normal * (sine * self.other.radius);
         if lean.abs() * self.other.half <= noise() {
@@ -214,20 +219,21 @@ impl<N: Real> CylinderView<N> {
         self.center + end + down
     }
 
-    /// The middle of the line between the two disks' middles that lies in both, the other solid's cap
-    /// being parallel to this one's, with its middle at a point.
+    /// For parallel caps: returns the middle of the segment that both disks cover on the line
+    /// through their centres; `middle` is the centre of the other disk.
     fn over_disk(&self, middle: &Vector<N, 3>) -> Vector<N, 3> {
         let Some((away, distance)) = unit(&radial(middle)) else { return *middle };
         let (low, high) = (
             max(distance - self.other.radius, -self.own.radius),
             min(distance + self.other.radius, self.own.radius),
         );
-        // Where the disks do not meet, the nearest point of the other one.
+        // Where the disks do not overlap, the nearest point of the other one.
         let at = if low > high { low } else { (low + high) * N::HALF };
         middle + lifted(&away) * (at - distance)
     }
 
-    /// Across both axes: a side against a side. `None` where the axes are nearly parallel.
+    /// Tries the common perpendicular of both axes, side against side; `None` for nearly parallel
+    /// axes.
     fn across(&self) -> Option<Tried<N>> {
         let squared = radial(&self.axis).norm_squared();
         let is_resolved = squared > N::lit(16.0) * N::EPSILON;
@@ -239,13 +245,14 @@ impl<N: Real> CylinderView<N> {
         let normal = if away < N::ZERO { -turned } else { turned };
         let (away, sizes) = (away.abs(), self.own.radius + self.other.radius);
         let height = away - sizes;
-        // Where the common perpendicular of the axes meets them.
+        // Points where the common perpendicular meets the axes.
         let (lean, along) = (self.axis.y, self.center.dot(&self.axis));
         let at_own = (self.center.y - lean * along) / squared;
         let at_other = (lean * self.center.y - along) / squared;
         let (room1, room2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
         let is_between = room1 >= -noise::<N>() && room2 >= -noise::<N>();
-        // A ball about a point between the axes, or two, one in each solid, that add up.
+        // The proof: a ball around a point between the axes, or one in each solid with radii that
+        // add up.
         let entry = away - self.other.radius;
         let least = max(self.own.radius - room1, max(entry, N::ZERO));
         let most = min(entry + room2, min(away, self.own.radius));
@@ -255,8 +262,8 @@ impl<N: Real> CylinderView<N> {
         Some(Tried { height, found: (is_between && is_proved).then_some(found) })
     }
 
-    /// From the axis to the nearest point of the other solid's rim, or of its side where the axes are
-    /// parallel. `None` where the other solid reaches to the axis.
+    /// Tries the direction from the axis to the nearest point of the other rim, or of the other
+    /// side for parallel axes. `None` if the other solid extends to the axis.
     fn side(&self) -> Option<Tried<N>> {
         let start = unit(&radial(&self.center))?.0;
         let (normal, point) = self.toward_rim(start)?;
@@ -271,8 +278,8 @@ impl<N: Real> CylinderView<N> {
         Some(Tried { height, found: is_beside.then_some(found) })
     }
 
-    /// The direction away from the axis along which the other solid's lowest point lies, and the point,
-    /// by Newton's method.
+    /// Returns the direction away from the axis along which the lowest point of the other solid
+    /// lies, and that point, by Newton's method.
     fn toward_rim(&self, start: Vector<N, 2>) -> Option<(Vector<N, 2>, Vector<N, 3>)> {
         let mut normal = start;
         for _ in 0..STEPS {
@@ -291,8 +298,8 @@ impl<N: Real> CylinderView<N> {
         None
     }
 
-    /// The point of the other solid that is lowest along a direction away from the axis, and how it moves
-    /// across as that turns; `None` for a side that leans, which has no such point.
+    /// Returns the lowest point of the other solid along a direction away from the axis, and its
+    /// rate of motion as that turns; `None` for a tilted side, whose lowest point is not unique.
     fn lowest_beside(&self, normal: &Vector<N, 2>) -> Option<(Vector<N, 3>, N)> {
         let (out, across) = (lifted(normal), lifted(&Vector::<N, 2>::new(-normal.y, normal.x)));
         let (lean, turn) = (self.axis.dot(&out), self.axis.dot(&across));
@@ -313,8 +320,8 @@ impl<N: Real> CylinderView<N> {
         Some((self.center + end + down, bend))
     }
 
-    /// The middle of the part of the other solid's lowest line that lies beside this solid, the axes
-    /// being parallel.
+    /// Returns the middle of the part of the other solid's lowest line beside this solid, for
+    /// parallel axes.
     fn beside_parallel(&self, down: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let reach = self.other.half * self.axis.y.abs();
         let is_parallel = radial(&self.axis).norm() * self.other.half <= noise();
@@ -326,7 +333,7 @@ impl<N: Real> CylinderView<N> {
         is_parallel.then(|| self.center + down + self.axis * max(min(at, half), -half))
     }
 
-    /// From rim to rim, of solids that are apart, by Newton's method on the sphere of directions.
+    /// Tries rim against rim, for solids apart, by Newton's method on the sphere of directions.
     fn rims(&self) -> Option<Tried<N>> {
         let mut normal = unit(&self.center)?.0;
         for _ in 0..STEPS {
@@ -347,7 +354,8 @@ impl<N: Real> CylinderView<N> {
         None
     }
 
-    /// The point of a rim of this solid, or of the other one, that lies farthest along a direction.
+    /// Returns the point of this solid's rim, or of the other one's, that is farthest along a
+    /// direction.
     fn rim(&self, direction: &Vector<N, 3>, is_own: bool) -> Option<Rim<N>> {
         let (size, center, axis) = if is_own {
             (self.own, Vector::<N, 3>::zeros(), Vector::<N, 3>::y())
@@ -363,15 +371,14 @@ impl<N: Real> CylinderView<N> {
     }
 }
 
-/// A point of a rim, the direction of the rim there, and how fast the point moves along it as the direction
-/// turns in which it lies farthest.
+/// A point of a rim, the tangent there, and its rate of motion along that as the direction turns.
 struct Rim<N: Real> {
     point: Vector<N, 3>,
     along: Vector<N, 3>,
     bend: N,
 }
 
-/// The step to where the slope is zero; at most half a radian.
+/// Returns the Newton step to a slope of zero; at most half a radian.
 fn step<N: Real>(
     normal: &Vector<N, 3>,
     slope: &Vector<N, 3>,
@@ -393,12 +400,12 @@ fn step<N: Real>(
     Some(along * min(length, N::HALF))
 }
 
-/// The part of a vector across the y axis, as (x, z).
+/// Part of a vector perpendicular to the y axis, as (x, z).
 pub(in crate::collide::separation) fn radial<N: Real>(v: &Vector<N, 3>) -> Vector<N, 2> {
     Vector::<N, 2>::new(v.x, v.z)
 }
 
-/// A vector across the y axis, given as (x, z).
+/// Vector perpendicular to the y axis, given as (x, z).
 fn lifted<N: Real>(v: &Vector<N, 2>) -> Vector<N, 3> {
     Vector::<N, 3>::new(v.x, N::ZERO, v.y)
 }

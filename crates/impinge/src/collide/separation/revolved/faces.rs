@@ -1,15 +1,15 @@
-//! Overlaps out of which a face of the flat solid or a cap of the round one leads.
+//! Overlaps whose shortest way out is along a face of the flat solid or a cap of the round one.
 
 use super::{FlatCore, NearestHull, RevolvedFound, RevolvedMeeting, RevolvedPlace, still};
 use crate::math::{Real, Vector};
 
 impl<N: Real> RevolvedMeeting<'_, N> {
-    /// The answer along the normal of the face or cap that the solids reach least below, if balls prove it.
+    /// Returns the answer along the face or cap with the least depth, if balls prove it.
     pub(super) fn by_face(&self) -> Option<RevolvedFound<N>> {
         self.by_own_face().or_else(|| self.by_cap())
     }
 
-    /// Along the normal of a face of the flat solid, which holds the ball about the point that is deepest below.
+    /// Tries the faces of the flat solid, which has to contain the ball around the deepest point.
     fn by_own_face(&self) -> Option<RevolvedFound<N>> {
         let mut best: Option<(N, RevolvedPlace<N>)> = None;
         let mut try_face = |normal: &Vector<N, 3>, offset: N| {
@@ -40,7 +40,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         is_proved.then(|| place.proved(height)).flatten()
     }
 
-    /// Along the normal of a cap, below which the ball about the lowest vertex is in the round solid.
+    /// Tries the caps of the round solid, which has to contain the ball around the lowest vertex.
     fn by_cap(&self) -> Option<RevolvedFound<N>> {
         self.profile.round.caps().iter().find_map(|&up| {
             let vertex = self.lowest(&(Vector::<N, 3>::y() * N::lit(up)));

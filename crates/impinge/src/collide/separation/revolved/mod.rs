@@ -1,15 +1,25 @@
-//! Solids with flat faces, segments, capsules, cylinders and cones beside cylinders and cones.
+//! Flat-sided solids, segments, capsules, cylinders and cones against cylinders and cones.
 //!
-//! How far a point is from a cylinder or a cone, or how deep inside, is a formula ([`profile`]), and convex. So the
-//! nearest point of the flat solid is searched over the hull of a few of its vertices, to which the lowest along the
-//! direction found is added until there is no lower one: the simplicial decomposition of B. von Hohenbalken
-//! ("Simplicial decomposition in nonlinear programming algorithms", 1977), here over points, chords and triangles.
+//! The signed distance of a point from a cylinder or a cone is a closed form ([`profile`]), and
+//! convex. So the nearest point of the flat solid is searched over the hull of a few of its
+//! vertices. The lowest vertex along the direction found is added until none is lower: the
+//! simplicial decomposition of B. von Hohenbalken ("Simplicial decomposition in nonlinear
+//! programming algorithms", 1977), here over points, chords and triangles.
 //!
-//! The direction in the end is a supporting plane of both solids, and two points lie across from each other along
-//! it, or the answer is not given. Where the solids are apart nothing else is needed. Where a point of the flat
-//! solid is inside the round one, the ball about it as large as it is deep is in there too, so no way out is
-//! shorter; where a point of the round solid is below a face, the ball about it must be in the flat one. What is
-//! not proved like that, an edge across a rim above all, is left to the arcs of [`ridges`].
+//! ```text
+//!      point *--------* low      low: lowest vertex of the flat solid along `outward`; if it is
+//!            |                   not lower than `point`, both solids have a plane there
+//!    nearest *  ^ outward        outward: unit, out of the round solid; level: its extent along it
+//!        .-------.
+//!        | round |               frame: of the round solid, axis y; units of the pair
+//! ```
+//!
+//! An answer is accepted only if its direction is a supporting plane of both solids and its two
+//! points lie across from each other along it. If the solids are apart that is all. If a point of
+//! the flat solid is inside the round one, the ball around it with its depth as radius is inside
+//! too, so no way out is shorter. If a point of the round solid is below a face, the ball around it
+//! must be inside the flat one. Cases without such a proof, above all an edge across a rim, go to
+//! the arcs of [`ridges`].
 
 mod chord;
 pub(super) mod coaxial;
@@ -32,18 +42,20 @@ use crate::convex::{Separation, Units};
 use crate::math::{Pose, Real, Vector, cross, unit};
 use crate::shape::{Geometry, SupportMap};
 
-/// Cap on the vertices that are added.
+/// Cap on the vertices added.
 const ROUNDS: usize = 12;
 
-/// The sine above which two directions say what is across both of them.
+/// Two directions define a common perpendicular if the sine of their angle exceeds this.
 const RESOLVED: f64 = 1.0 / 64.0;
 
-/// Points that are nearer to where they belong need not come nearer, and what is lower by no more is as low.
+/// Returns the tolerance of the search, in units of the pair: moves and differences in height up to
+/// this count as none.
 fn still<N: Real>() -> N {
     noise::<N>() * N::HALF
 }
 
-/// The separation of a solid with flat faces, a segment, a capsule, a cylinder or a cone from a cylinder or cone.
+/// Returns the separation of a flat-sided solid, segment, capsule, cylinder or cone from a cylinder
+/// or cone.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let otherwise = || match FlatCore::of(pair.first) {
         Some(_) => ridges::separation(pair, limit),
@@ -52,7 +64,8 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     attempt(pair, limit).unwrap_or_else(otherwise)
 }
 
-/// The distance in [`separation`], or any number that is not positive if the solids overlap.
+/// Returns the distance of [`separation`], or any number that is not positive for overlapping
+/// solids.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     match (attempt(pair, limit), FlatCore::of(pair.first)) {
         (Some(found), _) => found.map(|found| found.distance),
@@ -61,7 +74,7 @@ pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     }
 }
 
-/// The separation, if it is decided.
+/// Returns the separation, if the search decides; the inner `None` means beyond `limit`.
 fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation<N, 3>>> {
     let (first, second) = (Geometry(pair.first), Geometry(pair.second));
     let (Some(map1), Some(map2)) = (first.as_support_map(), second.as_support_map()) else {
@@ -89,16 +102,20 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
     Some(rounded.filter(|found| found.distance <= limit))
 }
 
-/// The result where the answer, if there is one, is in the frame of the second solid.
+/// Wraps an answer in the frame of the second solid.
 fn seen_from_second<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<N> {
     found.map_or(RevolvedResult::Undecided, |found| RevolvedResult::Found(found, true))
 }
 
-/// The core of the flat solid and the round one, in the frame of the latter and units of the pair.
+/// Core of the flat solid and the round one, in the frame of the round one and in units of the
+/// pair.
 struct RevolvedMeeting<'a, N: Real> {
     flat: FlatCore<'a, N, 3>,
+    /// Pose of the round solid in the frame of the flat one.
     pose12: &'a Pose<N, 3>,
+    /// Translation of `pose12` in units of the pair.
     shift: Vector<N, 3>,
+    /// Factor from lengths of the shapes to units of the pair.
     shrink: N,
     profile: Profile<N>,
 }
@@ -106,15 +123,16 @@ struct RevolvedMeeting<'a, N: Real> {
 /// A point of the flat solid with the direction along which it is nearest to the round one.
 #[derive(Clone, Copy)]
 struct RevolvedPlace<N: Real> {
+    /// In the frame of the round solid, in units of the pair.
     point: Vector<N, 3>,
-    /// That of the round one.
+    /// The point of the round solid across from `point`.
     nearest: Vector<N, 3>,
-    /// Unit, out of the round solid, which reaches so far along it.
+    /// Unit vector out of the round solid; `level` is the extent of the round solid along it.
     outward: Vector<N, 3>,
     level: N,
 }
 
-/// The points over which a place is the nearest; no more than are needed.
+/// The points whose hull contains the nearest point; no more than needed.
 #[derive(Clone, Copy)]
 enum NearestHull<N: Real> {
     Point(Vector<N, 3>),
@@ -123,6 +141,8 @@ enum NearestHull<N: Real> {
 }
 
 impl<N: Real> RevolvedMeeting<'_, N> {
+    /// Runs the search from the vertex nearest along the first direction; then tries faces and
+    /// caps.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let middle = self.placed(&self.flat.center().coords);
         let first = self.lowest(&self.profile.seen_from(middle).outward);
@@ -140,17 +160,18 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         seen_from_second(self.by_face())
     }
 
-    /// A point of the flat solid, given in its own frame and length.
+    /// Transforms a point of the flat solid from its own frame and units.
     fn placed(&self, point: &Vector<N, 3>) -> Vector<N, 3> {
         self.pose12.rotation.tr_mul(&(point * self.shrink - self.shift))
     }
 
-    /// The vertex of the flat solid that is lowest along a direction.
+    /// Returns the vertex of the flat solid that is lowest along a direction.
     fn lowest(&self, outward: &Vector<N, 3>) -> Vector<N, 3> {
         let toward = -(self.pose12.rotation * outward);
         self.placed(&self.flat.core_support(&toward).coords)
     }
 
+    /// Returns the place of a single point.
     fn at_point(&self, point: Vector<N, 3>) -> (NearestHull<N>, RevolvedPlace<N>) {
         (
             NearestHull::Point(point),
@@ -158,7 +179,8 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         )
     }
 
-    /// The nearest place over a hull and one more vertex, which is lower than all of it.
+    /// Returns the nearest place over a hull and one more vertex, which is lower than all of the
+    /// hull.
     fn nearer(
         &self,
         hull: &NearestHull<N>,
@@ -168,13 +190,13 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         match hull {
             NearestHull::Point(point) => self.profile.along([*point, low], true),
             NearestHull::Chord([a, b]) => self.over([*a, *b, low], place),
-            // No more than a chord and a triangle are ever searched: the place stands for its triangle.
+            // Only chords and triangles are searched: the place stands for its triangle.
             NearestHull::Triangle => self.profile.along([place.point, low], true),
         }
     }
 
-    /// The nearest place of a triangle with a last corner that is lower than the given place, the nearest of the
-    /// opposite side.
+    /// Returns the nearest place over the triangle `a b c`, whose corner `c` is lower than `place`,
+    /// the nearest place of the side `a b`.
     fn over(
         &self,
         [a, b, c]: [Vector<N, 3>; 3],
@@ -185,7 +207,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         let outward = if turned.dot(&place.outward) < N::ZERO { -turned } else { turned };
         let mut nearest = self.profile.round.support(&outward);
         let level = outward.dot(&nearest);
-        // Of the points of a cap or a line, the one that is known to be near.
+        // On a cap or a line the support point is not unique; take the one known to be near.
         if outward.dot(&place.nearest) >= level - noise() {
             nearest = place.nearest;
         }
@@ -217,7 +239,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         best
     }
 
-    /// Whether the flat solid holds the ball about a point.
+    /// Returns whether the flat solid contains the ball around a point, up to rounding.
     fn holds(&self, center: &Vector<N, 3>, radius: N) -> bool {
         let center = self.pose12.rotation * center + self.shift;
         let room = noise::<N>() - radius;
@@ -236,14 +258,15 @@ impl<N: Real> RevolvedMeeting<'_, N> {
 }
 
 impl<N: Real> RevolvedPlace<N> {
-    /// Of a point that is on a corner, but for rounding, the direction may be none that the corner is farthest along:
-    /// the level tells.
+    /// Takes the direction of a view. At a point on a corner, up to rounding, that direction may
+    /// not be one along which the corner is farthest; `level` shows it.
     fn of(profile: &Profile<N>, seen: &ProfileView<N>) -> Self {
         let level = profile.level(&seen.outward);
         Self { point: seen.point, nearest: seen.nearest(), outward: seen.outward, level }
     }
 
-    /// Where a way, a unit vector, is about level, with a direction that is across it to the last bits.
+    /// Takes a view at which the distance is stationary along the unit vector `along`, with a
+    /// direction perpendicular to `along` to rounding.
     fn across(profile: &Profile<N>, seen: &ProfileView<N>, along: &Vector<N, 3>) -> Option<Self> {
         let by_rim = match seen.part {
             ProfilePart::Rim => unit(&cross(along, &seen.around())),
@@ -263,8 +286,8 @@ impl<N: Real> RevolvedPlace<N> {
         self.outward.dot(&self.point) - self.level
     }
 
-    /// What follows from the point that is lowest along its direction: that the solids are farther apart than
-    /// `beyond`, or, if nothing is lower than the place, whether that is the answer. `None` if something is.
+    /// Returns the result given the lowest vertex along the direction: beyond, or if nothing is
+    /// lower than the place, whether it is proved. `None` if a vertex is lower.
     fn result(&self, low: &Vector<N, 3>, beyond: N) -> Option<RevolvedResult<N>> {
         let height = self.outward.dot(low) - self.level;
         if height > beyond {
@@ -274,7 +297,8 @@ impl<N: Real> RevolvedPlace<N> {
         is_lowest.then(|| seen_from_second(self.proved(height)))
     }
 
-    /// The answer, if the two points lie across from each other as far apart as supporting planes.
+    /// Returns the answer, if both points lie across from each other as far apart as supporting
+    /// planes.
     fn proved(&self, height: N) -> Option<RevolvedFound<N>> {
         let aside = self.point - self.nearest - self.outward * height;
         let is_across = aside.norm_squared() <= noise::<N>() * noise();

@@ -1,23 +1,32 @@
-//! A cylinder or a cone as a point sees it, and how the distance changes as the point moves.
+//! Signed distance of a point from a cylinder or a cone, and its change as the point moves.
 //!
-//! A solid about the y axis is a flat outline in the half-plane of the axis and the point: caps and a side that are
-//! lines, a rim and an apex that are corners. The signed distance from it is convex in 3D, inside as well.
+//! A solid about the y axis is a flat outline in the half-plane of the axis and the point: caps and
+//! a side that are lines, a rim and an apex that are corners. The signed distance is convex in 3D,
+//! inside as well.
+//!
+//! ```text
+//!    cylinder  y|  Cap   : Rim         cone  y| Apex .       nearest part, by region;
+//!               |________:......              |\  .          x: distance from the axis, `aside`
+//!               |        |                    | \   Side
+//!               |        | Side               |__\ .         inside: the nearer line
+//!               +--------+----> x             |Cap: Rim
+//! ```
 
 use crate::collide::separation::revolved::cylinder_cylinder::radial;
 use crate::collide::separation::ridges::Round;
 use crate::math::{Real, Vector, cross2, unit};
 
-/// A cylinder or a cone with its apex up, of a size.
+/// A cylinder, or a cone with its apex up.
 #[derive(Clone, Copy)]
 pub(super) struct Profile<N: Real> {
     pub(super) round: Round<N>,
-    /// The unit normal of the side: away from the axis, and up.
+    /// Unit normal of the side in the half-plane: away from the axis, and up.
     pub(super) slant: Vector<N, 2>,
-    /// From the rim to the apex.
+    /// Length of the side from the rim to the apex.
     length: N,
 }
 
-/// The part of the outline that a point is nearest to.
+/// Part of the outline nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ProfilePart {
     Cap,
@@ -26,19 +35,19 @@ pub(super) enum ProfilePart {
     Apex,
 }
 
-/// A point, and what it sees.
+/// A point with its signed distance, and the part nearest to it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ProfileView<N: Real> {
     pub(super) point: Vector<N, 3>,
-    /// Negative inside.
+    /// Signed distance: negative inside.
     pub(super) distance: N,
-    /// Unit, out of the solid, along which the distance is measured.
+    /// Unit vector out of the solid, along which the distance is measured.
     pub(super) outward: Vector<N, 3>,
     pub(super) part: ProfilePart,
-    /// How far the point is from the axis, and the unit vector that leads there, as (x, z).
+    /// Distance of the point from the axis, and the unit vector away from the axis, as (x, z).
     aside: N,
     away: Vector<N, 2>,
-    /// From the corner that is nearest to the point, in the half-plane; of lines their normal.
+    /// Vector from the nearest corner to the point, in the half-plane; for lines their unit normal.
     offset: Vector<N, 2>,
 }
 
@@ -51,12 +60,12 @@ impl<N: Real> Profile<N> {
         Self { round, slant, length }
     }
 
-    /// How far the solid reaches along a direction.
+    /// Returns the extent of the solid along a direction.
     pub(super) fn level(&self, outward: &Vector<N, 3>) -> N {
         outward.dot(&self.round.support(outward))
     }
 
-    /// What a point sees.
+    /// Returns the signed distance of a point, with the nearest part.
     pub(super) fn seen_from(&self, point: Vector<N, 3>) -> ProfileView<N> {
         let fallback = (Vector::<N, 2>::x(), N::ZERO);
         let (away, aside) = unit(&radial(&point)).unwrap_or(fallback);
@@ -73,6 +82,7 @@ impl<N: Real> Profile<N> {
         ProfileView { point, distance, outward, part, aside, away, offset }
     }
 
+    /// Returns the nearest part of a cylinder, the distance, and the `offset` of the view.
     fn of_cylinder(&self, x: N, y: N) -> (ProfilePart, N, Vector<N, 2>) {
         let up = if y < N::ZERO { -N::ONE } else { N::ONE };
         let (beside, above) = (x - self.round.radius, y.abs() - self.round.half);
@@ -86,6 +96,7 @@ impl<N: Real> Profile<N> {
         }
     }
 
+    /// Returns the nearest part of a cone, the distance, and the `offset` of the view.
     fn of_cone(&self, x: N, y: N) -> (ProfilePart, N, Vector<N, 2>) {
         let from_rim = Vector::<N, 2>::new(x - self.round.radius, y + self.round.half);
         let (below, above) = (-from_rim.y, self.slant.dot(&from_rim));
@@ -103,8 +114,8 @@ impl<N: Real> Profile<N> {
         self.corner(ProfilePart::Rim, from_rim)
     }
 
-    /// A corner of the outline that is nearest to a point this far from it; what is too near to be squared is on
-    /// the side.
+    /// Corner of the outline nearest to a point at `offset`. If the squared length underflows, the
+    /// point counts as on the side.
     fn corner(&self, part: ProfilePart, offset: Vector<N, 2>) -> (ProfilePart, N, Vector<N, 2>) {
         let length = offset.norm();
         if length > N::ZERO {
@@ -116,23 +127,23 @@ impl<N: Real> Profile<N> {
 }
 
 impl<N: Real> ProfileView<N> {
-    /// The point of the surface that is nearest.
+    /// Returns the nearest point of the surface.
     pub(super) fn nearest(&self) -> Vector<N, 3> {
         self.point - self.outward * self.distance
     }
 
-    /// The direction of the rim there.
+    /// Returns the unit tangent of the rim at the point's angle.
     pub(super) fn around(&self) -> Vector<N, 3> {
         Vector::<N, 3>::new(-self.away.y, N::ZERO, self.away.x)
     }
 
-    /// How fast the distance grows as the point moves.
+    /// Rate of change of the distance as the point moves along `along`.
     pub(super) fn slope(&self, along: &Vector<N, 3>) -> N {
         self.outward.dot(along)
     }
 
-    /// A step towards where the way is nearest to the rim, whatever the point sees: between two lines of the outline
-    /// that meet there.
+    /// Returns the Newton step along `along` to the point nearest to the rim, whatever part is
+    /// nearest: for points between the two lines of the outline that meet at the rim.
     pub(super) fn way_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
         let Round { half, radius, is_cone } = profile.round;
         let end = if is_cone || self.point.y < N::ZERO { -half } else { half };
@@ -142,9 +153,9 @@ impl<N: Real> ProfileView<N> {
         (bend > N::ZERO).then(|| -(offset.x * out + offset.y * along.y) / bend)
     }
 
-    /// How far the point has to move until the slope is zero, if it goes on seeing the same part; nothing of a
-    /// line over which the slope does not change. Exact but at a rim, where it is a step of Newton's method
-    /// for the squared distance.
+    /// Returns how far the point has to move until the slope is zero, if its nearest part stays the
+    /// same; `None` on a line where the slope does not change. Exact except at a rim, where it is a
+    /// step of Newton's method for the squared distance.
     pub(super) fn way_down(&self, along: &Vector<N, 3>) -> Option<N> {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let (across, up) = (out * out + turn * turn, along.y);
@@ -163,8 +174,7 @@ impl<N: Real> ProfileView<N> {
         }
     }
 
-    /// What draws the point to the solid: the slope of the distance or, of corners, of half its square, which is
-    /// the smoother of the two.
+    /// Gradient of the distance or, at corners, of half its square, which is smoother.
     pub(super) fn pull(&self) -> Vector<N, 3> {
         match self.part {
             ProfilePart::Cap | ProfilePart::Side => self.outward,
@@ -172,7 +182,7 @@ impl<N: Real> ProfileView<N> {
         }
     }
 
-    /// How fast the pull grows along the way as the point moves.
+    /// Second derivative for [`pull`](Self::pull) along `along`.
     pub(super) fn bend(&self, along: &Vector<N, 3>) -> N {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let turned = turn * turn;

@@ -1,9 +1,9 @@
-//! A cylinder or a cone beside another.
+//! Cylinders and cones against each other.
 //!
-//! Of each its apex or its rim is looked at from the other: over a rim the distance is a function of one angle, of
-//! which Newton's method finds the bottom. What is left are two sides, whose normals are where two circles meet on
-//! the sphere. Where the solids overlap, two balls about one point are a proof if their radii add up to the
-//! depth: each in one of the solids.
+//! The apex or a rim of one solid is tried against the other: over a rim the distance is a function
+//! of one angle, whose minimum Newton's method finds. The remaining case is two sides, whose common
+//! normal is where two circles on the sphere of directions intersect. If the solids overlap, two
+//! balls around one point, one in each solid, are the proof: their radii add up to the depth.
 
 use super::profile::Profile;
 use super::{RevolvedFound, RevolvedPlace, RevolvedResult, noise, seen_from_second, still};
@@ -12,10 +12,11 @@ use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, max, min, un
 
 /// Cap on the corners and rims of one solid that are tried.
 const TURNS: usize = 3;
-/// Cap on the steps of Newton's method, about four of which are needed.
+/// Cap on the steps of Newton's method; about four are needed.
 const STEPS: usize = 12;
 
-/// What is known of two solids, the second at a pose whose translation is `shift` in units of the pair.
+/// Returns the result for two solids, the second at a pose whose translation is `shift` in units of
+/// the pair.
 pub(super) fn resolve<N: Real>(
     [first, second]: [Profile<N>; 2],
     pose12: &Pose<N, 3>,
@@ -40,11 +41,14 @@ pub(super) fn resolve<N: Real>(
 
 /// A solid in the frame of another.
 struct RoundView<N: Real> {
+    /// The solid at the origin of the frame, about the y axis.
     own: Profile<N>,
+    /// The solid whose corners are tried.
     other: Profile<N>,
+    /// Middle of the other solid, and its rotation.
     center: Vector<N, 3>,
     rotation: Matrix<N, 3>,
-    /// The axis of the other one, up.
+    /// Axis of the other solid, towards its apex or positive end.
     axis: Vector<N, 3>,
 }
 
@@ -53,13 +57,13 @@ impl<N: Real> RoundView<N> {
         Self { own, other, center, rotation, axis: rotation.column(1).into_owned() }
     }
 
-    /// The point of the other solid that is lowest along a direction.
+    /// Returns the point of the other solid that is lowest along a direction.
     fn lowest(&self, outward: &Vector<N, 3>) -> Vector<N, 3> {
         let toward = -self.rotation.tr_mul(outward);
         self.center + self.rotation * self.other.round.support(&toward)
     }
 
-    /// The apex or a rim of the other solid, if it is nearest.
+    /// Tries the apex or a rim of the other solid.
     fn corners(&self, beyond: N) -> RevolvedResult<N> {
         let mut low = self.lowest(&self.own.seen_from(self.center).outward);
         for _ in 0..TURNS {
@@ -72,7 +76,7 @@ impl<N: Real> RoundView<N> {
         RevolvedResult::Undecided
     }
 
-    /// The place of the apex, or that of a rim which is nearest, of that which a point is on.
+    /// Returns the place of the apex, or the nearest place of the rim, at which `low` lies.
     fn at_corner(&self, low: &Vector<N, 3>) -> Option<RevolvedPlace<N>> {
         let round = &self.other.round;
         let is_up = self.axis.dot(&(low - self.center)) > N::ZERO;
@@ -86,13 +90,14 @@ impl<N: Real> RoundView<N> {
         self.along_rim(&middle, out)
     }
 
-    /// The unit vector along what is left of another across the axis of the other solid.
+    /// Returns the unit vector of the part of `v` perpendicular to the other axis; `None` if within
+    /// noise.
     fn beside(&self, v: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let beside = v - self.axis * self.axis.dot(v);
         unit(&beside).filter(|(_, length)| *length > noise()).map(|(beside, _)| beside)
     }
 
-    /// The nearest place of a rim about a point, near a direction from there.
+    /// Returns the nearest place of the rim around `middle`, starting from the direction `out`.
     fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<RevolvedPlace<N>> {
         let radius = self.other.round.radius;
         for _ in 0..STEPS {
@@ -114,14 +119,14 @@ impl<N: Real> RoundView<N> {
         None
     }
 
-    /// The side of each on that of the other.
+    /// Tries side against side.
     fn sides(&self) -> Option<RevolvedFound<N>> {
         let (lean, rise1, rise2) = (self.axis.y, self.own.slant.y, self.other.slant.y);
         let squared = self.axis.x * self.axis.x + self.axis.z * self.axis.z;
         if squared <= N::lit(16.0) * N::EPSILON {
             return None;
         }
-        // The part in the plane of the axes follows from how the normal leans against each.
+        // The part in the plane of the axes follows from the angles of the normal with both axes.
         let up = Vector::<N, 3>::y();
         let level = (up * (rise1 + rise2 * lean) - self.axis * (rise2 + rise1 * lean)) / squared;
         let left = N::ONE - level.norm_squared();
@@ -140,7 +145,8 @@ impl<N: Real> RoundView<N> {
         (height > N::ZERO || self.is_deepest(&found)).then_some(found)
     }
 
-    /// The nearest points of the two lines of sides that face each other along a direction.
+    /// Returns the nearest points of the lines of both sides that face each other along a
+    /// direction.
     fn between_sides(&self, outward: Vector<N, 3>) -> Option<RevolvedPlace<N>> {
         let line = |profile: &Profile<N>, along: &Vector<N, 3>| {
             let ends = profile.round.touched(along, core::iter::empty());
@@ -154,7 +160,8 @@ impl<N: Real> RoundView<N> {
         Some(RevolvedPlace { point: point.coords, nearest: nearest.coords, outward, level })
     }
 
-    /// Two balls halfway between the points, one in each solid, add up to the depth.
+    /// Returns whether balls around the midpoint of both points, one in each solid, add up to the
+    /// depth.
     fn is_deepest(&self, found: &RevolvedFound<N>) -> bool {
         let center = found.on_other - found.normal * (found.distance * N::HALF);
         let own = self.own.seen_from(center).distance;

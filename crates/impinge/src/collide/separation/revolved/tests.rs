@@ -1,4 +1,4 @@
-//! Distances and depths are those of the general algorithm, and most are found without.
+//! Compares distances and depths with the general algorithm; most need no fallback.
 
 use super::*;
 use crate::collide::separation as whole;
@@ -24,7 +24,7 @@ fn answers_are_those_of_the_general_algorithm() {
     agree::<f32>(4, 600, 3e-6);
 }
 
-/// Pairs of which the sizes are not small, at a distance, or so deep.
+/// Pairs whose sizes are not small, at this distance, or overlapping by as much.
 fn placed<'a, N: Real>(
     shapes: &'a Solids<N>,
     random: &mut Random,
@@ -40,7 +40,7 @@ fn placed<'a, N: Real>(
     pair
 }
 
-/// How many of a hundred pairs are decided, of each two solids.
+/// Returns how many of a hundred pairs of each two solids are decided.
 fn decided<N: Real>(distance: f64) -> usize {
     let random = &mut Random(7);
     let solids: [(Make<N>, Make<N>); 12] = [
@@ -78,7 +78,7 @@ fn most_pairs_are_decided() {
     }
 }
 
-/// No direction of many has a depth of less than what is decided.
+/// Asserts that no sampled direction has less depth than the decided one.
 fn none_is_better<N: Real>(accuracy: f64) {
     let random = &mut Random(9);
     let solids: [(Make<N>, Make<N>); 7] = [
@@ -118,7 +118,7 @@ fn no_direction_is_better() {
     none_is_better::<f32>(2e-6);
 }
 
-/// The distance of a point is that of a ball of no radius, and its slope that of differences.
+/// Compares the distance of a point with a ball of radius zero, and its slope with differences.
 #[test]
 fn what_a_point_sees() {
     let random = &mut Random(11);

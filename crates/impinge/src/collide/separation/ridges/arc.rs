@@ -1,21 +1,33 @@
-//! The least depth along an arc of normals, with its proof.
+//! Least depth along an arc of normals, with a proof.
 //!
-//! Along a circle of unit vectors each point of a convex solid has a height that is a sinusoid, and the
-//! depth is the largest of them. Two of them, those that are largest at the ends of an arc, bound it from
-//! below on the whole arc: by where they cross, or by the bottom of one. If that is less than is known, the
-//! depth there is asked for, and the arc is two. Growing a polygon by its side nearest to the origin, as
-//! `epa2` does, is this where the sinusoids have no base.
+//! Along a circle of unit vectors each point of a convex solid has a height that is a sinusoid; the
+//! depth is the largest of them. The two sinusoids that are largest at the ends of an arc bound it
+//! from below on the whole arc: at their crossing, or at the minimum of one. If the bound is below
+//! the best depth known, the depth at that direction is computed and the arc split there.
+//!
+//! ```text
+//!    depth   \         /
+//!             \  .-.  /       . the depth: the largest of all sinusoids
+//!              \'   '/        \ and /: those of the points that are highest at `from` and at `to`
+//!               \   /
+//!                \ /
+//!                 v           bound: where these two cross
+//!         from         to
+//! ```
+//!
+//! Growing a polygon by its side nearest to the origin, as `epa2` does, is the case of sinusoids
+//! without a base.
 
 use smallvec::SmallVec;
 
 use crate::math::{Mapped, Real, Vector, cross2, min, perp, unit};
 
-/// Cap on the directions asked for along one arc. About twenty are enough in `f32`, forty in `f64`: the part
-/// of the arc around the best direction is halved until the bound is good enough, and to each side of it there
-/// are as many parts.
+/// Cap on the directions computed for one arc. About twenty are enough in `f32`, forty in `f64`:
+/// the part around the best direction is halved until the bound is good enough, with as many parts
+/// on each side of it.
 const STEPS: usize = 256;
 
-/// The height of a point along the unit vectors of a circle: `base + toward · u`.
+/// Height of a point along the unit vectors `u` of a circle: `base + toward · u`.
 #[derive(Clone, Copy)]
 pub(super) struct RidgeLine<N: Real> {
     pub(super) base: N,
@@ -27,16 +39,17 @@ impl<N: Real> RidgeLine<N> {
         self.base + self.toward.dot(u)
     }
 
-    /// Where the height is least, and how low it is there.
+    /// Returns the direction of the least height, and that height.
     fn bottom(&self) -> Option<(Vector<N, 2>, N)> {
         let (toward, length) = unit(&self.toward)?;
         Some((-toward, self.base - length))
     }
 }
 
-/// Half a circle or less, counter-clockwise, and what is highest at its ends. That is one point where it is
-/// a corner of both solids; else each of the two lines is the lower one at the other's end, so that they
-/// cross. An arc may have no length: where a bound is taken at an end, one of the halves has none.
+/// Half a circle or less, counter-clockwise, and the lines that are highest at its ends. They are
+/// equal if one point is highest at both ends, else each is the lower one at the other's end, so
+/// that they cross. An arc may have no length: if a bound is taken at an end, one of the halves has
+/// none.
 #[derive(Clone, Copy)]
 pub(super) struct Arc<N: Real> {
     pub(super) ends: [Vector<N, 2>; 2],
@@ -44,15 +57,15 @@ pub(super) struct Arc<N: Real> {
 }
 
 impl<N: Real> Arc<N> {
-    /// Whether a direction is on the arc, ends included. The two products alone are zero for the direction
-    /// opposite to both ends of an arc without length.
+    /// Returns whether a direction is on the arc, ends included. For an arc without length the two
+    /// products alone are also zero at the opposite direction.
     fn holds(&self, u: &Vector<N, 2>) -> bool {
         let [from, to] = &self.ends;
         let is_between = cross2(from, u) >= N::ZERO && cross2(u, to) >= N::ZERO;
         is_between && u.dot(&(from + to)) >= N::ZERO
     }
 
-    /// Where both lines are equally high; `None` if that is nowhere on the arc, up to rounding.
+    /// Returns the direction at which both lines are equally high; `None` if it is not on the arc.
     fn crossing(&self) -> Option<Vector<N, 2>> {
         let [first, second] = &self.lines;
         let (along, length) = unit(&(first.toward - second.toward))?;
@@ -66,7 +79,8 @@ impl<N: Real> Arc<N> {
         [middle + aside, middle - aside].into_iter().find(|u| self.holds(u))
     }
 
-    /// Where a line is lowest on the arc, and how low; of an end the direction halfway stands for it.
+    /// Returns the minimum of a line on the arc, with the direction; for an end the halfway
+    /// direction.
     fn least_of(&self, line: &RidgeLine<N>) -> (Vector<N, 2>, N) {
         let halfway = unit(&(self.ends[0] + self.ends[1]));
         let ends = min(line.at(&self.ends[0]), line.at(&self.ends[1]));
@@ -76,7 +90,8 @@ impl<N: Real> Arc<N> {
         }
     }
 
-    /// Whether it is certain that the depth is nowhere on the arc less than `least`, by [`are_above`].
+    /// Returns whether the depth is certainly nowhere on the arc less than `least`, by
+    /// [`are_above`].
     fn is_above(&self, least: N) -> bool {
         let [from, to] = &self.ends;
         let has_base = self.lines.iter().any(|line| line.base > N::ZERO);
@@ -84,7 +99,7 @@ impl<N: Real> Arc<N> {
         !has_base && are_above(&heights, least)
     }
 
-    /// A direction of the arc and a lower bound of the depth on all of it, but for its ends. The bound is the
+    /// Returns a direction of the arc and a lower bound of the depth on the arc. The bound is the
     /// larger height of the two lines there, if there is one.
     fn bound(&self) -> (Vector<N, 2>, N) {
         let Some(crossing) = self.crossing() else {
@@ -104,13 +119,16 @@ impl<N: Real> Arc<N> {
     }
 }
 
-/// Whether the heights of two points, each at both ends of an arc, tell that the depth is nowhere on the arc less
-/// than a positive `least`: by products alone, unlike [`Arc::bound`], and not where that is close. The first is the
-/// highest at the first end, the second at the second; both heights there are no less.
+/// Returns whether the depth is certainly nowhere on an arc less than `least`, a positive number.
+/// Uses products only, unlike [`Arc::bound`], and returns `false` in close cases. `heights` are
+/// those of two points at both ends: the first is the highest at the first end, the second at the
+/// second, and both are at least `least` there. Neither point has a positive `base`.
 ///
-/// A direction of the arc is a mix of the ends, over its length, which is at most 1. So if some mix of the points
-/// is high enough in every mix of the ends, and is no higher than its height in the middle of the circle, it is
-/// high enough on the arc. Whether there is one is the value of a game of two by two heights.
+/// A direction of the arc is a mix of the ends divided by the mix's length, which is at most 1.
+/// With no positive `base`, a height of at least `least` at the mix is no less at the direction. So
+/// if some mix of the points is at least `least` high at every mix of the ends, it is so on the
+/// arc. Whether such a mix of the points exists is decided by the value of a game with a matrix of
+/// two by two heights.
 pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
     let [first, second] = heights.mapped(|[from, to]| [from - least, to - least]);
     let is_one = first[1] >= N::ZERO || second[0] >= N::ZERO;
@@ -119,11 +137,11 @@ pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
 
 /// A search along arcs.
 pub(super) struct ArcSearch<N: Real> {
-    /// The least depth so far, of this or another search.
+    /// Least depth so far, of this or another search.
     pub(super) least: N,
-    /// Where it is, if it was found here.
+    /// Its direction, if it was found by this search.
     pub(super) best: Option<Vector<N, 2>>,
-    /// Less is not looked for.
+    /// Smaller improvements are not searched for.
     gap: N,
 }
 
@@ -132,6 +150,7 @@ impl<N: Real> ArcSearch<N> {
         Self { least, best: None, gap }
     }
 
+    /// Records the depth along `u`, given the highest line there.
     pub(super) fn note(&mut self, u: &Vector<N, 2>, highest: &RidgeLine<N>) {
         let depth = highest.at(u);
         if depth < self.least {
@@ -139,8 +158,8 @@ impl<N: Real> ArcSearch<N> {
         }
     }
 
-    /// Looks for less along an arc, at whose ends the depth is no less than the least so far; `highest` tells
-    /// which line is the highest in a direction. `None` if it takes too many.
+    /// Searches an arc for less depth; at its ends the depth is at least the least so far.
+    /// `highest` returns the highest line in a direction. `None` after [`STEPS`] directions.
     pub(super) fn run(
         &mut self,
         arc: Arc<N>,

@@ -1,4 +1,14 @@
-//! Vertices, normals and edges of a solid with flat faces, seen from a round one.
+//! Vertices, normals and edges of a flat-sided solid, in the frame of a round one.
+//!
+//! ```text
+//!   Edge { vertices: [v, w], normals: [i, j] }     the arc from normal i to normal j, along which
+//!                                                  the edge from v to w is lowest
+//!   segment    4 edges v w, with the arcs between u, v, -u, -v across it
+//!   triangle   2 edges for each side: front to side, side to back
+//!   box, hull  1 for each edge, between the normals of its two faces
+//! ```
+//!
+//! `normals` point into the solid, `own_normals` out of it.
 
 use smallvec::SmallVec;
 
@@ -6,7 +16,7 @@ use crate::collide::separation::hulls::noise;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
 use crate::shape::{Cuboid, Kind, Polytope, Triangle};
 
-/// Larger solids are left to the general algorithm, which does not look at all of their parts.
+/// Larger solids go to the general algorithm, which does not visit all their features.
 const MAX_VERTICES: usize = 128;
 
 /// An edge: its ends, and the ends of the arc of normals along which it is lowest.
@@ -16,22 +26,24 @@ pub(super) struct Edge {
     pub(super) normals: [u32; 2],
 }
 
-/// A solid with flat faces, in units of the pair.
+/// A flat-sided solid, in units of the pair.
 pub(super) struct Flat<N: Real> {
-    /// In its own frame, and in that of the round solid.
+    /// Vertices in the solid's own frame, and in the frame of the round solid.
     pub(super) own_vertices: SmallVec<[Vector<N, 3>; 16]>,
     pub(super) vertices: SmallVec<[Vector<N, 3>; 16]>,
-    /// Unit vectors out of the solid, in its own frame: those of all faces, and where there are not enough of
-    /// them others, so that arcs between two cover all normals of the edges.
+    /// Unit vectors out of the solid, in its own frame: the normals of all faces. Where these are
+    /// too few, others are added so that arcs between two cover all normals of the edges.
     pub(super) own_normals: SmallVec<[Vector<N, 3>; 16]>,
-    /// The same into the solid, in the frame of the round one, with a vertex that is lowest along it.
+    /// `own_normals` negated, in the frame of the round solid, each with a vertex that is lowest
+    /// along it.
     pub(super) normals: SmallVec<[(Vector<N, 3>, u32); 16]>,
     pub(super) edges: SmallVec<[Edge; 32]>,
 }
 
 impl<N: Real> Flat<N> {
-    /// A solid in the frame of another, whose pose in its own is `pose12`; `None` for one that has no normals,
-    /// is too large, or has other faces.
+    /// Extracts the features of a solid; `pose12` is the pose of the round solid in its frame.
+    /// `None` for other kinds, for solids without normals and for more than [`MAX_VERTICES`]
+    /// vertices.
     pub(super) fn new(kind: &Kind<'_, N, 3>, pose12: &Pose<N, 3>, shrink: N) -> Option<Self> {
         let mut flat = Self {
             own_vertices: SmallVec::new(),
@@ -55,7 +67,7 @@ impl<N: Real> Flat<N> {
         Some(flat)
     }
 
-    /// The vertex that is lowest along a direction: the first of equals.
+    /// Returns the index of the vertex that is lowest along a direction: the first of equals.
     pub(super) fn lowest(&self, direction: &Vector<N, 3>) -> usize {
         let (mut lowest, mut low) = (0, N::INFINITY);
         for (index, vertex) in self.vertices.iter().enumerate() {
@@ -67,6 +79,7 @@ impl<N: Real> Flat<N> {
         lowest
     }
 
+    /// Transforms vertices and normals to the frame of the round solid; normals are negated.
     fn place(&mut self, turn: &Matrix<N, 3>, translation: &Vector<N, 3>) {
         for vertex in &self.own_vertices {
             self.vertices.push(turn * (vertex - translation));
@@ -76,7 +89,7 @@ impl<N: Real> Flat<N> {
         }
     }
 
-    /// A unit vector out of the solid, with a vertex that is farthest along it.
+    /// Adds a unit vector out of the solid, with a vertex that is farthest along it.
     fn push_normal(&mut self, outward: Vector<N, 3>, vertex: u32) {
         self.own_normals.push(outward);
         self.normals.push((outward, vertex));
@@ -86,6 +99,8 @@ impl<N: Real> Flat<N> {
         self.edges.push(Edge { vertices, normals });
     }
 
+    /// Extracts a segment: four normals across it, and four arcs between them. `None` if it has no
+    /// length.
     fn fill_segment(&mut self, ends: [&Point<N, 3>; 2], shrink: N) -> Option<()> {
         self.own_vertices.extend(ends.mapped(|end| end.coords * shrink));
         let along = self.own_vertices[1] - self.own_vertices[0];
@@ -96,6 +111,7 @@ impl<N: Real> Flat<N> {
         Some(())
     }
 
+    /// Extracts a triangle: both of its normals and those of its side planes. `None` if it is thin.
     fn fill_triangle(&mut self, triangle: &Triangle<N, 3>, shrink: N) -> Option<()> {
         let corners = triangle.corners().mapped(|corner| corner.coords * shrink);
         self.own_vertices.extend(corners);
@@ -114,7 +130,7 @@ impl<N: Real> Flat<N> {
         Some(())
     }
 
-    /// Extents may be zero: the arc of an edge without length is one of normals of its vertex, and as true.
+    /// Extents may be zero: an edge without length has normals of its vertex, which are as valid.
     fn fill_box(&mut self, cuboid: &Cuboid<N, 3>, shrink: N) {
         let half = cuboid.half_extents() * shrink;
         for signs in 0..8_usize {
@@ -136,6 +152,7 @@ impl<N: Real> Flat<N> {
         }
     }
 
+    /// Extracts a hull: all faces and edges. `None` above [`MAX_VERTICES`].
     fn fill_polytope(&mut self, polytope: &Polytope<N, 3>, shrink: N) -> Option<()> {
         if polytope.vertices().len() > MAX_VERTICES {
             return None;

@@ -1,22 +1,29 @@
-//! A solid with flat faces in a cylinder or a cone: how deep, without growing a polytope.
+//! Depth of a flat-sided solid in a cylinder or a cone, without growing a polytope.
 //!
-//! The depth along a unit vector `m` is the support function of the difference of the cores, and the
-//! answer is the least one. On a smooth part of the sphere of directions a least one needs radii of
-//! curvature of the difference of at least the depth, in both directions across. Vertices of the flat
-//! solid have none, and a rim has one along itself only, the apex of a cone none. So the least depth lies on
-//! what is left: the normals of faces and caps; the arcs of normals of an edge, between those of its
-//! faces (the Gauss map); and the circle of normals of the round side. Faces are looked at one by one, arcs
-//! are searched by [`arc`], which proves what it finds. Nothing is iterated over two dimensions, as growing a
-//! polytope towards a curved surface does.
+//! The depth along a unit vector `m` is the support function of the difference of the cores; the
+//! answer is its minimum. A minimum on a smooth part of the sphere of directions requires that both
+//! radii of curvature of the difference are at least the depth. Vertices of the flat solid have
+//! radii zero, a rim has one only along itself, and an apex has none. So the minimum lies on one of
+//! these:
 //!
-//! Extents may be zero: an edge without length has an arc of normals of its vertex, which are worth a look
-//! like all others. What the arcs cannot tell is left to the general algorithm: a round solid, segment or
-//! triangle of hardly any size, of which no normals are known; a polytope with normals so poor, being flat up
-//! to rounding, that its vertices deny the depth found; and rings of normals that are all about as good, where
-//! an arc along the ring is cut too often.
+//! ```text
+//!   normals of faces and caps     points on the sphere       tried one by one
+//!   edges of the flat solid       arcs between the normals   searched by `arc`
+//!                                 of its two faces
+//!   the round side                a circle of normals        searched by `arc` in four quarters
+//! ```
 //!
-//! That faces and edges are enough for two polytopes is the separating axis test; the rest follows the
-//! same thought for the kinds of part that cylinders and cones have.
+//! [`arc`] proves its minimum. Nothing is iterated over two dimensions, as growing a polytope
+//! towards a curved surface is.
+//!
+//! Extents may be zero: an edge without length has an arc of normals of its vertex, which are valid
+//! directions too. The general algorithm takes over for round solids, segments or triangles of
+//! almost no size, whose normals are unknown; for polytopes that are flat up to rounding, whose
+//! vertices contradict the depth found along their normals; and for rings of almost equally good
+//! normals, where arcs along the ring are cut too often.
+//!
+//! For two polytopes, restricting the search to faces and edges is the separating axis test. This
+//! is the same argument for the parts of cylinders and cones.
 
 mod arc;
 mod flat;
@@ -35,9 +42,9 @@ use crate::convex::{self, Peak, Peaks, Separation};
 use crate::math::{Mapped, Pose, Real, Vector, cross, max, min, unit};
 use crate::shape::{Geometry, SupportMap};
 
-/// The separation of a solid with flat faces, or a segment or capsule, from a cylinder or cone.
+/// Returns the separation of a flat-sided solid, segment or capsule from a cylinder or cone.
 ///
-/// Apart, it is that of the general algorithm to the bit.
+/// If they are apart, it is that of the general algorithm to the bit.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
@@ -45,7 +52,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     found.filter(|found| found.distance <= limit)
 }
 
-/// The distance in [`separation`], or zero if the solids certainly overlap.
+/// Returns the distance of [`separation`], or zero if the solids certainly overlap.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
@@ -53,7 +60,7 @@ pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     found.filter(|distance| *distance <= limit)
 }
 
-/// The flat solid and the round one.
+/// Returns the flat solid and the round one.
 fn cores<'a, N: Real>(pair: &Pair<'a, N, 3>) -> (FlatCore<'a, N, 3>, &'a dyn SupportMap<N, 3>) {
     match (FlatCore::of(pair.first), Geometry(pair.second).as_support_map()) {
         (Some(flat), Some(round)) => (flat, round),
@@ -88,31 +95,32 @@ impl<N: Real> Peaks<N, 3> for OverlapPeaks<'_, '_, N> {
     }
 }
 
-/// Where on the sphere of directions the least depth is.
+/// Feature on which the direction of least depth lies.
 #[derive(Clone, Copy)]
 enum DepthFeature {
-    /// A normal of the flat solid, by its number.
+    /// Normal of the flat solid, by index.
     Face(usize),
     /// The normal of a cap.
     Cap,
-    /// On the arc of an edge, by its number.
+    /// On the arc of an edge, by index.
     Edge(usize),
     /// On the circle of normals of the round side.
     Side,
 }
 
-/// What is known of two solids, in the frame of the round one and units of the pair. Directions lead from
-/// the round solid to the flat one.
+/// State of the search, in the frame of the round solid and in units of the pair. Directions are
+/// from the round solid to the flat one.
 struct DepthSearch<'a, N: Real> {
     flat: &'a Flat<N>,
     round: &'a Round<N>,
-    /// The least depth so far, and where it is.
+    /// Least depth so far, with its feature and direction.
     least: N,
     at: DepthFeature,
     normal: Vector<N, 3>,
 }
 
 impl<N: Real> DepthSearch<'_, N> {
+    /// Searches all features for the least depth, up to `gap`; `None` if arcs are cut too often.
     fn search(&mut self, gap: N) -> Option<()> {
         let mut ends = SmallVec::<[Vector<N, 3>; 16]>::new();
         for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {
@@ -130,8 +138,8 @@ impl<N: Real> DepthSearch<'_, N> {
         if self.search_edges(&ends, gap).is_some() {
             return self.search_side(gap);
         }
-        // Normals around the axis are all about as good, and parts of each arc that crosses them cannot be told
-        // from the best; but the best itself is found at once by the side.
+        // Normals around the axis are almost equally good, and parts of arcs across them cannot be
+        // told from the best. The search over the side finds the best one at once.
         self.search_side(gap)?;
         self.search_edges(&ends, gap)
     }
@@ -146,16 +154,16 @@ impl<N: Real> DepthSearch<'_, N> {
         }
     }
 
-    /// All vertices confirm the depth found, not only those of the face or edge that it was found by: theirs are
-    /// the lowest for as long as the normals of the faces are right.
+    /// Returns whether all vertices confirm the depth found. It was computed with the vertices of
+    /// one face or edge, which are the lowest only as far as the normals of the faces are exact.
     fn is_confirmed(&self, gap: N) -> bool {
         let lowest = self.flat.vertices[self.flat.lowest(&self.normal)];
         let depth = self.normal.dot(&(self.round.support(&self.normal) - lowest));
         depth - self.least <= N::lit(8.0) * gap
     }
 
-    /// Along the normals of an edge, in whose plane the end of the edge is a point; `ends` are the support
-    /// points of the round solid along the normals of the flat one.
+    /// Searches the normals of an edge. In the plane across the edge it is a point; `ends` are the
+    /// support points of the round solid along the normals of the flat one.
     fn search_edge(&mut self, edge: usize, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
         let (round, vertices) = (self.round, &self.flat.vertices);
         let flat::Edge { vertices: ends_of_edge, normals: [first, second] } = self.flat.edges[edge];
@@ -168,8 +176,9 @@ impl<N: Real> DepthSearch<'_, N> {
         }
         let Some(across) = across(&(other - vertex), [&from, &to]) else { return Some(()) };
         let (cosine, sine) = (from.dot(&to), max(across.dot(&to), N::ZERO));
-        // Between normals so near to each other nothing is lower by as much as the gap. The angle counts, not its
-        // square: next to the normal of a cap the point of its rim runs as fast as the normal turns.
+        // Between normals as close as this the depth falls by less than `gap`. The angle counts,
+        // not its square: next to the normal of a cap the point of its rim moves as fast as the
+        // normal turns.
         if cosine > N::ZERO && sine <= gap {
             return Some(());
         }
@@ -193,7 +202,7 @@ impl<N: Real> DepthSearch<'_, N> {
         Some(())
     }
 
-    /// Along the normals of the round side.
+    /// Searches the normals of the round side.
     fn search_side(&mut self, gap: N) -> Option<()> {
         let (flat, slope) = (self.flat, self.round.slope());
         let lift = |u: &Vector<N, 2>| {
@@ -221,7 +230,7 @@ impl<N: Real> DepthSearch<'_, N> {
         Some(())
     }
 
-    /// The answer in the frame of the flat solid.
+    /// Returns the result in the frame of the flat solid.
     fn peak(&self, pose12: &Pose<N, 3>, shrink: N) -> Peak<N, 3> {
         let turned = -(pose12.rotation * self.normal);
         let (is_exact, normal) = match self.at {
@@ -242,7 +251,8 @@ impl<N: Real> DepthSearch<'_, N> {
         }
     }
 
-    /// The vertices of the flat solid that may touch.
+    /// Returns the vertices of the flat solid that may touch: both ends of an edge, else at most
+    /// eight.
     fn touched(&self) -> SmallVec<[usize; 8]> {
         if let DepthFeature::Edge(edge) = self.at {
             return self.flat.edges[edge].vertices.iter().map(|&vertex| vertex as usize).collect();
@@ -256,14 +266,14 @@ impl<N: Real> DepthSearch<'_, N> {
     }
 }
 
-/// The unit vector across the first of two normals of an edge, on the side of the second: by the edge or by
-/// the normals, whichever says it better.
+/// Returns the unit vector perpendicular to the first normal of an edge, on the side of the second:
+/// from the edge or from the normals, whichever is more accurate.
 fn across<N: Real>(edge: &Vector<N, 3>, [from, to]: [&Vector<N, 3>; 2]) -> Option<Vector<N, 3>> {
     let aside = unit(&(to - from * from.dot(to)));
     let Some((by_edge, length)) = unit(&cross(edge, from)) else { return Some(aside?.0) };
     match aside {
         Some((aside, sine)) if sine >= length => Some(aside),
-        // Normals about opposite to each other do not say on which side; the edge runs so that it does.
+        // Almost opposite normals do not define the side; the direction of the edge does.
         Some((aside, sine)) if sine > N::EPSILON.sqrt() && aside.dot(&by_edge) < N::ZERO => {
             Some(-by_edge)
         }

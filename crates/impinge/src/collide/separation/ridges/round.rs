@@ -1,4 +1,4 @@
-//! Cylinders and cones about the y axis, as what supports.
+//! Support of cylinders and cones about the y axis.
 
 use smallvec::SmallVec;
 
@@ -7,24 +7,29 @@ use crate::collide::separation::revolved::cylinder_cylinder::radial;
 use crate::math::{Real, Vector, unit};
 use crate::shape::Kind;
 
-/// The normals of a round side: how far they reach aside and along the axis, and how far the solid reaches
-/// along each of them.
+/// The unit normals of a round side: their components away from the axis and along it, and the
+/// extent of the solid along each of them.
 pub(super) struct Slope<N> {
+    /// Component of the unit normals away from the axis.
     pub(super) aside: N,
+    /// Component along the axis.
     pub(super) along: N,
+    /// Extent of the solid along the normals.
     pub(super) reach: N,
 }
 
-/// A cylinder or a cone with its apex up, in units of the pair.
+/// A cylinder, or a cone with its apex up, in units of the pair.
 #[derive(Clone, Copy)]
 pub(in super::super) struct Round<N: Real> {
+    /// Half the height.
     pub(in super::super) half: N,
+    /// Radius of cylinder or base.
     pub(in super::super) radius: N,
     pub(in super::super) is_cone: bool,
 }
 
 impl<N: Real> Round<N> {
-    /// `None` for another kind, or one without a size.
+    /// `None` for other kinds, and for solids of size zero.
     pub(in super::super) fn new(kind: &Kind<'_, N, 3>, shrink: N) -> Option<Self> {
         let (half, radius, is_cone) = match kind {
             Kind::Cylinder(cylinder, _) => (cylinder.half_height(), cylinder.radius(), false),
@@ -35,12 +40,12 @@ impl<N: Real> Round<N> {
         (round.half > noise() && round.radius > noise()).then_some(round)
     }
 
-    /// The heights of the caps in parts of the half height.
+    /// Signs of the caps along the axis.
     pub(in super::super) fn caps(&self) -> &'static [f64] {
         if self.is_cone { &[-1.0] } else { &[1.0, -1.0] }
     }
 
-    /// A point farthest along a direction.
+    /// Returns a point farthest along a direction.
     pub(in super::super) fn support(&self, direction: &Vector<N, 3>) -> Vector<N, 3> {
         let aside = radial(direction);
         let squared = aside.norm_squared();
@@ -60,7 +65,7 @@ impl<N: Real> Round<N> {
         Vector::<N, 3>::new(N::ZERO, self.half, N::ZERO)
     }
 
-    /// The normals of the side.
+    /// Returns the normals of the side.
     pub(super) fn slope(&self) -> Slope<N> {
         if !self.is_cone {
             return Slope { aside: N::ONE, along: N::ZERO, reach: self.radius };
@@ -70,7 +75,7 @@ impl<N: Real> Round<N> {
         Slope { aside, along, reach: along * self.half }
     }
 
-    /// Points of which mixes may touch others along a direction, which lie at or about `below`.
+    /// Returns points whose mixes may touch others along a direction, where the others are `below`.
     pub(in super::super) fn touched<'a>(
         &self,
         direction: &Vector<N, 3>,
@@ -84,7 +89,7 @@ impl<N: Real> Round<N> {
             Vector::<N, 3>::new(aside.x * self.radius, y, aside.y * self.radius)
         };
         if is_cap {
-            // The diameter of the cap through each.
+            // For each point below, the ends of the cap's diameter through it.
             let across = |point| unit(&radial(point)).map_or(Vector::<N, 2>::x(), |found| found.0);
             let rims = below.take(4).map(across);
             return rims.flat_map(|aside| [at(aside, end), at(-aside, end)]).collect();

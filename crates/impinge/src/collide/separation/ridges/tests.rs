@@ -1,4 +1,4 @@
-//! Depths are those that growing a polytope finds, and most are found without.
+//! Compares depths with growing a polytope; most are found without.
 
 use super::*;
 use crate::collide::separation::hulls::tests::Random;
@@ -7,7 +7,7 @@ use crate::math::{Matrix, Point};
 use crate::shape::{Capsule, Cone, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
 
 pub(in super::super) type Solids<N> = [Box<dyn Shape<N, 3>>; 2];
-/// A solid of about a size.
+/// Makes a solid of a given size.
 pub(in super::super) type Make<N> = fn(Vector<N, 3>) -> Box<dyn Shape<N, 3>>;
 
 pub(in super::super) fn segment<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
@@ -28,7 +28,7 @@ pub(in super::super) fn cuboid<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 
     Box::new(Cuboid::new(size))
 }
 
-/// The same, hardly thicker than a sheet of paper.
+/// An octahedron hardly thicker than a sheet of paper.
 pub(in super::super) fn blade<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     octahedron(Vector::<N, 3>::new(size.x + N::lit(0.1), N::lit(0.002), size.z + N::lit(0.1)))
 }
@@ -37,7 +37,7 @@ pub(in super::super) fn hull<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>
     octahedron(size.map(|x| x + N::lit(0.1)))
 }
 
-/// An octahedron with its corners pushed about.
+/// An octahedron with displaced corners.
 fn octahedron<N: Real>(size: Vector<N, 3>) -> Box<dyn Shape<N, 3>> {
     let point = |x: f64, y: f64, z: f64| {
         Point::<N, 3>::new(size.x * N::lit(x), size.y * N::lit(y), size.z * N::lit(z))
@@ -88,7 +88,7 @@ fn answers_are_those_of_the_general_algorithm() {
     agree::<f32>(2, 400, 3e-6);
 }
 
-/// The depth along a direction from the first solid to the second.
+/// Returns the depth along a direction from the first solid to the second.
 pub(in super::super) fn depth<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N, 3>) -> N {
     let [first, second] = [pair.first, pair.second].map(|kind| {
         let map = Geometry(kind).as_support_map();
@@ -98,7 +98,7 @@ pub(in super::super) fn depth<N: Real>(pair: &Pair<'_, N, 3>, normal: &Vector<N,
     normal.dot(&first.support_point(normal).coords) - normal.dot(&pair.pose12.point(&end).coords)
 }
 
-/// No direction of many has a depth of less, and all depths are found without growing a polytope.
+/// Asserts that no sampled direction has less depth, and that no pair needs growing a polytope.
 fn none_is_better<N: Real>(accuracy: f64) {
     let random = &mut Random(5);
     let mut deep = 0;
@@ -152,9 +152,9 @@ fn pair_of<'a, N: Real>(shapes: &'a Solids<N>, pose12: Pose<N, 3>) -> Pair<'a, N
     Pair { first, second, pose12 }
 }
 
-/// A parallel of two edges of a sheet of paper on the axis of a cylinder: the point across from an edge lies
-/// straight along the normal of a side, so that the arc is cut at its end. The part without length held the
-/// opposite normal, and the depth of the edge along that was taken for one of the sheet.
+/// A segment parallel to two edges of a sheet without thickness on the axis of a cylinder. The
+/// point across from an edge lies along the normal of a side, so the arc is split at its end. The
+/// half without length once contained the opposite normal, and its depth was taken for the sheet's.
 fn a_wire_in_a_sheet<N: Real>() {
     let sheet = Cuboid::new(Vector::<N, 3>::new(N::ZERO, N::lit(0.95), N::lit(0.5)));
     let wire = Cylinder::new(N::lit(0.125), N::lit(0.001));
@@ -181,8 +181,8 @@ fn an_arc_without_length_has_no_other_side() {
     a_wire_in_a_sheet::<f32>();
 }
 
-/// A roof that is bent by less than the root of the rounding unit, and a cylinder on its ridge that leans along
-/// the ridge by less still: the least depth is between the normals of the slopes, and none of those of faces.
+/// A roof bent by less than the root of epsilon, and a cylinder on its ridge, tilted along the
+/// ridge by less still. The least depth is between the normals of the slopes, not at one of a face.
 fn a_column_on_a_roof<N: Real>() {
     let (bend, lean) = (N::EPSILON.sqrt(), N::EPSILON.sqrt() / N::lit(6.0));
     let (zero, one) = (N::ZERO, N::ONE);
@@ -210,8 +210,8 @@ fn a_roof_may_be_hardly_bent() {
     a_column_on_a_roof::<f64>();
     a_column_on_a_roof::<f32>();
 }
-/// A small sliver about the axis of a cone: all normals of the side are as good up to 10⁻⁹, so that arcs
-/// across them are cut without an end before the best of them is known.
+/// A small sliver about the axis of a cone. All normals of the side are equally good up to 10⁻⁹, so
+/// arcs across them are split endlessly before the best of them is known.
 #[test]
 fn a_sliver_on_the_axis_of_a_cone() {
     let corner = |x: f64, y: f64, z: f64| Point::<f64, 3>::new(x, y, z);

@@ -1,4 +1,4 @@
-//! Segments and capsules: the nearest points of two lines with ends.
+//! Segments and capsules: nearest points of two segments.
 
 pub(crate) mod nearest;
 pub(crate) mod segment_lanes;

@@ -5,7 +5,7 @@ use crate::collide::separation::wrong_kinds;
 use crate::math::{Point, Real, Vector, cross, max, max_component, min};
 use crate::shape::Kind;
 
-/// The ends and the radius of a segment or capsule.
+/// Returns the ends and the radius of a segment or capsule, in its own frame.
 pub(in crate::collide) fn core<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     kind: &Kind<'_, N, D>,
@@ -19,9 +19,9 @@ pub(in crate::collide) fn core<N: Real, const D: usize>(
     }
 }
 
-/// The point of a segment nearest to `point`, and whether it lies between the ends.
+/// Returns the point of a segment nearest to `point`, and whether it lies between the ends.
 ///
-/// Measured from the nearer end, so that long segments lose nothing.
+/// It is computed from the nearer end, so that long segments lose no digits.
 #[inline]
 pub(in crate::collide::separation) fn nearest_on_segment<N: Real, const D: usize>(
     ends: &[Point<N, D>; 2],
@@ -41,7 +41,7 @@ pub(in crate::collide::separation) fn nearest_on_segment<N: Real, const D: usize
     (if from_a > N::ZERO { ends[1] } else { ends[0] }, false)
 }
 
-/// The nearest points of two segments in 3D.
+/// Returns the nearest points of two segments in 3D.
 ///
 /// The candidates are each end against the other segment and, unless the segments are parallel, the
 /// common perpendicular of their lines; the first of equals is taken.
@@ -64,14 +64,14 @@ pub(in crate::collide::separation) fn nearest_of_segments<N: Real>(
     best
 }
 
-/// Where the common perpendicular of two lines meets both segments.
+/// Points where the common perpendicular of two lines meets both segments.
 struct Perpendicular<N: Real> {
     points: (Point<N, 3>, Point<N, 3>),
-    /// So far from all ends that none of them is as near, whatever rounding does.
+    /// Both points are so far from all ends that no end is as near, with any rounding.
     is_well_inside: bool,
 }
 
-/// The nearest points of two segments if at least one of them is an end, in any dimension.
+/// Returns the nearest points of two segments if at least one of them is an end, in any dimension.
 ///
 /// In 2D these are the nearest points of any two segments that do not cross.
 pub(in crate::collide::separation) fn nearest_of_ends<N: Real, const D: usize>(
@@ -92,16 +92,17 @@ pub(in crate::collide::separation) fn nearest_of_ends<N: Real, const D: usize>(
     best
 }
 
-/// Where the common perpendicular of two lines meets them, if it meets both segments.
+/// Returns the points where the common perpendicular of two lines meets them; `None` unless both
+/// lie on the segments, and for parallel lines.
 ///
-/// The solution by cross products is off by rounding over the sine of the angle between the lines;
-/// each of two Newton steps from the residual reduces that by the same factor.
+/// The solution by cross products is off by rounding over the sine of the angle between the lines.
+/// Each of two Newton steps from the residual reduces the error by that factor.
 fn common_perpendicular<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
 ) -> Option<Perpendicular<N>> {
     let (along1, along2) = (ends1[1] - ends1[0], ends2[1] - ends2[0]);
-    // Directions of length about 1, so that fourth powers stay numbers of the type.
+    // Directions scaled to length about 1, so that fourth powers neither overflow nor underflow.
     let (size1, size2) =
         (max_component(&along1).power_of_two_below(), max_component(&along2).power_of_two_below());
     let (toward1, toward2) = (along1 / size1, along2 / size2);
@@ -121,8 +122,8 @@ fn common_perpendicular<N: Real>(
     }
     let inside = |u: N| u >= N::ZERO && u <= N::ONE;
     (inside(s) && inside(t)).then(|| {
-        // Away from the perpendicular the squared distance grows by the square of how far the point of one
-        // line moves times that of the sine between them, wherever that of the other is.
+        // Let one point move by a length along its line. Whatever the other point does, the squared
+        // distance grows by at least the square of that length times the sine between the lines.
         let far1 = min(s, N::ONE - s) * size1;
         let far2 = min(t, N::ONE - t) * size2;
         let growth = min(far1 * far1 / squared2, far2 * far2 / squared1) * squared;
@@ -136,7 +137,8 @@ fn common_perpendicular<N: Real>(
     })
 }
 
-/// How far apart two sets of points are along a unit vector from the first to the second.
+/// Returns the signed gap between two point sets along `normal`, a unit vector from the first to
+/// the second.
 pub(in crate::collide::separation) fn gap_along<N: Real, const D: usize>(
     normal: &Vector<N, D>,
     points1: &[Point<N, D>],

@@ -1,7 +1,13 @@
 //! Segments in lanes: the nearest point of each to a point, and in 2D the separation of two.
 //!
-//! A lone pair of the plane runs the same source, so that what is asked of two segments, and what a manifold of them
-//! says, are the same bits.
+//! A lone pair in 2D runs the same source, so queries and manifolds of two segments have the same
+//! bits.
+//!
+//! ```text
+//!    first *--------+------* last     from_first = (point - first) · along
+//!                   |                 to_last    = (last - point) · along
+//!             point *                 is_inside: both are positive
+//! ```
 
 use super::nearest::core;
 use crate::collide::Pair;
@@ -12,19 +18,19 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Real, Wide};
 use crate::shape::Kind;
 
-/// The nearest point of a segment to a point.
+/// Nearest point of a segment to a given point.
 pub(crate) struct Nearest<V, M, const D: usize> {
     pub(crate) point: [V; D],
-    /// It lies between the ends.
+    /// The nearest point lies between the ends.
     pub(crate) is_inside: M,
-    /// From the first end to the last.
+    /// Vector from the first end to the last.
     pub(crate) along: [V; D],
-    /// How far along the given point is from the first end, and how far from the last, times the length.
+    /// Distances of the given point from both ends along `along`, times the length of the segment.
     pub(crate) from_first: V,
     pub(crate) to_last: V,
 }
 
-/// The nearest points of segments to points, measured from the nearer end.
+/// Returns the nearest points of segments to points, computed from the nearer end.
 #[inline(always)]
 pub(crate) fn nearest_on_segment<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -45,21 +51,23 @@ pub(crate) fn nearest_on_segment<S: Simd, N: Real, V: Wide<S, Scalar = N>, const
     Nearest { point, is_inside, along, from_first, to_last }
 }
 
-/// The lanes where a square is far from both ends of the range, so that its root is the length.
+/// Returns the lanes where a square is far from underflow and overflow, so that its root is the
+/// length.
 #[inline(always)]
 pub(crate) fn is_usual<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, squared: V) -> V::Mask {
     squared.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
         & squared.simd_lt(V::all(simd, N::MAX * N::EPSILON))
 }
 
-/// What separates two segments of the plane.
+/// Separation of two segments in 2D.
 pub(crate) struct SegmentGap<V, M> {
-    /// A unit vector from the first to the second.
+    /// Unit, from the first segment to the second.
     pub(crate) normal: [V; 2],
     pub(crate) gap: V,
-    /// The nearest points.
+    /// Nearest points of the first and the second segment.
     pub(crate) points: [[V; 2]; 2],
-    /// The lanes where all this is so. The segments of the others cross, touch, or have no usual length.
+    /// Lanes where the other fields hold. In other lanes the segments cross or touch, or a squared
+    /// length is near underflow or overflow.
     pub(crate) is_known: M,
 }
 
@@ -68,13 +76,13 @@ struct EndAndSide<V, M> {
     points: [[V; 2]; 2],
     /// The point of the other segment lies between its ends.
     is_inside: M,
-    /// From the first end of that one to the last.
+    /// Vector between the ends of the other segment.
     along: [V; 2],
     squared: V,
 }
 
 impl<V, M> EndAndSide<V, M> {
-    /// An end of one of two segments.
+    /// Pairs an end of segment `which` (0 or 1) with the nearest point of the other segment.
     #[inline(always)]
     fn of<S: Simd, N: Real>(simd: S, ends: [&[[V; 2]; 2]; 2], which: usize, end: usize) -> Self
     where
@@ -89,7 +97,7 @@ impl<V, M> EndAndSide<V, M> {
         Self { points, is_inside: near.is_inside, along: near.along, squared }
     }
 
-    /// The other one where a mask says so.
+    /// Selects `other` in the lanes of `is_other`.
     #[inline(always)]
     fn or<S: Simd>(&self, other: &Self, is_other: M) -> Self
     where
@@ -110,11 +118,12 @@ impl<V, M> EndAndSide<V, M> {
 }
 
 impl<V, M> SegmentGap<V, M> {
-    /// Between segments that are given by their ends.
+    /// Returns the separation of two segments given by their ends.
     ///
-    /// Segments that do not cross are nearest at an end of one of them. Where it lies beside the inside of the
-    /// other, the normal is perpendicular to that, however short the way between them is; of points that are
-    /// equally near but for rounding such a one is preferred. Of others the first counts.
+    /// Segments that do not cross are nearest at an end of one of them. If that end faces the
+    /// inside of the other segment, the normal is perpendicular to that segment, which is accurate
+    /// at any distance. Such a pair is preferred to others that are as near up to rounding;
+    /// otherwise the first of equals counts.
     #[inline(always)]
     pub(crate) fn of<S: Simd, N: Real>(simd: S, ends: [&[[V; 2]; 2]; 2]) -> Self
     where
@@ -136,7 +145,7 @@ impl<V, M> SegmentGap<V, M> {
         let (normal, gap) = best.normal(simd);
         let is_long =
             is_usual(simd, length_squared(ends[0])) & is_usual(simd, length_squared(ends[1]));
-        // Farther apart than rounding, and on the two sides of a line.
+        // Apart by more than rounding, with the gap confirmed by supporting lines.
         let slack = V::all(simd, N::lit(16.0)) * noise;
         let parted = lowest(ends[1], &normal) + lowest(ends[0], &negated(&normal));
         let is_apart = gap.simd_gt(slack) & (parted + slack).simd_gt(gap);
@@ -146,7 +155,7 @@ impl<V, M> SegmentGap<V, M> {
 }
 
 impl<V, M> EndAndSide<V, M> {
-    /// The normal and how far the points are apart along it.
+    /// Returns the unit normal, and the distance of the points along it.
     #[inline(always)]
     fn normal<S: Simd, N: Real>(&self, simd: S) -> ([V; 2], V)
     where
@@ -165,7 +174,7 @@ impl<V, M> EndAndSide<V, M> {
     }
 }
 
-/// The sum of the coordinates' magnitudes, of the end where it is greatest.
+/// Returns the largest sum of absolute coordinates of an end.
 #[inline(always)]
 fn size<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, ends: [&[[V; 2]; 2]; 2]) -> V {
     let mut size = V::all(simd, N::ZERO);
@@ -181,14 +190,14 @@ fn length_squared<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2]) -> V {
     dot(&along, &along)
 }
 
-/// How far along a direction the lower end is.
+/// Lower of the two ends along a direction.
 #[inline(always)]
 fn lowest<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2], direction: &[V; 2]) -> V {
     dot(direction, first).smaller(dot(direction, last))
 }
 
-/// The separation of two segments of the plane, inflated or not; `None` of other kinds, and where
-/// [`SegmentGap`] knows none.
+/// Returns the separation of two segments or capsules in 2D; `None` for other kinds, and where
+/// [`SegmentGap`] is not known.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
 ) -> Option<Separation<N, 2>> {
@@ -202,7 +211,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     Some(cores.rounded(radius1, radius2))
 }
 
-/// The separation of the cores of a lone pair.
+/// Returns the separation of the cores of one pair.
 fn alone<N: Real>(ends1: &[Point<N, 2>; 2], ends2: &[Point<N, 2>; 2]) -> Option<Separation<N, 2>> {
     let lone = |ends: &[Point<N, 2>; 2]| [Lone::each(&ends[0].coords), Lone::each(&ends[1].coords)];
     let found = SegmentGap::of(OneLane(0), [&lone(ends1), &lone(ends2)]);

@@ -1,4 +1,4 @@
-//! Segments and capsules among themselves, in 3D.
+//! Segments and capsules against each other in 3D.
 
 use super::nearest::{core, gap_along, nearest_of_segments};
 use crate::collide::Pair;
@@ -8,10 +8,10 @@ use crate::collide::separation::projection::{
 use crate::convex::Separation;
 use crate::math::{Mapped, Point, Real, Vector, cross, max, unit};
 
-/// The separation of two segments or capsules in 3D.
+/// Returns the separation of two segments or capsules in 3D.
 ///
-/// Segments that meet are parted along their common perpendicular with depth zero; those on one
-/// line along a fixed perpendicular of it; two points at one place along the first axis.
+/// Crossing cores have distance zero and their common perpendicular as normal; cores on one line a
+/// fixed perpendicular of it; two coinciding points the first axis.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -23,7 +23,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     of_points(&[ends1, ends2], &points, [rounding1, rounding2], limit)
 }
 
-/// The same of segments, inflated by some radii, whose nearest points are known.
+/// Returns the separation of two segments with radii whose nearest points are known.
 #[inline]
 pub(in crate::collide) fn of_points<N: Real>(
     [ends1, ends2]: &[[Point<N, 3>; 2]; 2],
@@ -38,7 +38,7 @@ pub(in crate::collide) fn of_points<N: Real>(
     })
 }
 
-/// The distance in [`separation`], for which no direction is needed.
+/// Returns the distance of [`separation`], without computing the normal.
 pub(in crate::collide::separation) fn distance<N: Real>(pair: &Pair<'_, N, 3>) -> N {
     let ((ends1, rounding1), (local2, rounding2)) =
         (core(pair, &pair.first), core(pair, &pair.second));
@@ -47,11 +47,12 @@ pub(in crate::collide::separation) fn distance<N: Real>(pair: &Pair<'_, N, 3>) -
     (point2 - point1).norm() - rounding1 - rounding2
 }
 
-/// The unit vector along which the segments are farthest apart.
+/// Returns the unit vector along which the gap between the segments is largest.
 ///
-/// Right is the direction between the nearest points. Where these are close that is mostly
-/// rounding, and a direction made from the segments themselves separates better: each candidate is
-/// judged by the gap that it really leaves, the first of equals (up to rounding) is taken.
+/// In exact arithmetic it is the direction between the nearest points. If these are close, that
+/// direction is mostly rounding, and one computed from the segments themselves separates better.
+/// Each candidate is judged by the gap that it leaves; the first of equals, up to rounding, is
+/// taken.
 fn best_normal<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
@@ -61,7 +62,7 @@ fn best_normal<N: Real>(
     let mut widest = Widest { ends1, ends2, noise: noise(reach), best: None };
     let direct = unit(offset).map(|(along, _)| along);
     widest.consider(direct);
-    // No normal leaves a larger gap than the distance, but for less than the noise.
+    // The gap cannot exceed the distance by more than rounding.
     let is_best =
         widest.best.is_some_and(|(gap, _)| gap + widest.noise / N::lit(4.0) >= offset.norm());
     if let Some(normal) = direct.filter(|_| is_best) {
@@ -82,15 +83,18 @@ fn best_normal<N: Real>(
     widest.best.map_or_else(first_axis, |(_, normal)| normal)
 }
 
-/// The normal that leaves the widest gap between two segments; of those that differ by noise the first.
+/// The normal that leaves the largest gap between two segments; the first of equals up to `noise`.
 struct Widest<'a, N: Real> {
     ends1: &'a [Point<N, 3>; 2],
     ends2: &'a [Point<N, 3>; 2],
+    /// Gaps that differ by less count as equal.
     noise: N,
+    /// Largest gap so far and its normal.
     best: Option<(N, Vector<N, 3>)>,
 }
 
 impl<N: Real> Widest<'_, N> {
+    /// Takes a normal if its gap is larger by more than noise.
     fn consider(&mut self, normal: Option<Vector<N, 3>>) {
         let Some(normal) = normal else { return };
         let gap = gap_along(&normal, self.ends1, self.ends2);

@@ -1,12 +1,22 @@
-//! The separating axes of eight triangles and one convex polyhedron.
+//! Separating axes of eight triangles and one convex polyhedron.
 //!
 //! Two polyhedra overlap iff no normal of a face and no direction perpendicular to an edge of each
-//! parts them, and if they do, the one of these along which they overlap least is the shortest way out
-//! (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). An edge of the solid and a side of the triangle decide
-//! along a direction only where the one is its highest and the other its lowest: where the side climbs
-//! over the plane of one face beside the edge and sinks below the other's, and the triangle lies on
-//! the outer side (Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC 2013, prunes
-//! pairs of edges by their arcs of normals).
+//! separates them; if they do overlap, the one of these with the least overlap is the shortest way
+//! out (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). An edge of the solid and a side of the
+//! triangle matter only if the edge is the solid's highest along the direction and the side the
+//! triangle's lowest. This is so where the side climbs over the plane of one face beside the edge
+//! and sinks below the plane of the other, and the triangle lies on the outer side (Gregorius, "The
+//! Separating Axis Test between Convex Polyhedra", GDC 2013, prunes pairs of edges by their arcs of
+//! normals).
+//!
+//! ```text
+//!   feature  0                        the triangle's own normal
+//!            1 + face                 a face of the solid, at most 64: `PLANE_BLOCKS` * `LANES`
+//!            1024 + 3 * edge + side   an edge of the solid and a side of the triangle
+//! ```
+//!
+//! Lane `i` is triangle `i` of the [`PartPacket`], whose triangles [`super`] has collected from
+//! tiles.
 
 use super::{TriangleQuery, noise};
 use crate::collide::packet::{LANES, PartPacket};
@@ -17,32 +27,36 @@ use crate::math::lanes::{
 use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Mapped, Matrix, Real, Wide, max, max_component};
 
-/// The sine below which two edges count as parallel, in rounding units.
+/// Two edges count as parallel if the sine of their angle is below this many epsilon.
 const PARALLEL: f64 = 16.0;
-/// As many faces as the lanes of a [`Polyhedral`] hold.
+/// Most faces of a [`Polyhedral`], set by its blocks of planes.
 const MAX_FACES: usize = PLANE_BLOCKS * LANES;
 
-/// The directions that leave the largest gaps between a solid and eight triangles.
+/// For each of eight triangles the direction that leaves the largest gap to the solid.
 pub(super) struct TriangleAxes<N> {
-    /// A bit for each triangle that is beyond the limit by more than rounding.
+    /// Bit of each triangle that is beyond the limit by more than rounding.
     pub(super) beyond: u8,
-    /// A bit for each triangle that is not thin, and whose direction leaves its gap between all vertices.
+    /// Bit of each triangle that is not thin, and whose gap along `normals` is confirmed by all
+    /// vertices.
     pub(super) known: u8,
-    /// The length of a unit of each pair, in which neither of the two, nor the way between their origins, is
-    /// larger than 2; and 1 / `scale`, exactly.
+    /// Unit of length of each pair, a power of two: in this unit neither the triangle, nor the
+    /// solid, nor the distance between their origins is larger than 2. `shrink` is 1 / `scale`,
+    /// exactly.
     pub(super) scale: [N; LANES],
     pub(super) shrink: [N; LANES],
-    /// In the frame of the solid, in units of the pair.
+    /// Corners in the frame of the solid, in units of the pair.
     pub(super) corners: [[[N; LANES]; 3]; 3],
-    /// Unit, from the triangle to the solid.
+    /// Unit vectors from the triangle to the solid, in the frame of the solid.
     pub(super) normals: [[N; LANES]; 3],
+    /// Signed distances along `normals`, in units of each pair.
     pub(super) gaps: [N; LANES],
-    /// See [`AxisFeature`].
+    /// Feature numbers, decoded by [`AxisFeature`].
     pub(super) features: [N; LANES],
 }
 
-/// What a direction is perpendicular to.
+/// The features that a direction is perpendicular to.
 pub(super) enum AxisFeature {
+    /// The triangle's own normal.
     Triangle,
     /// A face of the solid.
     Face(usize),
@@ -50,13 +64,13 @@ pub(super) enum AxisFeature {
     Edges(usize, usize),
 }
 
-/// The number of the triangle in a lane; faces follow, then three for each edge, one for each side.
+/// First feature number of each kind.
 const TRIANGLE: f64 = 0.0;
 const FACES: f64 = 1.0;
 const EDGES: f64 = 1024.0;
 
 impl AxisFeature {
-    /// By the number in a lane.
+    /// Decodes a feature number.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -75,19 +89,19 @@ impl AxisFeature {
     }
 }
 
-/// What counts as rounding of lengths in a pair with this unit.
+/// Returns the length that counts as rounding in a pair with the unit `scale`.
 pub(super) fn slack<N: Real>(scale: N) -> N {
     N::lit(16.0) * noise::<N>() * scale
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
-    /// The axes of some lanes.
+    /// Computes the axes for the lanes of a run.
     pub(super) fn axes(&self, run: Run, tiles: &PartPacket<N, 3>) -> TriangleAxes<N> {
         in_lanes!(run, simd => self.axes_in_lanes::<_, N::Lanes<_>>(simd, tiles))
     }
 
-    /// The triangles' own normals, unless those of faces of the solid leave gaps that are larger by more than
-    /// rounding, or two edges by as much more than both.
+    /// Chooses the triangle's own normal, unless a face of the solid leaves a gap that is larger by
+    /// more than rounding, or a pair of edges one that is larger by more than rounding than both.
     #[inline(always)]
     fn axes_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -119,23 +133,24 @@ impl<N: Real> TriangleQuery<'_, N> {
             return packet.stored(&face, beyond, none);
         }
         let best = packet.query_edges(&climbs, &directions, asked, face);
-        // The faces beside an edge may say too much of one that is short.
+        // For a short edge, its two faces alone may claim a gap that other vertices do not leave.
         let [_, gap] = packet.gaps_along(&best.normal);
         let known = is_wide & gap.simd_gt(best.gap - V::all(simd, N::lit(4.0) * noise()));
         packet.stored(&best, beyond | (packet.is_beyond(best.gap) & known), known)
     }
 }
 
-/// The best directions so far, from the triangles to the solid.
+/// The best directions so far, unit vectors from the triangles to the solid.
 #[derive(Clone, Copy)]
 struct TriangleAxis<V> {
+    /// Signed distance along the direction, in units of the pair.
     gap: V,
     normal: [V; 3],
     feature: V,
 }
 
 impl<V> TriangleAxis<V> {
-    /// Others where a mask says so.
+    /// Selects `other` in the lanes of `is_other`.
     #[inline(always)]
     fn or<S: Simd>(&self, is_other: V::Mask, other: &Self) -> Self
     where
@@ -149,31 +164,33 @@ impl<V> TriangleAxis<V> {
     }
 }
 
-/// The unit vectors along the sides and the normals on the side that sees the corners counter-clockwise, in the
-/// frame of the solid; and which triangles are not thin.
+/// Unit vectors along the sides, and unit normals on the side from which the corners run
+/// counter-clockwise, in the frame of the solid; `is_wide` has the triangles that are not thin.
 struct Directions<V, M> {
     sides: [[V; 3]; 3],
     front: [V; 3],
     is_wide: M,
 }
 
-/// Eight triangles and the solid.
+/// Eight triangles in the frame of the solid, and the solid.
 struct PlacedPacket<'a, S, N: Real, V> {
     simd: S,
     solid: &'a Polyhedral<'a, N>,
-    /// As seen from their origin.
+    /// Corners relative to the origin of the query, in the frame of the triangles.
     given: [[V; 3]; 3],
-    /// The same in the frame of the solid, in units of the pairs.
+    /// Corners in the frame of the solid, in units of the pairs.
     corners: [[V; 3]; 3],
+    /// Unit of each pair and its reciprocal, as rows and as vectors.
     scales: [N; LANES],
     shrinks: [N; LANES],
     scale: V,
     shrink: V,
-    /// What is beyond the limit by more than rounding, in lengths of the pairs.
+    /// The limit plus rounding, in lengths of the caller.
     beyond: V,
 }
 
 impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
+    /// Loads a packet, computes the units, and transforms the corners to the frame of the solid.
     #[inline(always)]
     fn new(simd: S, query: &TriangleQuery<'a, N>, tiles: &PartPacket<N, 3>) -> Self {
         let origin: [V; 3] = spread(simd, &query.parts.origin);
@@ -196,13 +213,14 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         Self { simd, solid: query.solid, given, corners, scales, shrinks, scale, shrink, beyond }
     }
 
-    /// A gap says that a triangle is beyond the limit.
+    /// Returns the lanes in which a gap proves that the triangle is beyond the limit.
     #[inline(always)]
     fn is_beyond(&self, gap: V) -> V::Mask {
         let has_units = self.shrink.simd_lt(V::all(self.simd, N::INFINITY));
         (gap * self.scale).simd_gt(self.beyond) & has_units
     }
 
+    /// Writes the best directions and the masks to rows.
     #[inline(always)]
     fn stored(&self, best: &TriangleAxis<V>, beyond: V::Mask, known: V::Mask) -> TriangleAxes<N> {
         let blank = [N::ZERO; LANES];
@@ -229,7 +247,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         axes
     }
 
-    /// The directions, from the sides as given, which lose nothing to the way between the origins.
+    /// Computes the directions from the sides as given: the distance between the origins costs no
+    /// digits then.
     #[inline(always)]
     fn directions(&self, turn: &Matrix<N, 3>) -> Directions<V, V::Mask> {
         let (simd, [a, b, c], shrink) = (self.simd, &self.given, self.shrink);
@@ -248,7 +267,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         Directions { sides, front: turned_back(simd, turn, &over(&across, area)), is_wide }
     }
 
-    /// The gaps that the opposites of some unit vectors, and these, leave from the triangles to the solid.
+    /// Returns the gaps from the triangles to the solid along `-along` and along `along`, unit
+    /// vectors.
     #[inline(always)]
     fn gaps_along(&self, along: &[V; 3]) -> [V; 2] {
         let mut top = -V::all(self.simd, N::INFINITY);
@@ -263,7 +283,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         [low - top * self.shrink, bottom * self.shrink - high]
     }
 
-    /// Queries the face directions of the solid; notes for each face which sides climb over its plane.
+    /// Queries the face directions of the solid; `climbs` records which sides climb over each
+    /// plane.
     #[inline(always)]
     fn query_faces(&self, climbs: &mut [[V::Mask; 3]; MAX_FACES]) -> TriangleAxis<V> {
         let (simd, zero) = (self.simd, V::all(self.simd, N::ZERO));
@@ -284,8 +305,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         best
     }
 
-    /// Queries the directions perpendicular to an edge of the solid and a side of the triangles, where they leave
-    /// larger gaps than the faces.
+    /// Queries the directions perpendicular to an edge of the solid and a side of a triangle;
+    /// returns those that leave larger gaps than `face`, else `face`.
     #[inline(always)]
     fn query_edges(
         &self,
@@ -303,8 +324,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
             let [from, to] = edge.vertices.mapped(|end| self.solid.vertex(end as usize));
             let along = times(&spread(simd, &(to - from)), self.shrink);
             let start = times(&spread(simd, &from), self.shrink);
-            // The edge runs around the first face, so its product with a side that climbs over that face
-            // leads out of the solid; and the triangle lies beyond the side if the edge runs forward.
+            // The edge runs around its first face, so its product with a side that climbs over that
+            // face points out of the solid. The triangle lies beyond the side if the edge runs
+            // forward.
             let is_forward = dot(&directions.front, &along).simd_ge(zero);
             let least = V::all(simd, sine * sine) * dot(&along, &along);
             for side in 0..3 {
@@ -318,9 +340,10 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
                 let slack = dot(&across, &minus(&self.corners[side], &start));
                 let squared = dot(&across, &across);
                 let length = squared.sqrt();
-                // Parallel edges have no perpendicular, and faces that part as much.
+                // Parallel edges have no perpendicular; faces separate the two as much.
                 let is_more = is_asked & squared.simd_gt(least) & slack.simd_gt(bound * length);
-                // Divisions cost more than all of the rest, and few directions are better than those before.
+                // Divisions cost more than all the rest, and few directions improve on the best so
+                // far.
                 if is_more.to_bitmask() == 0 {
                     continue;
                 }
@@ -334,8 +357,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
     }
 }
 
-/// The units of each pair and their inverses; no numbers where there are none. `own` is the size of the solid and
-/// of the way between the origins.
+/// Returns the unit of each pair and its reciprocal, which is infinite if the size of the pair is
+/// zero or not finite. `own` is the largest size of the solid and of the distance between the
+/// origins.
 #[inline(always)]
 fn units<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

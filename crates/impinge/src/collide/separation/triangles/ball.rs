@@ -1,10 +1,19 @@
-//! Triangles against a ball: which of eight are near, and which of those have a neighbour that hides them.
+//! Triangles against a ball: finds the near ones of eight at a time, and those hidden by a
+//! neighbour.
 //!
-//! A contact with a corner or an edge is one of the whole surface only if no direction into a triangle there
-//! rises along its normal (see `seam.rs`). Where one of these triangles is nearer to the middle of the ball
-//! than the corner or edge, the way to its nearest point is such a direction, so that distances alone tell
-//! what the normals would: of the triangles around the place where a ball rests on a surface one is left.
-//! Close cases are left undecided.
+//! A contact at a corner or edge belongs to the whole surface only if no triangle there extends
+//! along its normal: no direction into such a triangle has a positive component
+//! (`shape/surface/seam.rs`). If one of these triangles is nearer to the centre of the ball than
+//! the corner or edge, the direction to its nearest point is such a direction. So distances alone
+//! give the result of the rule for normals, and of the triangles around the place where a ball
+//! rests on a surface one is left. Close cases stay undecided.
+//!
+//! ```text
+//!           o  centre           kind 0, 1, 2: nearest on the side that starts at corner 0, 1, 2
+//!          /|                   kind 3, 4, 5: nearest at corner 0, 1, 2
+//!    -----*-+------             the left triangle is nearest at its corner *; the right one
+//!    left   right               has that corner and is nearer, so it hides the left one
+//! ```
 
 use smallvec::SmallVec;
 
@@ -14,45 +23,47 @@ use crate::math::lanes::{bits, dot, either, load, minus, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, filled, max_component, min};
 
-/// A triangle with a squared height of more than this, of its longest side, is not thin.
+/// A triangle is thin if the squared ratio of its height to its longest side is at most this.
 const TALL: f64 = 1.0 / 1000.0;
-/// Squared distances that differ by more than so many rounding units of all squared lengths are different; and
-/// a feature is certain where another is the nearest only if the ball moves by the root of that.
+/// Squared distances count as different above this many epsilon of all squared lengths. A nearest
+/// feature is certain if the centre has to move by the root of that to make another the nearest.
 const CLEAR: f64 = 64.0;
-/// Corners are numbered after sides.
+/// Kinds of corners follow those of sides.
 const CORNER: f64 = 3.0;
-/// Triangles are beyond reach where they are by so many rounding units of all lengths.
+/// Lower bounds of distances are lowered by this many epsilon of all lengths.
 const ROUNDING: f64 = 128.0;
-/// A height of more than so many rounding units of all coordinates is no rounding.
+/// A height counts as rounding if it is at most this many epsilon of all coordinates.
 const HEIGHT: f64 = 64.0;
-/// What hides a triangle is looked for among so many packets before and after its own.
+/// A triangle's neighbours are searched in this many near packets before and after its own.
 const MAX_APART: usize = 8;
 
 /// A ball among triangles.
 pub(crate) struct BallQuestion<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
-    /// How many triangles there are; what is left of the last tiles are copies.
+    /// Number of triangles; the rest of the last tile are copies.
     pub(crate) count: usize,
-    /// In the frame of the triangles.
+    /// Centre of the ball in the frame of the triangles.
     pub(crate) center: Vector<N, 3>,
     pub(crate) radius: N,
-    /// What is farther from the surface of the ball is of no interest, nor what is outside a box.
+    /// Triangles farther than `limit` from the surface of the ball are skipped, and those whose
+    /// boxes do not overlap `within`.
     pub(crate) limit: N,
+    /// Box of interest, in the frame of the triangles.
     pub(crate) within: Aabb<N, 3>,
 }
 
 /// The triangles near a ball.
 pub(crate) struct NearTriangles<N> {
-    /// No triangle in the box is nearer to the middle; zero if that is not known.
+    /// Lower bound of the distance from the centre to the triangles in the box; zero if unknown.
     pub(crate) from_middle: N,
-    /// Of each eight that has some, in order: which eight, those that may be within reach, and of these
-    /// those that are hidden.
+    /// For each packet with near triangles, in order: its index, and the bits of those that may be
+    /// within reach and of the hidden ones among them.
     pub(crate) near: SmallVec<[(usize, [u8; 2]); 8]>,
-    /// The squares of the distances of all that are hidden are more than this.
+    /// Squared distances of all hidden triangles are at least this; infinite if none is hidden.
     pub(crate) hidden_from: N,
 }
 
-/// Finds the triangles near a ball; nothing is hidden unless `has_seams`.
+/// Finds the triangles near a ball; none counts as hidden unless `has_seams`.
 pub(crate) fn near_triangles<N: Real>(
     question: &BallQuestion<'_, N>,
     has_seams: bool,
@@ -60,11 +71,12 @@ pub(crate) fn near_triangles<N: Real>(
     at(Level::new(), question, has_seams)
 }
 
-/// By the vectors of an instruction set, on which the answer does not depend.
+/// Runs the search with the vectors of an instruction set; the result does not depend on it.
 fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) -> NearTriangles<N> {
     with_lanes!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams))
 }
 
+/// Finds near triangles packet by packet, then which of them a neighbour hides.
 #[inline(always)]
 fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -105,7 +117,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     seen
 }
 
-/// Which of eight triangles have boxes that meet that of the question.
+/// Returns which of eight triangles have boxes that overlap the box of the question.
 #[inline(always)]
 fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -125,38 +137,42 @@ fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     within
 }
 
-/// Where on eight triangles the nearest points lie.
+/// Nearest features of eight triangles.
 struct NearestFeatures<N> {
-    /// Which eight.
+    /// Index of the packet.
     block: usize,
-    /// A bit for each that may be within reach.
+    /// Bit of each triangle that may be within reach.
     near: u8,
-    /// And for each whose nearest point certainly lies on one of its sides or corners.
+    /// Bit of each triangle whose nearest point certainly lies on one of its sides or corners.
     sides: u8,
-    /// Sides by the number of their first corner, corners by their number and three.
+    /// Nearest feature: a side by the index of its first corner, a corner by its index plus 3.
     kinds: [N; LANES],
-    /// The squared distances are not less, nor more; of what hides nothing there is no bound.
+    /// Bounds of the squared distances; `most` is infinite for triangles that hide nothing.
     least: [N; LANES],
     most: [N; LANES],
 }
 
-/// Eight triangles as the middle of the ball sees them.
+/// Eight triangles relative to the centre of the ball.
 struct TrianglePacket<V> {
+    /// Corners relative to the centre of the ball.
     corners: [[V; 3]; 3],
-    /// The squares of the lengths of the sides, from each corner to the next.
+    /// Squared lengths of the sides, from each corner to the next.
     squares: [V; 3],
-    /// How far along each side the middle is, times its length.
+    /// Coordinate of the centre along each side from its first corner, times the length of the
+    /// side.
     along: [V; 3],
-    /// Four squared areas; and the shares of the corners in the point below the middle, times that.
+    /// Four times the squared area; and the barycentric coordinates of the centre's projection,
+    /// times that.
     area: V,
     shares: [V; 3],
-    /// The nearest points; the squares of their distances and of those of the farthest corners.
+    /// Nearest points; their squared distances, and those of the farthest corners.
     nearest: [V; 3],
     squared: V,
     farthest: V,
 }
 
 impl<V> TrianglePacket<V> {
+    /// Computes nearest points and barycentric coordinates of a packet.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
@@ -173,7 +189,7 @@ impl<V> TrianglePacket<V> {
         let (ab, bc, ca) = (minus(&b, &a), minus(&c, &b), minus(&a, &c));
         let squares = [dot(&ab, &ab), dot(&bc, &bc), dot(&ca, &ca)];
         let along = [-dot(&ab, &a), -dot(&bc, &b), -dot(&ca, &c)];
-        // Of the two sides at the first corner, seen from there.
+        // Products of the two sides at the first corner, taken from that corner.
         let (turn, to_c) = (-dot(&ab, &ca), dot(&ca, &a));
         let area = squares[0] * squares[2] - turn * turn;
         let at_b = along[0] * squares[2] - to_c * turn;
@@ -199,7 +215,7 @@ impl<V> TrianglePacket<V> {
         Self { corners: [a, b, c], squares, along, area, shares, nearest, squared, farthest }
     }
 
-    /// Where the nearest points lie, and how near the nearest of them is.
+    /// Returns the nearest features, and the least lower bound of the distances.
     #[inline(always)]
     fn places<S: Simd, N: Real>(
         &self,
@@ -238,8 +254,8 @@ impl<V> TrianglePacket<V> {
         (places, least)
     }
 
-    /// The distances are not less, as the planes across the ways to the nearest points say, and where they
-    /// say so; else zero.
+    /// Returns lower bounds of the distances, by the planes through the nearest points
+    /// perpendicular to their directions, and the lanes where these are bounds; zero elsewhere.
     #[inline(always)]
     fn bound<S: Simd, N: Real>(&self, simd: S, size: V) -> (V, V::Mask)
     where
@@ -249,14 +265,15 @@ impl<V> TrianglePacket<V> {
         let low = dot(way, a).smaller(dot(way, b)).smaller(dot(way, c));
         let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
         let bound = low / length - slack;
-        // NaN bounds nothing, nor what has lost digits by being small.
+        // False for NaN and for values that have lost digits by underflow.
         let is_bound = bound.simd_gt(slack)
             & low.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
             & size.simd_lt(V::all(simd, N::MAX.sqrt()));
         (is_bound.select(bound, V::all(simd, N::ZERO)), is_bound)
     }
 
-    /// The triangles are neither thin, nor small for where they are.
+    /// Returns the lanes whose triangles are neither thin nor small for their distance from the
+    /// origin.
     #[inline(always)]
     fn is_tall<S: Simd, N: Real>(&self, simd: S, size: V, clear: V, away: N) -> V::Mask
     where
@@ -271,7 +288,8 @@ impl<V> TrianglePacket<V> {
             & self.area.simd_lt(V::all(simd, N::MAX * N::EPSILON))
     }
 
-    /// Which side or corner the middle is beside, and by how much: numbers that are not positive say nothing.
+    /// Returns the side or corner nearest to the centre, and how far the centre is inside its
+    /// Voronoi region; not positive means unknown.
     #[inline(always)]
     fn beside<S: Simd, N: Real>(&self, simd: S) -> (V, V)
     where
@@ -281,7 +299,7 @@ impl<V> TrianglePacket<V> {
         let root = [self.squares[0].sqrt(), self.squares[1].sqrt(), self.squares[2].sqrt()];
         let past = [self.along[0] / root[0], self.along[1] / root[1], self.along[2] / root[2]];
         let left = [root[0] - past[0], root[1] - past[1], root[2] - past[2]];
-        // How far outside of the sides: by the share of the corner across.
+        // Distances outside the sides, from the barycentric coordinate of the opposite corner.
         let outside = [
             -self.shares[2] / (area * root[0]),
             -self.shares[0] / (area * root[1]),
@@ -303,7 +321,8 @@ impl<V> TrianglePacket<V> {
     }
 }
 
-/// A triangle that is not thin is nearer than the side or corner that one is seen by, and has it too.
+/// Returns whether a triangle that is not thin has the nearest side or corner of triangle `lane`,
+/// and is nearer to the centre.
 #[inline(always)]
 fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -330,7 +349,7 @@ fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     false
 }
 
-/// Which triangles have a corner at a point.
+/// Returns which triangles have a corner at a point.
 #[inline(always)]
 fn has_corner<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -345,7 +364,8 @@ fn has_corner<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     is_at(0) | is_at(1) | is_at(2)
 }
 
-/// The point of a side nearest to the origin, given its start, the way to its end and the share of that.
+/// Returns the point of a side nearest to the origin. `share` is the unclamped parameter along
+/// `side`.
 #[inline(always)]
 fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -354,7 +374,7 @@ fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     share: V,
 ) -> [V; 3] {
     let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
-    // Of a side without length there is its start.
+    // A side without length is its start.
     let share = share.simd_gt(zero).select(share.smaller(one), zero);
     filled(
         #[inline(always)]
@@ -372,7 +392,7 @@ mod tests {
     use super::*;
     use crate::collide::separation::hulls::tests::Random;
 
-    /// Two rows of triangles with common corners, around a ball at the origin, or nearly so.
+    /// Two rows of triangles with shared corners, around a ball near the origin.
     fn strip<N: Real>(random: &mut Random) -> Vec<PartPacket<N, 3>> {
         let mut points: Vec<Point<N, 3>> = Vec::new();
         for at in 0..12_u32 {

@@ -1,13 +1,26 @@
-//! Triangles of a surface against one solid, eight at a time: boxes and hulls ([`axes`]), and balls ([`ball`]).
+//! Triangles of a surface against one solid, eight at a time: boxes and hulls ([`axes`]), and balls
+//! ([`ball`]). And two triangles ([`pair`]).
 //!
-//! Of most triangles a surface asks no more than which of its sides or corners is touched, and contacts along
-//! its face are made anew. Where a side and an edge cross well inside both, or one corner alone is nearest to
-//! a face and over its inside, that is plain, and it is certain that the direction gives the distance. All other
-//! triangles are left to the separation of the pair, and so are those whose distance differs from the prediction by
-//! rounding alone: the separation decides whether a pair is within it, for queries and manifolds alike.
+//! For most triangles a surface needs only the touched side or corner; contacts along a face are
+//! computed again. A case is plain if a side and an edge cross well inside both, or if a single
+//! corner is nearest to a face and over its inside. Then the direction certainly gives the
+//! distance. All other triangles go to the separation of the pair. So do those whose distance
+//! differs from the prediction by rounding alone: for queries and manifolds alike, the separation
+//! decides whether a pair is within.
+//!
+//! ```text
+//!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `near`: bits of the selected ones
+//!              |   | |         |     |
+//!   packet  [0 1 2 3 4 ...]                            up to eight of them, packed without gaps;
+//!                                                      the visitor counts on over all packets
+//! ```
+//!
+//! Layout of both: [`PartPacket`] of `collide/packet.rs`. Caller: `collide/mesh/faces.rs`; balls
+//! `collide/mesh/ball.rs`.
 
 mod axes;
 mod ball;
+pub(super) mod pair;
 
 use self::axes::{AxisFeature, TriangleAxes};
 pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
@@ -18,46 +31,48 @@ use crate::math::simd::Level;
 use crate::math::{Mapped, Pose, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Kind};
 
-/// A side and an edge cross well inside both if they do farther from the ends than this part of their length.
+/// A side and an edge cross well inside both if the crossing is farther than this share from all
+/// ends.
 const INSIDE: f64 = 1.0 / 256.0;
-/// The least square of the sine of the angle between the two.
+/// Least squared sine of the angle between the two.
 const MIN_SINE: f64 = 1.0 / 1024.0;
-/// A triangle with less than this ratio of height to longest side may have its other sides as near.
+/// Least ratio of height to longest side: in a thinner triangle another side may be as near.
 const TALL: f64 = 1.0 / 32.0;
-/// One corner is the nearest where the others are farther by so many times what counts as rounding; and a side
-/// that is so many times shorter than another is too short to tell.
+/// `CLEAR`: one corner is nearest if the others are farther by this many times rounding. `LONG`: a
+/// side below this many times rounding in length is too short to decide.
 const CLEAR: f64 = 64.0;
 const LONG: f64 = 8192.0;
 
-/// What arithmetic on numbers of size 2 cannot resolve.
+/// Returns the rounding error of arithmetic on numbers of size 2.
 fn noise<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
-/// Some of the triangles of many tiles.
+/// A subset of the triangles of many tiles.
 pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
-    /// For each of the tiles a bit for each triangle that is meant.
+    /// For each tile the bits of the selected triangles.
     pub(crate) near: &'a [u8],
-    /// Where the triangles are to be seen from.
+    /// Origin that the triangles are taken relative to.
     pub(crate) origin: Vector<N, 3>,
 }
 
-/// How far a triangle and a solid are apart, in the frame of the triangle.
+/// Distance of a triangle and a solid, in the frame of the triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleGap<N: Real> {
+    /// Signed distance along the normal.
     pub(crate) distance: N,
     /// Unit, from the triangle to the solid.
     pub(crate) normal: Vector<N, 3>,
-    /// The side or corner of the triangle that is nearest; `None` where the normal is that of the triangle.
+    /// The nearest side or corner of the triangle; `None` if the normal is that of the triangle.
     pub(crate) touched: Option<FeatureId>,
 }
 
-/// Is called with the number of a triangle, counted among those that are meant, and what is plain of it.
+/// Receives the index of a triangle among the selected ones, and its gap if the case is plain.
 pub(crate) type GapVisitor<'v, N> = &'v mut dyn FnMut(usize, Option<&TriangleGap<N>>);
 
 impl<N: Real> TiledTriangles<'_, N> {
-    /// The tile and the lane of each triangle that is meant.
+    /// Tile and lane of each selected triangle.
     fn places(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
         let all = self.tiles.iter().zip(self.near);
         all.flat_map(move |(tiles, near)| {
@@ -66,9 +81,10 @@ impl<N: Real> TiledTriangles<'_, N> {
     }
 }
 
-/// Calls with what is plain of how near each of some triangles and a solid are that are not beyond a limit;
-/// the solid lies at `pose12` in the frame of the triangles as seen from their origin. Answers false of solids
-/// that have no kernel here. The limit is the `prediction` and what turning adds to it.
+/// Visits the triangles that are not certainly farther than `limit` from a solid, with the gap
+/// where the case is plain. The solid lies at `pose12` in the frame of the triangles, relative to
+/// their origin. Returns `false` for solids without a kernel here. `limit` is `prediction` plus
+/// what turning adds to it.
 pub(crate) fn gaps3<N: Real>(
     parts: &TiledTriangles<'_, N>,
     solid: Kind<'_, N, 3>,
@@ -89,11 +105,14 @@ struct TriangleQuery<'a, N: Real> {
     parts: &'a TiledTriangles<'a, N>,
     solid: &'a Polyhedral<'a, N>,
     pose12: &'a Pose<N, 3>,
+    /// Distance up to which contacts are asked for; close to it a case is not plain.
     prediction: N,
+    /// Triangles farther than this are skipped.
     limit: N,
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
+    /// Packs the selected triangles, eight at a time, and visits those within the limit.
     fn each(&self, visit: GapVisitor<'_, N>) {
         let (mut places, mut first) = (self.parts.places(), 0);
         loop {
@@ -115,7 +134,7 @@ impl<N: Real> TriangleQuery<'_, N> {
         }
     }
 
-    /// What the axis of a triangle says, if that is plain.
+    /// Returns the gap along the axis of a triangle, if the case is plain.
     fn plain(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<TriangleGap<N>> {
         let triangle = PlacedTriangle {
             corners: axes.corners.each_ref().mapped(|corner| of_lane(corner, lane)),
@@ -156,15 +175,16 @@ impl<N: Real> PlacedTriangle<'_, N> {
         self.solid.vertex(vertex as usize) * self.shrink
     }
 
-    /// A side of the triangle, which is not thin, if it and an edge of the solid, along whose common
-    /// perpendicular the two are parted, cross well inside of both.
+    /// Returns a side of the triangle if it crosses an edge of the solid well inside both. The two
+    /// are separated along their common perpendicular. `None` also for thin triangles and short
+    /// sides.
     fn crossing(&self, edge: usize, side: usize) -> Option<FeatureId> {
         let [from, to] = self.solid.edges[edge].vertices.mapped(|end| self.vertex(end));
         let start = &self.corners[side];
         let way = self.corners[(side + 1) % 3] - start;
         let third = self.corners[(side + 2) % 3] - start;
         let (along, arm) = (to - from, start - from);
-        // The parameters of the nearest points of two lines, times the determinant.
+        // Parameters of the nearest points of two lines, times the determinant.
         let (own, other, both) = (way.norm_squared(), along.norm_squared(), way.dot(&along));
         let (on_way, on_along) = (way.dot(&arm), along.dot(&arm));
         let det = own * other - both * both;
@@ -182,7 +202,8 @@ impl<N: Real> PlacedTriangle<'_, N> {
         is_plain.then(|| FeatureId::Edge([0, 1, 2][side]))
     }
 
-    /// The corner of the triangle that alone is nearest to a face of the solid, and over its inside.
+    /// Returns the corner of the triangle that alone is nearest to a face of the solid and over its
+    /// inside.
     fn corner_over(&self, face: usize) -> Option<FeatureId> {
         let outward = -self.normal;
         let heights = self.corners.each_ref().mapped(|corner| outward.dot(corner));

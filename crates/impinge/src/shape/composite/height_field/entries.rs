@@ -12,7 +12,7 @@ compiled! {
     /// Height fields.
     trait FieldEntries;
 
-    /// The pyramid over the cells as they are.
+    /// Builds the pyramid over the present cells.
     fn pyramid_over(field: &HeightField<N, D>) -> Pyramid<N> = new_pyramid;
 
     fn cells_overlapping(
@@ -28,7 +28,7 @@ compiled! {
         visit: &mut dyn FnMut(u32, N) -> N,
     ) = nearest_first;
 
-    /// The cells that a box meets which moves with a velocity.
+    /// Visits the cells that a moving box hits.
     fn first_cells(
         field: &HeightField<N, D>,
         aabb: &Aabb<N, D>,
@@ -45,6 +45,7 @@ where
     Pyramid::new(field.pyramid().cells(), |row, column| field.cell_span(row, column))
 }
 
+/// Visits the parts whose box overlaps `aabb`.
 fn each_overlapping<N: Real, const D: usize>(
     field: &HeightField<N, D>,
     aabb: &Aabb<N, D>,
@@ -57,6 +58,7 @@ fn each_overlapping<N: Real, const D: usize>(
     }
 }
 
+/// Visits the parts whose box is at most `limit` from `aabb`, with a lower bound of the distance.
 fn nearest_first<N: Real, const D: usize>(
     field: &HeightField<N, D>,
     aabb: &Aabb<N, D>,
@@ -70,6 +72,8 @@ fn nearest_first<N: Real, const D: usize>(
     }
 }
 
+/// Visits the parts whose box a moving box hits up to the time `limit`, with a lower bound of the
+/// time.
 fn first_met<N: Real, const D: usize>(
     field: &HeightField<N, D>,
     aabb: &Aabb<N, D>,

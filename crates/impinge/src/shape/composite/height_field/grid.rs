@@ -1,4 +1,4 @@
-//! Heights over a grid: where its points lie, and the search that serves the plane and space.
+//! Heights over a grid: the positions of its points, and the search that 2D and 3D share.
 
 use core::ops::Range;
 
@@ -8,10 +8,10 @@ use super::pyramid::{HeightSpan, Pyramid, PyramidBlock};
 use super::question::FieldProbe;
 use crate::math::{Mapped, Point, Real, max, min};
 
-/// Heights in rows and columns, and where the rows and columns lie. In 2D there is one row.
+/// Heights in rows and columns, and the positions of the rows and columns. In 2D there is one row.
 ///
-/// The points lie at (`xs[column]`, height · `y_scale`, `zs[row]`). Every coordinate comes from here,
-/// so that neighbours have the same bits.
+/// The points lie at (`xs[column]`, height · `y_scale`, `zs[row]`). Every coordinate is read from
+/// here, so that neighbours have the same bits.
 #[derive(Clone, Debug)]
 pub(super) struct Grid<N: Real> {
     pub(super) columns: usize,
@@ -23,7 +23,7 @@ pub(super) struct Grid<N: Real> {
 }
 
 impl<N: Real> Grid<N> {
-    /// In 3D: no two of the lines lie at one place.
+    /// Whether no two lines of the grid coincide; in 3D only.
     pub(super) fn has_extent(&self) -> bool {
         [&self.xs, &self.zs].iter().all(|lines| {
             let is_wide = lines[0].abs() > N::MIN_POSITIVE / N::EPSILON;
@@ -32,10 +32,10 @@ impl<N: Real> Grid<N> {
     }
 }
 
-/// Where lines of a grid lie that divide `extent` evenly around zero; 0 for a single one.
+/// Positions of `count` grid lines that divide `extent` evenly around zero; 0 for a single one.
 ///
-/// Symmetric: the last is minus the first, exactly. Never decreasing where the extent is positive,
-/// never increasing where it is negative.
+/// Symmetric: the last is minus the first, exactly. Never decreasing for a positive extent, never
+/// increasing for a negative one.
 pub(super) fn lines<N: Real>(count: usize, extent: N) -> Vec<N> {
     let number = |x: i64| N::lit(x as f64);
     let last = i64::try_from(count).expect("a vector has fewer elements") - 1;
@@ -45,7 +45,7 @@ pub(super) fn lines<N: Real>(count: usize, extent: N) -> Vec<N> {
     (0..=last).map(|line| number(2 * line - last) / number(2 * last) * extent).collect()
 }
 
-/// A box: the least and the greatest x, y and z. In 2D z is zero.
+/// A box: the minimum and maximum of x, y and z. In 2D z is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GridExtent<N: Real> {
     pub(super) low: [N; 3],
@@ -63,7 +63,7 @@ impl<N: Real> GridExtent<N> {
         Self { low, high }
     }
 
-    /// The smallest box around some points, one at least.
+    /// The smallest box around at least one point.
     pub(super) fn around(points: &[[N; 3]]) -> Self {
         let mut extent = Self { low: points[0], high: points[0] };
         for point in &points[1..] {
@@ -76,13 +76,13 @@ impl<N: Real> GridExtent<N> {
     }
 }
 
-/// A field as the search sees it: cells of a grid, each with a few parts.
+/// A field as the search sees it: cells of a grid, each with up to two parts.
 pub(super) trait GridCells<N: Real> {
     fn grid(&self) -> &Grid<N>;
     fn pyramid(&self) -> &Pyramid<N>;
-    /// The unscaled heights of what is left of a cell.
+    /// The unscaled heights of a cell without its holes.
     fn cell_span(&self, row: usize, column: usize) -> HeightSpan<N>;
-    /// The parts that are left of a cell and their boxes.
+    /// The parts of a cell without its holes, and their boxes.
     fn parts(&self, row: usize, column: usize) -> SmallVec<[(u32, GridExtent<N>); 2]>;
 }
 
@@ -112,16 +112,17 @@ impl<N: Real> Grid<N> {
         let end = |first: usize, count: usize| min_index((first + 1) << block.level, count);
         let (row, column) = (block.row << block.level, block.column << block.level);
         let (last_row, last_column) = (end(block.row, cells[0]), end(block.column, cells[1]));
-        // In 2D one row of cells stands on one line.
+        // In 2D the only row of cells lies on one line.
         let last_row = min_index(last_row, self.zs.len() - 1);
-        // Rounding keeps the order of products, so the scaled span is that of the scaled heights.
+        // Rounding keeps the order of products, so the scaled span is the span of the scaled
+        // heights.
         let [low, high] = span.mapped(|height| height * self.y_scale);
         let near = [self.xs[column], low, self.zs[row]];
         Some(GridExtent::between(near, [self.xs[last_column], high, self.zs[last_row]]))
     }
 }
 
-/// The box of all cells: x and z reach over the holes; `None` if all are holes.
+/// The box of all cells, in x and z including the holes; `None` if all are holes.
 pub(super) fn whole<N: Real>(field: &impl GridCells<N>) -> Option<GridExtent<N>> {
     let pyramid = field.pyramid();
     let span = pyramid.span(pyramid.top(), &|row, column| field.cell_span(row, column));
@@ -132,12 +133,12 @@ fn min_index(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// Calls `visit` with the parts whose box has a key, a number of at least zero, at or below `limit`,
-/// and their key. `visit` returns the new limit, which never grows. The key of a box must not be above
-/// that of a box inside it.
+/// Calls `visit` with the parts whose box has a key, a number of at least zero, at or below
+/// `limit`, and their key. `visit` returns the new limit, which never grows. The key of a box must
+/// not exceed that of a box inside it.
 ///
-/// Goes down the pyramid, at each block to the child of the least key first. The stack has three
-/// blocks at most for each level.
+/// Descends the pyramid, at each block to the child with the smallest key first. The stack grows by
+/// at most three blocks per level.
 pub(super) fn search<N: Real>(
     field: &impl GridCells<N>,
     limit: N,
@@ -175,10 +176,11 @@ pub(super) fn search<N: Real>(
     }
 }
 
-/// Calls `visit` with the parts whose box meets the probe, each once.
+/// Calls `visit` with each part whose box overlaps the probe, once.
 ///
-/// The lines of the grid determine which cells lie under the probe. Few are looked at one by one; many are
-/// found by going down the pyramid, which passes over what lies higher or lower.
+/// The lines of the grid determine which cells lie under the probe. Up to `FEW_CELLS` are tested
+/// one by one; more are found by a descent of the pyramid, which skips blocks above or below the
+/// probe.
 pub(super) fn overlapping<N: Real>(
     field: &impl GridCells<N>,
     probe: &FieldProbe<N>,
@@ -203,11 +205,11 @@ pub(super) fn overlapping<N: Real>(
     }
 }
 
-/// Up to this many cells are looked at one by one.
+/// Up to this many cells are tested one by one.
 const FEW_CELLS: usize = 32;
 
-/// The cells between lines that have a point in common with `low..=high`. A single line has a cell on
-/// it.
+/// The cells between lines that have a point in common with `low..=high`. A single line has one
+/// cell, which lies on it.
 fn cells_between<N: Real>(lines: &[N], low: N, high: N) -> Range<usize> {
     let last = lines.len() - 1;
     let (before, until) = if lines[last] < lines[0] {
@@ -219,7 +221,7 @@ fn cells_between<N: Real>(lines: &[N], low: N, high: N) -> Range<usize> {
     before.saturating_sub(1)..min_index(until, if last == 0 { 1 } else { last })
 }
 
-/// Adds a block to those from `base` on, which are sorted so that the least key comes last.
+/// Inserts a block among those from `base` on, which are sorted with the smallest key last.
 fn push_sorted<N: Real>(
     stack: &mut SmallVec<[(N, PyramidBlock); 40]>,
     base: usize,

@@ -26,7 +26,8 @@ impl<N: Real> HeightField<N, 2> {
         or_panic(Self::try_new(heights, scale))
     }
 
-    /// The field of these heights, two at least. There are no holes, and both sides can be touched.
+    /// The field of the given heights, at least two. There are no holes, and both sides can be
+    /// touched.
     ///
     /// # Errors
     /// If there are too few heights; if a component of the scale, a height, or a height times the
@@ -41,7 +42,7 @@ impl<N: Real> HeightField<N, 2> {
         Ok(field)
     }
 
-    /// The same field with a hole in each cell for which `is_hole(cell)`, and only there.
+    /// Makes exactly the cells holes for which `is_hole(cell)` is true.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();
@@ -64,23 +65,23 @@ impl<N: Real> HeightField<N, 2> {
     /// An unscaled height.
     ///
     /// # Panics
-    /// If there is none of this index.
+    /// If there is no height of this index.
     #[must_use]
     pub fn height(&self, index: usize) -> N {
         self.grid.heights[index]
     }
 
-    /// The point of the line at a height.
+    /// The point of the line at height `index`.
     ///
     /// # Panics
-    /// If there is none of this index.
+    /// If there is no height of this index.
     #[must_use]
     pub fn point(&self, index: usize) -> Point<N, 2> {
         let [x, y, _] = self.grid.at(0, index);
         Point::<N, 2>::new(x, y)
     }
 
-    /// The segment between a height and the next, `None` if it is removed.
+    /// The segment between a height and the next; `None` if it is a hole.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -90,7 +91,7 @@ impl<N: Real> HeightField<N, 2> {
         Some(segment).filter(|_| !self.marks.is_hole(cell, 0))
     }
 
-    /// The part, which has the number of its cell, is removed.
+    /// Whether the part is a hole. Parts have the numbers of their cells.
     ///
     /// # Panics
     /// If there is no such part.
@@ -99,8 +100,7 @@ impl<N: Real> HeightField<N, 2> {
         self.marks.is_hole(self.cell_of(part), 0)
     }
 
-    /// The scaled height of the line over a point of the x axis; `None` beside the field and over a
-    /// hole.
+    /// The scaled height of the line at `x`; `None` beside the field and at a hole.
     #[must_use]
     pub fn height_at(&self, x: N) -> Option<N> {
         let ends = [-N::INFINITY, N::INFINITY].map(|y| Point::<N, 2>::new(x, y));
@@ -121,7 +121,7 @@ impl<N: Real> HeightField<N, 2> {
     /// If it is not finite, by itself or times the scale; nothing is changed then.
     ///
     /// # Panics
-    /// If there is none of this index.
+    /// If there is no height of this index.
     pub fn set_height(&mut self, index: usize, height: N) -> Result<(), ShapeError> {
         check_heights(&[height], 1, self.grid.y_scale)
             .map_err(|_| ShapeError::HeightNotFinite { row: 0, column: index })?;
@@ -137,7 +137,7 @@ impl<N: Real> HeightField<N, 2> {
     /// Changes all heights.
     ///
     /// # Errors
-    /// If their number is another or one is not finite, by itself or times the scale; nothing is
+    /// If their number differs or one is not finite, by itself or times the scale; nothing is
     /// changed then.
     pub fn set_heights(&mut self, heights: Vec<N>) -> Result<(), ShapeError> {
         let (given, needed) = (heights.len(), self.grid.heights.len());
@@ -150,7 +150,7 @@ impl<N: Real> HeightField<N, 2> {
         Ok(())
     }
 
-    /// Removes a segment, or puts it back.
+    /// Makes a cell a hole, or restores its segment.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -235,7 +235,7 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
         u32::try_from(self.num_cells()).expect("32 bits number the segments")
     }
 
-    /// A hole is answered with the segment that would be there.
+    /// For a hole, the segment that would be there.
     fn part(&self, part: u32) -> Part<'_, N, 2> {
         let cell = self.cell_of(part);
         let segment = Segment::new(self.point(cell), self.point(cell + 1));
@@ -258,7 +258,7 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
         self.surface().map(|_| SurfaceAccess::of_own(self))
     }
 
-    /// The points of the field, one after the other.
+    /// The points of the field, in order.
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         visit(part.into());
         visit(u64::from(part) + 1);
@@ -274,7 +274,7 @@ impl<N: Real> Shape<N, 2> for HeightField<N, 2> {
         Geometry::composite(self)
     }
 
-    /// Around all that is left; a field of nothing but holes is the origin.
+    /// Around all parts that are not holes; the origin for a field of holes only.
     fn local_aabb(&self) -> Aabb<N, 2> {
         match whole(self) {
             Some(GridExtent { low, high }) => {

@@ -1,9 +1,9 @@
-//! What is particular to single cells: holes, and diagonals that differ.
+//! Exceptions of single cells: holes, and diagonals that differ from the rule.
 
-/// Which corners of a cell the line between its two triangles joins.
+/// The two corners of a cell that the line between its two triangles joins.
 ///
-/// Seen from the front with columns to the right and rows downwards. Triangle 0 is the one with the side
-/// between the two corners of the lower column.
+/// Seen from the front, with columns to the right and rows downwards. Triangle 0 is the one with
+/// the side between the two corners of the lower column.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -40,7 +40,7 @@ pub enum Diagonals {
     Forward,
     /// All backward.
     Backward,
-    /// Alternating like the fields of a chessboard: forward where row + column is even.
+    /// Alternating like a chessboard: forward where row + column is even.
     Zigzag,
 }
 
@@ -55,12 +55,12 @@ impl Diagonals {
     }
 }
 
-/// The rule for all cells, and the exceptions.
+/// The rule for the diagonals of all cells, and the exceptions.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Marks {
     diagonals: Diagonals,
-    /// For each cell: bits 0 and 1 that part 0 and 1 are removed, bit 2 that the diagonal is the other
-    /// one. Empty as long as nothing is marked.
+    /// For each cell: bits 0 and 1 mark part 0 and 1 as holes, bit 2 reverses the diagonal. Empty
+    /// as long as nothing is marked.
     bits: Vec<u8>,
 }
 
@@ -72,7 +72,7 @@ impl Marks {
         Self { diagonals, bits: Vec::new() }
     }
 
-    /// Part `k`, 0 or 1, of a cell is a hole.
+    /// Whether part `k`, 0 or 1, of a cell is a hole.
     pub(super) fn is_hole(&self, cell: usize, k: usize) -> bool {
         self.has(cell, 1 << k)
     }

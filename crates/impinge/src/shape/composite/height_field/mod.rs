@@ -1,8 +1,16 @@
 //! Height fields: a line in 2D, a surface in 3D, given by heights over a grid.
 //!
-//! Triangles, boxes and seams are all made from the heights when they are asked for; what is kept is the
-//! least and the greatest height of ever larger blocks of cells ([`Pyramid`]), which takes the place of
-//! a tree. What the plane and space share stands in [`grid`]; `line.rs` and `sheet.rs` are the two.
+//! Triangles, boxes and seams are computed from the heights on demand. Only the minimum and maximum
+//! height of blocks of cells is stored ([`Pyramid`]), in place of a tree. [`grid`] has what 2D and
+//! 3D share; `line.rs` is 2D, `sheet.rs` is 3D.
+//!
+//! ```text
+//! column      c           c + 1
+//!   row r     a ───────── d         corners of the two parts of a cell, not mirrored:
+//!             │ ╲         │         forward (a–c)   part 2 cell: a b c   part 2 cell + 1: a c d
+//!             │     ╲     │         backward (b–d)  part 2 cell: a b d   part 2 cell + 1: d b c
+//!   row r + 1 b ───────── c
+//! ```
 
 mod entries;
 mod grid;
@@ -26,27 +34,27 @@ use crate::shape::error::finite;
 
 /// A surface over a grid in the plane y = 0 (in 2D: a line over the x axis), given by its heights.
 ///
-/// It is as thin as its triangles (segments): below it there is nothing. Heights are multiplied by the
-/// y component of the scale. The other components are the extents of the whole field, which lies
-/// symmetrically around the local y axis: columns go along x, rows along z, both towards the positive
-/// side; a negative extent turns them around, and a negative y component turns the field upside down.
+/// It has no thickness: below its triangles (segments) there is nothing. Heights are multiplied by
+/// the y component of the scale. The other components are the extents of the whole field, which
+/// lies symmetrically around the local y axis: columns go along x, rows along z, both in the
+/// positive direction; a negative extent reverses them, and a negative y component turns the field
+/// upside down.
 ///
-/// **Front.** The front is the side that heights grow towards: that of +y, or of −y if the scale's y
-/// component is negative. Both sides can be touched, or the front alone if asked by `one_sided`.
+/// **Front.** The front is the side towards which heights grow: +y, or −y if the scale's y
+/// component is negative. Both sides can be touched, or only the front after `one_sided`.
 ///
-/// **Seams.** Contacts see the field as one surface (see [`Surface`](crate::shape::Surface)), with the rule and
-/// the tolerance that [`TriMesh`](crate::shape::TriMesh) has. [`Self::with_internal_edges_kept`] switches
-/// this off.
+/// **Seams.** Contacts treat the field as one surface (see [`Surface`](crate::shape::Surface)),
+/// with the rule and the tolerance of [`TriMesh`](crate::shape::TriMesh).
+/// [`Self::with_internal_edges_kept`] switches this off.
 ///
 /// **Cells.** Between four neighbouring heights lies a cell of two triangles, parts `2 · cell` and
-/// `2 · cell + 1`; which way they divide it says [`Diagonal`]. The corners of a triangle run
-/// counter-clockwise seen from the front, so that in 3D `Face(0)` is the front. In 2D a cell,
-/// and part, is the segment from one height to the next. Parts may be removed: such holes keep their
-/// number, but no search finds them, and a seam beside one is a border.
+/// `2 · cell + 1`, divided along its [`Diagonal`]. The corners of a triangle run counter-clockwise
+/// seen from the front, so that in 3D `Face(0)` is the front. In 2D a cell, and part, is the
+/// segment from one height to the next. Parts may be holes: these keep their number, but no search
+/// finds them, and a seam beside one is a border.
 ///
-/// Making it takes one pass over the heights, changing a height time in proportion to the logarithm of
-/// their number. Memory: about two numbers per height, and a byte per cell where there are holes or
-/// single cells with a diagonal of their own.
+/// Making it takes one pass over the heights, changing a height O(log n). Memory: about two numbers
+/// per height, and a byte per cell if there are holes or single cells with a diagonal of their own.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -85,33 +93,33 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         &self.grid.heights
     }
 
-    /// The extents of the field, and what heights are multiplied by.
+    /// The extents of the field, and the factor of its heights.
     #[must_use]
     pub const fn scale(&self) -> &Vector<N, D> {
         &self.scale
     }
 
-    /// How many cells there are, holes included.
+    /// The number of cells, including holes.
     #[must_use]
     pub fn num_cells(&self) -> usize {
         let [rows, columns] = self.pyramid.cells();
         rows * columns
     }
 
-    /// Nothing touches the field from behind.
+    /// Whether nothing touches the field from behind.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         self.is_one_sided
     }
 
-    /// Lets nothing touch the field from behind.
+    /// Makes the field one-sided: nothing touches it from behind.
     #[must_use]
     pub const fn one_sided(mut self) -> Self {
         self.is_one_sided = true;
         self
     }
 
-    /// Contacts treat each part on its own; see [`Self::with_internal_edges_kept`].
+    /// Whether contacts treat each part on its own; see [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
         self.keeps_internal_edges
@@ -125,12 +133,12 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         self
     }
 
-    /// Names the field with its options.
+    /// The cache key of the field with its options.
     fn named(&self) -> Revision {
         self.revision.with(&[self.is_one_sided, self.keeps_internal_edges])
     }
 
-    /// The same field with other extents, those along z in `depth`.
+    /// The field with another scale; `depth` is its extent along z.
     fn with_scale(&self, scale: Vector<N, D>, depth: N) -> Result<Self, ShapeError> {
         let mut scaled = self.clone();
         let heights = std::mem::take(&mut scaled.grid.heights);
@@ -138,20 +146,21 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         Ok(Self { scale, revision: Revision::new(), ..scaled })
     }
 
-    /// The field between these lines: both sides can be touched, and contacts see one surface.
+    /// The field over a grid, without holes: both sides can be touched, and contacts treat it as
+    /// one surface.
     fn around(grid: Grid<N>, pyramid: Pyramid<N>, scale: Vector<N, D>) -> Self {
         let marks = Marks::new(Diagonals::Forward);
         let (is_one_sided, keeps_internal_edges, revision) = (false, false, Revision::new());
         Self { grid, pyramid, marks, scale, is_one_sided, keeps_internal_edges, revision }
     }
 
-    /// The scale has an odd number of negative components.
+    /// Whether the scale has an odd number of negative components.
     fn is_mirrored(&self) -> bool {
         self.scale.iter().filter(|&&factor| factor < N::ZERO).count() % 2 == 1
     }
 }
 
-/// The grid of rows and columns with `rows[0]` of them along z, or one row in 2D.
+/// The grid of `rows` along z and `columns` along x; one row in 2D.
 fn grid<N: Real, const D: usize>(
     [rows, columns]: [usize; 2],
     heights: Vec<N>,
@@ -168,7 +177,7 @@ fn grid<N: Real, const D: usize>(
     Ok(Grid { columns, heights, xs, zs, y_scale: scale[1] })
 }
 
-/// Every height is finite, also times the scale.
+/// Checks that every height is finite, also times the scale.
 fn check_heights<N: Real>(heights: &[N], columns: usize, y_scale: N) -> Result<(), ShapeError> {
     let is_bad = |height: &N| !(*height * y_scale).is_finite_number() || !height.is_finite_number();
     match heights.iter().position(is_bad) {
@@ -177,12 +186,12 @@ fn check_heights<N: Real>(heights: &[N], columns: usize, y_scale: N) -> Result<(
     }
 }
 
-/// Two along an axis at least.
+/// Checks that there are at least two heights along an axis.
 fn check_count(given: usize) -> Result<(), ShapeError> {
     if given < 2 { Err(ShapeError::TooFewHeights { given, needed: 2 }) } else { Ok(()) }
 }
 
-/// So many parts can be numbered.
+/// Checks that 32 bits can number the parts.
 fn check_parts(needed: u64) -> Result<(), ShapeError> {
     match u32::try_from(needed) {
         Ok(_) => Ok(()),

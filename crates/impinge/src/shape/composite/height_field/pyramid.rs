@@ -1,13 +1,13 @@
-//! The least and greatest heights of ever larger blocks of cells.
+//! The minimum and maximum heights of blocks of cells, in levels of doubling block size.
 //!
-//! The span of a block is exactly that of its cells, also after an edit.
+//! The span of a block equals that of its cells exactly, also after an edit.
 
 use crate::math::{Mapped, Real, max, min};
 
-/// The least and the greatest height; infinity and minus infinity of nothing.
+/// The minimum and maximum height; infinity and minus infinity if empty.
 pub(super) type HeightSpan<N> = [N; 2];
 
-/// Nothing: a cell that is a hole.
+/// The span of a hole.
 pub(super) fn no_span<N: Real>() -> HeightSpan<N> {
     [N::INFINITY, -N::INFINITY]
 }
@@ -16,13 +16,13 @@ pub(super) fn merged<N: Real>(a: HeightSpan<N>, b: HeightSpan<N>) -> HeightSpan<
     [min(a[0], b[0]), max(a[1], b[1])]
 }
 
-/// Blocks of 2 × 2 cells, of 2 × 2 such blocks, … up to one block of all; at the far ends a block may
-/// have fewer. The spans of the cells themselves are cheap to find and not kept.
+/// Blocks of 2 × 2 cells, of 2 × 2 such blocks, … up to one block of all; blocks at the far ends
+/// may have fewer. The spans of single cells are cheap to compute and not stored.
 ///
 /// About two thirds of a number per cell.
 #[derive(Clone, Debug)]
 pub(super) struct Pyramid<N: Real> {
-    /// How many rows and columns of cells there are: one at least.
+    /// The numbers of rows and columns of cells, at least one each.
     cells: [usize; 2],
     /// The first holds blocks of 2 × 2 cells, the last one block.
     levels: Vec<PyramidLevel<N>>,
@@ -35,8 +35,8 @@ struct PyramidLevel<N: Real> {
     spans: Vec<HeightSpan<N>>,
 }
 
-/// A block: level 0 is that of the cells. It has the cells of the rows and columns from
-/// `row << level` and `column << level` on, `1 << level` of each where there are so many.
+/// A block; at level 0 a cell. It covers `1 << level` rows from `row << level` on and as many
+/// columns from `column << level` on, fewer at the far ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct PyramidBlock {
     pub(super) level: usize,
@@ -56,7 +56,7 @@ impl PyramidBlock {
 }
 
 impl<N: Real> Pyramid<N> {
-    /// Over rows and columns of cells, one of each at least.
+    /// Builds the pyramid over rows and columns of cells, at least one each.
     pub(super) fn new(
         cells: [usize; 2],
         cell_span: impl Fn(usize, usize) -> HeightSpan<N>,
@@ -79,12 +79,12 @@ impl<N: Real> Pyramid<N> {
         pyramid
     }
 
-    /// Over rows and columns of cells that are still to be looked at.
+    /// A pyramid whose levels are not built yet.
     pub(super) const fn unbuilt(cells: [usize; 2]) -> Self {
         Self { cells, levels: Vec::new() }
     }
 
-    /// Its levels, with none left behind: for a field that brings them up to date by its own cells.
+    /// Moves the levels out, for a field that updates them while it is borrowed for its cells.
     pub(super) fn take(&mut self) -> Self {
         Self { cells: self.cells, levels: std::mem::take(&mut self.levels) }
     }
@@ -94,12 +94,12 @@ impl<N: Real> Pyramid<N> {
         PyramidBlock { level: self.levels.len(), row: 0, column: 0 }
     }
 
-    /// How many rows and columns of cells there are.
+    /// The numbers of rows and columns of cells.
     pub(super) const fn cells(&self) -> [usize; 2] {
         self.cells
     }
 
-    /// The blocks one level below.
+    /// The blocks one level below, without those beyond the far ends.
     pub(super) fn children(&self, block: PyramidBlock) -> impl Iterator<Item = PyramidBlock> {
         let [rows, columns] = self.cells;
         let children = block.children().into_iter();
@@ -121,7 +121,7 @@ impl<N: Real> Pyramid<N> {
         level.spans[block.row * level.columns + block.column]
     }
 
-    /// Brings the blocks around a cell up to date, from the cell up.
+    /// Updates the blocks that contain a cell, from the lowest level up.
     pub(super) fn refresh(
         &mut self,
         row: usize,

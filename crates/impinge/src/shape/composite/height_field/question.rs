@@ -1,23 +1,23 @@
-//! What a search asks of a box: does it meet another, how far away is it, when is it met.
+//! Tests of a search box against a box: overlap, distance, and time of impact.
 
 use super::grid::GridExtent;
 use crate::bounding_volume::Aabb;
 use crate::math::{Real, Vector, max};
 
-/// A box that searches, at rest or moving; faces may be infinite.
+/// The box of a search, at rest or moving; faces may be infinite.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FieldProbe<N: Real> {
     own: GridExtent<N>,
 }
 
-/// Distances and times are lowered by this many epsilons of themselves, so that they are below the
-/// true ones: coordinates are subtracted (and divided) once, and at most three squares are summed.
-/// Rays count with more: a ray that passes between two cells must find, of the two, the one that the
-/// test of its triangles takes it for.
+/// Distances and times are lowered by this many epsilon of themselves, so that they are lower
+/// bounds: coordinates are subtracted (and divided) once, and at most three squares are summed. The
+/// rest is for rays: a ray that passes between two cells must find the one in which the test of
+/// triangles hits.
 const ROUNDING: f64 = 16.0;
 
 impl<N: Real> FieldProbe<N> {
-    /// The box with the coordinates of `aabb`, and zero where there are no more. `None` if it has no
+    /// The box with the coordinates of `aabb`, and zero on axes that it lacks. `None` if it has no
     /// finite point.
     pub(super) fn new<const D: usize>(aabb: &Aabb<N, D>) -> Option<Self> {
         let mut own = GridExtent { low: [N::ZERO; 3], high: [N::ZERO; 3] };
@@ -30,12 +30,12 @@ impl<N: Real> FieldProbe<N> {
         is_reachable.then_some(Self { own })
     }
 
-    /// The corners of least and greatest coordinates.
+    /// The minimum and maximum corner.
     pub(super) const fn corners(&self) -> ([N; 3], [N; 3]) {
         (self.own.low, self.own.high)
     }
 
-    /// Zero if the boxes meet.
+    /// Zero if the boxes overlap, else `None`.
     pub(super) fn overlap(&self, other: &GridExtent<N>) -> Option<N> {
         let meets = (0..3).all(|axis| {
             self.own.low[axis] <= other.high[axis] && other.low[axis] <= self.own.high[axis]
@@ -51,15 +51,15 @@ impl<N: Real> FieldProbe<N> {
             let above = max(self.own.low[axis] - other.high[axis], N::ZERO);
             gap[axis] = max(below, above);
         }
-        // Where squares are no numbers the largest gap is a bound too.
+        // If squares overflow or underflow, the largest gap is a lower bound too.
         let squared = gap.norm_squared();
         let is_usable = squared > N::MIN_POSITIVE && squared < N::MAX;
         let distance = if is_usable { squared.sqrt() } else { crate::math::max_component(&gap) };
         Some(distance * (N::ONE - N::lit(ROUNDING) * N::EPSILON))
     }
 
-    /// A lower bound of the time from zero on at which the box, moving with `velocity`, meets `other`;
-    /// `None` if it does not.
+    /// A lower bound of the time, zero or more, at which the box moving with `velocity` hits
+    /// `other`; `None` if it does not.
     ///
     /// Slabs (Kay and Kajiya 1986), widened by the rounding of the times (Ize 2013).
     pub(super) fn time(&self, velocity: &[N; 3], other: &GridExtent<N>) -> Option<N> {
@@ -83,7 +83,7 @@ impl<N: Real> FieldProbe<N> {
     }
 }
 
-/// A velocity with zero for the axes beyond the last; `None` if it is not finite.
+/// A velocity in 3D, with zero on the axes that it lacks; `None` if it is not finite.
 pub(super) fn lifted<N: Real, const D: usize>(velocity: &Vector<N, D>) -> Option<[N; 3]> {
     let mut lifted = [N::ZERO; 3];
     for axis in 0..D {

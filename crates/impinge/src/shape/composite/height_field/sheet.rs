@@ -30,13 +30,13 @@ impl<N: Real> HeightField<N, 3> {
         or_panic(Self::try_new(rows, columns, heights, scale))
     }
 
-    /// The field of rows and columns of heights, two of each at least, given row by row. All diagonals
-    /// are forward, there are no holes, and both sides can be touched.
+    /// The field of rows and columns of heights, at least two of each, given row by row. All
+    /// diagonals are forward, there are no holes, and both sides can be touched.
     ///
     /// # Errors
-    /// If there are too few rows or columns, or not as many heights as they take; if a component of
-    /// the scale, a height, or a height times the scale is not finite; if 32 bits cannot number the
-    /// triangles.
+    /// If there are too few rows or columns, or the number of heights is not their product; if a
+    /// component of the scale, a height, or a height times the scale is not finite; if 32 bits
+    /// cannot number the triangles.
     pub fn try_new(
         rows: usize,
         columns: usize,
@@ -52,7 +52,7 @@ impl<N: Real> HeightField<N, 3> {
         Ok(field)
     }
 
-    /// The same field with the diagonals of all cells set anew; holes stay.
+    /// Sets the diagonals of all cells; holes stay.
     #[must_use]
     pub fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
         let mut marks = Marks::new(diagonals);
@@ -69,7 +69,7 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// The same field with a hole in each cell for which `is_hole(row, column)`, and only there.
+    /// Makes exactly the cells holes for which `is_hole(row, column)` is true.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize, usize) -> bool) -> Self {
         let [rows, columns] = self.pyramid.cells();
@@ -92,13 +92,13 @@ impl<N: Real> HeightField<N, 3> {
         Ok(self.with_scale(scale, scale.z)?)
     }
 
-    /// The number of rows of heights; there is one row of cells less.
+    /// The number of rows of heights, one more than rows of cells.
     #[must_use]
     pub const fn rows(&self) -> usize {
         self.pyramid.cells()[0] + 1
     }
 
-    /// The number of columns of heights; there is one column of cells less.
+    /// The number of columns of heights, one more than columns of cells.
     #[must_use]
     pub const fn columns(&self) -> usize {
         self.grid.columns
@@ -124,8 +124,8 @@ impl<N: Real> HeightField<N, 3> {
         self.grid.point(row, column)
     }
 
-    /// The number of the cell between two rows and two columns; its triangles are the parts of twice
-    /// that number and the next.
+    /// The number of the cell at a row and column; its triangles are the parts `2 · cell` and `2 ·
+    /// cell + 1`.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -149,7 +149,7 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.diagonal([row, column], self.pyramid.cells()[1])
     }
 
-    /// The two triangles of a cell, `None` for one that is removed.
+    /// The two triangles of a cell; `None` for one that is a hole.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -162,7 +162,7 @@ impl<N: Real> HeightField<N, 3> {
         })
     }
 
-    /// The part is removed.
+    /// Whether the part is a hole.
     ///
     /// # Panics
     /// If there is no such part.
@@ -172,8 +172,7 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.is_hole(cell, k)
     }
 
-    /// The scaled height of the surface over a point of the plane y = 0; `None` beside the field and
-    /// over a hole.
+    /// The scaled height of the surface at (x, z); `None` beside the field and at a hole.
     #[must_use]
     pub fn height_at(&self, x: N, z: N) -> Option<N> {
         let over = Vector::<N, 3>::new(x, N::ZERO, z);
@@ -188,7 +187,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// Changes. A world that holds the shape does not see them: shapes that are shared do not change.
+/// Changes. They do not reach a world that holds the shape: shared shapes are immutable.
 impl<N: Real> HeightField<N, 3> {
     /// Changes a height.
     ///
@@ -214,7 +213,7 @@ impl<N: Real> HeightField<N, 3> {
     /// Changes all heights, given row by row.
     ///
     /// # Errors
-    /// If their number is another or one is not finite, by itself or times the scale; nothing is
+    /// If their number differs or one is not finite, by itself or times the scale; nothing is
     /// changed then.
     pub fn set_heights(&mut self, heights: Vec<N>) -> Result<(), ShapeError> {
         let (given, needed) = (heights.len(), self.grid.heights.len());
@@ -227,7 +226,7 @@ impl<N: Real> HeightField<N, 3> {
         Ok(())
     }
 
-    /// Removes both triangles of a cell, or puts them back.
+    /// Makes both triangles of a cell holes, or restores them.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -238,7 +237,7 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Removes one triangle, or puts it back.
+    /// Makes one triangle a hole, or restores it.
     ///
     /// # Panics
     /// If there is no such part.
@@ -270,7 +269,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// From numbers to triangles.
+/// Conversions from part numbers to triangles.
 impl<N: Real> HeightField<N, 3> {
     #[track_caller]
     fn check_point(&self, row: usize, column: usize) {
@@ -281,8 +280,8 @@ impl<N: Real> HeightField<N, 3> {
         );
     }
 
-    /// The row and column of the cell of a part, the number of the cell, and which of its triangles it
-    /// is.
+    /// The row and column of the cell of a part, the number of the cell, and 0 or 1 for the
+    /// triangle in it.
     #[track_caller]
     pub(super) fn place(&self, part: u32) -> (GridPoint, usize, usize) {
         let (cell, k) = (part as usize / 2, part as usize % 2);
@@ -297,6 +296,8 @@ impl<N: Real> HeightField<N, 3> {
         self.corners_in(row, column, k)
     }
 
+    /// The corners of triangle `k` of the cell at a row and column, counter-clockwise seen from the
+    /// front.
     pub(super) fn corners_in(&self, row: usize, column: usize, k: usize) -> [GridPoint; 3] {
         let [a, b, c, d] =
             [[row, column], [row + 1, column], [row + 1, column + 1], [row, column + 1]];
@@ -307,7 +308,7 @@ impl<N: Real> HeightField<N, 3> {
             (Diagonal::Backward, 0) => [a, b, d],
             (Diagonal::Backward, _) => [d, b, c],
         };
-        // A mirror turns the order around.
+        // A mirror reverses the winding.
         let [first, second, third] = corners;
         if self.is_mirrored() { [first, third, second] } else { corners }
     }
@@ -316,13 +317,13 @@ impl<N: Real> HeightField<N, 3> {
         Triangle::of_finite(corners.map(|[row, column]| self.grid.point(row, column)))
     }
 
-    /// Whether triangle `k` of the cell at a row and column is removed.
+    /// Whether triangle `k` of the cell at a row and column is a hole.
     pub(super) fn is_hole_in(&self, row: usize, column: usize, k: usize) -> bool {
         self.marks.is_hole(row * self.pyramid.cells()[1] + column, k)
     }
 }
 
-/// The unscaled heights of a whole cell.
+/// The unscaled heights of a cell without holes.
 fn square_span<N: Real>(grid: &Grid<N>, row: usize, column: usize) -> HeightSpan<N> {
     let above = row * grid.columns + column;
     let below = above + grid.columns;
@@ -335,7 +336,7 @@ fn min_index(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// The height over (x, z) of the triangle with these corners; `None` if it lies beside.
+/// The height of a triangle at (x, z); `None` beside it.
 fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
     let [a, b, c] = corners;
     let side = |p: &Point<N, 3>, q: &Point<N, 3>| (q.z - p.z) * (x - p.x) - (q.x - p.x) * (z - p.z);
@@ -415,7 +416,7 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
         u32::try_from(2 * self.num_cells()).expect("32 bits number the triangles")
     }
 
-    /// A hole is answered with the triangle that would be there.
+    /// For a hole, the triangle that would be there.
     fn part(&self, part: u32) -> Part<'_, N, 3> {
         let triangle = self.triangle_of(self.corners(part));
         Part { pose: Pose::identity(), solid: PartSolid::Triangle(triangle) }
@@ -454,7 +455,7 @@ impl<N: Real> Shape<N, 3> for HeightField<N, 3> {
         Geometry::composite(self)
     }
 
-    /// Around all that is left; a field of nothing but holes is the origin.
+    /// Around all parts that are not holes; the origin for a field of holes only.
     fn local_aabb(&self) -> Aabb<N, 3> {
         match whole(self) {
             Some(extent) => Aabb::new(Point::from(extent.low), Point::from(extent.high)),

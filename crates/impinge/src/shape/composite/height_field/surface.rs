@@ -1,4 +1,5 @@
-//! Which normals a height field has at a face, an edge or a vertex: found from the heights around.
+//! The seam rule of height fields: normals at a face, an edge or a vertex, computed from the
+//! heights around.
 
 use smallvec::SmallVec;
 
@@ -65,21 +66,22 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
         let own = FieldFace::of(self, self.corners(part));
         let has_seams = !self.keeps_internal_edges && own.front != Vector::<N, 3>::zeros();
         let bend = |side| Fold::at(self, &own, side).bend;
-        // All fronts of a field are up, or all are down.
+        // The fronts of a field agree: all face up, or all down.
         has_seams.then(|| FaceSeams::new(own.front, self.is_one_sided, bend, |_| true))
     }
 
-    /// Points of the grid are at positions of their own unless the field has no extent.
+    /// Grid points have distinct positions unless the field has no extent.
     fn has_plain_seams(&self) -> bool {
         !self.keeps_internal_edges && self.grid.has_extent()
     }
 }
 
-/// The number of a triangle of a cell, and two of the corners of the cell.
+/// The index of a triangle in its cell, and two of the cell's corners.
 type FanTriangle = (usize, usize, usize);
 
-/// The triangles at each corner of a cell, whose corners are numbered as they lie around it: the number of a triangle
-/// and its other corners. Of a diagonal forward, then of one backward; see `corners_in`.
+/// The triangles at each corner of a cell: the index of a triangle and its two other corners. The
+/// corners a, b, c, d are numbered 0 to 3. The first table is for a forward diagonal, the second
+/// for a backward one; see `corners_in`.
 const FANS: [[&[FanTriangle]; 4]; 2] = [
     [&[(0, 1, 2), (1, 2, 3)], &[(0, 2, 0)], &[(0, 0, 1), (1, 3, 0)], &[(1, 0, 2)]],
     [&[(0, 1, 3)], &[(0, 3, 0), (1, 2, 3)], &[(1, 3, 1)], &[(0, 0, 1), (1, 1, 2)]],
@@ -99,14 +101,14 @@ impl<N: Real> FieldFace<N> {
         Self { corners, points, front: normal_of(&points) }
     }
 
-    /// The corner that is none of two, which are the ends of a side.
+    /// The corner that is not among the two ends of a side.
     fn beyond(&self, ends: &[GridPoint; 2]) -> Option<Point<N, 3>> {
         let at = self.corners.iter().position(|corner| !ends.contains(corner))?;
         Some(self.points[at])
     }
 }
 
-/// What is known of what lies beside one feature of a triangle.
+/// The cached neighbourhood of one feature of a triangle.
 struct Beside<N: Real> {
     fold: Option<Fold<N>>,
     star: Option<Star<N>>,
@@ -118,10 +120,10 @@ impl<N: Real> Beside<N> {
     }
 }
 
-/// A side of a triangle.
+/// A side of a triangle with its neighbour.
 struct Fold<N: Real> {
     ends: [GridPoint; 2],
-    /// The triangle across, and how the two lie, if that is plain.
+    /// The triangle across, and the bend between the two if it is plain.
     other: Option<FieldFace<N>>,
     bend: Option<Bend<N>>,
 }
@@ -154,7 +156,7 @@ impl<N: Real> HeightField<N, 3> {
         (*front != Vector::<N, 3>::zeros()).then_some(own)
     }
 
-    /// The triangles of some cells, given by their rows and columns plus one, without the holes.
+    /// The triangles, without holes, of some cells given by their rows and columns plus one.
     fn in_cells(
         &self,
         cells: impl Iterator<Item = GridPoint>,
@@ -169,11 +171,11 @@ impl<N: Real> HeightField<N, 3> {
         rest.map(|(row, column, k)| self.corners_in(row, column, k))
     }
 
-    /// Calls with the two other corners of each triangle around a point of the grid, counter-clockwise seen from the
-    /// front, until one call answers true: eight triangles at most.
+    /// Calls `visit` with the two other corners of each triangle around a point of the grid,
+    /// counter-clockwise seen from the front, until a call returns true: at most eight triangles.
     fn each_around(&self, at: GridPoint, mut visit: impl FnMut([GridPoint; 2]) -> bool) {
         let [rows, columns] = self.pyramid.cells();
-        // The cells before and after; in each the number of the corner that the point is.
+        // The four cells around the point, and the number of the point among the corners of each.
         for (row, column, own) in [(1, 1, 2), (1, 0, 1), (0, 1, 3), (0, 0, 0)] {
             let cell = (at[0].wrapping_sub(row), at[1].wrapping_sub(column));
             if cell.0 >= rows || cell.1 >= columns {
@@ -195,11 +197,11 @@ impl<N: Real> HeightField<N, 3> {
         }
     }
 
-    /// The triangle on the other side of a side.
+    /// The triangle across a side.
     fn across(&self, own: &[GridPoint; 3], [a, b]: [GridPoint; 2]) -> Option<[GridPoint; 3]> {
         let (row, column) = (a[0].min(b[0]), a[1].min(b[1]));
-        // That of a side along a row or column lies in the cell before or after, that of a diagonal in
-        // the cell itself.
+        // The triangle across a side along a row or column lies in the cell before or after; across
+        // a diagonal it lies in the same cell.
         let before = [row + usize::from(a[0] != b[0]), column + usize::from(a[1] != b[1])];
         let after = [row + 1, column + 1];
         let [first, second, third] = own;
@@ -209,7 +211,8 @@ impl<N: Real> HeightField<N, 3> {
             .find(|other| other.contains(&a) && other.contains(&b) && other != own)
     }
 
-    /// Whether a triangle has a normal at a feature; what lies beside it is looked up once.
+    /// Whether the field has a normal at a feature of a triangle; the neighbourhood is computed
+    /// once.
     fn face_admits(
         &self,
         own: &FieldFace<N>,
@@ -235,6 +238,7 @@ impl<N: Real> HeightField<N, 3> {
             }
     }
 
+    /// Whether the field has a normal at a side of a triangle, by the cached bend if it is plain.
     fn edge_admits(
         &self,
         own: &FieldFace<N>,
@@ -257,6 +261,7 @@ impl<N: Real> HeightField<N, 3> {
         is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
     }
 
+    /// Whether the field has a normal at a corner of a triangle that is not the triangle's own.
     fn vertex_admits(
         &self,
         own: &FieldFace<N>,
@@ -267,8 +272,9 @@ impl<N: Real> HeightField<N, 3> {
         self.point_admits_from(own.corners[corner % 3], star, (&own.front, false), normal)
     }
 
-    /// Whether a point of the grid has a normal that is not that of the triangle which asks, whose front is given, and
-    /// whether another triangle there is known not to be level with it.
+    /// Whether the field has, at a point of the grid, a normal that is not the triangle's own.
+    /// `own` is the front of the triangle, and whether another triangle there is known not to be
+    /// coplanar with it.
     fn point_admits_from(
         &self,
         at: GridPoint,
@@ -287,7 +293,7 @@ impl<N: Real> HeightField<N, 3> {
         })
     }
 
-    /// The sides that leave a point of the grid, until they refuse a normal.
+    /// Collects the sides that leave a point of the grid, until they reject a normal.
     fn ways_around<'n>(&self, at: GridPoint, normal: &'n Vector<N, 3>) -> CornerWays<'n, N, 3> {
         let (mut ways, [row, column]) = (CornerWays::new(normal), at);
         let point = self.grid.point(row, column);
@@ -315,13 +321,14 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// A triangle at a point of the grid: unit, along its sides that leave the point, or zero, and the normal on its front.
+/// A triangle at a point of the grid: the unit vectors (or zero) along its sides that leave the
+/// point, and its front.
 struct StarFace<N: Real> {
     ways: [Vector<N, 3>; 2],
     front: Vector<N, 3>,
 }
 
-/// How much a unit vector rises along another one; a way that is none does not.
+/// The rise of a unit vector along another one; −1 for the zero vector.
 fn rise<N: Real>(way: &Vector<N, 3>, along: &Vector<N, 3>) -> N {
     if *way == Vector::<N, 3>::zeros() { -N::ONE } else { way.dot(along) }
 }
@@ -365,7 +372,7 @@ impl<N: Real> OwnSurface<N, 2> for HeightField<N, 2> {
 }
 
 impl<N: Real> HeightField<N, 2> {
-    /// Unit, along a segment; `None` without length.
+    /// The unit vector along a segment; `None` without length.
     fn along(&self, part: u32) -> Option<Vector<N, 2>> {
         let index = part as usize;
         unit(&(self.point(index + 1) - self.point(index))).map(|(along, _)| along)
@@ -377,13 +384,14 @@ impl<N: Real> HeightField<N, 2> {
         Some(if self.is_mirrored() { -left } else { left })
     }
 
-    /// How far a vector leads in front of a segment; zero where there is no front and back.
+    /// The component of a vector along the front of a segment; zero if the field has two sides.
     fn height_over(&self, part: u32, vector: &Vector<N, 2>) -> N {
         let front = self.front(part).filter(|_| self.is_one_sided);
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// No segment that leaves the point rises along the normal, and they are not straight.
+    /// Whether no segment that leaves the point rises along the normal, and the two are not
+    /// collinear.
     fn point_admits(&self, part: u32, index: usize, normal: &Vector<N, 2>) -> bool {
         let own = self.along(part).unwrap_or_else(Vector::<N, 2>::zeros);
         let mut seam = Seam::of_segments(own, normal);

@@ -1,7 +1,8 @@
-//! Going around the sides and corners of a mesh.
+//! Walks around the sides and corners of a mesh.
 //!
-//! Triangles without area lie in meshes as fillers: where a corner touches the middle of a longer
-//! side, a thin triangle joins the three. Seams are looked at through them, as if they were not there.
+//! Meshes contain triangles without area as fillers: where a corner touches the middle of a longer
+//! side, a thin triangle joins the three. Seams are evaluated across them, as if they were not
+//! there.
 
 use core::cell::OnceCell;
 
@@ -11,13 +12,15 @@ use super::TriMesh;
 use crate::math::{Mapped, Point, Real, Vector, filled, max, max_component, min, unit, unit_or};
 use crate::shape::solids::segment::length_of;
 
-/// So many sides of triangles without area are crossed in search of what lies beyond.
+/// The maximum number of sides of triangles without area that a walk crosses.
 const MAX_CROSSED: usize = 32;
-/// A triangle with a squared height of more than this, of its longest side, is tall.
+/// A triangle is tall if its squared height over its longest side is above this fraction of that
+/// side's square.
 const TALL: f64 = 1.0 / 1024.0;
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
-    /// Calls `visit` with each other triangle at a side, and the side it is to that one.
+    /// Calls `visit` with each other triangle at a side, and the index of the side within that
+    /// triangle.
     fn each_across(&self, triangle: u32, side: usize, mut visit: impl FnMut(u32, usize)) {
         let ends = self.joint_ends(triangle, side);
         let mut found = |other: u32| {
@@ -28,7 +31,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         if let Some(other) = self.topology.single_across(triangle, side) {
             found(other);
         } else if self.topology.has_several_across(triangle, side) {
-            // All are at both ends: the end with fewer triangles is looked through.
+            // All of them are at both ends: search the end with fewer triangles.
             let [from, to] = ends.map(|joint| self.topology.joints.parts(joint));
             let fewer = if from.len() < to.len() { from } else { to };
             fewer.iter().filter(|&&other| other != triangle).for_each(|&other| found(other));
@@ -36,7 +39,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     }
 
     /// Calls `visit` with each other triangle with an area at a side, and the direction from the
-    /// side into it; through triangles without area, whose sides lie along each other.
+    /// side into it. Passes through triangles without area, whose sides lie along each other.
     pub(super) fn each_beyond(
         &self,
         triangle: u32,
@@ -46,8 +49,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.each_along(triangle, side, |other, inward, _| visit(other, inward));
     }
 
-    /// [`Self::each_beyond`] with the stretch of the side along which each of the triangles lies: from where to
-    /// where, measured from the beginning of the side; `None` of all of it.
+    /// [`Self::each_beyond`] with the interval of the side along which each of the triangles lies,
+    /// measured from the beginning of the side; `None` for all of it.
     fn each_along(
         &self,
         triangle: u32,
@@ -84,7 +87,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// A triangle without area reaches at a side to where no triangle with an area is.
+    /// Whether part of a side of a triangle without area has no triangle with an area beside it.
     pub(super) fn sticks_out(&self, triangle: u32, side: usize) -> bool {
         if self.inward(triangle, side).is_some() {
             return false;
@@ -106,7 +109,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         false
     }
 
-    /// Calls `visit` with each triangle on whose side a joint lies though it is none of its
+    /// Calls `visit` with each triangle on whose side a joint lies without being one of its
     /// corners, and the direction from the side into it: those beyond a triangle without area whose
     /// middle corner is at the joint.
     pub(super) fn each_beyond_joint(&self, joint: u32, mut visit: impl FnMut(u32, Vector<N, D>)) {
@@ -133,12 +136,13 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// The triangle is so tall for its size that nobody doubts its area; not known of all.
+    /// Whether the triangle is tall enough that its area is beyond doubt; false leaves the area
+    /// undecided.
     pub(super) fn is_plain(&self, triangle: u32) -> bool {
         self.bends.is_plain(triangle, || is_tall(&self.corners(triangle)))
     }
 
-    /// Unit, along the sides of a triangle that leave a joint.
+    /// The unit vectors along the sides of a triangle that leave a joint.
     pub(super) fn leaving(&self, triangle: u32, joint: u32) -> SmallVec<[Vector<N, D>; 2]> {
         let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
         let side = |turn: usize| unit(&(corners[(at + turn) % 3] - corners[at]));
@@ -156,15 +160,16 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         [corners[side], corners[(side + 1) % 3]]
     }
 
-    /// Unit, in the triangle's plane, from a side towards the opposite corner; `None` without area.
+    /// The unit vector in the triangle's plane from a side towards the opposite corner; `None`
+    /// without area.
     pub(super) fn inward(&self, triangle: u32, side: usize) -> Option<Vector<N, D>> {
         let corners = self.corners(triangle);
         inward_of(&filled(|turn| corners[(side + turn) % 3]))
     }
 }
 
-/// Unit, in the plane of a triangle, from the side between its first two corners towards the third;
-/// `None` without area.
+/// The unit vector in the plane of a triangle from the side between its first two corners towards
+/// the third; `None` without area.
 pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
 ) -> Option<Vector<N, D>> {
@@ -174,19 +179,19 @@ pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     let rest = if from_a < from_b { c - a } else { c - b };
     let without = |v: &Vector<N, D>| v - along * along.dot(v);
     let (inward, height) = unit(&without(&rest))?;
-    // That of the longest side is the least, and says whether there is an area.
+    // The height over the longest side is the smallest and decides whether there is an area.
     let longest = max(length, max(from_a, from_b));
     let least = height * (length / longest);
     let has_area = least > noise(corners, longest);
     has_area.then(|| unit_or(&without(&inward), inward))
 }
 
-/// The height over the longest side is far more than what counts as an area, see [`inward_of`].
+/// Whether the height over the longest side is far above the limit of an area; see [`inward_of`].
 fn is_tall<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> bool {
     let [a, b, c] = corners;
     let (ab, ac, bc) = (b - a, c - a, c - b);
     let longest = max(ab.norm_squared(), max(ac.norm_squared(), bc.norm_squared()));
-    // Four squared areas.
+    // Four times the squared area.
     let along = ab.dot(&ac);
     let area = ab.norm_squared() * ac.norm_squared() - along * along;
     let farthest = corners.iter().map(|corner| max_component(&corner.coords)).fold(N::ZERO, max);
@@ -196,7 +201,7 @@ fn is_tall<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> bool {
         && area > N::MIN_POSITIVE / N::EPSILON
 }
 
-/// The line through a side, on which other sides of triangles without area are measured.
+/// The line through a side, along which other sides of triangles without area are measured.
 struct SideLine<N: Real, const D: usize> {
     from: Point<N, D>,
     /// Unit; zero if the side has no length.
@@ -214,14 +219,14 @@ impl<N: Real, const D: usize> SideLine<N, D> {
         Self { from, along, length, room: noise(corners, length) }
     }
 
-    /// From where to where a segment reaches along the line, from the beginning of the side.
+    /// The interval of a segment along the line, from the beginning of the side.
     fn span(&self, ends: &[Point<N, D>; 2]) -> [N; 2] {
         let [one, other] = ends.each_ref().mapped(|end| self.along.dot(&(end - self.from)));
         [min(one, other), max(one, other)]
     }
 
-    /// A stretch of the line has more in common with the side than a point. Of a side without length every
-    /// stretch counts.
+    /// Whether an interval of the line has more than a point in common with the side; true for a
+    /// side without length.
     fn overlaps(&self, span: &[N; 2]) -> bool {
         self.length == N::ZERO || min(span[1], self.length) - max(span[0], N::ZERO) > self.room
     }
@@ -233,8 +238,8 @@ fn crossed_before<S>(crossed: &[(u32, usize, S)], triangle: u32, side: usize) ->
     crossed.len() >= MAX_CROSSED || crossed.iter().any(is_same)
 }
 
-/// Below this height over its longest side a triangle has no area: the difference of coordinates,
-/// or the rounding of the coordinates themselves, may be all there is.
+/// The height over its longest side up to which a triangle has no area: the rounding error of the
+/// difference of coordinates, and of the coordinates themselves.
 pub(super) fn noise<N: Real, const D: usize>(corners: &[Point<N, D>; 3], longest: N) -> N {
     let mut farthest = N::ZERO;
     for corner in corners {

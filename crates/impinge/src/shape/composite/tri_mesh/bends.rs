@@ -1,4 +1,9 @@
-//! How the sides of a mesh's triangles are bent, found when first asked for.
+//! Cached bends of the sides of a mesh's triangles, computed on first use.
+//!
+//! ```text
+//! bit   15 14 | 13          | 12     | 11 .. 8 | 7 .. 4 | 3 .. 0
+//!       unused| not plain   | plain  | side 2  | side 1 | side 0       UNKNOWN, 1 to 3, UNCLEAR
+//! ```
 
 use core::sync::atomic::{AtomicU16, Ordering};
 
@@ -6,38 +11,38 @@ use crate::shape::surface::bend::BendShape;
 
 /// Bits for each side.
 const BITS: usize = 4;
-/// Stored for a side that nobody asked about, and for one of which nothing is plain.
+/// Codes of a side that was not computed yet, and of one that is not plain.
 const UNKNOWN: u16 = 0;
 const UNCLEAR: u16 = 4;
-/// Beyond the sides: that the triangle is known to be plain, or not.
+/// Bits above the sides: the triangle is known to be plain, or known not to be.
 const PLAIN: u16 = 1 << 12;
 const NOT_PLAIN: u16 = 1 << 13;
 
-/// For each triangle and side what [`BendShape`] it has, and which triangles are plain to see as such.
+/// The [`BendShape`] of each triangle's sides, and which triangles are plain.
 ///
-/// What is kept is a function of the mesh: it does not matter who asks first, nor that of two who write at
-/// one time only one is heard.
+/// The values are a function of the mesh: it does not matter who computes them first, nor that one
+/// of two concurrent writes is lost.
 #[derive(Debug)]
 pub(super) struct Bends {
     sides: Vec<AtomicU16>,
 }
 
 impl Bends {
-    /// Of so many triangles, nothing is known.
+    /// A cache for `triangles` triangles without values.
     pub(super) fn new(triangles: usize) -> Self {
         let mut sides = Vec::new();
         sides.resize_with(triangles, AtomicU16::default);
         Self { sides }
     }
 
-    /// Forgets what is known.
+    /// Clears all values.
     pub(super) fn clear(&mut self) {
         for side in &mut self.sides {
             *side.get_mut() = UNKNOWN;
         }
     }
 
-    /// What is kept of a side, or else found now; `None` where it is not plain.
+    /// Returns the cached bend of a side, or computes and stores it; `None` if it is not plain.
     pub(super) fn at(
         &self,
         triangle: u32,
@@ -59,7 +64,7 @@ impl Bends {
         }
     }
 
-    /// What is kept of the triangle, or else found now.
+    /// Returns whether the triangle is plain, from the cache or by `find`.
     pub(super) fn is_plain(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
         let kept = &self.sides[triangle as usize];
         let all = kept.load(Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! Making meshes, and making other ones of them.
+//! Construction of meshes, and of meshes from other ones.
 
 use std::sync::OnceLock;
 
@@ -30,8 +30,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// triangle, and triangles may have no area.
     ///
     /// # Errors
-    /// If a coordinate is not finite, a triangle names a vertex that does not exist, there is no
-    /// triangle, or 32 bits cannot number the corners.
+    /// If a coordinate is not finite, a triangle refers to a vertex that does not exist, there is
+    /// no triangle, or 32 bits cannot number the corners.
     pub fn try_new(
         vertices: Vec<Point<N, D>>,
         triangles: Vec<[u32; 3]>,
@@ -68,8 +68,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         })
     }
 
-    /// The same mesh with each position once among its vertices: those that repeat an earlier one are
-    /// dropped, and the triangles renumbered. What the mesh does is unchanged.
+    /// Merges vertices at one position: those that repeat an earlier one are dropped, and the
+    /// triangles renumbered. The behaviour of the mesh is unchanged.
     #[must_use]
     pub fn with_vertices_merged(self) -> Self {
         let (mut number, mut kept) = (Vec::with_capacity(self.vertices.len()), Vec::new());
@@ -88,8 +88,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.with(kept, triangles)
     }
 
-    /// The same mesh with the other side of each triangle in front: the second and third corner
-    /// exchange places, and so do the first and last side. What is solid is so no longer.
+    /// Reverses the front of each triangle: the second and third corner are exchanged, and with
+    /// them the first and last side. A solid mesh becomes a skin.
     #[must_use]
     pub fn flipped(self) -> Self {
         let triangles = self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
@@ -97,7 +97,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         Self { is_solid: false, ..self.with(vertices, triangles) }
     }
 
-    /// The mesh scaled along the axes of its frame, about its origin. Where that mirrors it, the
+    /// The mesh scaled along the axes of its frame, about its origin. If the scale mirrors it, the
     /// triangles are flipped as by [`Self::flipped`], so that the front stays in front.
     ///
     /// # Errors
@@ -113,7 +113,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         Ok(self.with(vertices, triangles))
     }
 
-    /// A mesh of vertices and triangles that are known to be good, with the options of this one.
+    /// The mesh of vertices and triangles that are known to be valid, with the options of this one.
     fn with(&self, vertices: Vec<Point<N, D>>, triangles: Vec<[u32; 3]>) -> Self {
         let made = Self::new(vertices, triangles);
         let Self { is_one_sided, is_solid, keeps_internal_edges, .. } = *self;
@@ -132,9 +132,9 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// Moves the vertices, for a mesh that deforms: all of them, in the order of
     /// [`Self::vertices`].
     ///
-    /// The triangles that hung together still do, even if their corners lie apart now. The tree is
-    /// refitted, not built anew: O(n), a fifth to a tenth of making the mesh; its order is renewed
-    /// over several calls once it has worn. On an error nothing has changed.
+    /// Triangles that were joined stay joined, even if their corners are apart now. The tree is
+    /// refitted, not rebuilt: O(n), a fifth to a tenth of the cost of making the mesh; a degraded
+    /// tree order is renewed over several calls. On an error nothing has changed.
     ///
     /// # Errors
     /// If a coordinate is not finite or the number of vertices differs.
@@ -175,11 +175,12 @@ fn corners_of<N: Real, const D: usize>(
     triangle.mapped(|vertex| vertices[vertex as usize])
 }
 
-/// The box of a triangle, as the tree has it.
+/// The box of a triangle, as stored in the tree.
 pub(crate) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> Aabb<N, D> {
     Aabb::from_points(corners).unwrap_or_else(Aabb::unbounded)
 }
 
+/// The unit normals of all triangles, zero without area; empty in 2D.
 fn normals_of<N: Space<D>, const D: usize>(
     vertices: &[Point<N, D>],
     triangles: &[[u32; 3]],

@@ -11,7 +11,8 @@ use crate::tables::Here;
 /// The algorithms of meshes that differ by dimension.
 #[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
 pub trait MeshByDimension<N: Real, const D: usize> {
-    /// The unit normal on the front of a triangle, zero without area; `None` where triangles have no front.
+    /// The unit normal on the front of a triangle, zero without area; `None` in 2D, where triangles
+    /// have no front.
     fn mesh_normal(corners: &[Point<N, D>; 3]) -> Option<Vector<N, D>>;
 
     /// See [`Surface::admits`](crate::shape::Surface::admits).
@@ -22,7 +23,7 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normal: &Vector<N, D>,
     ) -> bool;
 
-    /// Whether it admits the first of two normals, and if not, whether the second.
+    /// Whether the mesh admits the first of two normals; if not, whether it admits the second.
     fn mesh_admits_in_turn(
         mesh: &TriMesh<N, D>,
         part: u32,
@@ -30,8 +31,9 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2];
 
-    /// The same at a corner, of normals that are not the triangle's own; with the corner is said whether another triangle
-    /// there is known not to be level with this one.
+    /// [`Self::mesh_admits_in_turn`] at a corner, for normals that are not the triangle's own. The
+    /// flag beside the corner says that another triangle there is known not to be coplanar with
+    /// this one.
     fn mesh_corner_admits_in_turn(
         mesh: &TriMesh<N, D>,
         part: u32,
@@ -39,7 +41,7 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2];
 
-    /// How a triangle is bent against those across its sides; `None` in 2D.
+    /// The edge angles of a triangle against its neighbours; `None` in 2D.
     fn mesh_face_seams(mesh: &TriMesh<N, D>, part: u32) -> Option<FaceSeams<N>>;
 
     /// See [`Surface::snapped`](crate::shape::Surface::snapped).
@@ -49,17 +51,19 @@ pub trait MeshByDimension<N: Real, const D: usize> {
     /// See [`CompositeShape::winds_around`](crate::shape::CompositeShape::winds_around).
     fn mesh_winds_around(mesh: &TriMesh<N, D>, point: &Point<N, D>) -> bool;
 
-    /// The same of a line.
+    /// See [`CompositeShape::winds_around`](crate::shape::CompositeShape::winds_around), for a
+    /// polyline.
     fn line_winds_around(line: &Polyline<N, D>, point: &Point<N, D>) -> bool;
 
-    /// The triangles for rays, in the order of the tree; none where boxes are enough.
+    /// The blocks of triangles for rays, in the order of the tree; empty in 2D, where boxes
+    /// suffice.
     fn mesh_packed(
         tree: &BoxTree<N, D>,
         vertices: &[Point<N, D>],
         triangles: &[[u32; 3]],
     ) -> Vec<Triangles>;
 
-    /// Visits the parts that a ray may meet.
+    /// Visits the parts that a ray may hit.
     fn mesh_parts_along(
         mesh: &TriMesh<N, D>,
         bounds: &RayBounds<'_, N, D>,

@@ -1,4 +1,4 @@
-//! A mesh as a shape: a union of triangles that know their neighbours.
+//! A mesh as a composite shape: triangles with the seams between them.
 
 use super::MeshByDimension;
 use super::rays::RayBounds;
@@ -91,7 +91,7 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
-        // Triangles without area have the normal zero, and touch from everywhere.
+        // Triangles without area have a zero normal and can be touched from both sides.
         let is_behind = || {
             let corner = self.vertices[self.triangles[part as usize][0] as usize];
             self.normals[part as usize].dot(&(center - corner)) < N::ZERO
@@ -138,18 +138,18 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
         Geometry(Kind::Composite(self))
     }
 
-    /// The smallest, in O(1).
+    /// The smallest box, in O(1).
     fn local_aabb(&self) -> Aabb<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    /// The smallest, up to rounding. O(log n) for a mesh that bulges, up to O(n) for one whose parts
-    /// reach almost equally far.
+    /// The smallest box, up to rounding. O(log n) for a convex-looking mesh, up to O(n) for one
+    /// whose parts extend almost equally far.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         aabb_at(pose, &self.triangles, &self.vertices, &self.tree)
     }
 
-    /// The sphere around the middle of the box, through the farthest vertex: O(n).
+    /// The sphere about the centre of the box through the farthest vertex: O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         sphere_around(&self.local_aabb(), self.triangles.as_flattened().iter(), &self.vertices)
     }
@@ -159,11 +159,11 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
     }
 }
 
-/// So many corners are placed one by one to find the box around them.
+/// Up to this many corners are placed one by one to find the box around them.
 const MAX_PLACED: usize = 192;
 
-/// The box around the vertices of parts placed at `pose`: of each where they are few, else of those
-/// that the tree finds to reach farthest.
+/// The box around the vertices of parts placed at `pose`: from all of them if they are few, else
+/// from the extreme ones that the tree finds.
 pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     pose: &Pose<N, D>,
     parts: &[[u32; K]],
@@ -177,7 +177,7 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
         let turned = Aabb::around_all(
             parts.as_flattened().iter().map(|vertex| Point::from(pose.vector(&corner(vertex)))),
         );
-        // A pose that is not finite gives no box; then everything is in it.
+        // A non-finite pose gives no box; then the box is unbounded.
         return turned.map_or_else(Aabb::unbounded, |turned| {
             Aabb::of_turned(turned.mins().coords, turned.maxs().coords, size, pose)
         });
@@ -196,8 +196,8 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     Aabb::of_turned(low, high, size, pose)
 }
 
-/// The sphere around the middle of a box that reaches the farthest of some vertices; a little
-/// larger, by the rounding of the distance.
+/// The sphere about the centre of a box that contains some vertices; its radius exceeds the
+/// distance of the farthest one by a bound of the rounding error.
 pub(in crate::shape) fn sphere_around<'a, N: Real, const D: usize>(
     aabb: &Aabb<N, D>,
     used: impl Iterator<Item = &'a u32>,

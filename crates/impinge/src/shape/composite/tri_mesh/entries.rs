@@ -1,4 +1,4 @@
-//! The entries of meshes: making them, and what pairs and rays ask of them.
+//! The entries of meshes: construction, seam rules and rays.
 
 use super::rays::RayBounds;
 use super::{MeshByDimension, TriMesh};

@@ -31,28 +31,29 @@ use crate::shape::{Revision, Triangle};
 
 /// Triangles that share corners: a filled shape in 2D, a surface in 3D, open or closed.
 ///
-/// Parts are the triangles, in the order given, with the vertices and sides of
-/// [`Triangle`]; all is in the frame of the mesh. Triangles belong together by the positions of their
-/// corners, not by the indices: a mesh whose triangles each bring corners of their own is as smooth as
-/// one that shares them. Corners that lie in the middle of a side of another triangle do not join.
+/// Parts are the triangles, in the order given, with the vertices and sides of [`Triangle`]; all is
+/// in the frame of the mesh. Triangles join where the positions of their corners are equal,
+/// whatever the indices: a mesh whose triangles have corners of their own is as smooth as one that
+/// shares them. A corner in the middle of a side of another triangle does not join.
 ///
-/// **Sides.** In 3D the front of a triangle is the side that sees its corners counter-clockwise.
-/// A mesh has two sides, or one if asked by `one_sided`: then nothing touches it from behind, and what
-/// is inside a closed mesh is not pushed deeper. It is a skin, and has no inside in the queries that all
-/// shapes have, unless `solid` makes a closed one a body; what a closed skin encloses say `encloses` and
-/// `signed_distance`. In 2D triangles are filled, and their winding means nothing.
+/// **Sides.** In 3D the front of a triangle is the side from which its corners run
+/// counter-clockwise. A mesh has two sides, or one after `one_sided`: then nothing touches it from
+/// behind, and a solid inside a closed mesh is not pushed deeper. A mesh is a skin without an
+/// inside in the queries that all shapes have, unless `solid` makes a closed one a body; `encloses`
+/// and `signed_distance` answer what a closed skin encloses. In 2D triangles are filled, and their
+/// winding is irrelevant.
 ///
-/// **Seams.** Contacts see the mesh as one surface (see [`Surface`](crate::shape::Surface)): at an edge or
-/// corner only those normals count that the whole has there, so that nothing catches on the edges of
-/// a floor. Faces whose normals differ by less than 0.57 degrees (a sine of 0.01) count as one flat.
-/// [`Self::with_internal_edges_kept`] switches this off.
+/// **Seams.** Contacts treat the mesh as one surface (see [`Surface`](crate::shape::Surface)): at
+/// an edge or corner only normals of the whole surface count, so that nothing catches on the edges
+/// of a floor. Faces whose normals differ by less than 0.57 degrees (a sine of 0.01) count as
+/// coplanar. [`Self::with_internal_edges_kept`] switches this off.
 ///
-/// **Bad triangles.** A triangle with repeated or collinear corners is kept, so that parts keep their
-/// numbers: it acts as a segment or a point.
+/// **Bad triangles.** A triangle with repeated or collinear corners is kept, so that part numbers
+/// do not change: it acts as a segment or a point.
 ///
 /// Making a mesh costs O(n log n), a search O(log n + what it finds). A triangle with its share of
-/// vertices takes about 209 bytes in `f32`: 36 of them are a copy of its corners beside those of its
-/// neighbours, for rays.
+/// vertices takes about 209 bytes in `f32`: 36 of them are a copy of its corners, stored next to
+/// those of its neighbours in the tree, for rays.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -71,19 +72,21 @@ pub struct TriMesh<N: Real, const D: usize> {
     vertices: Vec<Point<N, D>>,
     triangles: Vec<[u32; 3]>,
     topology: Topology,
-    /// By triangle: unit, on the front; zero without area. None in 2D.
+    /// The unit normal on the front of each triangle; zero without area. Empty in 2D.
     normals: Vec<Vector<N, D>>,
     bends: Bends,
     tree: BoxTree<N, D>,
-    /// In the order of the tree's blocks: what rays look at. None in 2D.
+    /// The corners of the triangles in blocks, in the order of the tree's leaves, for rays. Empty
+    /// in 2D.
     packed: Vec<Triangles>,
-    /// The triangles are a cycle, and corners that belong together lie together.
+    /// Whether each side is traversed equally often in both directions, and joined corners still
+    /// coincide.
     is_cycle: bool,
     is_one_sided: bool,
-    /// It was made one, as long as it [`Self::is_cycle`].
+    /// Whether `solid` was called; valid while [`Self::is_cycle`].
     is_solid: bool,
     keeps_internal_edges: bool,
-    /// By triangle: the first one of its piece.
+    /// The first triangle of the piece of each triangle.
     pieces: OnceLock<Vec<u32>>,
     revision: Revision,
 }
@@ -116,7 +119,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         Triangle::of_finite(self.corners(index))
     }
 
-    /// What lies across a side, 0 to 2, of a triangle. Looking costs O(1).
+    /// Returns the neighbour across side 0 to 2 of a triangle. O(1).
     ///
     /// # Panics
     /// If there is no such triangle or side.
@@ -125,6 +128,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.across(triangle, side as usize)
     }
 
+    /// [`Self::neighbor`], with a flip if both triangles traverse the side in the same direction.
     fn across(&self, triangle: u32, side: usize) -> EdgeNeighbor {
         if self.topology.has_several_across(triangle, side) {
             return EdgeNeighbor::Several;
@@ -138,7 +142,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         EdgeNeighbor::Triangle { index, is_flipped }
     }
 
-    /// Every side with a length has a neighbour, so that a surface in 3D has no border. O(n).
+    /// Whether every side with a length has a neighbour, so that a surface in 3D has no border.
+    /// O(n).
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.each_side().all(|(triangle, side)| {
@@ -147,7 +152,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         })
     }
 
-    /// No side has more than two triangles, and where there are two their fronts agree. O(n).
+    /// Whether no side has more than two triangles, and the fronts of every two neighbours agree.
+    /// O(n).
     #[must_use]
     pub fn is_oriented(&self) -> bool {
         self.each_side().all(|(triangle, side)| match self.across(triangle, side) {
@@ -163,13 +169,13 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         &self.tree
     }
 
-    /// Nothing touches the mesh from behind.
+    /// Whether nothing touches the mesh from behind.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         self.is_one_sided
     }
 
-    /// Contacts treat each triangle on its own; see [`Self::with_internal_edges_kept`].
+    /// Whether contacts treat each triangle on its own; see [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
         self.keeps_internal_edges
@@ -187,7 +193,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.triangles[triangle as usize].mapped(|vertex| self.vertices[vertex as usize])
     }
 
-    /// The joints at the ends of a side, in the order of the triangle.
+    /// The joints at the ends of a side, in the triangle's order.
     fn joint_ends(&self, triangle: u32, side: usize) -> [u32; 2] {
         [side, (side + 1) % 3].mapped(|corner| self.joint_at(triangle, corner))
     }
@@ -211,20 +217,22 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 }
 
 impl<N: Real> TriMesh<N, 3> {
-    /// The mesh is the boundary of a volume, or of several: each side with a length is run along by as
-    /// many triangles in one direction as in the other. O(1).
+    /// Whether the mesh is the boundary of a volume, or of several: each side with a length is
+    /// traversed by as many triangles in one direction as in the other. O(1).
     ///
-    /// So is every mesh that [is closed](Self::is_closed) and [oriented](Self::is_oriented); and one whose
-    /// bodies share a side, which has four triangles then, or that has triangles with repeated corners.
-    /// Vertices that [`Self::set_vertices`] moves apart, though they were at one position, open the mesh.
-    /// What lies inside say [`Self::encloses`] and [`Self::signed_distance`].
+    /// This holds for every mesh that [is closed](Self::is_closed) and
+    /// [oriented](Self::is_oriented); also for one whose bodies share a side, which then has four
+    /// triangles, or that has triangles with repeated corners. If [`Self::set_vertices`] moves
+    /// vertices apart that were at one position, the mesh is open. [`Self::encloses`] and
+    /// [`Self::signed_distance`] answer what lies inside.
     #[must_use]
     pub const fn is_volume(&self) -> bool {
         self.is_cycle
     }
 
-    /// Lets nothing touch the mesh from behind; the front of a triangle is the side that sees its
-    /// corners counter-clockwise. Neighbours should agree on it: see [`Self::is_oriented`].
+    /// Makes the mesh one-sided: nothing touches it from behind. The front of a triangle is the
+    /// side from which its corners run counter-clockwise. Neighbours should agree on it: see
+    /// [`Self::is_oriented`].
     #[must_use]
     pub const fn one_sided(mut self) -> Self {
         self.is_one_sided = true;

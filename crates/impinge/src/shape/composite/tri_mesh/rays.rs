@@ -10,12 +10,12 @@ use crate::math::{Mapped, Point, Pose, Real, Space, min};
 use crate::partitioning::BoxTree;
 use crate::shape::{Part, PartSearch, PartSolid, Triangle};
 
-/// What is done with each part along a ray; see
+/// The callback for each part along a ray; see
 /// [`CompositeShape::parts_along`](crate::shape::CompositeShape::parts_along).
 type HitVisitor<'a, N, const D: usize> = &'a mut dyn FnMut(u32, Part<'_, N, D>) -> N;
 
-/// Where a ray starts, in the frame of the mesh, with all that rounding makes of the place; and when it
-/// ends.
+/// A ray in the frame of the mesh: `around` is a box around its origin with the rounding error,
+/// `limit` the latest time of a hit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayBounds<'a, N: Real, const D: usize> {
     pub(super) ray: &'a Ray<N, D>,
@@ -34,7 +34,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
 }
 
 impl<N: Real> TriMesh<N, 3> {
-    /// The triangles in the order of the tree, block by block.
+    /// The corners of the triangles in the order of the tree, one block per leaf block.
     pub(super) fn packed(
         tree: &BoxTree<N, 3>,
         vertices: &[Point<N, 3>],
@@ -51,11 +51,11 @@ impl<N: Real> TriMesh<N, 3> {
         tree.packed().leaves().iter().map(block).collect()
     }
 
-    /// Finds the parts by their boxes, block by block, and by the signs of their areas around the ray; of a ray without a
-    /// direction by their boxes alone.
+    /// Finds the parts by their boxes, block by block, and by the signs of their areas around the
+    /// ray; by their boxes alone if the direction of the ray is zero.
     ///
-    /// The box of a part is looked at last: where areas underflow their signs say nothing, nor do those
-    /// of the test that decides.
+    /// The box of a part is tested last: where areas underflow, their signs are meaningless, in
+    /// this test and in the exact one.
     pub(super) fn parts_on_ray(&self, bounds: &RayBounds<'_, N, 3>, visit: HitVisitor<'_, N, 3>) {
         let RayBounds { ray, around, limit } = *bounds;
         if ray.dir.iter().all(|&x| x == N::ZERO) {
@@ -77,7 +77,8 @@ impl<N: Real> TriMesh<N, 3> {
         });
     }
 
-    /// What blocks are asked about a ray with a direction; `around` is as in [`RayBounds`].
+    /// The per-ray data of the block tests, for a ray with a direction; `around` is as in
+    /// [`RayBounds`].
     #[inline(always)]
     pub(crate) fn ray_probe(&self, ray: &Ray<N, 3>, around: &Aabb<N, 3>) -> RayProbe {
         let size = self.tree.packed().size();
@@ -85,8 +86,8 @@ impl<N: Real> TriMesh<N, 3> {
         RayProbe { slabs, line: ShearedLine::new(ray, around, size) }
     }
 
-    /// Calls `visit` with the triangles that the ray may cross by a limit, which it returns anew, in the units of the
-    /// probe; without those that no tree holds.
+    /// Calls `visit` with the triangles that the ray may hit before `limit`; `visit` returns the
+    /// new limit. Limits are in the units of the probe. Triangles outside the tree are not visited.
     #[inline(always)]
     pub(crate) fn visit_triangles(
         &self,
@@ -98,7 +99,7 @@ impl<N: Real> TriMesh<N, 3> {
         tree.visit_triangles(&self.packed, probe, limit, |at| visit(at.id, &self.corners_in(&at)));
     }
 
-    /// [`Self::visit_triangles`] of many rays.
+    /// [`Self::visit_triangles`] for many rays.
     pub(crate) fn visit_triangles_of_many(
         &self,
         walks: &mut [Walk],
@@ -110,14 +111,16 @@ impl<N: Real> TriMesh<N, 3> {
         }
     }
 
-    /// Reads the corners of a triangle, if there is one and [`Self::corners_in`] will.
+    /// Touches the corners of a triangle that [`Self::corners_in`] will read, to bring them into
+    /// the cache.
     #[inline(always)]
     pub(crate) fn touch_corners(&self, index: u32) {
         let triangle = self.triangles.get(index as usize).filter(|_| !holds_all::<N>());
         black_box(triangle.map(|corners| corners.mapped(|at| self.vertices[at as usize][0])));
     }
 
-    /// The corners of a triangle: from the block at hand where it holds them exactly.
+    /// The corners of a triangle: from its block if that holds them exactly, else from the
+    /// vertices.
     #[inline(always)]
     pub(crate) fn corners_in(&self, at: &TriangleAt<'_>) -> [Point<N, 3>; 3] {
         if !holds_all::<N>() {
@@ -127,7 +130,7 @@ impl<N: Real> TriMesh<N, 3> {
     }
 }
 
-/// Blocks hold corners of this scalar exactly.
+/// Whether blocks hold corners of this scalar exactly.
 fn holds_all<N: Real>() -> bool {
     N::EPSILON.as_f64() >= f64::from(f32::EPSILON)
 }

@@ -7,14 +7,15 @@ use crate::shape::composite::joints::Joints;
 use crate::shape::composite::mesh_error::{MeshError, or_panic};
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
-    /// The mesh is a body, not a skin: `solid` made it one, and no vertices have been moved apart since. Always false
-    /// in 2D, where triangles are filled.
+    /// Whether the mesh is a body, not a skin: `solid` was called, and no joined vertices have been
+    /// moved apart since. Always false in 2D, where triangles are filled.
     #[must_use]
     pub const fn is_solid(&self) -> bool {
         self.is_solid && self.is_cycle
     }
 
-    /// By triangle, the first one of its piece: triangles that share corners are of one piece.
+    /// Returns for each triangle the first one of its piece; triangles that share corners are of
+    /// one piece.
     pub(super) fn pieces(&self) -> &[u32] {
         self.pieces.get_or_init(|| {
             let joints = &self.topology.joints;
@@ -36,25 +37,26 @@ impl<N: Real> TriMesh<N, 3> {
         or_panic(self.try_solid())
     }
 
-    /// Makes the mesh a body instead of a skin: all that it [encloses](Self::encloses) belongs to the shape.
+    /// Makes the mesh a body instead of a skin: the volume that it [encloses](Self::encloses)
+    /// belongs to the shape.
     ///
-    /// What lies wholly inside touches the body: its distance is zero, an impact is at time zero, and its contact leads
-    /// out through the nearest part of the surface, as deep as all of it lies below the plane through the nearest point
-    /// there. Points inside are held by it, and rays that start inside hit it at once if asked for a solid. Contacts
-    /// are those of a mesh with [one side](Self::one_sided), outside, but a solid that overlaps the surface is touched
-    /// from wherever its middle is. Inner surfaces whose fronts are turned to each other are cavities: what lies in
-    /// them is outside.
+    /// A solid wholly inside touches the body: its distance is zero, an impact is at time zero, and
+    /// its contact leads out through the nearest part of the surface. The depth is how far the
+    /// solid extends below the plane through the nearest point there. The body contains the points
+    /// inside, and rays that start inside hit it at once if cast against a solid. Contacts outside
+    /// are those of a mesh with [one side](Self::one_sided), but a solid that overlaps the surface
+    /// is touched wherever its centre is. Inner surfaces whose fronts face each other are cavities:
+    /// points in them are outside.
     ///
-    /// Later [`Self::set_vertices`] are not checked: while vertices that were at one position lie apart the mesh is a
-    /// skin with one side. [`Self::flipped`] makes it a skin for good.
+    /// Later [`Self::set_vertices`] are not checked: while vertices that were at one position are
+    /// apart, the mesh is a skin with one side. [`Self::flipped`] makes it a skin for good.
     ///
     /// Cost: O(n), and O(log n) for each wall of a cavity.
     ///
     /// # Errors
-    /// If the mesh does not [bound a volume](Self::is_volume): the error names the first edge at which it is open or
-    /// its fronts disagree. If a closed piece has its front inside and lies in no other piece: the error names a
-    /// triangle of it. A piece without volume has no inside.
-    ///
+    /// If the mesh does not [bound a volume](Self::is_volume): the error has the first edge at
+    /// which it is open or its fronts disagree. If a closed piece has its front inside and lies in
+    /// no other piece: the error has a triangle of it. A piece without volume has no inside.
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
     /// use impinge::dim3::procedural;
@@ -96,7 +98,7 @@ impl<N: Real> TriMesh<N, 3> {
         Ok(self)
     }
 
-    /// A power of two of the size of the mesh.
+    /// A power of two near the size of the mesh.
     fn scale(&self) -> f64 {
         let corners = self.tree.bounds().map(|bounds| [*bounds.mins(), *bounds.maxs()]);
         let largest = |corner: &Point<N, 3>| max_component(&corner.coords);
@@ -104,14 +106,14 @@ impl<N: Real> TriMesh<N, 3> {
         size.power_of_two_below().as_f64()
     }
 
-    /// The first edge that is not run along as often in one direction as in the other.
+    /// The error for the first edge that is not traversed equally often in both directions.
     fn opening(&self) -> MeshError {
         let joints = Joints::new(&self.vertices, &self.triangles);
         let ends = |part: u32, side: usize| {
             let corners = self.triangles[part as usize];
             [corners[side], corners[(side + 1) % 3]]
         };
-        // How often an edge is run along in the direction that is asked, and in the other.
+        // How often an edge is traversed in the given direction, and in the opposite one.
         let counts = |[from, to]: [u32; 2]| {
             let mut counts = [0; 2];
             for &part in joints.parts(from) {
@@ -135,7 +137,8 @@ impl<N: Real> TriMesh<N, 3> {
                 _ => {}
             }
         }
-        // Vertices that were moved together close nothing: triangles belong together as they did at first.
+        // Vertices that were moved onto each other do not join: the joints stay as they were at
+        // first.
         MeshError::NotClosed { part: 0, edge: ends(0, 0) }
     }
 }

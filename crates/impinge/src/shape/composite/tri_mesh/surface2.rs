@@ -1,4 +1,4 @@
-//! Filled triangles in 2D: which normals their union has at a side or a vertex.
+//! The seam rule of filled triangles in 2D: the normals of their union at a side or a vertex.
 
 use super::TriMesh;
 use crate::math::{Real, Vector, cross2, max_component};
@@ -6,6 +6,7 @@ use crate::shape::FeatureId;
 use crate::shape::surface::seam::{is_flat, slack};
 
 impl<N: Real> TriMesh<N, 2> {
+    /// [`Surface::admits`](crate::shape::Surface::admits) in 2D.
     pub(super) fn admits_in_plane(
         &self,
         part: u32,
@@ -28,8 +29,8 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// The normal on the side that the whole shape has as its border and that is nearest to the
-    /// one given, if within a right angle; `None` inside.
+    /// The normal of a border side that is nearest to the given normal, if within a right angle;
+    /// `None` if the triangle has no such side, as inside the shape.
     pub(super) fn snapped_in_plane(
         &self,
         part: u32,
@@ -40,23 +41,24 @@ impl<N: Real> TriMesh<N, 2> {
         facing.reduce(|best, own| if own.dot(normal) > best.dot(normal) { own } else { best })
     }
 
-    /// The outward normal of a side, if no triangle lies on its other side.
+    /// The outward normal of a side, if no triangle lies beyond it.
     fn open_normal(&self, part: u32, side: usize) -> Option<Vector<N, 2>> {
         let outward = -self.inward(part, side)?;
         self.is_open_along(part, side, &outward).then_some(outward)
     }
 
-    /// No other triangle at a side lies on the side of it that a direction points to.
+    /// Whether no other triangle at a side lies on the side of it that a direction points to.
     fn is_open_along(&self, part: u32, side: usize, direction: &Vector<N, 2>) -> bool {
         let mut is_open = true;
         self.each_beyond(part, side, |_, inward| is_open &= inward.dot(direction) <= slack());
         is_open
     }
 
+    /// Whether a side is a border with this normal; a triangle without area may have both normals.
     fn side_admits(&self, part: u32, side: usize, normal: &Vector<N, 2>) -> bool {
         match self.open_normal(part, side) {
             Some(own) => max_component(&(own - normal)) <= slack(),
-            // Without area it is a segment, which has both sides.
+            // A triangle without area is a segment, which has both sides.
             None => {
                 self.inward(part, side).is_none()
                     && (self.is_open_along(part, side, normal) || self.sticks_out(part, side))
@@ -64,11 +66,11 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// No side that leaves the corner rises along the normal, and the two highest do not form a
-    /// straight border.
+    /// Whether no side that leaves the corner rises along the normal, and the two highest do not
+    /// form a straight border.
     fn corner_admits(&self, part: u32, corner: usize, normal: &Vector<N, 2>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
-        // The highest side on the left of the normal and on its right; straight down is both.
+        // The highest side on the left of the normal and on its right; initially straight down.
         let (mut is_highest, mut highest) = (true, [-normal; 2]);
         for &triangle in self.topology.joints.parts(joint) {
             for along in self.leaving(triangle, joint) {

@@ -1,4 +1,4 @@
-//! Surfaces in 3D: which normals a mesh has at a face, an edge or a vertex.
+//! The seam rule of meshes in 3D: the normals at a face, an edge or a vertex.
 
 use super::TriMesh;
 use super::around::noise;
@@ -8,13 +8,13 @@ use crate::shape::surface::bend::{Bend, BendShape};
 use crate::shape::surface::seam::{CornerWays, Seam, is_across, slack};
 use crate::shape::{FaceSeams, FeatureId};
 
-/// The unit normal on the side that sees the corners counter-clockwise; zero without area.
+/// The unit normal on the side from which the corners run counter-clockwise; zero without area.
 pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
     let [a, b, c] = corners;
     let lengths = [length_of(&(b - a)), length_of(&(c - b)), length_of(&(a - c))];
     let longer = |best: usize, at: usize| if lengths[at] > lengths[best] { at } else { best };
     let longest = longer(longer(0, 1), 2);
-    // The two shorter sides lose least when multiplied.
+    // The product of the two shorter sides has the smallest rounding error.
     let tip = corners[(longest + 2) % 3];
     let sides = [corners[longest] - tip, corners[(longest + 1) % 3] - tip];
     let scale = lengths[longest].power_of_two_below();
@@ -25,6 +25,7 @@ pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector
 }
 
 impl<N: Real> TriMesh<N, 3> {
+    /// [`Surface::admits`](crate::shape::Surface::admits) in 3D.
     pub(super) fn admits_in_space(
         &self,
         part: u32,
@@ -44,8 +45,8 @@ impl<N: Real> TriMesh<N, 3> {
             }
     }
 
-    /// As two calls of [`Self::admits_in_space`], of which the second is about what the first did not admit;
-    /// what is around is looked at once.
+    /// [`Self::admits_in_space`] for two normals, the second only if the first is rejected; the
+    /// neighbourhood is evaluated once.
     pub(super) fn admits_in_turn_in_space(
         &self,
         part: u32,
@@ -69,6 +70,7 @@ impl<N: Real> TriMesh<N, 3> {
         }
     }
 
+    /// [`Surface::snapped`](crate::shape::Surface::snapped) in 3D; `None` without area.
     pub(super) fn snapped_in_space(
         &self,
         part: u32,
@@ -83,7 +85,7 @@ impl<N: Real> TriMesh<N, 3> {
         self.normals[triangle as usize].dot(normal)
     }
 
-    /// The normal of the triangle, on a side that it has.
+    /// Whether `normal` is the triangle's own normal, on a side that it has.
     fn is_own_normal(&self, part: u32, normal: &Vector<N, 3>) -> bool {
         self.snapped_in_space(part, normal)
             .is_some_and(|own| max_component(&(own - normal)) <= slack())
@@ -93,13 +95,13 @@ impl<N: Real> TriMesh<N, 3> {
         self.bent_edge_admits(self.bend_at(part, side).as_ref(), part, side, normal)
     }
 
-    /// How a side is bent, where that is plain.
+    /// The bend of a side; `None` if it is not plain.
     fn bend_at(&self, part: u32, side: usize) -> Option<Bend<N>> {
         let other = self.topology.single_across(part, side)?;
         let fronts = [part, other].map(|face| self.normals[face as usize]);
         let find = || {
-            // With fronts on one side, two that run along the side in one direction lie on one side of it:
-            // that is no bend, but perhaps a rim.
+            // If both triangles traverse the side in one direction, their fronts disagree and they
+            // lie on one side of it: no bend, but perhaps a rim.
             let ends = self.joint_ends(part, side);
             let is_opposite = self
                 .side_between(other, ends)
@@ -110,8 +112,8 @@ impl<N: Real> TriMesh<N, 3> {
         Some(Bend::of(self.bends.at(part, side, find)?, fronts))
     }
 
-    /// The edge is perpendicular to the normal, no face at it rises along the normal, and the faces
-    /// are not flat there.
+    /// Whether the edge is perpendicular to the normal, no face at it rises along the normal, and
+    /// the faces are not coplanar.
     fn bent_edge_admits(
         &self,
         bend: Option<&Bend<N>>,
@@ -135,8 +137,8 @@ impl<N: Real> TriMesh<N, 3> {
         is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.sticks_out(part, side))
     }
 
-    /// How much the steeper of the two sides of a triangle that leave a joint rises along a vector, at most of
-    /// length 1.
+    /// The rise, along a vector of length at most 1, of the steeper of the two sides that leave a
+    /// joint.
     fn rise_from(&self, triangle: u32, joint: u32, normal: &Vector<N, 3>) -> N {
         let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
         let mut highest = -N::ONE;
@@ -148,8 +150,8 @@ impl<N: Real> TriMesh<N, 3> {
         highest
     }
 
-    /// Whether a corner has a normal that is not the triangle's own; whether another triangle there is known not to be level
-    /// with this one is given.
+    /// Whether the surface has `normal`, which is not the triangle's own, at a corner. `is_bent`
+    /// says that another triangle there is known not to be coplanar with this one.
     pub(super) fn vertex_admits(
         &self,
         part: u32,
@@ -160,7 +162,7 @@ impl<N: Real> TriMesh<N, 3> {
         let around = self.topology.joints.parts(joint);
         match self.ways_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
             Some(false) => return false,
-            // Beyond triangles without area there may be others.
+            // Triangles without area may have others beyond them.
             Some(true) if around.iter().all(|&triangle| self.is_plain(triangle)) => return true,
             _ => {}
         }
@@ -175,7 +177,7 @@ impl<N: Real> TriMesh<N, 3> {
         seam.admits(self.is_one_sided)
     }
 
-    /// The sides that leave a corner, until they refuse a normal: those of the triangle that is asked come first.
+    /// Collects the sides that leave a corner, those of `part` first, until they reject the normal.
     fn ways_around<'n>(
         &self,
         part: u32,

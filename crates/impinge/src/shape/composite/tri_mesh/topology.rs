@@ -1,12 +1,12 @@
-//! Which triangles share a side.
+//! Adjacency of triangles across sides.
 
 use crate::math::order::sort_few;
 use crate::math::{Mapped, Point, Real};
 use crate::shape::composite::joints::Joints;
 
-/// What lies across a side of a triangle of a mesh.
+/// The neighbour across a side of a triangle of a mesh.
 ///
-/// Sides belong together by the positions of their ends, not by the indices.
+/// Sides join where the positions of their ends are equal, whatever the indices.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -19,40 +19,42 @@ use crate::shape::composite::joints::Joints;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeNeighbor {
-    /// Nothing: the side is on the border. So is a side without length.
+    /// None: the side is on the border. A side without length counts as one.
     Border,
     /// One triangle.
     Triangle {
         /// Its index.
         index: u32,
-        /// Both run along the side in the same direction, so that their fronts do not agree.
+        /// Whether both traverse the side in the same direction, so that their fronts disagree.
         is_flipped: bool,
     },
     /// More than one triangle.
     Several,
 }
 
-/// Stored for [`EdgeNeighbor::Border`] and [`EdgeNeighbor::Several`].
+/// Codes of [`EdgeNeighbor::Border`] and [`EdgeNeighbor::Several`] in `across`.
 const BORDER: u32 = u32::MAX;
 const SEVERAL: u32 = u32::MAX - 1;
 
-/// What a mesh knows of its triangles but their shape.
+/// The connectivity of a mesh, without its geometry.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Topology {
     pub(super) joints: Joints,
-    /// By triangle and side: the triangle across, or one of the two numbers above.
+    /// The triangle across each side of each triangle, or one of the two codes above.
     across: Vec<[u32; 3]>,
-    /// Each side is run along as often in one direction as in the other.
+    /// Whether each side is traversed equally often in both directions.
     pub(super) is_cycle: bool,
-    /// Vertices moved since: what is at one position need not be joined, nor the other way round.
+    /// Whether vertices moved since: joined vertices may be apart, and vertices at one position not
+    /// joined.
     pub(super) is_moved: bool,
 }
 
-/// A side that has a joint for its lower end: the other end, whose side it is and which, and whether
-/// it leads away from the joint.
+/// A side, stored at the joint of its lower end: the other end, the triangle, the side's index
+/// within it, and whether it leads away from the joint.
 type TopologySide = (u32, u32, u8, bool);
 
-/// All sides with two ends, by their lower ends, and by joint where its sides end.
+/// Returns all sides with two different ends, grouped by the lower end, and the end of each joint's
+/// group.
 fn sides_by_joint(joints: &Joints, triangles: &[[u32; 3]]) -> (Vec<TopologySide>, Vec<usize>) {
     let each = |visit: &mut dyn FnMut(u32, TopologySide)| {
         for (index, triangle) in (0..).zip(triangles) {
@@ -99,12 +101,12 @@ impl Topology {
         Self { joints, across, is_cycle, is_moved: false }
     }
 
-    /// The triangle that is alone across a side.
+    /// The triangle across a side, if it is the only one.
     pub(super) fn single_across(&self, triangle: u32, side: usize) -> Option<u32> {
         Some(self.across[triangle as usize][side]).filter(|&across| across < SEVERAL)
     }
 
-    /// More than one triangle is across a side.
+    /// Whether more than one triangle is across a side.
     pub(super) fn has_several_across(&self, triangle: u32, side: usize) -> bool {
         self.across[triangle as usize][side] == SEVERAL
     }
@@ -114,8 +116,8 @@ impl Topology {
     }
 }
 
-/// Tells each triangle of a side about the others. They are in ascending order, one without area
-/// perhaps twice.
+/// Stores the neighbours of each triangle of a group of equal sides. The group is in ascending
+/// order; a triangle without area may occur twice.
 fn link(group: &[TopologySide], across: &mut [[u32; 3]]) {
     for &(_, own, side, _) in group {
         let mut others = group.iter().map(|&(_, index, ..)| index).filter(|&index| index != own);

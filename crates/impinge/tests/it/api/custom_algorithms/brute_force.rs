@@ -1,4 +1,4 @@
-//! A broad phase of the user's own: all pairs, every time.
+//! A custom broad phase that compares all pairs at every update.
 
 use std::collections::BTreeSet;
 
@@ -7,10 +7,10 @@ use super::dim::broad_phase::{BroadPhase, BroadPhaseError, ProxyHandle};
 use super::dim::math::{Point, Real};
 use super::dim::query::Ray;
 
-/// Exact boxes, no margin, no memory but the pairs.
+/// Broad phase with exact boxes: no margin, and no state but the boxes and the pairs.
 #[derive(Clone, Debug)]
 pub(super) struct BruteForce<N: Real, T> {
-    /// By index; an index is used once.
+    /// Proxies by index; an index is never reused.
     proxies: Vec<Option<Proxy<N, T>>>,
     pairs: BTreeSet<(u32, u32)>,
 }
@@ -101,7 +101,7 @@ impl<N: Real, T> BroadPhase<N, Aabb<N>, T> for BruteForce<N, T> {
         self.find_mut(handle).map(|_| ())
     }
 
-    /// The filter is asked about all pairs at every update.
+    /// Does nothing: `update` asks the filter about all pairs anyway.
     fn deferred_recompute_all_proximities(&mut self) {}
 
     fn update(

@@ -1,4 +1,4 @@
-//! A proximity algorithm of the user's own.
+//! A custom proximity algorithm.
 
 use super::dim::math::{DIM, Isometry, Real};
 use super::dim::narrow_phase::{
@@ -8,7 +8,7 @@ use super::dim::query::Proximity;
 use super::dim::shape::{Ball, Shape};
 use super::generators::Policy;
 
-/// The proximity of two balls; answers that it cannot treat other solids.
+/// Proximity of two balls; its update returns `false` for all other solids.
 #[derive(Clone, Debug)]
 pub(super) struct OwnNearness(Proximity);
 
@@ -22,7 +22,8 @@ impl<N: Real> ProximityDetector<N, DIM> for OwnNearness {
         b: &dyn Shape<N, DIM>,
         margin: N,
     ) -> bool {
-        // To be forgotten: what a detector holds after it has refused does not count.
+        // An arbitrary wrong value: the result of a detector whose update returned `false` must not
+        // be used.
         self.0 = Proximity::Intersecting;
         let (Some(a), Some(b)) = (a.as_shape::<Ball<N>>(), b.as_shape::<Ball<N>>()) else {
             return false;

@@ -1,4 +1,5 @@
-//! A contact algorithm of the user's own: balls by hand, everything else by the library.
+//! A custom contact algorithm: it treats two balls itself and leaves all other solids to the
+//! library.
 
 use super::dim::math::{DIM, Isometry, Point, Real, Unit};
 use super::dim::narrow_phase::{
@@ -11,12 +12,12 @@ use super::dim::query::{
 use super::dim::shape::{Ball, FeatureId, Shape};
 use super::standalone::{at, vector};
 
-/// Contacts of two balls; holds none for other solids.
+/// Contacts of two balls; its update returns `false` for all other solids.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnBalls<N: Real> {
-    /// The number that names the pair, once it has one.
+    /// Id of the pair's contact, once it has been allocated.
     pair: Option<u64>,
-    /// How often the balls have come to touch.
+    /// How often the balls have begun to touch.
     touches: u32,
     manifold: ContactManifold<N>,
 }
@@ -84,12 +85,12 @@ impl<N: Real> ContactManifoldGenerator<N, DIM> for OwnBalls<N> {
     }
 }
 
-/// What a dispatcher of one's own does with pairs.
+/// Algorithms that a custom dispatcher gives to pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Policy {
-    /// [`OwnBalls`] for two balls, the library's algorithm in a box for others.
+    /// [`OwnBalls`] for two balls, the library's boxed algorithm for other pairs.
     Balls,
-    /// [`OwnBalls`] for every two solids, most of which it cannot treat.
+    /// [`OwnBalls`] for all pairs, although it refuses most of them.
     OnlyBalls,
     /// No algorithm.
     Nothing,
@@ -110,7 +111,9 @@ impl<N: Real> ContactDispatcher<N, DIM> for Policy {
     }
 }
 
-/// The kinematic made from public parts gives the contact back, and rolls the ball's contact.
+/// A kinematic made from public parts reproduces the contact at the poses it was made for; with the
+/// second ball moved a quarter turn around the first and 0.5 further out, the normal turns with it
+/// and the depth falls from 0.25 to -0.25.
 fn own_kinematics<N: Real>() {
     let (ball1, ball2) = (Ball::new(N::ONE), Ball::new(N::HALF));
     let (here, there) = (at::<N>(0.0, 0.0), at::<N>(1.25, 0.0));

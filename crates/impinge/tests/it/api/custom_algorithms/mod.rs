@@ -1,7 +1,7 @@
-//! Algorithms and shapes of the user's own, written against the names of the plane and of space.
+//! Custom algorithms and shapes, written against `impinge::dim2` and `impinge::dim3`.
 //!
-//! The same sources are compiled twice, with `dim` being `impinge::dim2` and `impinge::dim3`: what a
-//! user writes for one dimension is right for the other but for the numbers.
+//! Each source is compiled twice, with `dim` standing for one of the two modules. The tests thereby
+//! show that code for one dimension is right for the other once the numbers are adapted.
 
 #![allow(clippy::duplicate_mod, reason = "once for each dimension")]
 

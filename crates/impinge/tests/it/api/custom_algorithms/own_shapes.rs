@@ -1,5 +1,5 @@
-//! Shapes of the user's own join every query: an ellipsoid known by its support points, and a crate
-//! that stands for a box.
+//! Tests that custom shapes work in every query: an ellipsoid known by its support points, and a
+//! crate that delegates to a box.
 
 use super::dim::bounding_volume::Aabb;
 use super::dim::math::{DIM, Isometry, Point, Pose, Real, Unit, Vector};
@@ -18,7 +18,7 @@ use super::dim::shape::{
 use super::dim::world::{CollisionGroups, CollisionObject, CollisionWorld, GeometricQueryType};
 use super::standalone::{at, cube, vector};
 
-/// The points whose distance from the origin, each axis divided by its radius, is at most one.
+/// An ellipsoid: the points `x` with `Σ (x_i / radii_i)² <= 1`.
 #[derive(Clone, Debug)]
 struct Ellipsoid<N: Real> {
     radii: Vector<N>,
@@ -46,7 +46,7 @@ impl<N: Real> Shape<N, DIM> for Ellipsoid<N> {
     }
 }
 
-/// A box under another name.
+/// A box behind a custom type.
 #[derive(Clone, Debug)]
 struct Crate<N: Real> {
     walls: Cuboid<N>,
@@ -64,7 +64,7 @@ impl<N: Real> Shape<N, DIM> for Crate<N> {
     }
 }
 
-/// One solid of each kind, of size 1.
+/// One solid of each kind, about 1 large.
 fn others<N: Real>() -> Vec<Box<dyn Shape<N, DIM>>> {
     let point = |x: f64, y: f64| Point::from(vector::<N>(x, y));
     vec![
@@ -78,7 +78,7 @@ fn others<N: Real>() -> Vec<Box<dyn Shape<N, DIM>>> {
     ]
 }
 
-/// What searches by support points loses.
+/// Bound on the error of searches by support points.
 fn tolerance<N: Real>() -> f64 {
     if N::EPSILON.as_f64() < 1e-10 { 1e-7 } else { 2e-3 }
 }
@@ -90,11 +90,12 @@ fn check_near<N: Real>(a: N, b: N, what: &str) {
 
 #[track_caller]
 fn check_close<N: Real>(a: &Vector<N>, b: &Vector<N>, what: &str) {
-    // Where the distance hardly changes, points and directions are known less well.
+    // Where the distance has its minimum it changes with the square of the offset, so points and
+    // directions are known only to the root of the tolerance.
     assert!((a - b).norm().as_f64() <= tolerance::<N>().sqrt(), "{what}: {a} and {b}");
 }
 
-/// Two shapes that are the same set answer the same to everything.
+/// Every query gives the same result for two shapes that are the same set of points.
 fn check_twins<N: Real>(own: &dyn Shape<N, DIM>, known: &dyn Shape<N, DIM>) {
     for (index, other) in others::<N>().iter().enumerate() {
         let other = &**other;
@@ -134,7 +135,8 @@ fn check_contact<N: Real>(
     let both = [own, known].map(|shape| contact(here, shape, there, other, prediction));
     if let [Some(a), Some(b)] = &both {
         check_near(a.depth, b.depth, &format!("depth of {what}"));
-        // Deep inside there may be several ways out that are equally short.
+        // A shape deep inside may have several shortest ways out, so only shallow overlaps fix the
+        // normal.
         if a.depth < N::lit(0.25) {
             check_close(&a.normal, &b.normal, &format!("normal of {what}"));
         }
@@ -185,7 +187,7 @@ fn check_points_and_rays<N: Real>(own: &dyn Shape<N, DIM>, known: &dyn Shape<N, 
     assert!((15..45).contains(&insides) && hits > 40, "{insides} inside, {hits} hits");
 }
 
-/// A round ellipsoid is a ball.
+/// Compares an ellipsoid of equal radii with a ball.
 fn ellipsoids<N: Real>() {
     let round = Ellipsoid { radii: Vector::repeat(N::ONE) };
     let ball = Ball::new(N::ONE);
@@ -193,7 +195,7 @@ fn ellipsoids<N: Real>() {
     check_twins::<N>(&round, &ball);
     check_points_and_rays::<N>(&round, &ball);
 
-    // One that is not round, along its axes, by hand.
+    // An ellipsoid with radii 2 and 0.5: its distances along the axes follow by hand.
     let long = Ellipsoid { radii: vector::<N>(1.0, -0.5) + Vector::repeat(N::ONE) };
     let (here, there) = (at::<N>(0.0, 0.0), at::<N>(4.0, 0.0));
     check_near(distance(&here, &long, &there, &ball), N::ONE, "2 + 1 + 1 = 4");
@@ -209,7 +211,8 @@ fn ellipsoids<N: Real>() {
     check_near(hit.expect("hits").toi, N::lit(1.5), "3 at speed 2");
 }
 
-/// A manifold of one's own shape on a floor follows it as it rolls.
+/// The manifold of a custom round shape on a floor keeps one point with the same contact id while
+/// the shape moves along the floor.
 fn manifolds<N: Real>() {
     let (round, floor) = (Ellipsoid { radii: Vector::repeat(N::ONE) }, cube::<N>(3.0));
     let (mut generator, mut ids) = (PairManifoldGenerator::<N>::default(), IdAllocator::new());
@@ -260,7 +263,7 @@ fn in_worlds<N: Real>() {
     assert!(shape.as_ref().as_shape::<Ball<N>>().is_none(), "and nothing else");
 }
 
-/// A shape that delegates is the other one to the last bit.
+/// A shape that delegates to another one gives the same bits.
 fn crates<N: Real>() {
     let walls = Cuboid::new(vector::<N>(1.0, 0.5) + Vector::repeat(N::lit(0.25)));
     let own = Crate { walls, content: "apples" };

@@ -1,5 +1,5 @@
-//! A narrow phase of the user's own: a sorted list of pairs, each with an algorithm in a box, all
-//! computed anew at every update.
+//! A custom narrow phase: a sorted list of pairs, each with a boxed algorithm, all computed at
+//! every update.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use super::dim::world::{CollisionObject, CollisionObjects, GeometricQueryType};
 type Handle = CollisionObjectHandle;
 type Key = (Handle, Handle);
 
-/// What is kept of a pair.
+/// State kept for a pair between updates.
 #[derive(Clone)]
 struct Entry<N: Real> {
     work: Work<N>,
@@ -50,7 +50,7 @@ impl<N: Real> Work<N> {
     }
 }
 
-/// All pairs, in order.
+/// All pairs, sorted by their handles.
 #[derive(Clone, Default)]
 pub(super) struct PlainNarrowPhase<N: Real> {
     pairs: BTreeMap<Key, Entry<N>>,
@@ -65,7 +65,7 @@ impl<N: Real> PlainNarrowPhase<N> {
     }
 }
 
-/// Puts the difference of what a pair was and is now into events.
+/// Pushes events for each difference between the state of a pair before and after an update.
 fn note<N: Real>(
     (collider1, collider2): Key,
     entry: &mut Entry<N>,
@@ -138,7 +138,7 @@ impl<N: Real, T> NarrowPhase<N, DIM, T> for PlainNarrowPhase<N> {
     fn handle_change(&mut self, _: &mut Events, objects: &CollisionObjects<N, T>, handle: Handle) {
         let mine = self.pairs.iter_mut().filter(|(key, _)| key.0 == handle || key.1 == handle);
         for (key, entry) in mine {
-            // Pairs of objects that are gone would have been removed by now.
+            // The pairs of removed objects have been removed before this call.
             let both = objects.get(key.0).zip(objects.get(key.1)).expect("both live");
             entry.work = Work::new(both.0, both.1);
         }

@@ -1,4 +1,4 @@
-//! All of it in the plane.
+//! The tests of this folder in 2D.
 
 use impinge::dim2 as dim;
 

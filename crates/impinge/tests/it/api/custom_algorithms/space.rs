@@ -1,4 +1,4 @@
-//! All of it in space.
+//! The tests of this folder in 3D.
 
 use impinge::dim3 as dim;
 

@@ -1,5 +1,6 @@
-//! Two worlds play the same scene: the usual one, and one whose phases and algorithms are exchanged
-//! on the way. Both must say the same at every step, also at that of an exchange.
+//! Two worlds play the same scene: one with the default parts, and one whose phases and algorithms
+//! are exchanged on the way. Both must report the same contacts, proximities and events at every
+//! step, also at the steps of an exchange.
 
 use std::collections::BTreeMap;
 
@@ -17,10 +18,10 @@ use super::generators::Policy;
 use super::plain_narrow_phase::PlainNarrowPhase;
 use crate::support::scene_stage::{Play, Player, World, assert_views_agree};
 
-/// The indices of the handles, which are the same in both worlds.
+/// The uids of two handles; those of the same objects are equal in both worlds.
 type Key = (usize, usize);
 
-/// What is exchanged before the update of a step.
+/// The parts that are exchanged before the update of a step.
 #[derive(Clone, Copy, Debug)]
 enum Exchange {
     Algorithms(Policy),
@@ -51,7 +52,7 @@ impl Exchange {
     }
 }
 
-/// The pairs that have contacts, with the largest depth of each.
+/// The pairs that have contacts, each with its largest depth.
 fn touching<N: Real>(world: &World<N, DIM>) -> BTreeMap<Key, f64> {
     assert_views_agree(world);
     let pairs = world.contact_manifolds().map(|(a, b, manifold)| {
@@ -61,7 +62,7 @@ fn touching<N: Real>(world: &World<N, DIM>) -> BTreeMap<Key, f64> {
     pairs.collect()
 }
 
-/// The pairs that began (`true`) and ended.
+/// The pairs of the contact events: `true` for started, `false` for stopped.
 fn told<N: Real>(world: &World<N, DIM>) -> Vec<(Key, bool)> {
     let key = |event: &ContactEvent| {
         let (a, b) = event.handles();
@@ -80,7 +81,7 @@ fn nearness<N: Real>(world: &World<N, DIM>) -> BTreeMap<Key, Proximity> {
 struct Twins<N: Play<DIM>> {
     usual: Player<N, DIM>,
     other: Player<N, DIM>,
-    /// The pair that each name has stood for.
+    /// The pair of each contact id that was seen: an id must never pass to another pair.
     names: BTreeMap<ContactId, Key>,
     events: usize,
 }
@@ -105,12 +106,12 @@ impl<N: Play<DIM>> Twins<N> {
         }
     }
 
-    /// Both worlds say the same.
+    /// Asserts that both worlds report the same events, proximities and contacts.
     fn compare(&mut self, place: &str) {
         let (usual, other) = (&self.usual.world, &self.other.world);
         other.validate().expect("the parts agree");
         assert_eq!(told(usual), told(other), "{place}");
-        // In words: the handles of two worlds differ, and read alike.
+        // Compared as text: the handles of two worlds differ, but print alike.
         let near = [usual, other].map(|world| format!("{:?}", world.proximity_events()));
         assert_eq!(near[0], near[1], "{place}");
         assert_eq!(nearness(usual), nearness(other), "{place}");
@@ -123,7 +124,7 @@ impl<N: Play<DIM>> Twins<N> {
     }
 }
 
-/// Plays on with an exchange every few steps.
+/// Plays the scene with an exchange every few steps.
 fn exchanges<N: Play<DIM>>(scene: &Scene<DIM>) {
     let plan = [
         Exchange::Algorithms(Policy::Balls),
@@ -145,7 +146,7 @@ fn exchanges<N: Play<DIM>>(scene: &Scene<DIM>) {
     assert!(twins.events > 60, "{} events", twins.events);
 }
 
-/// The sparse drift as balls, every fifth of which asks for proximity.
+/// The scene of sparse drift with all objects turned into balls, every fifth of which is a sensor.
 fn balls() -> Scene<DIM> {
     let mut scene = sparse_drift::<DIM>(150);
     for (index, object) in scene.objects.iter_mut().enumerate() {
@@ -167,7 +168,8 @@ fn phases_are_exchanged_without_false_or_lost_events() {
     exchanges::<f64>(&spawn_and_despawn(200));
 }
 
-/// Without algorithms all that was ends, once; with them again, all that is begins, once.
+/// When all pairs lose their algorithm, every contact stops with one event; when they get one
+/// again, every contact starts with one event.
 fn pairs_without_algorithm<N: Play<DIM>>() {
     let mut twins = Twins::<N>::new(&balls());
     for step in 0..12 {
@@ -202,7 +204,8 @@ fn pairs_without_algorithm<N: Play<DIM>>() {
     }
 }
 
-/// Algorithms that answer that they cannot treat two solids: these do not interact.
+/// Pairs whose algorithm refuses them have no contacts and no events. Every third object is no
+/// ball, so that such pairs occur.
 fn pairs_that_are_refused<N: Play<DIM>>() {
     let mut scene = balls();
     for (object, other) in scene.objects.iter_mut().zip(sparse_drift::<DIM>(150).objects).step_by(3)

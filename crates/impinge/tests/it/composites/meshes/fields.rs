@@ -1,4 +1,5 @@
-//! A height field has the normals of the mesh of its triangles, and of the line of its segments.
+//! Tests that a height field has the normals of the mesh of its triangles, and of the line of its
+//! segments.
 
 use impinge::math::{Real, Space, Vector};
 use impinge::shape::{CompositeShape, FeatureId, HeightField, PartSolid, Polyline, TriMesh};
@@ -6,7 +7,7 @@ use impinge_reference::random::Random;
 
 use super::{mesh, surface, vector};
 
-/// The corners of all parts, in order.
+/// Corners of all parts, in order.
 fn corners<N: Real, const D: usize>(shape: &dyn CompositeShape<N, D>) -> Vec<[f64; D]> {
     let of_part = |part| match shape.part(part).solid {
         PartSolid::Triangle(triangle) => triangle.corners().to_vec(),
@@ -17,7 +18,7 @@ fn corners<N: Real, const D: usize>(shape: &dyn CompositeShape<N, D>) -> Vec<[f6
     all.map(|corner| std::array::from_fn(|axis| corner[axis].as_f64())).collect()
 }
 
-/// The two admit the same at all features, for random normals and for those of the parts.
+/// Both surfaces admit the same normals at all features: random ones, and those of the parts.
 fn compare<N: Space<D>, const D: usize>(
     field: &dyn CompositeShape<N, D>,
     twin: &dyn CompositeShape<N, D>,
@@ -71,7 +72,7 @@ fn a_line_is_like_the_polyline_of_its_segments() {
     for reach in [1.0, 0.002, 0.0] {
         let heights = (0..30).map(|_| random.range(-reach, reach)).collect();
         let field = HeightField::<f64, 2>::new(heights, vector([29.0, 1.0]));
-        // The front of a field is on the left of its segments, that of a line on their right.
+        // The front of a field is on the left of its segments, that of a polyline on the right.
         let vertices = corners(&field).into_iter().map(|p| vector::<f64, 2>(p).into()).collect();
         let segments = (0..field.num_parts()).map(|i| [2 * i, 2 * i + 1]).collect();
         let twin = Polyline::<f64, 2>::new(vertices, segments);

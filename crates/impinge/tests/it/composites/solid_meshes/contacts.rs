@@ -1,4 +1,5 @@
-//! Contacts of what is inside against brute force; impacts, points and rays.
+//! Compares contacts with solid meshes with brute force, for shapes inside and across the surface; also impacts, points
+//! and rays.
 
 use super::{P3, V3, at, ball, cuboid, inverted, joined, skin, solid};
 use crate::support::query_support;
@@ -13,7 +14,7 @@ use impinge::shape::{Ball, Compound, Cuboid, Shape, ShapeHandle, TriMesh};
 use query_support::random::Random;
 use query_support::samples::{SPACE, sample3};
 
-/// The way to the nearest of all triangles, and how far the solid reaches behind the plane across it there.
+/// Distance to the nearest of all triangles, and how far the solid reaches behind the plane through the nearest point.
 fn brute<N: Space<3>>(mesh: &TriMesh<N, 3>, m2: &Isometry3<N>, solid: &dyn Shape<N, 3>) -> (N, N) {
     let here = Isometry3::identity();
     let mut nearest = N::INFINITY;
@@ -61,7 +62,7 @@ fn against_brute_force<N: Space<3>>() {
             }
             assert_eq!(found.is_some(), holds == Some(true), "{m2:?} {middle:?}");
             if let Some(found) = found {
-                // Parts that are equally near may lead out differently.
+                // Parts that are equally near may give different normals.
                 let gap = distance(
                     &Isometry3::identity(),
                     &skin((mesh.vertices().to_vec(), mesh.triangles().to_vec())),

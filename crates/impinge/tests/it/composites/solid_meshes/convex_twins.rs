@@ -1,4 +1,5 @@
-//! A solid mesh of a convex solid is as far from others as the hull of its vertices.
+//! Compares a solid mesh of a convex solid with the hull of its vertices: both have the same
+//! distances.
 
 use super::{Soup, ball, cuboid, solid};
 use crate::support::query_support;
@@ -21,7 +22,7 @@ fn twins<N: Space<3>>(soup: Soup<N>) -> Twins<N> {
     Twins { hull: ConvexHull::try_from_points(&soup.0).expect("a volume"), mesh: solid(soup) }
 }
 
-/// Both are as far from a solid, in both roles.
+/// Compares the distances of both from a solid, in both orders.
 fn compare<N: Space<3>>(
     twins: &Twins<N>,
     m1: &Isometry3<N>,
@@ -59,7 +60,7 @@ fn compare<N: Space<3>>(
     of_mesh == N::ZERO
 }
 
-/// Moving by the depth of the contact parts the two, and both agree whichever is first.
+/// Moving by the depth of the contact separates the two, and both orders agree.
 fn check_way_out<N: Space<3>>(
     Twins { mesh, hull }: &Twins<N>,
     m1: &Isometry3<N>,
@@ -72,7 +73,7 @@ fn check_way_out<N: Space<3>>(
     assert_eq!(back, *found, "in both roles");
     let off = found.world1 - found.normal.into_inner() * found.depth - found.world2;
     assert!(off.norm() <= noise, "{found:?}");
-    // What lies wholly inside is parted by the way out.
+    // For a solid wholly inside, the depth is at least the exact one of the hull.
     let exact = contact(m1, hull, m2, other, N::ZERO).map_or(N::ZERO, |exact| exact.depth);
     let is_convex = other.geometry().as_composite().is_none();
     assert!(
@@ -86,7 +87,7 @@ fn check_way_out<N: Space<3>>(
     }
 }
 
-/// The solid meets the surface.
+/// Whether the solid meets the surface of the mesh.
 fn crosses<N: Space<3>>(
     mesh: &TriMesh<N, 3>,
     m1: &Isometry3<N>,
@@ -151,7 +152,7 @@ fn resting<N: Space<3>>() {
                     "{found:?} at {place:?}"
                 );
                 assert_eq!(found == N::ZERO, expected <= N::ZERO, "{found:?} at {place:?}");
-                // Nearest is the wall along the axis, or all are.
+                // The nearest wall is the one along the axis, or all are equally near.
                 let depth =
                     contact(&here, &twins.mesh, &m2, other, N::ZERO).map(|found| found.depth);
                 let depth = depth.unwrap_or(-found);

@@ -1,4 +1,4 @@
-//! Closed meshes and lines as bodies: `solid`.
+//! Tests of closed meshes and lines made solid by `solid`.
 
 mod contacts;
 mod convex_twins;
@@ -17,20 +17,20 @@ type P3 = Point<f64, 3>;
 /// Vertices and triangles.
 type Soup<N> = (Vec<Point<N, 3>>, Vec<[u32; 3]>);
 
-/// The surface of a box around a point.
+/// Surface of a box around a point.
 fn cuboid<N: Real>(half: [f64; 3], middle: [f64; 3]) -> Soup<N> {
     let lit = |xs: [f64; 3]| Vector::<N, 3>::from(xs.map(N::lit));
     let surface = surfaces::cuboid(&Cuboid::new(lit(half)));
     (surface.vertices.iter().map(|corner| corner + lit(middle)).collect(), surface.triangles)
 }
 
-/// The surface of a ball around the origin.
+/// Surface of a ball around the origin.
 fn ball<N: Real>(radius: f64, subdivisions: u32) -> Soup<N> {
     let surface = surfaces::ball(&Ball::new(N::lit(radius)), subdivisions);
     (surface.vertices, surface.triangles)
 }
 
-/// The same surface seen from its other side.
+/// The surface with all windings reversed.
 fn inverted<N: Real>((corners, triangles): Soup<N>) -> Soup<N> {
     (corners, triangles.iter().map(|&[a, b, c]| [a, c, b]).collect())
 }

@@ -1,4 +1,5 @@
-//! What is inside: pieces of composites, cavities, and bodies among the parts of compounds.
+//! Tests shapes inside a solid mesh: parts of composites, cavities, and solid meshes as parts of
+//! compounds.
 
 use super::{P3, Soup, V3, at, ball, cuboid, inverted, joined, skin, solid};
 
@@ -10,7 +11,7 @@ use impinge::shape::{
 
 type Found = Option<(f64, Vector<f64, 3>)>;
 
-/// Distance, and depth and normal of the contact within 0, with the shapes in both roles.
+/// Distance, and depth and normal of the contact with prediction 0; both orders must agree.
 fn between(one: &dyn Shape<f64, 3>, place: [f64; 3], other: &dyn Shape<f64, 3>) -> (f64, Found) {
     let (here, there) = (Isometry3::identity(), at(place));
     let near = distance(&here, one, &there, other);
@@ -36,7 +37,7 @@ fn a_part_inside_is_enough() {
     assert_eq!((near, found), (0.0, Some((1.25, V3::x()))), "the other ball is far outside");
     let seen = witness(&at([0.0; 3]), &body, &at([3.0, 0.0, 0.0]), &pair, 1.0).expect("near");
     assert_eq!((seen.distance, seen.part2), (-1.25, 0));
-    // One that crosses the surface and one that is deep inside: the deeper counts.
+    // One part crosses the surface and one is deep inside: the deeper one gives the contact.
     let pair = Compound::new(vec![(at([0.0; 3]), small()), (at([4.0, 0.0, 0.0]), small())]);
     let (_, found) = between(&body, [0.0, 2.0, 0.0], &pair);
     assert_eq!(found, Some((2.25, V3::y())));
@@ -51,7 +52,7 @@ fn surfaces_inside_are_as_deep_as_a_whole() {
         let (near, found) = between(&body, [3.0, 0.0, 0.0], &inner);
         assert_eq!((near, found), (0.0, Some((1.5, V3::x()))), "not only its nearest triangle");
     }
-    // Two surfaces in one mesh: one is outside.
+    // Two surfaces in one mesh, of which one is outside the solid.
     let apart = joined(&[cuboid([0.5; 3], [0.0; 3]), cuboid([0.5; 3], [30.0, 0.0, 0.0])]);
     let (near, found) = between(&body, [0.0, -3.0, 0.0], &skin(apart));
     assert_eq!((near, found), (0.0, Some((1.5, -V3::y()))));
@@ -119,7 +120,7 @@ fn compounds_that_hold_bodies() {
         let near = between(shape, [-9.0, up, 0.0], &small).0;
         assert_eq!(near, 0.75, "the other child is a skin");
     }
-    // The compound in a body as well as the other way round.
+    // The compound inside a solid mesh, with the mesh as either shape.
     let shell = solid(cuboid([30.0; 3], [0.0; 3]));
     assert_eq!(between(&shell, [0.0; 3], &pair).0, 0.0);
 }
@@ -135,7 +136,7 @@ fn half_spaces_have_no_inside_in_a_body() {
 #[test]
 fn sides_of_a_body_are_outside() {
     let (body, small) = (solid(block()), Ball::new(0.5));
-    // From where its middle is does not matter, as long as it overlaps the surface.
+    // As long as the ball overlaps the surface, it does not matter on which side its centre is.
     for (place, depth) in [(4.25, 0.25), (3.75, 0.75), (3.5, 1.0), (3.25, 1.25)] {
         assert_eq!(
             between(&body, [place, 0.0, 0.0], &small),
@@ -143,13 +144,14 @@ fn sides_of_a_body_are_outside() {
             "{place}"
         );
     }
-    // A plate that is thinner than the ball: the shorter way.
+    // A plate thinner than the ball: the shorter way out counts.
     let plate = solid(cuboid([4.0, 0.0625, 4.0], [0.0; 3]));
     for (place, depth, up) in [(0.5, 0.0625, 1.0), (0.25, 0.3125, 1.0), (-0.125, 0.4375, -1.0)] {
         let found = between(&plate, [0.3, place, 0.1], &small).1;
         assert_eq!(found, Some((depth, V3::y() * up)), "{place}");
     }
-    // Near, on the outside of one wall, a ball is behind the others, which are within the prediction.
+    // A ball near the outside of one face lies behind the other faces, which are also within the
+    // prediction.
     let (here, there) = (at([0.0; 3]), at([0.3, 0.75, 0.1]));
     let found = contact(&here, &plate, &there, &small, 5.0).expect("near");
     assert_eq!((found.depth, found.normal.y), (-0.1875, 1.0));
@@ -158,7 +160,8 @@ fn sides_of_a_body_are_outside() {
 #[test]
 fn slivers_and_doubled_triangles() {
     let (corners, mut triangles) = block();
-    // A needle and its back, and a triangle without area along an edge, all through corners that exist.
+    // A triangle and its reverse, and triangles without area along an edge, all with existing
+    // corners.
     let [a, b, c] = triangles[0];
     triangles.extend([[a, b, c], [a, c, b], [a, b, b], [b, a, a]]);
     let body = TriMesh::new(corners, triangles).solid();

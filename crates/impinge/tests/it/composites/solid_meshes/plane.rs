@@ -1,4 +1,4 @@
-//! Closed lines as bodies.
+//! Tests closed lines made solid.
 
 use crate::support::query_support;
 use crate::support::samples::samples;
@@ -75,7 +75,7 @@ fn a_line_is_as_far_as_its_polygon() {
 
 #[test]
 fn holes_pieces_and_parts() {
-    // A square with a square hole, and a square beside it.
+    // A square with a square hole, and another square beside it.
     let outer = [[0.0, 0.0], [8.0, 0.0], [8.0, 8.0], [0.0, 8.0]];
     let hole = [[2.0, 2.0], [2.0, 6.0], [6.0, 6.0], [6.0, 2.0]];
     let beside = [[20.0, 0.0], [24.0, 0.0], [24.0, 4.0], [20.0, 4.0]];

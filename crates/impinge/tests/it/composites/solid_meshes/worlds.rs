@@ -1,4 +1,4 @@
-//! Bodies in worlds and batches.
+//! Tests solid meshes in worlds and batches.
 
 use super::{P3, V3, at, ball, cuboid, skin, solid};
 
@@ -19,7 +19,7 @@ fn contacts() -> GeometricQueryType<f64> {
     GeometricQueryType::Contacts(0.01, 0.0)
 }
 
-/// A world of a body and a small ball in it.
+/// A world with a solid mesh and a small ball in it.
 fn stage(
     body: TriMesh<f64, 3>,
     query: GeometricQueryType<f64>,

@@ -1,5 +1,6 @@
-//! Random solids of all kinds, each with the distance of a point from its surface, in `f64` and by the
-//! reference or by hand; the convex ones also as the reference knows them with all digits.
+//! Random solids of all kinds, each with a function for the distance of a point from its surface,
+//! computed in `f64` by the reference or by hand. The convex ones also have their description for
+//! the precise reference.
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector};
@@ -15,24 +16,24 @@ use impinge_reference::random::Random;
 
 use super::query_support::solids::RoundHull;
 
-/// How far a local point is from the surface of a solid, or of one part of a composite.
+/// Distance of a local point from the surface of a solid, or of one part of a composite.
 type Off<const D: usize> = Box<dyn Fn(&[f64; D]) -> f64>;
 
 pub(crate) struct Form<N: Real, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
-    /// In words.
+    /// Description for messages.
     pub(crate) text: String,
-    /// The same solid with all digits; `None` for composites.
+    /// The solid as the precise reference knows it; `None` for composites.
     pub(crate) precise: Option<precise::Solid<D>>,
     offs: Vec<Off<D>>,
-    /// No point is farther from the local origin; zero for a half-space.
+    /// Greatest distance of a point from the local origin; zero for a half-space.
     pub(crate) reach: f64,
-    /// By so much points of a manifold beside the deepest may be off: a part that leans and is rounded is
-    /// taken as if its surface were flat up to its end.
+    /// Error allowed for points beside the deepest one: a rounded part that leans is treated as
+    /// flat up to its end.
     pub(crate) beside: f64,
 }
 
-/// 1 / cosine - 1 of the largest angle by which a part may lean, atan(1/2).
+/// 1 / cosine - 1 of atan(1/2), the largest angle by which a part may lean.
 const LEANING: f64 = 0.1181;
 
 impl<N: Real, const D: usize> Form<N, D> {
@@ -40,7 +41,7 @@ impl<N: Real, const D: usize> Form<N, D> {
         Self { shape: ShapeHandle::new(shape), text, precise: None, offs, reach, beside: 0.0 }
     }
 
-    /// The solid with all digits.
+    /// Adds the description for the precise reference.
     fn with(self, precise: precise::Solid<D>) -> Self {
         Self { precise: Some(precise), ..self }
     }
@@ -64,13 +65,13 @@ impl<N: Real, const D: usize> Form<N, D> {
         Self::new(shape, format!("{parts:?}"), reach, offs)
     }
 
-    /// How far a local point is from the surface, of a composite from that of its nearest part.
+    /// Distance of a local point from the surface; for a composite, from that of its nearest part.
     pub(crate) fn off(&self, point: &[f64; D]) -> f64 {
         self.offs.iter().map(|off| off(point).abs()).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// `None` for solids of revolution, which only space has.
+/// The solid for the precise reference; `None` for solids of revolution, which exist in 3D only.
 fn with_all_digits<const D: usize>(solid: &Solid<D>) -> Option<precise::Solid<D>> {
     match solid {
         Solid::Rounded { vertices, radius } => {
@@ -86,16 +87,17 @@ fn metered<const D: usize>(solid: &Solid<D>, inflation: f64) -> Off<D> {
     Box::new(move |point| meter.measure(point).0 - inflation)
 }
 
-/// Which sizes solids have.
+/// Range of the sizes of random solids.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sizes {
-    /// Lengths are between this and 16 times as much.
+    /// Lengths lie between this and 16 times as much.
     pub(crate) least: f64,
-    /// Half of the lengths are zero, and corners lie on a line or coincide; those of polygons and hulls do not.
+    /// Whether half of the lengths are zero and corners lie on a line or coincide; polygons and
+    /// hulls are exempt.
     pub(crate) zeros: bool,
 }
 
-/// Draws sizes and points that the scalar holds.
+/// Draws sizes and points that the scalar represents exactly.
 struct Draw<'a> {
     random: &'a mut Random,
     sizes: Sizes,
@@ -109,7 +111,7 @@ impl Draw<'_> {
         self.length::<N>()
     }
 
-    /// Not zero.
+    /// A length that is not zero.
     fn length<N: Real>(&mut self) -> f64 {
         N::lit(self.random.magnitude(self.sizes.least, 4)).as_f64()
     }
@@ -118,7 +120,7 @@ impl Draw<'_> {
         std::array::from_fn(|_| self.size::<N>())
     }
 
-    /// Corners of a wide triangle or a thick tetrahedron.
+    /// Corners of a triangle or tetrahedron that is not thin.
     fn corners<N: Real, const D: usize, const K: usize>(&mut self) -> [[f64; D]; K] {
         if self.sizes.zeros {
             return self.corners_of_line::<N, D, K>();
@@ -131,7 +133,7 @@ impl Draw<'_> {
             let apart = |a: [f64; D], b: [f64; D]| dot(&a, &b).abs() < 0.8 * norm(&a) * norm(&b);
             let is_wide = (1..K).all(|corner| norm(&side(corner)) > 0.3 * limit)
                 && (2..K).all(|corner| apart(side(corner), side(corner - 1)));
-            // The triangles of the plane run counter-clockwise.
+            // Triangles in 2D must be counter-clockwise.
             let is_left = D != 2 || K < 3 || side(1)[0] * side(2)[1] > side(1)[1] * side(2)[0];
             if is_wide && is_left {
                 return corners;
@@ -141,7 +143,7 @@ impl Draw<'_> {
 }
 
 impl Draw<'_> {
-    /// Corners on a line through the origin, some of which may coincide.
+    /// Corners on a line through the origin; some of them may coincide.
     fn corners_of_line<N: Real, const D: usize, const K: usize>(&mut self) -> [[f64; D]; K] {
         let limit = self.length::<N>();
         let end = self.random.vector::<D>(limit).map(|x| N::lit(x).as_f64());
@@ -163,7 +165,7 @@ fn up<const D: usize>(length: f64) -> [f64; D] {
 
 const COMMON: usize = 12;
 
-/// The kinds that both dimensions have, by number.
+/// The solid of kind `kind` among those of both dimensions.
 fn common<N: Space<D>, const D: usize>(kind: usize, draw: &mut Draw<'_>) -> Form<N, D> {
     let (half, radius, sizes) = (draw.size::<N>(), draw.size::<N>(), draw.sizes::<N, D>());
     let cuboid = || Cuboid::new(vector::<N, D>(&sizes));
@@ -216,10 +218,10 @@ fn common<N: Space<D>, const D: usize>(kind: usize, draw: &mut Draw<'_>) -> Form
     }
 }
 
-/// To first order, which is enough near the surface.
+/// Distance from the surface of an ellipsoid to first order, which suffices near the surface.
 fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
     if half_axes.contains(&0.0) {
-        // Flat: its surface is all of it.
+        // The surface of a flat ellipsoid is all of it.
         let solid = precise::Solid::ellipsoid(half_axes);
         return Box::new(move |point| off_precise(&solid, point));
     }
@@ -233,14 +235,14 @@ fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
     })
 }
 
-/// How far a local point is from the surface of a solid, with all digits; slow.
+/// Distance of a local point from the surface of a solid, by the precise reference, which is slow.
 fn off_precise<const D: usize>(solid: &precise::Solid<D>, point: &[f64; D]) -> f64 {
     let (place, origin) = (precise::Pose::at(*point), precise::Pose::at([0.0; D]));
     let dot = precise::Solid::ball(0.0);
     precise::signed_distance(&dot, &place, solid, &origin).distance.to_f64()
 }
 
-/// The union of balls along the second axis whose radii change evenly.
+/// The union of balls along the second axis whose radii change linearly.
 fn tapered<N: Space<D>, const D: usize>(half: f64, radii: [f64; 2]) -> Form<N, D> {
     let [low, high] = radii.map(N::lit);
     let shape = TaperedCapsule::<N, D>::new(N::lit(half), low, high);
@@ -417,7 +419,7 @@ fn cross([a, b, c, _]: &[[f64; 3]; 4]) -> [f64; 3] {
     [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]]
 }
 
-/// Ten points about the origin.
+/// Hull of ten random points around the origin.
 fn hull<N: Real>(draw: &mut Draw<'_>, inflation: f64) -> Form<N, 3> {
     let sizes: [f64; 3] = std::array::from_fn(|_| draw.length::<N>());
     let corners: Vec<[f64; 3]> = (0..10)
@@ -434,7 +436,7 @@ fn hull<N: Real>(draw: &mut Draw<'_>, inflation: f64) -> Form<N, 3> {
     Form::known(hull, &solid, 0.0)
 }
 
-/// Triangles over a square of four cells, at the heights that a function of the vertex gives.
+/// Triangles over a square of four cells; `height` gives the height of each vertex.
 fn floor<N: Real>(half: f64, height: impl Fn(usize) -> f64) -> Form<N, 3> {
     let corner = |index: usize| {
         let at = |step: usize| half * [-1.0, 0.0, 1.0][step];
@@ -455,7 +457,7 @@ fn meshed<N: Real>(corners: &[[f64; 3]], triangles: Vec<[u32; 3]>) -> Form<N, 3>
     Form::composite(mesh, &parts)
 }
 
-/// A point of the outer frame as the solid at a pose sees it, by the pose's own matrix.
+/// A world point in the frame of the solid at a pose, by the pose's own matrix.
 pub(crate) fn local<N: Real, const D: usize>(pose: &Pose<N, D>, point: &Point<N, D>) -> [f64; D] {
     let away = point.coords.map(N::as_f64) - pose.translation.map(N::as_f64);
     pose.rotation.map(N::as_f64).tr_mul(&away).into()

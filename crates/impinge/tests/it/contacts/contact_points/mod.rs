@@ -1,6 +1,7 @@
-//! Contact points lie on the surfaces of both solids, across from each other along the normal: for every
-//! pair of kinds, in both orders, both dimensions and both scalars; apart, touching, shallow and deep;
-//! turned anyhow, and with axes along the normal or all but along it.
+//! Tests that contact points lie on the surfaces of both solids, opposite each other along the
+//! normal: for every pair of kinds in both orders, both dimensions and both scalars; apart,
+//! touching, shallow and deep; with arbitrary rotations, and with axes along the normal or nearly
+//! so.
 
 use crate::support::query_support;
 use crate::support::samples::samples;
@@ -24,37 +25,38 @@ use impinge_reference::geometry::vector::scale;
 use impinge_reference::random::Random;
 use turns::{Turns, turned3, turns2, turns3};
 
-/// Points may be off by so many rounding errors of the size of the scene: both bounding radii, the
-/// distance of the origins, and that from the world's origin.
+/// Greatest error of points, in rounding errors of the size of the scene: the sum of both bounding
+/// radii, the distance of the origins, and that from the world's origin.
 const UNITS: f64 = 64.0;
-/// Of a solid with a round side in `f64`: where a ring of normals is about as good, an iteration along it
-/// ends the work. 1e-8 of the scene.
+/// Greatest error for solids with a round side in `f64`, about 1e-8 of the scene: where all normals
+/// of a ring are nearly equally good, the search ends with an iteration along the ring.
 const ROUND: f64 = 5e7;
 
-/// How many units the points of two kinds may be off.
+/// Greatest error of the points of two kinds, in units.
 fn allowed<N: Real>(names: [&str; 2]) -> f64 {
     let round = ["cylinder", "cone", "tapered", "compound"];
     let is_round = names.iter().any(|name| round.iter().any(|round| name.contains(round)));
     if is_round && N::EPSILON.as_f64() < 1e-10 { ROUND } else { UNITS }
 }
 
-/// How many pairs of each two kinds are tried.
+/// How many pairs of each two kinds are tested.
 fn rounds() -> usize {
     samples(2)
 }
 
-/// Signed distances in parts of the least size, and the middle of one in that of the other.
+/// Signed distances relative to the least size; `None` puts the middle of one solid into that of
+/// the other.
 const GAPS: [Option<f64>; 7] =
     [Some(0.05), Some(1e-5), Some(0.0), Some(-1e-6), Some(-1e-2), Some(-0.3), None];
 
-/// Rotations and solids of one dimension.
+/// The solids and rotations of one dimension.
 struct Stage<N: Real, R, const D: usize> {
     names: &'static [&'static str],
     form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
     turns: Turns<R>,
 }
 
-/// What was found wrong of two kinds: how often of how many, the most, and where.
+/// Errors of two kinds: how many of how many cases were wrong, the worst error, and its case.
 #[derive(Default)]
 struct Wrong {
     asked: usize,
@@ -65,7 +67,7 @@ struct Wrong {
 
 type Wrongs = BTreeMap<String, Wrong>;
 
-/// Two solids in their places.
+/// Two placed solids.
 struct Scene<N: Real, R, const D: usize> {
     forms: [Form<N, D>; 2],
     poses: [Isometry<N, R, D>; 2],
@@ -90,7 +92,7 @@ where
         };
         let aligned = (self.turns.straight)(random) * (self.turns.tilt)(lean, random);
         let turn = if random.chance(0.25) { (self.turns.any)(random) } else { aligned };
-        // Over the middle, all but over it, or anywhere.
+        // The second solid is above the middle of the first, nearly so, or anywhere.
         let beside = *random.pick(&[0.0, 0.0, 1e-7, 1.0]);
         let reach = forms[0].reach + forms[1].reach;
         let mut away = scale(&random.vector::<D>(1.0), beside * reach);
@@ -121,7 +123,7 @@ where
         Scene { forms, poses, prediction, unit: N::EPSILON.as_f64() * size }
     }
 
-    /// All pairs of kinds.
+    /// Checks all pairs of kinds.
     fn check(&self, seed: u64) {
         let (mut random, mut wrongs) = (Random::new(seed), Wrongs::new());
         for (kind1, kind2) in pairs(self.names.len()) {
@@ -151,7 +153,7 @@ fn pairs(count: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..count).flat_map(move |kind1| (0..count).map(move |kind2| (kind1, kind2)))
 }
 
-/// Moves the second solid along the normal, until the signed distance is about `gap`.
+/// Moves the second solid along the normal until the signed distance is about `gap`.
 fn bring<N, R, const D: usize>(forms: &[Form<N, D>; 2], poses: &mut [Isometry<N, R, D>; 2], gap: N)
 where
     N: Space<D>,
@@ -216,14 +218,14 @@ where
         manifolds.flat_map(|(_, _, found)| found.contacts()).map(|found| found.contact).collect()
     }
 
-    /// How wrong a contact is in units of rounding, and what it is. That of two convex solids is exact; of
-    /// composites it is the deepest of a manifold along the normal of a face.
+    /// Error of a contact in units of rounding, and its description. A contact of two convex solids
+    /// is exact; that of composites is the deepest point of a manifold along the normal of a face.
     fn error(&self, found: &Contact<N, D>, source: &str) -> (f64, String) {
         let unit = self.unit;
         let of_composites =
             self.forms.iter().any(|form| form.shape.geometry().kind() == ShapeKind::Composite);
         let is_exact = source == "contact" && !of_composites;
-        // Pieces whose normals are within 1/1024 are one patch, which has one normal.
+        // Parts whose normals differ by less than 1/1024 form one patch with one normal.
         let is_patch = source != "contact" && of_composites;
         let of_patch = if is_patch { found.depth.as_f64().abs() / 512.0 } else { 0.0 };
         let off = |index: usize, point| {
@@ -260,7 +262,7 @@ fn in_space<N: Real>(seed: u64) {
     stage.check(seed);
 }
 
-/// The point of a cone that stands upright in or on a solid with flat faces is its apex, however little its
+/// The contact point of an upright cone on a solid with flat faces is its apex, however little the
 /// axis leans.
 fn apex<N: Real>() {
     let mut random = Random::new(5);

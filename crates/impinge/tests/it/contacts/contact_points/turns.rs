@@ -1,4 +1,4 @@
-//! Rotations of solids: by quarters, by small angles from these, and any.
+//! Random rotations of solids: by quarter turns, by small angles from these, and arbitrary ones.
 
 use impinge::math::na::{UnitComplex, UnitQuaternion};
 use impinge::math::{Real, Vector};
@@ -6,14 +6,14 @@ use impinge_reference::random::Random;
 
 /// The rotations of one dimension.
 pub(crate) struct Turns<R> {
-    /// One of those that take axes to axes.
+    /// A random rotation that maps axes to axes.
     pub(crate) straight: fn(&mut Random) -> R,
-    /// By an angle about an axis across the second one.
+    /// A rotation by an angle about an axis across the second one.
     pub(crate) tilt: fn(f64, &mut Random) -> R,
     pub(crate) any: fn(&mut Random) -> R,
 }
 
-/// Rotations in 2D; `CLEAN` are those of [`component`].
+/// Rotations in 2D; `CLEAN` has the meaning of [`component`].
 pub(crate) fn turns2<N: Real, const CLEAN: bool>() -> Turns<UnitComplex<N>> {
     Turns {
         straight: |random| {
@@ -24,7 +24,7 @@ pub(crate) fn turns2<N: Real, const CLEAN: bool>() -> Turns<UnitComplex<N>> {
     }
 }
 
-/// Rotations in 3D, as [`turns2`].
+/// Rotations in 3D; `CLEAN` has the meaning of [`component`].
 pub(crate) fn turns3<N: Real, const CLEAN: bool>() -> Turns<UnitQuaternion<N>> {
     Turns {
         straight: |random| {
@@ -50,7 +50,7 @@ pub(crate) fn turned3<N: Real, const CLEAN: bool>(by: Vector<f64, 3>) -> UnitQua
     UnitQuaternion::new_normalize(turn.into_inner().coords.map(component::<N, CLEAN>).into())
 }
 
-/// A component of a rotation; a clean one is zero if it is nothing beside the rounding of 1.
+/// A component of a rotation; with `CLEAN` it is zero if it is far below the rounding of 1.
 fn component<N: Real, const CLEAN: bool>(x: f64) -> N {
     if CLEAN && x.abs() < N::EPSILON.as_f64() / 64.0 { N::ZERO } else { N::lit(x) }
 }

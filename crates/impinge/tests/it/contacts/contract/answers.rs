@@ -1,4 +1,4 @@
-//! What is said of scenes: by a generator that knows one pair alone, and by worlds that hold many.
+//! Contacts of scenes, from a generator that holds one pair alone, and from worlds that hold many.
 
 use impinge::math::{AbstractRotation, Isometry, Real, Space};
 use impinge::narrow_phase::{
@@ -11,10 +11,10 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 
 use super::scene::Scene;
 
-/// The points of one manifold, or none.
+/// The points of the manifold; empty without contacts.
 pub(crate) type Points<N, const D: usize> = Vec<TrackedContact<N, D>>;
 
-/// A generator of one pair, with the history of what it was asked.
+/// A generator of one pair, which keeps its state from one call to the next.
 pub(crate) struct Lone<N: Real, const D: usize> {
     generator: PairManifoldGenerator<N, D>,
     ids: IdAllocator,
@@ -50,7 +50,7 @@ impl<N: Space<D>, const D: usize> Lone<N, D> {
     }
 }
 
-/// A world of scenes that lie upon each other; only the two solids of a scene meet.
+/// A world of scenes at the same position; only the two solids of each scene interact.
 pub(crate) struct Batch<N: Space<D>, const D: usize> {
     world: CollisionWorld<N, D, usize>,
     handles: Vec<[CollisionObjectHandle; 2]>,

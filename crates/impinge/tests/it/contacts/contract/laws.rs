@@ -1,4 +1,4 @@
-//! The laws of the contract, asked of one scene.
+//! The laws of the contract, tested on one scene.
 
 use std::collections::BTreeSet;
 
@@ -13,12 +13,12 @@ use super::report::Report;
 use super::scene::{SCENES, Scene, Stage};
 use super::tolerances::{is_curved, is_of_revolution, is_promised, points_promised, promised};
 
-/// A scene, and where what is wrong of it is noted.
+/// A scene, and the report that takes its violations.
 pub(crate) struct Judge<'a, N: Real, R, const D: usize> {
     pub(crate) stage: &'a Stage<N, R, D>,
     pub(crate) scene: &'a Scene<N, R, D>,
     pub(crate) names: [&'static str; 2],
-    /// Of the scene, among those of the same kinds.
+    /// Number of the scene among those of the same kinds.
     pub(crate) number: usize,
     pub(crate) report: &'a mut Report,
 }
@@ -32,13 +32,13 @@ fn deepest<N: Real, const D: usize>(points: &Points<N, D>) -> Option<&TrackedCon
     )
 }
 
-/// The same contacts, whatever they are called.
+/// Whether both have equal contacts and kinematics, whatever the ids.
 pub(crate) fn are_same<N: Real, const D: usize>(one: &Points<N, D>, two: &Points<N, D>) -> bool {
     one.len() == two.len()
         && one.iter().zip(two).all(|(a, b)| a.contact == b.contact && a.kinematic == b.kinematic)
 }
 
-/// Of each point its index among those of before that has its id.
+/// For each point, the index of the earlier point with its id.
 pub(crate) fn kept<N: Real, const D: usize>(
     before: &Points<N, D>,
     after: &Points<N, D>,
@@ -69,7 +69,7 @@ where
         Lone::new().ask(poses.each_ref(), self.scene.shapes(), limit, self.scene.angle)
     }
 
-    /// All laws of one pair alone; gives its points.
+    /// Tests all laws of one pair alone, and returns its points.
     pub(crate) fn alone(&mut self) -> Points<N, D> {
         let found = self.lone(&self.scene.poses, self.scene.limit);
         self.depth(&found);
@@ -86,15 +86,15 @@ where
         solids.map(|form| form.precise.as_ref().expect("the reference knows all convex kinds"))
     }
 
-    /// The separation along a normal with all digits, in lengths; `None` where no normal is asked for.
+    /// Separation along a normal by the precise reference; `None` for two half-spaces.
     fn along(&self, normal: &[f64; D]) -> Option<Quad> {
         let ([one, two], poses) =
             (self.solids(), self.scene.poses.each_ref().map(self.stage.precise));
         separation_along(one, &poses[0], two, &poses[1], normal)
     }
 
-    /// What the reference says of all solids without curved faces and of the plane, and of some of the rest,
-    /// which it searches.
+    /// Signed distance by the precise reference: for all pairs in 2D and all pairs without curved faces, and for some
+    /// of the others, which the reference has to search.
     fn truth(&self) -> Option<Precise<D>> {
         let is_quick = D == 2 || !self.names.iter().any(|name| is_curved(name));
         let is_sampled = [3, 9].contains(&(self.number % (SCENES / 2)));
@@ -107,15 +107,15 @@ where
         truth.is_settled(1e-17).then_some(truth)
     }
 
-    /// A length of the pair, whose rounding errors are the units of depths.
+    /// A length of the pair: epsilon times it is the unit of depths.
     fn size(&self) -> f64 {
         let at = self.scene.poses.each_ref().map(|pose| pose.translation.vector.map(N::as_f64));
         self.scene.forms[0].reach + self.scene.forms[1].reach + (at[1] - at[0]).norm()
     }
 
-    /// 1: the depth is minus the separation. Its normal separates by as much, which proves that the depth is
-    /// not too small; that it is not too large is proved by the points where the solids are apart, else by
-    /// the reference.
+    /// Law 1: the depth is minus the separation. The normal separates the solids by as much, which proves that the
+    /// depth is not too small. That it is not too large is proved by the points if the solids are apart, else by the
+    /// reference.
     fn depth(&mut self, found: &Points<N, D>) {
         let unit = N::EPSILON.as_f64() * self.size();
         let (allowed, scene) = (promised::<N, D>(self.names), self.scene);
@@ -142,10 +142,11 @@ where
         }
     }
 
-    /// 2: each point lies on both surfaces, and across from each other along the one unit normal.
+    /// Law 2: each point lies on both surfaces, and its two positions are opposite each other along the one unit
+    /// normal.
     fn on_both(&mut self, found: &Points<N, D>) {
         let allowed = points_promised::<N, D>(self.names, self.scene.is_degenerate);
-        // Points as deep as the deepest, but for rounding, may lie beside it.
+        // Points as deep as the deepest one up to rounding may lie beside it.
         let slack = N::lit(promised::<N, D>(self.names) * self.size()) * N::EPSILON;
         let least = deepest(found).map_or(N::ZERO, |point| point.contact.depth - slack);
         let mut off_deepest = f64::INFINITY;
@@ -165,9 +166,9 @@ where
         }
     }
 
-    /// How many units a point of some is off the surfaces, or its two places off the way along the normal. Beside
-    /// the deepest point a part that leans and is rounded is taken as if it were flat, of which a share is
-    /// forgiven. Two edges that the angular prediction would make parallel share the points half-way between them.
+    /// How many units a point lies off the surfaces, or its two positions lie off the line along the normal. Beside the
+    /// deepest point a rounded part that leans is treated as flat; `forgiven` is the share of that error which is
+    /// subtracted. Two edges that the angular prediction could make parallel share the points half-way between them.
     fn off(&self, point: &TrackedContact<N, D>, forgiven: f64, count: usize) -> f64 {
         let (scene, contact) = (self.scene, &point.contact);
         let is_halfway = D == 3 && count <= 2;
@@ -182,7 +183,7 @@ where
         if most == 0.0 { 0.0 } else { most / scene.unit() }
     }
 
-    /// 3: the deepest is among them, however few they may be.
+    /// Law 3: there are at most as many points as asked for, and the deepest is always among them.
     fn at_most(&mut self, found: &Points<N, D>) {
         self.holds("3 at most", found.len() <= 1 << (D - 1), || format!("{found:?}"));
         let (scene, unit) = (self.scene, N::EPSILON.as_f64() * self.size());
@@ -200,7 +201,7 @@ where
         }
     }
 
-    /// 5: exchanging the solids flips the answer.
+    /// Law 5: exchanging the solids flips the result.
     fn flips(&mut self, found: &Points<N, D>) {
         if self.scene.is_twin() {
             return;
@@ -221,7 +222,7 @@ where
         self.holds("5 flipped query", one == other, || format!("{one:?}, flipped {other:?}"));
     }
 
-    /// 5: a power of two times larger, everything is exactly that much larger, but for what underflows.
+    /// Law 5: scaling a scene by a power of two scales everything exactly, except where numbers underflow.
     fn scales(&mut self, found: &Points<N, D>) {
         for scale in [1.0 / 1_048_576.0, 1_048_576.0] {
             let scene = self.stage.scaled(self.scene, scale);
@@ -248,8 +249,8 @@ where
         }
     }
 
-    /// 6: the query has a contact exactly where the manifold has one, and it is as deep. A prediction that is
-    /// within rounding of the distance may be told from it or not; touching may not.
+    /// Law 6: `contact` has a contact exactly where the manifold has one, with the same depth. If the prediction equals
+    /// the distance up to rounding they may differ, but not whether the solids touch.
     fn agrees(&mut self, found: &Points<N, D>) {
         let ([pose1, pose2], [shape1, shape2]) = (&self.scene.poses, self.scene.shapes());
         let unit = N::EPSILON.as_f64() * self.size();
@@ -278,8 +279,8 @@ where
         }
     }
 
-    /// 4: where features meet before and after that no other point of either has, the id stays; what is new was
-    /// never there before.
+    /// Law 4: if the same two features, which no other point has, meet before and after, the id stays; a new id never
+    /// existed before.
     pub(crate) fn names(
         &mut self,
         before: &Points<N, D>,
@@ -292,13 +293,15 @@ where
             let mut on = points.iter().filter(|point| features(point) == wanted);
             on.next().filter(|_| on.next().is_none()).copied()
         };
-        // A solid that turns another side to the other begins anew, and so do crossings of edges that have no length.
+        // Ids may also change where a solid turns another side to the other one, and at crossings of edges of length
+        // zero.
         let is_edge = |id: &FeatureId| matches!(id, FeatureId::Edge(_));
         let may_begin = |old: &TrackedContact<N, D>, new: &TrackedContact<N, D>| {
             old.contact.normal.dot(&new.contact.normal) < N::lit(0.75)
                 || self.scene.is_degenerate && features(new).iter().all(is_edge)
         };
-        // All points of a round rim are on one feature, also those that were not chosen.
+        // All points of a round rim are on one feature, also those that were not selected, so features do not identify
+        // them.
         let is_named = !self.names.iter().any(|name| is_of_revolution(name));
         let mut ids: Vec<ContactId> = Vec::new();
         for point in after {

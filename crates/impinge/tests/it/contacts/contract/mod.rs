@@ -1,14 +1,14 @@
-//! The contract of contacts (`ARCHITECTURE.md`), asked of every two kinds of convex solids, where users meet
-//! it: `contact`, a generator alone, and worlds of 1, 7, 8, 9 and 20 pairs of these kinds. Each pair of kinds is
-//! in twenty scenes: apart within the prediction, touching, shallow, deep and one in the other; aligned, nearly
-//! so, and turned anyhow; some of them with sizes of zero, or far from the origin, or of unlike sizes; with and
-//! without an angular prediction; with predictions that are exactly the distance, or a little less; and each
-//! also a millionth and a million times as large.
+//! Tests the contract of contacts (`ARCHITECTURE.md`) for every two kinds of convex solids, where users rely on it:
+//! `contact`, a generator alone, and worlds of 1, 7, 8, 9 and 20 pairs of these kinds. Each pair of kinds has twenty
+//! scenes: apart within the prediction, touching, shallow, deep and one inside the other; aligned, nearly aligned and
+//! arbitrarily rotated; some with sizes of zero, far from the origin, or of very different sizes; with and without an
+//! angular prediction; with predictions equal to the distance or slightly less. Each scene is also scaled by 2⁻²⁰ and
+//! 2²⁰.
 //!
-//! What is judged by numbers is judged by the reference, and by no other path of the library: the depths of all that
-//! has no curved faces, and of all of the plane; of the rest, whose normals the reference has to search, one scene in
-//! five, the others by what their normals separate and by where their points are. The area that points span is asked
-//! for in `case_manifolds.rs`.
+//! Numbers are compared with the reference, not with another path of the library: the depths of all pairs in 2D and of
+//! all pairs without curved faces. For the others the reference has to search for the normal, so it is used for one
+//! scene in five; the rest are checked by the separation along their normal and by the positions of their points. The
+//! area that points span is tested in `cases/manifolds.rs`.
 
 use crate::contacts::contact_points::{forms, turns};
 use crate::support::samples::samples;
@@ -32,15 +32,15 @@ use scene::{SCENES, Scene, Stage};
 use tolerances::is_known;
 use turns::{turns2, turns3};
 
-/// How many pairs of a world there are: part of a batch, one but for one, a batch, and one more.
+/// Numbers of pairs in a world: part of a batch, one less than a batch, a batch, and one more.
 const BATCHES: [usize; 4] = [1, 7, 8, 9];
 
-/// How many times twenty scenes of each two kinds are asked: once, and in a run of a night a few times.
+/// How often the twenty scenes of each two kinds are tested: once by default, more often with more samples.
 fn rounds() -> u64 {
     1 + samples(1) as u64 / 100
 }
 
-/// All scenes of two kinds; every other one with the second kind first.
+/// All scenes of two kinds; in every other one the second kind comes first.
 struct Kinds<'a, N: Real, R, const D: usize> {
     stage: &'a Stage<N, R, D>,
     names: [&'static str; 2],
@@ -106,13 +106,13 @@ where
         }
     }
 
-    /// 5: the bits do not depend on the batch.
+    /// Law 5: the bits of a pair do not depend on the batch that it is computed in.
     fn is_as_alone(&self, number: usize, [alone, found]: [&Points<N, D>; 2], report: &mut Report) {
         let what = || format!("alone {alone:?}, in a batch {found:?}");
         self.judge(number, report).holds("5 batches", are_same(alone, found), what);
     }
 
-    /// A small step and back, of all scenes in one world and each alone: ids stay, and both are the same.
+    /// Moves all scenes a small step and back, in one world and each alone: ids stay, and both give the same points.
     fn in_motion(&self, report: &mut Report) {
         let mut batch = Batch::new(&self.scenes);
         let mut lones: Vec<Lone<N, D>> = (0..SCENES).map(|_| Lone::new()).collect();

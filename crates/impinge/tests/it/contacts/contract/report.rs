@@ -1,8 +1,8 @@
-//! What was found wrong, by law and pair of kinds.
+//! The violations found, by law and pair of kinds.
 
 use std::collections::BTreeMap;
 
-/// How often a law was asked of two kinds, how often it did not hold, and where it was the worst.
+/// How often a law was tested for two kinds, how often it was violated, and the worst case.
 #[derive(Default)]
 struct Tally {
     asked: usize,
@@ -17,7 +17,7 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// An error of some size, of which `allowed` are.
+    /// Notes an error, which violates the law if it is above `allowed` or NaN.
     pub(crate) fn within(
         &mut self,
         law: String,
@@ -36,17 +36,17 @@ impl Report {
         }
     }
 
-    /// Something that holds or does not.
+    /// Notes whether a law that is true or false was kept.
     pub(crate) fn holds(&mut self, law: String, holds: bool, what: impl FnOnce() -> String) {
         self.within(law, if holds { 0.0 } else { 1.0 }, 0.5, what);
     }
 
-    /// How many answers were judged.
+    /// How many results were tested.
     pub(crate) fn asked(&self) -> usize {
         self.tallies.values().map(|tally| tally.asked).sum()
     }
 
-    /// A line for each law that does not hold of two kinds, but for those that are known not to.
+    /// A line for each violated law, except for known violations.
     pub(crate) fn broken(&self, is_known: fn(&str) -> bool) -> Vec<String> {
         let broken = self.tallies.iter().filter(|(law, tally)| tally.broken > 0 && !is_known(law));
         let line = |(law, tally): (&String, &Tally)| {

@@ -1,4 +1,4 @@
-//! Two solids in their places, in each of the regimes that contacts are judged in.
+//! Pairs of placed solids, in each of the regimes in which contacts are tested.
 
 use impinge::math::{AbstractRotation, Isometry, Real, Space, Vector};
 use impinge::query::contact;
@@ -10,54 +10,55 @@ use impinge_reference::random::Random;
 use super::forms::{Form, Sizes};
 use super::turns::Turns;
 
-/// How many scenes of each two kinds there are: each gap with each alignment.
+/// Number of scenes of each two kinds: each gap with each alignment.
 pub(crate) const SCENES: usize = GAPS.len() * 4;
 
-/// Signed distances in parts of the smaller solid; `None` is one all but in the middle of the other.
+/// Signed distances relative to the size of the smaller solid; `None` puts one nearly into the
+/// middle of the other.
 const GAPS: [Option<f64>; 5] = [Some(0.05), Some(0.0), Some(-1e-4), Some(-0.3), None];
 
-/// How one solid is turned against the other.
+/// Rotation of one solid relative to the other.
 #[derive(Clone, Copy, Debug)]
 enum Alignment {
     Any,
-    /// Axes on axes.
+    /// Axes are mapped to axes.
     Aligned,
-    /// By an angle of 1e-2 to 1e-7 from that.
+    /// Aligned except for an angle of 1e-2 to 1e-7.
     Nearly,
-    /// By an angle that is hardly more than rounding.
+    /// Aligned except for an angle barely above rounding.
     Hardly,
 }
 
 const ALIGNMENTS: [Alignment; 4] =
     [Alignment::Any, Alignment::Aligned, Alignment::Nearly, Alignment::Hardly];
 
-/// What else is particular about a scene.
+/// Further property of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Setup {
     Plain,
     /// Half of the lengths are zero.
     Degenerate,
-    /// As far from the origin as 10⁴.
+    /// Up to 10⁴ away from the origin.
     Far,
-    /// Both are turned together, so that nothing is along an axis of the world.
+    /// Both are rotated together, so that no direction is along an axis of the world.
     Turned,
-    /// The second is a thirtieth of the size, or thirty times as large.
+    /// The second solid is about thirty times smaller or larger than the first.
     Unlike,
 }
 
 const SETUPS: [Setup; 6] =
     [Setup::Plain, Setup::Plain, Setup::Degenerate, Setup::Far, Setup::Turned, Setup::Unlike];
 
-/// What is particular to a dimension.
+/// The solids, rotations and poses that differ by dimension.
 pub(crate) struct Stage<N: Real, R, const D: usize> {
     pub(crate) names: &'static [&'static str],
     pub(crate) form: fn(usize, Sizes, &mut Random) -> Form<N, D>,
     pub(crate) turns: Turns<R>,
-    /// The same place with all digits.
+    /// The pose for the precise reference.
     pub(crate) precise: fn(&Isometry<N, R, D>) -> precise::Pose<D>,
 }
 
-/// How a solid is drawn, at any scale.
+/// Parameters from which a solid is drawn, at any scale.
 #[derive(Clone, Copy, Debug)]
 struct Recipe {
     kind: usize,
@@ -65,22 +66,22 @@ struct Recipe {
     seed: u64,
 }
 
-/// Two solids in their places, and how contacts of them are asked for.
+/// Two placed solids, with the predictions for which their contacts are computed.
 pub(crate) struct Scene<N: Real, R, const D: usize> {
     recipes: [Recipe; 2],
     pub(crate) forms: [Form<N, D>; 2],
     pub(crate) poses: [Isometry<N, R, D>; 2],
-    /// The linear prediction.
+    /// Linear prediction.
     pub(crate) limit: N,
-    /// The angular prediction.
+    /// Angular prediction.
     pub(crate) angle: N,
     /// A small step of the second solid.
     pub(crate) step: Vector<N, D>,
-    /// One lies in the middle of another that is much larger.
+    /// Whether one solid lies in the middle of a much larger one.
     pub(crate) is_swallowed: bool,
-    /// Some lengths are zero.
+    /// Whether some lengths are zero.
     pub(crate) is_degenerate: bool,
-    /// The regime in words.
+    /// Description of the regime, for messages.
     regime: String,
 }
 
@@ -89,7 +90,7 @@ where
     N: Space<D, Isometry = Isometry<N, R, D>>,
     R: AbstractRotation<N, D> + Clone + std::fmt::Debug,
 {
-    /// The scene with this number of two kinds.
+    /// Makes scene `number` of two kinds.
     pub(crate) fn scene(&self, kinds: [usize; 2], number: usize, seed: u64) -> Scene<N, R, D> {
         let random = &mut Random::new(seed);
         let (gap, alignment) = (GAPS[number % GAPS.len()], ALIGNMENTS[number / GAPS.len() % 4]);
@@ -102,7 +103,7 @@ where
         };
         let recipes = [recipe(0, random.bits()), recipe(1, random.bits())];
         let forms = recipes.map(|recipe| self.draw(&recipe));
-        // A length of the scene: of two points there is no other.
+        // A length of the scene; two points have no length of their own, hence the minimum.
         let length = (forms[0].reach + forms[1].reach).max(0.1);
         let mut poses = self.places(length, gap, alignment, random);
         if let Some(gap) = gap {
@@ -130,7 +131,8 @@ where
         (self.form)(recipe.kind, recipe.sizes, &mut Random::new(recipe.seed))
     }
 
-    /// The first at the origin, the second well above or below it, or all but in its middle.
+    /// Poses with the first solid at the origin, and the second one well above or below it, or
+    /// nearly in its middle.
     fn places(
         &self,
         length: f64,
@@ -150,7 +152,7 @@ where
                 (self.turns.straight)(random) * (self.turns.tilt)(lean, random)
             }
         };
-        // Over the middle, all but over it, or anywhere.
+        // The second solid is above the middle of the first, nearly so, or anywhere.
         let beside = *random.pick(&[0.0, 0.0, 1e-7, 1.0]);
         let mut away = scale(&random.vector::<D>(1.0), beside * length);
         away[1] = length * *random.pick(if gap.is_some() { &[1.5, -1.5] } else { &[0.0, 0.01] });
@@ -178,7 +180,7 @@ where
         }
     }
 
-    /// The same scene, some power of two as large.
+    /// The scene scaled by a power of two.
     pub(crate) fn scaled(&self, scene: &Scene<N, R, D>, scale: f64) -> Scene<N, R, D> {
         let recipes = scene.recipes.map(|recipe| {
             let sizes = Sizes { least: recipe.sizes.least * scale, ..recipe.sizes };
@@ -199,7 +201,7 @@ where
     }
 }
 
-/// Moves the second solid along the normal, until the signed distance is about `gap`.
+/// Moves the second solid along the normal until the signed distance is about `gap`.
 fn bring<N, R, const D: usize>(forms: &[Form<N, D>; 2], poses: &mut [Isometry<N, R, D>; 2], gap: N)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,
@@ -211,7 +213,7 @@ where
     }
 }
 
-/// Makes coordinates zero that are nothing beside rounding, so that no product of a few of them underflows.
+/// Sets coordinates far below rounding to zero, so that no product of a few of them underflows.
 fn drop_dust<N, R, const D: usize>(pose: &mut Isometry<N, R, D>, length: N)
 where
     N: Space<D, Isometry = Isometry<N, R, D>>,
@@ -223,7 +225,7 @@ where
     }
 }
 
-/// A prediction: mostly `wide`; or none, or exactly the distance, or a little less.
+/// A prediction: mostly `wide`; else zero, exactly the distance, or slightly less than it.
 fn limit<N, R, const D: usize>(
     forms: &[Form<N, D>; 2],
     poses: &[Isometry<N, R, D>; 2],
@@ -255,22 +257,23 @@ where
         self.forms.each_ref().map(|form| &*form.shape)
     }
 
-    /// The places after a small step of the second solid.
+    /// The poses after a small step of the second solid.
     pub(crate) fn moved(&self) -> [Isometry<N, R, D>; 2] {
         let mut poses = self.poses.clone();
         poses[1].translation.vector += self.step;
         poses
     }
 
-    /// One rounding error of the size of the scene: both bounding radii, the distance of the origins and
-    /// that from the origin of the world, in which points are given.
+    /// A rounding error of the size of the scene: the sum of both bounding radii, of the distance
+    /// between the origins, and of that from the world's origin, since points are in world
+    /// coordinates.
     pub(crate) fn unit(&self) -> f64 {
         let at = self.poses.each_ref().map(|pose| pose.translation.vector.map(N::as_f64));
         let size = self.forms[0].reach + self.forms[1].reach;
         N::EPSILON.as_f64() * (size + (at[1] - at[0]).norm() + at[0].norm())
     }
 
-    /// The solids are the same at one place, so that nothing tells one from the other.
+    /// Whether the solids are equal and at the same position, so that their order is undefined.
     pub(crate) fn is_twin(&self) -> bool {
         let [shape1, shape2] = self.shapes().map(|shape| format!("{shape:?}"));
         let [pose1, pose2] = &self.poses;

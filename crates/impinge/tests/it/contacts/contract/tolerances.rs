@@ -1,18 +1,18 @@
-//! The numbers of `guide/guarantees.md`, in rounding errors of the scene.
+//! The tolerances of `guide/guarantees.md`, in rounding errors of the size of the scene.
 
 use impinge::math::Real;
 
-/// Solids of which the reference searches the normal.
+/// Solids for which the reference has to search for the normal.
 pub(crate) fn is_curved(name: &str) -> bool {
     ["cylinder", "cone", "ellipsoid", "tapered"].iter().any(|curved| name.contains(curved))
 }
 
-/// Solids with flat round faces.
+/// Solids of revolution with flat ends.
 pub(crate) fn is_of_revolution(name: &str) -> bool {
     name.contains("cylinder") || name.contains("cone")
 }
 
-/// How many units the depth of two kinds may be off.
+/// Greatest error of the depth of two kinds, in units.
 pub(crate) fn promised<N: Real, const D: usize>(names: [&str; 2]) -> f64 {
     let is_double = N::EPSILON.as_f64() < 1e-10;
     let of_revolution = names.iter().any(|name| is_of_revolution(name));
@@ -23,13 +23,15 @@ pub(crate) fn promised<N: Real, const D: usize>(names: [&str; 2]) -> f64 {
     }
 }
 
-/// Not promised is the least depth of what is much smaller than a ball of a tapered capsule, about its middle.
+/// Whether the least depth is guaranteed; it is not for a solid that is much smaller than a ball of a tapered capsule
+/// and lies around its middle.
 pub(crate) fn is_promised(names: [&str; 2], is_swallowed: bool) -> bool {
     !(is_swallowed && names.iter().any(|name| name.contains("tapered")))
 }
 
-/// How many units the points of two kinds may be off. Where a ring of normals is about as good, an iteration
-/// along it ends the work, in `f64` at 1e-8 of the scene; with sizes of zero in cylinders and cones at more.
+/// Greatest error of the points of two kinds, in units. Where all normals of a ring are nearly equally good, the search
+/// ends with an iteration along the ring, in `f64` at 1e-8 of the scene; cylinders and cones with sizes of zero have a
+/// larger error.
 pub(crate) fn points_promised<N: Real, const D: usize>(
     names: [&str; 2],
     is_degenerate: bool,
@@ -45,14 +47,14 @@ pub(crate) fn points_promised<N: Real, const D: usize>(
     }
 }
 
-/// Laws that do not hold of all scenes, each of a dimension.
+/// Laws that some scenes are known to violate, each with the dimension.
 const KNOWN: [(&str, usize); 1] = [
-    // The product of four lengths that tells whether axes cross underflows in `f32` at a millionth of the size:
-    // a point at an end of an axis is named after the axis.
+    // The product of four lengths that decides whether axes cross underflows in `f32` at 2⁻²⁰ of the size, so a point
+    // at an end of an axis has the feature of the axis.
     ("5 scaled, capsule and capsule", 3),
 ];
 
-/// The law is known not to hold.
+/// Whether the law is known to be violated.
 pub(crate) fn is_known<const D: usize>(law: &str) -> bool {
     KNOWN.contains(&(law, D))
 }

@@ -1,16 +1,16 @@
-//! What makes a hull a hull, checked slowly.
+//! Slow checks of the properties that define a hull.
 
 use impinge::math::{Point, Real, Vector};
 use impinge::transformation::{IndexedHull, convex_hull3};
 
 use super::points::P3;
 
-/// What was measured, in rounding units of the points: `EPSILON · max |coordinate|`.
+/// Errors of a hull in rounding units of the points: `EPSILON · max |coordinate|`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Measured {
-    /// How far a given point lies in front of the highest vertex of a face, at most.
+    /// Greatest height of a given point above the highest vertex of a face, along its normal.
     pub(crate) outside: f64,
-    /// How far a vertex of a face lies behind the highest one, at most.
+    /// Greatest depth of a vertex of a face below its highest one.
     pub(crate) bent: f64,
 }
 
@@ -18,12 +18,12 @@ pub(crate) fn cast<N: Real>(points: &[P3]) -> Vec<Point<N, 3>> {
     points.iter().map(|p| Point::from(p.coords.map(N::lit))).collect()
 }
 
-/// The points over the largest coordinate, and one rounding unit there.
+/// The points scaled to about 1, and the rounding unit at that scale.
 fn normalized<N: Real>(points: &[Point<N, 3>]) -> (Vec<P3>, f64) {
     let exact: Vec<P3> = points.iter().map(|p| Point::from(p.coords.map(Real::as_f64))).collect();
     let size =
         exact.iter().flat_map(|p| p.iter().copied()).fold(0.0, |size: f64, x| size.max(x.abs()));
-    // A power of two near the size: dividing by it keeps the points what they are.
+    // A power of two near the size, so that the division is exact.
     let scale = size.max(f64::MIN_POSITIVE).log2().floor().min(1023.0).exp2();
     (exact.iter().map(|p| p / scale).collect(), N::EPSILON.as_f64() * (size / scale))
 }
@@ -35,7 +35,8 @@ fn sides<N: Real>(hull: &IndexedHull<N>) -> Vec<(usize, usize)> {
     hull.faces.iter().flat_map(around).collect()
 }
 
-/// Closed, one sphere, every vertex used, each loop without repetition.
+/// Asserts that the surface is closed and a single sphere, that every vertex is used, and that no
+/// loop repeats one.
 fn topology<N: Real>(hull: &IndexedHull<N>) {
     assert!(hull.vertices.windows(2).all(|pair| pair[0] < pair[1]), "ascending");
     let mut used = hull.faces.concat();
@@ -52,7 +53,8 @@ fn topology<N: Real>(hull: &IndexedHull<N>) {
     assert_eq!(hull.vertices.len() + hull.faces.len(), edges + 2, "Euler");
 }
 
-/// Checks a hull; heights are compared with every given point if there are not too many.
+/// Checks a hull. Heights are compared with every given point; with very many points only some
+/// faces are checked.
 pub(crate) fn check<N: Real>(points: &[Point<N, 3>], hull: &IndexedHull<N>) -> Measured {
     topology(hull);
     let (exact, unit) = normalized(points);
@@ -78,8 +80,8 @@ pub(crate) fn check<N: Real>(points: &[Point<N, 3>], hull: &IndexedHull<N>) -> M
     measured
 }
 
-/// By how much the points reach farther than the vertices along the axes and diagonals, at most: what is
-/// missing at the rim of something flat, where no face looks.
+/// By how much the points extend beyond the vertices along the axes and diagonals, at most. This
+/// finds points cut off at the rim of a flat set, where no face points.
 fn cut_off<N: Real>(points: &[P3], hull: &IndexedHull<N>) -> f64 {
     let reach = |along: &Vector<f64, 3>, points: &mut dyn Iterator<Item = &P3>| {
         points.map(|p| along.dot(&p.coords)).fold(f64::NEG_INFINITY, f64::max)
@@ -94,12 +96,13 @@ fn cut_off<N: Real>(points: &[P3], hull: &IndexedHull<N>) -> f64 {
     missing.fold(0.0, f64::max)
 }
 
-/// The hull of points given as `f64`, in one scalar, checked against the documented tolerance.
+/// The hull of points given as `f64`, computed with the scalar `N` and checked against the
+/// documented tolerance of 8 units.
 pub(crate) fn hull_of<N: Real>(name: &str, points: &[P3]) -> IndexedHull<N> {
     hull_within::<N>(8.0, name, points)
 }
 
-/// The same with a wider limit on how far points lie in front of faces.
+/// The hull with the limit `outside` on how far points lie in front of faces.
 pub(crate) fn hull_within<N: Real>(outside: f64, name: &str, points: &[P3]) -> IndexedHull<N> {
     let points = cast::<N>(points);
     let hull = convex_hull3(&points).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -1,4 +1,4 @@
-//! Every point set of the shared test data.
+//! Tests hulls of every point set of the shared test data.
 
 use std::path::Path;
 
@@ -35,7 +35,7 @@ fn points2<N: Real>(value: &Value) -> Vec<Point<N, 2>> {
     points.iter().map(numbers).map(|p| Point::<N, 2>::new(N::lit(p[0]), N::lit(p[1]))).collect()
 }
 
-/// The convex shapes of all pair cases.
+/// The points of the convex shapes of all pair cases.
 fn shapes(kinds: &[&str]) -> Vec<Value> {
     let mut shapes = Vec::new();
     for file in ["narrow_phase_cases.json", "regression_cases.json"] {
@@ -85,7 +85,7 @@ fn polygons_of_the_corpus() {
     polygons::<f64>();
 }
 
-/// A hull that passes the checks, or an error of this kind.
+/// Either the hull passes the checks, or the points are refused as degenerate or too few.
 fn hull_or_flat<N: Real>(points: &[P3]) {
     match convex_hull3(&cast::<N>(points)) {
         Ok(_) => assert!(!hull_of::<N>("hard", points).faces.is_empty(), "faces"),
@@ -116,7 +116,7 @@ fn hull_case2<N: Real>(case: &Value) {
         .iter()
         .map(|&v| format!("{v}").parse().expect("whole"))
         .collect();
-    // A corner that is one by less than the rounding may go.
+    // A vertex that protrudes by less than rounding may be missing.
     assert!(ring.iter().all(|vertex| vertices.contains(vertex)), "{ring:?} of {case}");
 }
 

@@ -1,4 +1,4 @@
-//! Solids from points and faces, and hulls of points that span none.
+//! Tests solids made from points and faces, and hulls of points that do not span a solid.
 
 use impinge::math::{Isometry3, Point, Real, Space};
 use impinge::query::{PointQuery, RayCast};
@@ -8,7 +8,7 @@ use impinge::transformation::{convex_hull3, convex_shape2, convex_shape3};
 use super::checks::cast;
 use super::points::{P3, ball, cube, grid, octahedron, prism, sphere, turned};
 
-/// Solids of all kinds: whole and rounded coordinates, large, tiny, far from the origin.
+/// Solids with whole and rounded coordinates; large, tiny and far from the origin.
 fn solids() -> Vec<Vec<P3>> {
     let plain = [cube(), octahedron(), prism(7), grid(3), ball(60), sphere(40)];
     let around = [(1.0, 0.0), (1e-12, 0.0), (1e12, 0.0), (1.0, 100.0)];
@@ -18,7 +18,7 @@ fn solids() -> Vec<Vec<P3>> {
     plain.iter().cloned().chain(moved).collect()
 }
 
-/// The faces of a hull cut into triangles, every other one the wrong way round.
+/// The faces of a hull cut into triangles, every other one with reversed winding.
 fn triangles<N: Real>(points: &[Point<N, 3>]) -> Vec<[u32; 3]> {
     let index = |&index: &usize| u32::try_from(index).expect("few points");
     let faces = convex_hull3(points).expect("a solid").faces;
@@ -44,7 +44,8 @@ fn faces_that_are_given_are_those_of_the_hull<N: Real>() {
         let count = points.len();
         let expected = ShapeError::NoSuchPoint { face: 2, point: 1000, points: count };
         assert_eq!(ConvexHull::try_new(&points, &named), Err(expected), "a point too far");
-        // A corner is pushed in beyond the middle: a dent, if the others still span the solid.
+        // Pushes a corner in beyond the middle, which dents the solid if the other corners still
+        // span it.
         let mut dented = points.clone();
         let corner = faces[0][0] as usize;
         let middle = points.iter().fold(Point::<N, 3>::origin(), |sum, point| {
@@ -64,7 +65,7 @@ fn faces_that_are_given_are_those_of_the_hull<N: Real>() {
     assert_eq!(none, Err(ShapeError::TooFewPoints { given: 0, needed: 4 }), "nothing");
 }
 
-/// Which of the shapes it is, by its dimension.
+/// Dimension of the shape: 0 for a point, 1 for a segment, 2 for flat shapes, 3 for solids.
 fn dimension<N: Space<3>>(shape: &ShapeHandle<N, 3>) -> usize {
     let is_point = |segment: &Segment<N, 3>| segment.a() == segment.b();
     if let Some(segment) = shape.as_shape::<Segment<N, 3>>() {
@@ -74,7 +75,8 @@ fn dimension<N: Space<3>>(shape: &ShapeHandle<N, 3>) -> usize {
     if is_flat { 2 } else { 3 }
 }
 
-/// Points in a point, on a line, in a plane, and a solid; each in any place and size.
+/// The hull of equal points, of points on a line, in a plane, and of a solid has the matching
+/// shape, at any position and size.
 fn hulls_are_what_their_points_span<N: Real>() {
     let flat = |points: Vec<P3>| -> Vec<P3> {
         points.into_iter().map(|p| P3::new(p.x, p.y, 0.25)).collect()
@@ -118,8 +120,8 @@ fn hulls_are_what_their_points_span<N: Real>() {
     assert_eq!(convex_shape2(&line[..1]).expect("one").local_aabb().mins(), &line[0], "a point");
 }
 
-/// Through a closed surface from outside: of the hits on its triangles the first, those on fronts and those on
-/// backs, and the same as among all hits.
+/// `first_hit_where` gives the first of all hits that the condition accepts, here hits on fronts,
+/// on backs, or all of them, for rays at a closed surface.
 fn hits_that_count_are_the_first_of_them<N: Real>() {
     use impinge::bounding_volume::Ray;
     use impinge::shape::FeatureId;

@@ -1,4 +1,5 @@
-//! A hundred thousand points: most of them inside, all of them corners, flat, doubled, tiny and huge.
+//! Tests hulls of 100000 points: most of them inside, all of them vertices, flat sets, copies, tiny and huge
+//! coordinates.
 
 use impinge::math::{Point, Real};
 use impinge::shape::{ConvexHull, ConvexPolygon};
@@ -9,7 +10,7 @@ use super::points::{Numbers, P3, ball, sphere};
 
 const COUNT: usize = 100_000;
 
-/// Points on the six faces of a cube: each face is one plane, turned out of the axes by `turned`.
+/// Points on the six faces of a cube, and its corners: many points in each plane.
 fn on_a_cube() -> Vec<P3> {
     let mut numbers = Numbers::new(23);
     let mut corners = Vec::with_capacity(COUNT);
@@ -25,7 +26,7 @@ fn on_a_cube() -> Vec<P3> {
     corners
 }
 
-/// Each point several times over.
+/// `COUNT` points, each of the given ones several times.
 fn doubled(points: &[P3]) -> Vec<P3> {
     points.iter().cycle().take(COUNT).copied().collect()
 }
@@ -38,7 +39,7 @@ fn space<N: Real>() {
     let (inside, round) = (ball(COUNT), sphere(COUNT));
     for scale in [1e-23, 1e6] {
         hull_of::<N>("a full ball", &scaled(&inside, scale));
-        // Where samples lie closer than rounding tells apart, faces meet at angles that are rounding.
+        // Where samples lie closer than rounding, the angles between faces are rounding errors too.
         hull_within::<N>(32.0, "a sphere", &scaled(&round, scale));
         let cube = hull_of::<N>("a cube", &scaled(&on_a_cube(), scale));
         assert_eq!((cube.vertices.len(), cube.faces.len()), (8, 6), "flat faces of many points");

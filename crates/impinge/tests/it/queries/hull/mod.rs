@@ -1,4 +1,5 @@
-//! Convex hulls and convex polygons against slow checks that share nothing with the library.
+//! Tests of convex hulls and convex polygons against slow checks that share no code with the
+//! library.
 
 mod checks;
 mod corpus;

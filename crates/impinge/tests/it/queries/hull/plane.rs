@@ -1,4 +1,4 @@
-//! Hulls and outlines in the plane.
+//! Tests hulls and outlines in 2D.
 
 use impinge::math::{Point, Real};
 use impinge::shape::{ConvexPolygon, ShapeError};
@@ -10,7 +10,7 @@ fn points<N: Real>(coordinates: &[[f64; 2]]) -> Vec<Point<N, 2>> {
     coordinates.iter().map(|&[x, y]| Point::<N, 2>::new(N::lit(x), N::lit(y))).collect()
 }
 
-/// How far a point lies to the right of a side, in exact-enough arithmetic, over the side's length.
+/// Greatest distance of a point to the right of a side, computed in `f64`.
 fn outside<N: Real>(points: &[Point<N, 2>], ring: &[usize]) -> f64 {
     let at = |i: usize| points[i].coords.map(Real::as_f64);
     let mut outside = 0.0_f64;

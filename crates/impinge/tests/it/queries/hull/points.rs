@@ -1,4 +1,4 @@
-//! Point sets that hulls find hard.
+//! Point sets that are hard for hulls.
 
 use impinge::math::{Isometry3, Point, Vector};
 
@@ -37,7 +37,7 @@ pub(crate) fn sphere(count: usize) -> Vec<P3> {
     inside.take(count).map(|v| P3::from(v.normalize())).collect()
 }
 
-/// The whole points from 0 to `count - 1` on each axis.
+/// The points with whole coordinates from 0 to `count - 1`.
 pub(crate) fn grid(count: u32) -> Vec<P3> {
     let axis = move || (0..count).map(f64::from);
     axis().flat_map(|x| axis().flat_map(move |y| axis().map(move |z| P3::new(x, y, z)))).collect()
@@ -61,13 +61,13 @@ pub(crate) fn prism(sides: u32) -> Vec<P3> {
     (0..sides).flat_map(|i| [corner(i, -1.0), corner(i, 1.0)]).collect()
 }
 
-/// The points turned, scaled and moved; what was exactly flat is so no more.
+/// The points rotated, scaled and moved; the rounding bends planes that were exactly flat.
 pub(crate) fn turned(points: &[P3], scale: f64, offset: f64) -> Vec<P3> {
     let turn = Isometry3::rotation(Vector::<f64, 3>::new(0.3, -0.9, 1.7));
     points.iter().map(|p| turn * p * scale + Vector::<f64, 3>::repeat(offset)).collect()
 }
 
-/// A flat box of the given thickness with noise on its large faces.
+/// Points on the two large faces of a flat box of the given thickness, with noise.
 pub(crate) fn slab(thickness: f64) -> Vec<P3> {
     let mut numbers = Numbers::new(3);
     (0..500)

@@ -1,4 +1,4 @@
-//! Hulls and polygons as solids: features, support points, boxes.
+//! Tests hulls and polygons as solids: features, support points, boxes.
 
 use impinge::bounding_volume::BoundingVolume;
 use impinge::math::{Isometry2, Isometry3, Point, Real, Vector};
@@ -119,7 +119,8 @@ fn a_feature_that_is_not_there_is_named() {
     let _ = ConvexHull::<f32>::from_points(&cast(&cube())).vertex(FeatureId::Vertex(8));
 }
 
-/// Boxes and spheres hold the support points, boxes touch them, `reach` bounds them.
+/// Boxes and spheres contain the support points, boxes touch them, and `reach` bounds their
+/// distance.
 fn bounds<N: Real, const D: usize>(
     shape: &dyn Shape<N, D>,
     directions: &[Vector<N, D>],
@@ -201,7 +202,7 @@ fn bounds_hold_in_the_plane() {
     bounds_in_the_plane::<f64>();
 }
 
-/// The box of a hull is the smallest, up to rounding: each face of it touches a vertex.
+/// The box of a hull is the least one up to rounding: each face of the box touches a vertex.
 #[test]
 fn boxes_of_hulls_are_tight() {
     let pose = Isometry3::rotation(Vector::<f64, 3>::new(0.4, 0.5, -0.2));

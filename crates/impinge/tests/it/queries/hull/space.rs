@@ -1,4 +1,4 @@
-//! Hulls in space.
+//! Tests hulls in 3D.
 
 use impinge::math::{Point, Real};
 use impinge::shape::{ConvexHull, ShapeError};
@@ -12,7 +12,8 @@ fn counts<N: Real>(name: &str, points: &[P3]) -> (usize, usize) {
     (hull.vertices.len(), hull.faces.len())
 }
 
-/// Solids whose faces are known, as they are and turned, small, large and far away.
+/// Solids with known numbers of vertices and faces: as given, and rotated, small, large and far
+/// away.
 fn known_solids<N: Real>() {
     let tetrahedron: Vec<P3> =
         cube().into_iter().filter(|p| (p.x + p.y + p.z) % 2.0 == 0.0).collect();
@@ -73,7 +74,7 @@ fn random_points() {
     random::<f64>();
 }
 
-/// Few whole numbers: most points lie in planes and on lines with many others.
+/// Few different whole coordinates, so that most points share planes and lines with many others.
 fn small_grids<N: Real>() {
     let mut numbers = Numbers::new(33);
     let (mut solids, mut flat) = (0, 0);
@@ -103,7 +104,8 @@ fn points_of_small_grids() {
     small_grids::<f64>();
 }
 
-/// Clouds of rounding size around the corners of a solid, on its edges and on its faces.
+/// Clouds of a few rounding units in size around the corners of a solid, on its edges and on its
+/// faces.
 fn noise<N: Real>() {
     let mut numbers = Numbers::new(17);
     for units in [0.5, 1.0, 2.0, 4.0, 8.0, 30.0, 1e3] {
@@ -137,7 +139,7 @@ fn clouds_of_rounding_size() {
     noise::<f64>();
 }
 
-/// A smooth surface sampled so finely that neighbors lie in one plane within rounding.
+/// A smooth surface sampled so finely that neighbouring points lie in one plane up to rounding.
 #[test]
 fn samples_finer_than_rounding() {
     for sides in [1000, 6000] {
@@ -152,7 +154,7 @@ fn samples_finer_than_rounding() {
 }
 
 fn slabs<N: Real>() {
-    // From well above the rounding of the coordinates to below it.
+    // Thicknesses from well above the rounding of the coordinates to below it.
     for units in [1e6, 1e4, 1e3, 100.0, 30.0, 10.0, 5.0, 3.0, 1.0, 0.1] {
         let points = slab(units * N::EPSILON.as_f64());
         let (level, tilted) = (cast::<N>(&points), cast::<N>(&turned(&points, 1.0, 0.0)));
@@ -170,7 +172,7 @@ fn slabs<N: Real>() {
     }
 }
 
-/// Prisms hardly thicker than rounding: every corner of the outline is one of the hull.
+/// Prisms barely thicker than rounding: every corner of the outline is a vertex of the hull.
 fn sheets<N: Real>() {
     for sides in [3, 5, 16, 40] {
         for units in [1e3, 30.0, 10.0, 7.0, 5.0, 4.0] {
@@ -241,7 +243,7 @@ fn the_panicking_constructor_says_why() {
         ConvexHull::<f32>::from_points(&[[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]].map(Point::from));
 }
 
-/// Products of the smallest numbers vanish and of the largest overflow, unless they are scaled first.
+/// Coordinates whose products underflow or overflow unless the points are scaled first.
 #[test]
 fn the_ends_of_the_range() {
     for scale in [f32::MIN_POSITIVE, 1e-40, 1e30, f32::MAX] {

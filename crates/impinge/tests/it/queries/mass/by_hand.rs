@@ -1,4 +1,4 @@
-//! Formulas of textbooks, sizes of zero, and bad input.
+//! Tests formulas from textbooks, sizes of zero, and bad input.
 
 use std::f64::consts::PI;
 
@@ -82,7 +82,8 @@ fn flat_sided_solids<N: Real>() {
     let expected = (1.0 / 6.0, V3::repeat(0.25), tensor);
     check3("tetrahedron", &Tetrahedron::new(corners), &expected);
     check3("hull", &ConvexHull::from_points(&corners), &expected);
-    // A plate of area 6 with legs of 4 and 3: about its centre ∫ x² is A l² / 18, ∫ x y is −A l w / 36.
+    // A triangle of area 6 with legs of 4 and 3: about its centre ∫ x² is A l² / 18, and ∫ x y is
+    // -A l w / 36.
     let plate = Triangle::new(corners[0], point3(4.0, 0.0, 0.0), point3(0.0, 3.0, 0.0));
     let (x, y, xy) = (6.0 * 16.0 / 18.0, 3.0, -2.0);
     let tensor = Matrix::<f64, 3>::new(y, -xy, 0.0, -xy, x, 0.0, 0.0, 0.0, x + y);
@@ -106,7 +107,8 @@ fn plane_shapes<N: Real>() {
     check2("rectangle", &Cuboid::new(half), &found2(6.0, [0.0; 2], 18.5));
     let mass = 1.5 * PI;
     check2("ellipse", &Ellipsoid::new(half), &found2(mass, [0.0; 2], mass * 9.25 / 4.0));
-    // A stadium: a rectangle of 4 by 6, and two half disks whose centres are 8 / 3π from their flat sides.
+    // A stadium: a rectangle of 4 by 6 and two half disks, whose centres of mass are 8 / 3π from
+    // their flat sides.
     let (rectangle, ends, shift) = (24.0, 4.0 * PI, 8.0 / 3.0 / PI);
     let inertia = rectangle * 52.0 / 12.0 + ends * (2.0 + 9.0 + 2.0 * 3.0 * shift);
     let stadium = found2(rectangle + ends, [0.0; 2], inertia);
@@ -128,7 +130,7 @@ fn shapes_of_the_plane() {
     plane_shapes::<f64>();
 }
 
-/// By the theorem of Steiner: V + S r + M r² + 4/3 π r³.
+/// Volumes of rounded solids by Steiner's formula V + S r + M r² + 4/3 π r³.
 #[test]
 fn rounded_volumes() {
     let r = 0.5;
@@ -143,7 +145,7 @@ fn rounded_volumes() {
     let (surface, mean) = (2.0 * PI * 4.0 + 4.0 * PI * 6.0, PI * 6.0 + PI * PI * 2.0);
     let cylinder = Rounded::new(Cylinder::new(3.0, 2.0), r);
     near(volume(&cylinder), 24.0 * PI + surface * r + mean * square(r) + ball, "cylinder");
-    // The side of the cone is 5 long; its angle at the apex has the cosine 4/5.
+    // The slant height of the cone is 5, and the cosine of its angle at the apex is 4/5.
     let cone = Rounded::new(Cone::new(2.0, 3.0), r);
     let rim = (-3.0_f64 / 5.0).acos();
     let mean = PI * 5.0 * 0.8 + PI * 3.0 * rim;
@@ -151,16 +153,17 @@ fn rounded_volumes() {
     let flat = [p3(1.0, 1.0, 1.0), p3(5.0, 1.0, 1.0), p3(1.0, 4.0, 1.0)];
     let plate = Rounded::new(Triangle::new(flat[0], flat[1], flat[2]), r);
     near(volume(&plate), 2.0 * 6.0 * r + PI / 2.0 * 12.0 * square(r) + ball, "triangle");
-    // A regular tetrahedron with edges of √8: its dihedral angles have the cosine 1/3.
+    // A regular tetrahedron with edges of √8, whose dihedral angles have the cosine 1/3.
     let corners =
         [p3(1.0, 1.0, 1.0), p3(1.0, -1.0, -1.0), p3(-1.0, 1.0, -1.0), p3(-1.0, -1.0, 1.0)];
     let mean = 6.0 * 8.0_f64.sqrt() * (PI - (1.0_f64 / 3.0).acos()) / 2.0;
     let expected = 8.0 / 3.0 + 8.0 * 3.0_f64.sqrt() * r + mean * square(r) + ball;
     near(volume(&Rounded::new(Tetrahedron::new(corners), r)), expected, "tetrahedron");
-    // A ball, whichever way it is made.
+    // A ball made as a rounded ellipsoid.
     let same = Rounded::new(Ellipsoid::new(V3::repeat(1.5)), r);
     assert_alike(&unit(&same), &unit(&Ball::new(2.0)), 1e-12, "a rounded ball");
-    // An ellipse of a disk is one of revolution: its rounded cylinder of no height has no other shape.
+    // An ellipsoid of height zero is a disk, so rounded it equals the rounded cylinder of height
+    // zero.
     let flat = Rounded::new(Ellipsoid::new(V3::new(2.0, 0.0, 2.0)), r);
     assert_alike(&unit(&flat), &unit(&disk), 1e-8, "a rounded disk");
     let line = Rounded::new(Ellipsoid::new(V3::new(0.0, 3.0, 0.0)), r);
@@ -185,7 +188,8 @@ fn rounded_areas() {
     assert_alike(&unit(&line), &unit(&Capsule::<f64, 2>::new(3.0, r)), 1e-8, "a stadium");
 }
 
-/// A cube as a hull is rounded face by face, as a box by products: they know nothing of each other.
+/// A cube is rounded face by face as a hull, and by a product formula as a box; the two share no
+/// code.
 #[test]
 fn rounded_polytopes_are_rounded_boxes() {
     let half = V3::new(0.5, 1.25, 2.0);
@@ -240,7 +244,7 @@ fn sizes_of_zero<N: Inertia<2> + Inertia<3>>() {
     }
     let point = unit(&Segment::new(a, a));
     assert_eq!(point, (0.0, a.coords.map(N::as_f64), Matrix::<f64, 3>::zeros()), "a point");
-    // A rod has no inertia about itself, and no inverse of it.
+    // A rod has no inertia about its own axis, so the inverse is zero there.
     let rod = mass_properties(&Segment::new(a, b), one).expect("a rod");
     let expected =
         Matrix::<N, 3>::from_diagonal(&Vector::<N, 3>::new(N::lit(1.5), zero, N::lit(1.5)));
@@ -283,7 +287,7 @@ fn refusals_say_what_is_wrong() {
     assert_eq!(huge.to_string(), "the mass is inf, which is not finite");
     let huge = mass_properties::<f32, 3>(&Ball::new(1e9), 1.0).expect_err("its inertia");
     assert!(matches!(huge, MassError::NotFinite { what: "a moment of inertia", .. }), "{huge}");
-    // With a density for it there is a mass.
+    // A small density keeps the mass in range, but not the inertia.
     let light = mass_properties::<f32, 3>(&Ball::new(1e20), 1e-30).map(|body| body.mass());
     assert!(light.is_err(), "its inertia is 1e70");
     let numbers = |mass, inertia| MassProperties::<f64, 2>::try_new(Point::origin(), mass, inertia);
@@ -295,7 +299,7 @@ fn refusals_say_what_is_wrong() {
     assert!(matches!(refused, Err(MassError::Negative { .. })), "{refused:?}");
 }
 
-/// Principal moments and their frame are those that were given.
+/// A body made from principal moments and their frame returns them unchanged.
 #[test]
 fn bodies_from_numbers() {
     let frame = UnitQuaternion::from_scaled_axis(V3::new(0.3, -1.2, 0.7));

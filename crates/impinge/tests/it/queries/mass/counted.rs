@@ -1,4 +1,4 @@
-//! Every kind of solid against the count of the points in it.
+//! Compares the mass properties of every kind of solid with a count of the grid points in it.
 
 use crate::support::composite_support::{Piece, Pieces};
 use crate::support::shape_table::{self, Shapes};
@@ -15,12 +15,12 @@ use impinge_reference::random::Random;
 
 use super::{Found, Inertia, assert_alike, p3, unit};
 
-/// In `D` dimensions: how many cells there are along each axis.
+/// Number of cells along each axis in `D` dimensions.
 fn cells<const D: usize>() -> usize {
     [0, 0, 300, 44][D]
 }
 
-/// As the dimension calls it; see [`Inertia`].
+/// The inertia in the form of the dimension; see [`Inertia`].
 fn found<const D: usize>(mass: &Mass<D>) -> Found<D> {
     let tensor = Matrix::<f64, D>::from_fn(|row, column| mass.inertia()[row][column]);
     let tensor = if D == 2 {
@@ -33,7 +33,7 @@ fn found<const D: usize>(mass: &Mass<D>) -> Found<D> {
     (mass.measure, Vector::<f64, D>::from(mass.center), tensor)
 }
 
-/// The count of the points of a box around a solid that are in it.
+/// Mass properties from a count of the points of a solid's box that are inside.
 fn count<const D: usize>(
     shape: &dyn Shape<f64, D>,
     is_inside: impl FnMut(&[f64; D]) -> bool,
@@ -53,7 +53,7 @@ fn check<const D: usize>(
     assert_alike(&unit(shape), &count(shape, is_inside), 1.2e-2, name);
 }
 
-/// By the level functions that other tests have of the solids.
+/// Decides with the level functions that other tests have for the solids whether points are inside.
 fn by_levels<const D: usize>(make: fn(&mut Rng) -> Vec<solids::Solid<f64, D>>)
 where
     f64: Inertia<D>,
@@ -79,7 +79,7 @@ fn solids_of_random_sizes() {
     by_levels::<3>(solids::space_solids);
 }
 
-/// By the point queries of the library.
+/// Decides with the library's point queries whether points are inside.
 fn by_points<R, const D: usize>(shapes: &Shapes<f64, D>, origin: &Isometry<f64, R, D>)
 where
     f64: Inertia<D>,
@@ -90,7 +90,7 @@ where
     }
 }
 
-/// The solids of a table of all shapes, without what has no volume.
+/// The shapes of the table of all shapes that have a volume.
 fn solids_of<const D: usize>(mut shapes: Shapes<f64, D>) -> Shapes<f64, D> {
     let others = [
         "segment",
@@ -137,7 +137,7 @@ fn solids_of_space() {
     by_points(&shapes, &Isometry3::identity());
 }
 
-/// What is nested and placed, against the count of the whole; the children do not overlap.
+/// A nested, placed compound against a count of the whole; the children do not overlap.
 #[test]
 fn compounds_with_densities() {
     use impinge::dim3::math::Isometry;
@@ -155,7 +155,7 @@ fn compounds_with_densities() {
     let densities = |path: &[u32]| if path == [0, 1] { 3.0 } else { 1.0 };
     let body = impinge::query::mass_properties_with(&nested, &mut |path| densities(path));
     let one = count(&nested, |p| nested.contains_point(&Isometry::identity(), &Point::from(*p)));
-    // The ball again, twice as heavy.
+    // Counts the ball a second time, since it has twice the density.
     let (center, mass) = (
         at(-2.0, 0.0, 2.0) * at(0.0, 1.5, 0.0) * Point::origin(),
         unit::<f64, 3>(&Ball::new(0.5)).0,
@@ -168,7 +168,7 @@ fn compounds_with_densities() {
     );
     let found = super::wide(&body.expect("solids"));
     assert_alike(&found, &super::wide(&(whole + heavy)), 1e-2, "nested");
-    // A composite of the tests' own: the same parts.
+    // A composite of the tests with the same parts.
     let parts = vec![
         (
             Pose::from(at(-2.0, 0.0, 2.0)),

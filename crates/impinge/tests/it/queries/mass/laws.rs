@@ -1,4 +1,4 @@
-//! What holds of the mass properties of every shape.
+//! Tests laws of the mass properties of every shape.
 
 use crate::support::query_support::random::Random;
 use crate::support::shape_table::{self, Shapes};
@@ -16,7 +16,8 @@ use super::{Inertia, assert_alike, p3, unit, wide};
 
 type V3 = Vector<f64, 3>;
 
-/// Scaling a shape by a power of two scales the answer exactly; what has an own measure apart.
+/// Scaling a shape by a power of two scales the result exactly; shapes with a measure of their own
+/// dimension are tested separately.
 fn scales_exactly<N: Inertia<D>, const D: usize>(table: fn(N) -> Shapes<N, D>) {
     let (plain, mut tried) = (table(N::ONE), 0);
     for power in [0.0625, 1024.0, 1.0 / 1_048_576.0] {
@@ -51,7 +52,7 @@ fn powers_of_two_scale_exactly() {
     scales_exactly::<f64, 3>(shape_table::space);
 }
 
-/// A segment and a flat triangle have the exponents of their own dimension.
+/// The mass of a segment scales with its length and that of a flat triangle with its area.
 #[test]
 fn rods_and_plates_scale_by_their_own_measure() {
     let corners =
@@ -65,7 +66,7 @@ fn rods_and_plates_scale_by_their_own_measure() {
     assert_eq!(large, (plate.0 * 1024.0, plate.1 * 32.0, plate.2 * 1024.0 * 1024.0), "a plate");
 }
 
-/// Both scalars say the same.
+/// Both scalars give the same result up to the rounding of `f32`.
 fn scalars_agree<const D: usize>(single: &Shapes<f32, D>, double: &Shapes<f64, D>)
 where
     f32: Inertia<D>,
@@ -74,7 +75,8 @@ where
     for ((name, one), (_, other)) in single.iter().zip(double) {
         let (one, other) = (mass_properties(&**one, 1.5), mass_properties(&**other, 1.5));
         let (Ok(one), Ok(other)) = (one, other) else { continue };
-        // Support points are rounded, and some of them more of slices.
+        // Support points are rounded, and so are the slices of a general support map, which lose
+        // more.
         let share = if *name == "support map" { 2e-4 } else { 1e-6 };
         assert_alike(&wide(&one), &wide(&other), share, name);
     }
@@ -86,7 +88,7 @@ fn scalars_say_the_same() {
     scalars_agree(&shape_table::space(1.0), &shape_table::space(1.0));
 }
 
-/// A body seen from elsewhere, and the shape as a compound placed there.
+/// A transformed body equals the body of the shape as a compound's child at that pose.
 fn places<N, R, const D: usize>(shapes: &Shapes<N, D>, turn: fn(&mut Random) -> R)
 where
     N: Inertia<D> + Space<D, Isometry = Isometry<N, R, D>>,
@@ -114,7 +116,8 @@ fn bodies_are_placed() {
     places::<f64, _, 3>(&shape_table::space(1.0), Random::turn3);
 }
 
-/// A box cut into eight is the box, as bodies that are added and as a compound; each but one taken out leaves that.
+/// The eight pieces of a cut box sum up to the box, both as bodies and as a compound; subtracting
+/// seven of them leaves the eighth.
 fn cut_into_eight<N: Inertia<3> + Space<3, Isometry = Isometry3<N>>>() {
     let (low, cut, high) = ([-1.0, -2.0, 0.0], [0.25, 1.0, 0.5], [3.0, 2.0, 4.0]);
     let piece = |index: usize| {
@@ -173,12 +176,12 @@ fn sums_do_not_depend_on_the_order() {
     assert!((found.inertia()[(0, 0)] / expected - 1.0).abs() < 1e-14, "a shell");
 }
 
-/// The parallel axis theorem, by a body of two.
+/// The parallel axis theorem, tested with a body and its mirror image.
 #[test]
 fn inertia_about_other_points() {
     let body = mass_properties(&Cuboid::new(V3::new(1.0, 2.0, 3.0)), 0.7).expect("a box");
     let point = p3(2.0, -1.0, 0.5);
-    // Its mirror image at the point: of both the point is the centre.
+    // The mirror image of the body at the point: the point is the centre of mass of both together.
     let mirrored = Isometry3::translation(4.0, -2.0, 1.0);
     let both = body + body.transformed(&mirrored);
     assert!((both.center_of_mass() - point).norm() < 1e-15, "{both:?}");
@@ -190,7 +193,7 @@ fn inertia_about_other_points() {
     assert!((both.inertia() - 2.0 * about).abs() < 1e-13, "in 2D");
 }
 
-/// Far from the origin nothing is lost but the digits of the coordinates: of these none here.
+/// Far from the origin only digits of the coordinates are lost, and the coordinates here are exact.
 fn far_away<N: Inertia<2> + Inertia<3>>() {
     let grid = |x: f64| (x * 8.0).round() / 8.0;
     let corners: Vec<[f64; 3]> = (0..12_u32)
@@ -214,7 +217,8 @@ fn far_away<N: Inertia<2> + Inertia<3>>() {
         let expected = (near.0, near.1 + shift, near.2);
         let off = (away.1 - expected.1).amax();
         assert!(off <= far * N::EPSILON.as_f64(), "the centre is off by {off}");
-        // In f32 hulls and polygons are coarser: their tolerance is in proportion to the largest coordinate.
+        // In `f32` hulls and polygons are coarser: their tolerance is proportional to the greatest
+        // coordinate.
         if N::EPSILON.as_f64() < 1e-10 {
             assert_alike(&away, &(near.0, away.1, near.2), 8.0 * N::EPSILON.as_f64(), "a hull");
         }
@@ -231,7 +235,7 @@ fn far_from_the_origin() {
     far_away::<f64>();
 }
 
-/// Thin solids in any direction: each principal moment has its digits, and the inverses are positive.
+/// Thin solids in any direction: each principal moment is precise, and the inverses are positive.
 fn needles<N: Inertia<3> + Space<3, Isometry = Isometry3<N>>>(thin: f64, share: f64) {
     let random = &mut Random(3, false);
     for _ in 0..20 {
@@ -252,7 +256,7 @@ fn needles<N: Inertia<3> + Space<3, Isometry = Isometry3<N>>>(thin: f64, share: 
             let torque = random.direction::<N, 3>();
             assert!(torque.dot(&(inverse * torque)) > N::ZERO, "{inverse} {torque}");
         }
-        // In a compound with another one the least moment stays positive.
+        // The least moment stays positive in a compound of two needles.
         let child = (Isometry3::identity(), ShapeHandle::new(needle));
         let both = Compound::new(vec![child.clone(), child]);
         let both = mass_properties(&both, N::ONE).expect("two needles");
@@ -280,7 +284,7 @@ fn needles_keep_their_digits() {
     }
 }
 
-/// A tapered capsule is more of a cone the smaller its tip is.
+/// Shapes that differ by 1e-9 have nearly equal mass properties, although different formulas apply.
 #[test]
 fn shapes_change_gradually() {
     let shapes: [(&dyn Shape<f64, 3>, &dyn Shape<f64, 3>); 4] = [

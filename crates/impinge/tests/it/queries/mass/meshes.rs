@@ -1,4 +1,4 @@
-//! Meshes and lines, and what is in compounds of them.
+//! Tests mass properties of meshes and lines, and of compounds that contain them.
 
 use impinge::math::{Isometry2, Isometry3, Point, Real, Unit, Vector};
 use impinge::procedural::space as surfaces;
@@ -12,7 +12,7 @@ use super::{Inertia, assert_alike, p2, p3, unit};
 
 type V3 = Vector<f64, 3>;
 
-/// A box about a point as vertices and triangles, perhaps inside out.
+/// Vertices and triangles of a box around a point, optionally with reversed windings.
 fn cuboid(half: [f64; 3], at: [f64; 3], is_inverted: bool) -> (Vec<Point<f64, 3>>, Vec<[u32; 3]>) {
     let surface = surfaces::cuboid(&Cuboid::new(V3::from(half)));
     let vertices = surface.vertices.iter().map(|vertex| vertex + V3::from(at)).collect();
@@ -56,7 +56,7 @@ fn closed_meshes<N: Inertia<3>>() {
         (found.2[(1, 1)] - (inner.2[(1, 1)] + 8.0 * 4.0) * 2.0).abs() < share * 80.0,
         "{found:?}"
     );
-    // A sheet of two sides encloses nothing.
+    // A sheet of two sides encloses no volume.
     let (vertices, _) = cuboid([1.0; 3], [5.0; 3], false);
     let sheet = mesh::<N>(&[(vertices, vec![[0, 1, 2], [2, 1, 0]])]);
     let found = unit(&sheet);
@@ -67,7 +67,7 @@ fn closed_meshes<N: Inertia<3>>() {
 fn meshes_that_are_closed() {
     closed_meshes::<f32>();
     closed_meshes::<f64>();
-    // The surface of a hull is the hull.
+    // The surface of a hull has the mass properties of the hull.
     let corners: Vec<_> = (0..40_u32)
         .map(f64::from)
         .map(|k| p3((k * 1.3).sin() * 2.0, (k * 2.1).cos(), (k * 0.7).sin() + 4.0))
@@ -113,7 +113,7 @@ fn lines_and_meshes_of_the_plane() {
     let outline = Polyline::closed(corners.to_vec());
     let reversed = Polyline::closed(corners.iter().rev().copied().collect());
     let filled = TriMesh::new(corners.to_vec(), vec![[0, 1, 2], [3, 2, 0], [0, 3, 4], [0, 5, 4]]);
-    // An L of two rectangles.
+    // An L shape of two rectangles.
     let place = |x: f64, y: f64, w: f64, h: f64| {
         let half = Vector::<f64, 2>::new(w * 0.5, h * 0.5);
         (Isometry2::translation(x + w * 0.5, y + h * 0.5), ShapeHandle::new(Cuboid::new(half)))
@@ -131,7 +131,7 @@ fn lines_and_meshes_of_the_plane() {
     assert_eq!(mass_properties(&wire, 1.0), Err(MassError::NotClosed { part: 0 }));
 }
 
-/// An error names the part of the whole compound.
+/// The error for a part inside nested compounds reports the index of the part in the whole.
 #[test]
 fn errors_in_compounds_name_the_part() {
     let ball = ShapeHandle::new(Ball::new(1.0));
@@ -155,7 +155,7 @@ fn errors_in_compounds_name_the_part() {
         panic!("a mesh is open")
     };
     assert_eq!(outer.path_to_part(part)[0], 1, "the second child");
-    // A density is asked once for each child.
+    // The density is requested once for each child, in order.
     let (mut asked, outer) =
         (Vec::new(), compound(&[&closed, &compound(&[&ball, &closed]), &ball]));
     let body = impinge::query::mass_properties_with(&*outer, &mut |path| {

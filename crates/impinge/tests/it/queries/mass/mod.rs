@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia.
+//! Tests of mass, centre of mass and inertia.
 
 mod by_hand;
 mod counted;
@@ -10,10 +10,10 @@ use impinge::math::{Matrix, Point, Real, Space, Vector};
 use impinge::query::{MassProperties, mass_properties};
 use impinge::shape::Shape;
 
-/// The properties at density one, in doubles: mass, centre, and the tensor about it.
+/// Mass properties at density one in `f64`: mass, centre, and inertia about the centre.
 pub(super) type Found<const D: usize> = (f64, Vector<f64, D>, Matrix<f64, D>);
 
-/// What a dimension calls inertia, as a matrix; in 2D the moment is its only element that is not zero.
+/// The inertia of a dimension as a matrix; in 2D only one element is not zero, the moment.
 pub(super) trait Inertia<const D: usize>: Space<D> {
     fn inertia_of(body: &MassProperties<Self, D>) -> Matrix<f64, D>;
 }
@@ -34,12 +34,12 @@ pub(super) fn wide<N: Inertia<D>, const D: usize>(body: &MassProperties<N, D>) -
     (body.mass().as_f64(), body.center_of_mass().coords.map(N::as_f64), N::inertia_of(body))
 }
 
-/// The properties of a shape at density one.
+/// Mass properties of a shape at density one.
 pub(super) fn unit<N: Inertia<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Found<D> {
     wide(&mass_properties(shape, N::ONE).unwrap_or_else(|error| panic!("{error}: {shape:?}")))
 }
 
-/// The two are equal up to a share of the size of each.
+/// Asserts that both are equal up to a share of the size of each value.
 #[track_caller]
 pub(super) fn assert_alike<const D: usize>(
     found: &Found<D>,

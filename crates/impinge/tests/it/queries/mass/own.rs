@@ -1,4 +1,5 @@
-//! Shapes of a user's own: by their support points, by their parts, or by what they say.
+//! Tests custom shapes: known by their support points, by their parts, or with their own mass
+//! properties.
 
 use crate::support::composite_support::{Piece, Pieces};
 use crate::support::query_support::random::Random;
@@ -16,7 +17,7 @@ use super::{Found, Inertia, assert_alike, p3, unit, wide};
 
 type V3 = Vector<f64, 3>;
 
-/// A solid of the library behind its support points, turned and stretched.
+/// A solid of the library behind its support points, mapped by a matrix.
 #[derive(Debug)]
 struct Hidden<S, N: Real, const D: usize> {
     solid: S,
@@ -50,7 +51,7 @@ where
     unit(&Hidden { solid, map })
 }
 
-/// The properties of a solid with all its points multiplied by a matrix.
+/// Mass properties of a solid whose points are all multiplied by a matrix.
 fn mapped<const D: usize>(found: &Found<D>, map: &Matrix<f64, D>, determinant: f64) -> Found<D> {
     let half_trace = found.2.trace() / (D as f64 - 1.0);
     let second = Matrix::<f64, D>::from_diagonal_element(half_trace) - found.2;
@@ -85,7 +86,8 @@ fn solids_of_the_plane_by_support_points() {
     assert_eq!(unit(&line).0, 0.0, "a line");
 }
 
-/// Round, flat and thin ones, along the axes and across them; the shares are those that the documentation names.
+/// Round, flat and thin solids along the axes and across them; the tolerances are those of the
+/// documentation.
 #[test]
 fn solids_of_space_by_support_points() {
     let random = &mut Random(5, false);
@@ -126,7 +128,7 @@ fn flat_and_broken_solids_of_space() {
     let rounded = unit(&RoundHull { points: square.to_vec(), rounding: 0.5 });
     let expected = unit(&Rounded::new(Cuboid::new(V3::new(1.0, 0.5, 0.0)), 0.5));
     assert_alike(&rounded, &(expected.0, V3::new(2.0, 0.5, 2.0), expected.2), 1e-4, "rounded");
-    // A flat tetrahedron is known by its support points alone.
+    // A flat tetrahedron is known by its support points only.
     let tetrahedron = impinge::shape::Tetrahedron::new(square);
     let rounded = unit(&Rounded::new(tetrahedron, 0.5));
     assert_alike(&rounded, &(expected.0, V3::new(2.0, 0.5, 2.0), expected.2), 1e-4, "rounded");
@@ -135,7 +137,7 @@ fn flat_and_broken_solids_of_space() {
     assert!(matches!(refused, Err(MassError::NotFinite { .. })), "{refused:?}");
 }
 
-/// A solid that knows its mass.
+/// A solid that gives its own mass properties.
 #[derive(Debug)]
 struct Known(f64);
 
@@ -166,7 +168,7 @@ fn a_shape_may_know_better() {
     assert_eq!(wide(&found.expect("it says so")), wide(&expected.expect("a ball")), "what it says");
 }
 
-/// A mesh behind a type of a user's own, as a shape that stands for it and as a surface of its own.
+/// A mesh behind a custom type: with `true` as a shape that stands for the mesh, else as a surface.
 #[derive(Debug)]
 struct Wrapped(TriMesh<f64, 3>, bool);
 

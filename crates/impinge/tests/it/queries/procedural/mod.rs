@@ -1,5 +1,5 @@
-//! Outlines and surfaces of the built-in shapes: closed, outward, on the true surface, and nearer to
-//! it the more parts a turn has.
+//! Tests outlines and surfaces of the built-in shapes: they are closed, face outwards, lie on the
+//! true surface, and approach it with more segments for each turn.
 
 mod plane;
 mod space;
@@ -10,8 +10,8 @@ fn doubles<N: Real, const D: usize>(points: &[Point<N, D>]) -> Vec<[f64; D]> {
     points.iter().map(|point| core::array::from_fn(|axis| point[axis].as_f64())).collect()
 }
 
-/// How deep a point is in the hull of two balls: the union of balls whose centres and radii change
-/// evenly.
+/// Depth of a point in the hull of two balls: the union of balls whose centres and radii change
+/// linearly.
 fn depth_in_club<const D: usize>(
     p: &Vector<f64, D>,
     [a, b]: [Vector<f64, D>; 2],
@@ -30,7 +30,8 @@ fn epsilon<N: Real>() -> f64 {
     N::EPSILON.as_f64()
 }
 
-/// A quarter of the error at twice the parts, as long as it is far above rounding.
+/// Asserts that doubling the segments divides the error by four, as long as it is far above
+/// rounding.
 fn assert_second_order(what: &str, truth: f64, measure: impl Fn(u32) -> f64) {
     for count in [16, 32] {
         let (error, half) = (truth - measure(count), truth - measure(2 * count));
@@ -42,7 +43,7 @@ fn assert_second_order(what: &str, truth: f64, measure: impl Fn(u32) -> f64) {
     assert!((0.0..5e-4).contains(&relative), "{what}: off by {relative} at last");
 }
 
-/// The same shape twice as large, and some sizes far from 1.
+/// The shape at twice its size, and at sizes far from 1.
 const POWERS: [f64; 3] = [2.0, 1.0 / 1_048_576.0, 1_073_741_824.0];
 
 const COUNTS: [u32; 8] = [0, 3, 4, 5, 7, 8, 13, 30];

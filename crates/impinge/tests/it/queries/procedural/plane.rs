@@ -1,4 +1,4 @@
-//! Outlines.
+//! Tests outlines in 2D.
 
 use core::f64::consts::PI;
 
@@ -15,8 +15,8 @@ fn point<N: Real>(p: [f64; 2]) -> Point<N, 2> {
     Point::from(Vector::<f64, 2>::from(p).map(N::lit))
 }
 
-/// Closed, convex, counter-clockwise, the corners on the surface, and the middles of the sides within
-/// the gap of it; the largest gap found.
+/// Asserts that the outline is closed, convex and counter-clockwise, with its corners on the
+/// surface and the middles of its sides at most `gap` below it. Returns the greatest gap found.
 fn check_round<N: Real>(points: &[Point<N, 2>], solid: &Solid<2>, size: f64, gap: f64) -> f64 {
     let points = doubles(points);
     let noise = 8.0 * epsilon::<N>() * size;
@@ -66,7 +66,7 @@ fn capsules<N: Real>() {
         let [a, b] = [0, 1].map(|_| [0, 1].map(|_| random.range(-3.0, 3.0)));
         let capsule =
             Capsule::try_from_ends(point::<N>(a), point(b), N::lit(0.75)).expect("good numbers");
-        // Rounded to the scalar, as the capsule sees its ends.
+        // The ends as the capsule has them, rounded to the scalar.
         let ends = doubles(&[*capsule.segment().a(), *capsule.segment().b()]);
         let outline = plane::capsule(&capsule, count);
         let half = count.max(3).div_ceil(2);

@@ -1,4 +1,4 @@
-//! Surfaces.
+//! Tests surfaces in 3D.
 
 use core::f64::consts::PI;
 
@@ -32,11 +32,12 @@ fn area_of<N: Real>(surface: &TriangleSurface<N>) -> f64 {
     surface.corners().map(|t| area(t.map(|p| p.coords.map(N::as_f64)))).sum()
 }
 
-/// Closed, convex, outward, with unit normals that lean outward.
+/// Asserts that the surface is closed, convex and faces outwards, with unit normals that point
+/// outwards.
 fn check_convex<N: Real>(surface: &TriangleSurface<N>, size: f64) {
     let (vertices, faces) = (doubles(&surface.vertices), faces(surface));
     assert_eq!(check_surface(&vertices, &faces), Ok(()), "closed, like a ball");
-    // A normal from an edge of length l is off by the noise over l.
+    // The normal across an edge of length l has an error of the noise over l.
     let noise = 512.0 * epsilon::<N>() * size;
     assert!(highest_above(&vertices, &faces, &vertices) <= noise, "convex and outward");
     assert!(volume(&vertices, &faces) > 0.0, "outward");
@@ -53,8 +54,8 @@ fn check_convex<N: Real>(surface: &TriangleSurface<N>, size: f64) {
     }
 }
 
-/// The largest depth of a point of the triangles, the vertices being on the surface. `depth` is
-/// positive inside.
+/// Greatest depth of a point of the triangles below the surface, whose vertices must be on it.
+/// `depth` is positive inside.
 fn widest_gap<N: Real>(
     surface: &TriangleSurface<N>,
     size: f64,
@@ -156,7 +157,7 @@ fn cones<N: Real>() {
         let (surface, n) = (cone(count), count.max(3));
         assert_counts(&surface, 2 + n, 2 * n);
         check_convex(&surface, 3.0);
-        // Height 4 over a radius of 3: the generating line has length 5.
+        // Height 4 over a radius of 3: the slant height is 5.
         let depth = |p: &Vector<f64, 3>| {
             let side = ((2.0 - p.y) * 3.0 - p.x.hypot(p.z) * 4.0) / 5.0;
             side.min(p.y + 2.0)
@@ -276,7 +277,7 @@ fn hulls<N: Real>() {
             highest_above(&doubles(hull.vertices()), &faces(&surface), &doubles(&points));
         assert!(farthest <= 64.0 * epsilon::<N>(), "every point is inside: {farthest}");
     }
-    // A prism: polygons of more than three corners.
+    // The hull of a prism has polygons of more than three corners.
     let top = space::cylinder(&Cylinder::new(N::ONE, N::ONE), 9);
     let hull = ConvexHull::from_points(&top.vertices);
     let surface = space::convex_hull(&hull);

@@ -1,4 +1,4 @@
-//! A broad phase that is slow and obvious, and the random sequences of calls that compare the two.
+//! A slow and simple broad phase, and random sequences of calls that compare it with the library's.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use impinge::broad_phase::Bounds;
 use impinge::broad_phase::{BroadPhase, DBVTBroadPhase, ProxyHandle};
 use impinge::math::{Point, Real, Space, Vector};
 
-/// Numbers from a linear congruential generator.
+/// A linear congruential generator.
 pub(crate) struct Random(pub u64);
 
 impl Random {
@@ -17,7 +17,7 @@ impl Random {
         u32::try_from((self.0 >> 33) % u64::from(bound)).expect("below a u32")
     }
 
-    /// True once in `n` times.
+    /// True once in `n` calls on average.
     pub(crate) fn one_in(&mut self, n: u32) -> bool {
         self.below(n) == 0
     }
@@ -26,12 +26,12 @@ impl Random {
 /// An object of the model.
 struct Object<N: Real, const D: usize> {
     handle: ProxyHandle,
-    /// As of the last update; `None` before the first.
+    /// Boxes as of the last update; `None` before the first.
     known: Option<(Aabb<N, D>, Bounds<D>)>,
     waiting: Option<Aabb<N, D>>,
 }
 
-/// All pairs, all the time; decisions of the filter are kept as long as the overlap lasts.
+/// Compares all pairs at every update; a decision of the filter holds as long as the overlap lasts.
 pub(crate) struct Model<N: Real, const D: usize> {
     margin: N,
     objects: BTreeMap<u32, Object<N, D>>,
@@ -39,14 +39,14 @@ pub(crate) struct Model<N: Real, const D: usize> {
     decided: BTreeMap<(u32, u32), bool>,
     again: Vec<u32>,
     is_all_again: bool,
-    /// The filter's rule; it changes with recomputations.
+    /// Rule of the filter; it changes with recomputations.
     rule: u32,
 }
 
 /// Two uids, and whether the pair started.
 type Event = (u32, u32, bool);
 
-/// What was reached by a run, so that a test can assert that it tests something.
+/// Counts of what happened in a run, so that a test can assert that enough happened.
 #[derive(Debug, Default)]
 pub(crate) struct Reached {
     pub(crate) started: usize,
@@ -83,7 +83,7 @@ impl<N: Space<D>, const D: usize> Model<N, D> {
         }
     }
 
-    /// The events that an update must report and the questions that it must ask.
+    /// The events that an update must report and the pairs for which it must call the filter.
     fn update(&mut self) -> (Vec<Event>, Vec<(u32, u32)>) {
         self.apply_waiting();
         let (mut events, mut asked, mut decided) = (Vec::new(), Vec::new(), BTreeMap::new());
@@ -119,7 +119,7 @@ impl<N: Space<D>, const D: usize> Model<N, D> {
         self.decided.iter().filter(|&(_, &allowed)| allowed).map(|(&key, _)| key).collect()
     }
 
-    /// Forgets some objects; the callbacks that this must cause.
+    /// Removes objects; returns the pairs that the removal must report.
     fn remove(&mut self, uids: &[u32]) -> Vec<(u32, u32)> {
         let concerns = |&(a, b): &(u32, u32)| uids.contains(&a) || uids.contains(&b);
         let ended = self.pairs().into_iter().filter(concerns).collect();
@@ -130,7 +130,7 @@ impl<N: Space<D>, const D: usize> Model<N, D> {
     }
 }
 
-/// The kind of scene of a run.
+/// Parameters of a run.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plan {
     pub(crate) seed: u64,
@@ -138,7 +138,7 @@ pub(crate) struct Plan {
     pub(crate) updates: u32,
     /// Cells of the world along each axis.
     pub(crate) size: u32,
-    /// Quarters of a cell.
+    /// Margin in quarters of a cell.
     pub(crate) margin: u32,
 }
 
@@ -147,9 +147,9 @@ struct Run<N: Space<D>, const D: usize> {
     plan: Plan,
     random: Random,
     model: Model<N, D>,
-    /// Its data are serial numbers.
+    /// The broad phase under test; its data are serial numbers.
     tested: DBVTBroadPhase<N, Aabb<N, D>, u32>,
-    /// The uid of the object with a serial number.
+    /// Uids by serial number.
     uids: Vec<u32>,
     reached: Reached,
 }
@@ -158,7 +158,8 @@ fn uid(handle: ProxyHandle) -> u32 {
     u32::try_from(handle.uid()).expect("small")
 }
 
-/// Grid coordinates in quarters; for every third one something that `f32` cannot hold.
+/// A coordinate on a grid of quarters; every third one is moved by 1/3, so that `f32` does not
+/// represent it exactly.
 fn coordinate<N: Real>(random: &mut Random, size: u32) -> N {
     let quarters = N::lit(f64::from(random.below(size * 4)) / 4.0);
     if random.one_in(3) { quarters + N::lit(1.0 / 3.0) } else { quarters }
@@ -184,7 +185,7 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         }
     }
 
-    /// A box: mostly about one cell, some of zero extent, a few large, a few unbounded, some
+    /// A box: mostly about one cell large, some of extent zero, a few large, a few unbounded, some
     /// beyond the range of `f32`.
     fn random_box(&mut self) -> Aabb<N, D> {
         let random = &mut self.random;
@@ -282,7 +283,7 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
             self.model.is_all_again = true;
             self.tested.deferred_recompute_all_proximities();
         } else if let Some(uid) = self.any() {
-            // The rule stays: only what the object's pairs are is asked again.
+            // The rule stays, and only the pairs of this object are filtered again.
             self.model.again.push(uid);
             let handle = self.model.objects[&uid].handle;
             self.tested.deferred_recompute_all_proximities_with(handle);
@@ -363,7 +364,7 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         self.reached.query_misses += usize::from(hit.is_empty());
     }
 
-    /// All hits come in order of entry; a limit given back cuts the rest off.
+    /// The search visits hits in the order of entry; a returned limit cuts off the rest.
     fn compare_order(&self, ray: &Ray<N, D>, hit: &[u32]) {
         let time = |uid: &u32| {
             let exact = self.model.objects[uid].known.expect("known").0;
@@ -381,14 +382,15 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
             visited
         };
         assert_eq!(visit(N::INFINITY, Box::new(|_| N::INFINITY)), expected, "all, in order");
-        // The limit becomes the first time of entry: what is entered then still counts.
+        // The limit becomes the first time of entry: further boxes entered at that time still
+        // count.
         let first = expected.first().map(|first| first.0);
         expected.retain(|hit| Some(hit.0) == first);
         assert_eq!(visit(N::INFINITY, Box::new(|time| time)), expected, "the first ones");
     }
 
     fn step(&mut self, step: u32) {
-        // Phases: everything moves, a few move, nearly nothing does (so that objects come to rest).
+        // Phases: all objects move, a few move, nearly none do (so that objects come to rest).
         let count = self.plan.objects;
         let moves = match step / 20 % 4 {
             0 => count,
@@ -406,7 +408,7 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
             self.recompute();
         }
         if self.random.one_in(40) {
-            // Created and removed before any update has seen it.
+            // An object created and removed before any update.
             self.create();
             let handle = self.model.objects.values().find(|object| object.known.is_none());
             let handle = handle.expect("just created").handle;
@@ -415,19 +417,19 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         }
         self.update();
         (0..3).for_each(|_| self.compare_queries());
-        // Moves that wait are not seen by searches.
+        // Searches do not see pending moves.
         self.move_one();
         self.remove_some();
         self.compare_queries();
     }
 }
 
-/// Runs the plan, comparing after each call; what was reached.
+/// Runs the plan, compares after each call, and returns what happened.
 pub(crate) fn run<N: Space<D>, const D: usize>(plan: Plan) -> Reached {
     let mut run = Run::<N, D>::new(plan);
     (0..plan.objects).for_each(|_| run.create());
     (0..plan.updates).for_each(|step| run.step(step));
-    // Everything stops at the end: each start had exactly one stop.
+    // Finally all objects are removed: each start has exactly one stop.
     let all: Vec<u32> = run.model.objects.keys().copied().collect();
     let handles: Vec<_> = run.model.objects.values().map(|object| object.handle).collect();
     let mut last = 0;

@@ -1,4 +1,4 @@
-//! A composite of the tests' own: what a user writes, over any parts at any places.
+//! A custom composite, as a user writes it, of any parts at any poses.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
 pub mod scenes;
@@ -12,7 +12,7 @@ use impinge::shape::{
     CompositeShape, Geometry, Part, PartSearch, PartSolid, Segment, Shape, ShapeHandle, Triangle,
 };
 
-/// What a part is.
+/// The solid of a part.
 #[derive(Clone, Debug)]
 pub enum Piece<N: Real, const D: usize> {
     Triangle(Triangle<N, D>),
@@ -34,7 +34,7 @@ impl<N: Real, const D: usize> Piece<N, D> {
     }
 }
 
-/// Parts at their places and a tree over their boxes.
+/// Parts with their poses, and a tree over their boxes.
 pub struct Pieces<N: Real, const D: usize> {
     pub parts: Vec<(Pose<N, D>, Piece<N, D>)>,
     tree: BoxTree<N, D>,
@@ -52,7 +52,7 @@ impl<N: Space<D>, const D: usize> Pieces<N, D> {
         Self { tree: BoxTree::from_boxes(&boxes), parts }
     }
 
-    /// A mesh, with triangles in its own frame.
+    /// A mesh whose triangles are in its own frame.
     pub fn mesh(points: &[Point<N, D>], triangles: &[[u32; 3]]) -> Self {
         let corner = |index: u32| points[index as usize];
         let one = |t: &[u32; 3]| Triangle::new(corner(t[0]), corner(t[1]), corner(t[2]));
@@ -66,7 +66,7 @@ impl<N: Space<D>, const D: usize> Pieces<N, D> {
         Self::new(points.windows(2).map(|ends| (Pose::identity(), one(ends))).collect())
     }
 
-    /// One solid at a place.
+    /// One solid at a pose.
     pub fn wrapped(pose: Pose<N, D>, piece: Piece<N, D>) -> Self {
         Self::new(vec![(pose, piece)])
     }
@@ -102,7 +102,7 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Pieces<N, D> {
     }
 }
 
-/// A search that knows nothing: proposes every part, always. Answers must be the same.
+/// A search that always proposes every part; the results must be the same.
 #[derive(Debug)]
 pub struct Everything(pub u32);
 
@@ -134,7 +134,7 @@ impl<N: Real, const D: usize> PartSearch<N, D> for Everything {
     }
 }
 
-/// The same parts with [`Everything`] as the search: the slow twin.
+/// The parts with [`Everything`] as their search, for comparison.
 #[derive(Debug)]
 pub struct Slow<N: Real, const D: usize>(pub Pieces<N, D>, pub Everything);
 

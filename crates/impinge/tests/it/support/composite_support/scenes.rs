@@ -1,4 +1,4 @@
-//! Random composites of any parts, and the brute force over all of them.
+//! Random composites of any parts, and brute force over all parts.
 
 use impinge::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, Vector};
 use impinge::query::contact;
@@ -8,14 +8,14 @@ use super::{Piece, Pieces, Slow};
 use crate::support::query_support::random::Random;
 use crate::support::query_support::samples::Sample;
 
-/// What is particular to a dimension.
+/// The kinds of solids and the rotations that differ by dimension.
 pub struct Maker<N: Real, R, const D: usize> {
     pub kinds: &'static [ShapeKind],
     pub sample: Sample<N, D>,
     pub turn: fn(&mut Random) -> R,
 }
 
-/// Parts and the isometries that they are placed by.
+/// The parts, and their poses as isometries.
 pub struct Scene<N: Real, R, const D: usize> {
     pub places: Vec<Isometry<N, R, D>>,
     pub fast: Pieces<N, D>,
@@ -27,13 +27,13 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R,
         R::identity()
     }
 
-    /// A place up to `reach` away, half of the time turned.
+    /// A random pose up to `reach` away, rotated half of the time.
     pub fn place(&self, random: &mut Random, reach: N) -> Isometry<N, R, D> {
         let turn = if random.bits() & 1 == 0 { R::identity() } else { (self.turn)(random) };
         Isometry::from_parts((random.vector::<N, D>() * reach).into(), turn)
     }
 
-    /// One solid of any kind with ends.
+    /// A bounded solid of a random kind.
     pub fn solid(&self, random: &mut Random, scale: N) -> ShapeHandle<N, D> {
         let kinds = self.kinds.iter().filter(|kind| **kind != ShapeKind::Plane);
         let kinds: Vec<_> = kinds.copied().collect();
@@ -41,8 +41,8 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R,
         ShapeHandle::from_arc((self.sample)(kinds[at], random, scale).into())
     }
 
-    /// `count` parts of size `scale` within five times as much: a third triangles and a third segments
-    /// in the frame of the composite.
+    /// `count` parts of size `scale` within five times that distance: a third are triangles and a
+    /// third segments, both in the frame of the composite.
     pub fn scene(&self, random: &mut Random, count: usize, scale: N) -> Scene<N, R, D> {
         let mut parts = Vec::new();
         for _ in 0..count {
@@ -76,7 +76,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Scene<N, R, D> {
         Self { places: parts.into_iter().map(|(m, _)| m).collect(), fast, slow }
     }
 
-    /// The smallest signed distance of a part from a solid.
+    /// Least signed distance of a part from a solid.
     pub fn brute(&self, m: &Isometry<N, R, D>, m2: &Isometry<N, R, D>, g2: &dyn Shape<N, D>) -> N {
         let one = |part: usize| {
             let (_, piece) = &self.fast.parts[part];

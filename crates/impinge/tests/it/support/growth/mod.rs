@@ -1,4 +1,5 @@
-//! What contacts of large solids with many parts cost: counted by shapes that are asked, not by time.
+//! Cost of contacts between large solids and shapes with many parts, counted by calls to the
+//! shapes, not by time.
 
 use std::fmt::Debug;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,7 +14,8 @@ use impinge::shape::{
 
 use crate::support::slides::{Random, Sliding};
 
-/// A shape that counts what it is asked: a composite about its parts, a box for its support points.
+/// A shape that counts the calls to it: a composite those about its parts, a box those for its
+/// support points.
 #[derive(Debug)]
 struct Counted<S> {
     shape: S,
@@ -71,7 +73,7 @@ impl<S: CompositeShape<f64, D> + Debug, const D: usize> Surface<f64, D> for Coun
     }
 }
 
-/// A composite that counts what it is asked, as a shape.
+/// A composite that counts calls, as a shape.
 #[derive(Debug)]
 struct Ground<S>(Counted<S>);
 
@@ -89,7 +91,7 @@ where
     }
 }
 
-/// A box of no known kind.
+/// A box without a known kind.
 #[derive(Debug)]
 struct Crate<const D: usize>(Counted<Cuboid<f64, D>>);
 
@@ -112,12 +114,12 @@ where
     }
 }
 
-/// The heights of rough ground.
+/// Random heights of a rough surface.
 fn heights(random: &mut Random, count: u32) -> Vec<f64> {
     (0..count).map(|_| 0.3 * random.unit()).collect()
 }
 
-/// How many cells of unit length lie under a plate of this half extent, and some beside it.
+/// Number of unit cells along a plate with this half extent, and some beside it.
 fn cells(half: u32) -> u32 {
     2 * half + 4
 }
@@ -142,7 +144,7 @@ fn field(half: u32) -> HeightField<f64, 3> {
     HeightField::<f64, 3>::new(points, points, heights, Vector::<f64, 3>::new(extent, 1.0, extent))
 }
 
-/// Triangles around one corner: the roof of a tent.
+/// Triangles around one common corner, like the roof of a tent.
 fn fan(half: u32) -> TriMesh<f64, 3> {
     let count = 8 * half * half;
     let place = |at: u32| {
@@ -180,8 +182,8 @@ fn field2(half: u32) -> HeightField<f64, 2> {
     HeightField::<f64, 2>::new(heights(&mut random, n + 1), extents)
 }
 
-/// How often the two shapes are asked, per part of the ground, when a large box moves over it: one of the
-/// library's, and one that it knows by its support points alone.
+/// Number of calls for each part of the surface while a large box moves over it: for a box of the
+/// library, and for one known by its support points only.
 fn asked_for_each_part<S, const D: usize>(ground: S, half: u32) -> [f64; 2]
 where
     f64: Space<D>,
@@ -209,7 +211,8 @@ where
     })
 }
 
-/// Of four times as many parts no more is asked than four times as much, and a little.
+/// Asserts that the calls for each part at the greatest size are at most 1.5 times those at the
+/// smaller sizes, so that the cost is linear in the parts.
 fn check_growth<S, const D: usize>(label: &str, halves: [u32; 3], make: impl Fn(u32) -> S)
 where
     f64: Space<D>,

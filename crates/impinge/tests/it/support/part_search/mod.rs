@@ -1,4 +1,4 @@
-//! Searches among parts held against looking at every part.
+//! Compares searches among parts with a scan of all parts.
 #![allow(dead_code, unreachable_pub, reason = "each test binary uses a part")]
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
@@ -6,7 +6,7 @@ use impinge::math::{Point, Real, Vector};
 use impinge::shape::{CompositeShape, PartSearch};
 use impinge_reference::random::Random;
 
-/// Between -1 and 1, with few digits, so that touching is common.
+/// A random number from -1 to 1 with few digits, so that touching is common.
 pub fn coarse(random: &mut Random) -> f64 {
     f64::from(u32::try_from(random.below(65)).expect("few")) / 32.0 - 1.0
 }
@@ -15,7 +15,7 @@ pub fn coarse_vector<N: Real, const D: usize>(random: &mut Random) -> Vector<N, 
     Vector::<N, D>::from_fn(|_, _| N::lit(coarse(random)))
 }
 
-/// A box in the region of `around`, often flat or a point.
+/// A random box in the region of `around`, often flat or a point.
 pub fn probe<N: Real, const D: usize>(random: &mut Random, around: &Aabb<N, D>) -> Aabb<N, D> {
     let reach = around.half_extents();
     let stretch = N::lit(if random.below(2) == 0 { 1.25 } else { 1.0 });
@@ -29,7 +29,7 @@ pub fn probe<N: Real, const D: usize>(random: &mut Random, around: &Aabb<N, D>) 
     Aabb::new(center - half, center + half)
 }
 
-/// The squared distance of two boxes.
+/// Distance of two boxes.
 fn distance<N: Real, const D: usize>(a: &Aabb<N, D>, b: &Aabb<N, D>) -> f64 {
     let gap = |axis: usize| {
         let below = b.mins()[axis].as_f64() - a.maxs()[axis].as_f64();
@@ -38,7 +38,7 @@ fn distance<N: Real, const D: usize>(a: &Aabb<N, D>, b: &Aabb<N, D>) -> f64 {
     (0..D).map(|axis| gap(axis).powi(2)).sum::<f64>().sqrt()
 }
 
-/// When a moving box meets another.
+/// Time at which a moving box meets another.
 fn time<N: Real, const D: usize>(
     a: &Aabb<N, D>,
     velocity: &Vector<N, D>,
@@ -61,7 +61,7 @@ fn time<N: Real, const D: usize>(
     (enter <= leave).then_some(enter)
 }
 
-/// The parts a search answers with, each once.
+/// The parts that a search found, sorted by index; each may occur once only.
 fn sorted<T>(mut found: Vec<(u32, T)>) -> Vec<(u32, T)> {
     found.sort_by_key(|(part, _)| *part);
     for two in found.windows(2) {
@@ -105,13 +105,13 @@ fn cast<N: Real, const D: usize>(
     sorted(found)
 }
 
-/// The boxes of parts, found by looking at each.
+/// The boxes of all parts, for scans.
 pub struct Boxes<N: Real, const D: usize> {
     pub of_parts: Vec<(u32, Aabb<N, D>)>,
     pub around: Aabb<N, D>,
 }
 
-/// How often something was found.
+/// Counts of results, so that a test can assert that there were enough.
 #[derive(Debug, Default)]
 pub struct Found {
     pub hits: usize,
@@ -131,7 +131,7 @@ impl<N: Real, const D: usize> Boxes<N, D> {
         Self { of_parts, around }
     }
 
-    /// Random questions, each against all boxes.
+    /// Random queries, each compared with a scan of all boxes.
     pub fn check(&self, search: &dyn PartSearch<N, D>, random: &mut Random, count: usize) -> Found {
         let mut found = Found::default();
         assert!(search.bounds().contains(&self.around), "{:?} leaves out parts", search.bounds());
@@ -164,7 +164,7 @@ impl<N: Real, const D: usize> Boxes<N, D> {
         let (_, limit) = all[random.below(all.len())];
         let found = nearest(search, aabb, N::lit(limit));
         check_bounds(&found, &all, N::lit(limit).as_f64(), N::EPSILON.as_f64());
-        // With a limit that sinks the nearest is among the answers.
+        // If the visitor lowers the limit to the best distance, the nearest part is still visited.
         let (mut best, mut looked_at) = (f64::INFINITY, 0);
         search.nearest(aabb, N::INFINITY, &mut |part, _| {
             looked_at += 1;
@@ -211,8 +211,8 @@ impl<N: Real, const D: usize> Boxes<N, D> {
     }
 }
 
-/// What is surely within the limit was found, what is surely beyond was not, and bounds are bounds,
-/// close ones.
+/// Asserts that parts clearly within the limit were found and parts clearly beyond were not, and
+/// that each bound is at most the distance and close to it.
 fn check_bounds(found: &[(u32, f64)], all: &[(u32, f64)], limit: f64, epsilon: f64) {
     let slack = 64.0 * epsilon;
     for &(part, own) in all {
@@ -228,7 +228,8 @@ fn check_bounds(found: &[(u32, f64)], all: &[(u32, f64)], limit: f64, epsilon: f
     }
 }
 
-/// Points of parts, in the frame of the whole: what a search must not miss, whatever its boxes are.
+/// Searches with points of the parts, in the frame of the whole: a search must find them whatever
+/// its boxes are. Returns the number of hits.
 pub fn check_points<N: Real, const D: usize>(
     search: &dyn PartSearch<N, D>,
     points: &[(u32, Point<N, D>)],
@@ -241,7 +242,7 @@ pub fn check_points<N: Real, const D: usize>(
     for _ in 0..count {
         let mut aabb = probe(random, &around);
         if random.below(2) == 0 {
-            // Around a point, or just that.
+            // A box around a point, which may be the point alone.
             let point = all[random.below(all.len())];
             let half = aabb.half_extents();
             aabb = Aabb::new(point - half, point + half);

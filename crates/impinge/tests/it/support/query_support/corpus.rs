@@ -1,4 +1,4 @@
-//! Reads the corpus files.
+//! Reads the files of the corpus.
 
 use impinge::math::na::{Quaternion, Translation, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry, Point, Real, Unit, Vector};
@@ -29,7 +29,7 @@ pub fn number<N: Real>(value: &Value) -> N {
     N::lit(value.as_f64().expect("a number"))
 }
 
-/// The first of two names that a number goes by.
+/// The number under the first of two names, or under the second if that is missing.
 fn either<N: Real>(value: &Value, name1: &str, name2: &str) -> N {
     number(value.get(name1).unwrap_or(&value[name2]))
 }
@@ -46,7 +46,7 @@ fn points<N: Real, const D: usize>(value: &Value) -> Vec<Point<N, D>> {
     value.as_array().expect("a list of points").iter().map(point).collect()
 }
 
-/// The shapes of both dimensions; `None` for those that do not exist here.
+/// The shapes of both dimensions; `None` for shapes that do not exist in this one.
 fn common<N: Real, const D: usize>(value: &Value) -> Option<Box<dyn Shape<N, D>>> {
     Some(match value["type"].as_str().expect("a name") {
         "ball" => Box::new(Ball::new(either(value, "radius", "r"))),
@@ -103,7 +103,7 @@ pub fn shape3<N: Real>(value: &Value) -> Option<Box<dyn Shape<N, 3>>> {
     })
 }
 
-/// A field of one height, perhaps with all cells but the first removed.
+/// A flat height field, optionally with all cells but the first removed.
 fn height_field<N: Real>(value: &Value) -> HeightField<N, 3> {
     let count =
         |name: &str| usize::try_from(value[name].as_u64().expect("a whole number")).expect("few");
@@ -126,17 +126,17 @@ pub fn tri_mesh<N: Real>(value: &Value) -> TriMesh<N, 3> {
     TriMesh::new(points(&value["vertices"]), triangles.collect())
 }
 
-/// The hull of some points.
+/// The hull of points in 2D.
 pub fn polygon<N: Real>(points: &[Point<N, 2>]) -> Box<dyn Shape<N, 2>> {
     Box::new(ConvexPolygon::from_points(points))
 }
 
-/// The hull of some points.
+/// The hull of points in 3D.
 pub fn hull<N: Real>(points: &[Point<N, 3>]) -> Box<dyn Shape<N, 3>> {
     Box::new(ConvexHull::from_points(points))
 }
 
-/// The turn that takes the y axis to the axis that a shape of the corpus stands along.
+/// The rotation that takes the y axis to the axis of a shape in the corpus.
 fn standing<N: Real>(shape: &Value) -> UnitQuaternion<N> {
     match shape.get("axis").and_then(Value::as_str) {
         Some("z") => UnitQuaternion::from_axis_angle(&Vector::<N, 3>::x_axis(), N::frac_pi_2()),
@@ -145,14 +145,15 @@ fn standing<N: Real>(shape: &Value) -> UnitQuaternion<N> {
     }
 }
 
-/// Where the origin of a shape of the corpus lies in its frame here: fields are centred.
+/// Position of the origin of the corpus's shape in the library's frame: height fields of the
+/// library are centred.
 fn offset<N: Real>(shape: &Value) -> Translation<N, 3> {
     let size = shape.get("origin_corner").map(|_| vector::<N, 3>(&shape["size"]));
     let half = size.map(|size| Vector::<N, 3>::new(size.x, N::ZERO, size.z) * N::HALF);
     Translation::from(half.unwrap_or_else(Vector::<N, 3>::zeros))
 }
 
-/// The translation of a pose, by either of its names; none is the origin.
+/// Translation of a pose, under either of its names; the origin if there is none.
 fn translation<N: Real, const D: usize>(pose: &Value) -> Translation<N, D> {
     let value = pose.get("t").or_else(|| pose.get("translation"));
     Translation::from(value.map_or_else(Vector::<N, D>::zeros, vector))

@@ -1,9 +1,9 @@
-//! Random numbers, the same on every run.
+//! Random numbers that are equal on every run.
 
 use impinge::math::na::{Quaternion, UnitComplex, UnitQuaternion};
 use impinge::math::{Real, Vector};
 
-/// `SplitMix64` (Steele, Lea and Flood, 2014); with the flag, half of the sizes and coordinates of
+/// `SplitMix64` (Steele, Lea and Flood, 2014). With the flag, half of the sizes and coordinates of
 /// the solids made from it are zero.
 pub struct Random(pub u64, pub bool);
 
@@ -16,23 +16,23 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Between -1 and 1, with few enough digits to be the same in both scalars.
+    /// A number from -1 to 1, with so few digits that both scalars represent it exactly.
     pub fn signed(&mut self) -> f64 {
         let high = u32::try_from(self.bits() >> 44).expect("20 bits");
         f64::from(high) / f64::from(1 << 19) - 1.0
     }
 
-    /// Between `low` and `high`.
+    /// A number from `low` to `high`.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.signed() * 0.5 + 0.5)
     }
 
-    /// One, or zero for half of the sizes of degenerate solids.
+    /// 1; with the flag, 0 in half of the calls.
     pub fn size_or_zero(&mut self) -> f64 {
         if self.1 && self.bits() & 1 == 0 { 0.0 } else { 1.0 }
     }
 
-    /// A vector in the unit ball, not too short.
+    /// A random vector in the unit ball that is longer than 0.1.
     pub fn vector<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
         loop {
             let v = Vector::<f64, D>::from_fn(|_, _| self.signed());

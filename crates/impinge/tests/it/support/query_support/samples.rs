@@ -10,7 +10,7 @@ use super::corpus::{hull, polygon};
 use super::random::Random;
 use super::solids::RoundHull;
 
-/// The kinds of the plane.
+/// The kinds in 2D.
 pub const PLANE: [ShapeKind; 11] = [
     ShapeKind::Ball,
     ShapeKind::Segment,
@@ -25,7 +25,7 @@ pub const PLANE: [ShapeKind; 11] = [
     ShapeKind::Plane,
 ];
 
-/// The kinds of space.
+/// The kinds in 3D.
 pub const SPACE: [ShapeKind; 13] = [
     ShapeKind::Ball,
     ShapeKind::Segment,
@@ -42,21 +42,21 @@ pub const SPACE: [ShapeKind; 13] = [
     ShapeKind::Plane,
 ];
 
-/// Makes a solid of a kind from random numbers, `scale` large.
+/// Makes a random solid of a kind, about `scale` large.
 pub type Sample<N, const D: usize> = fn(ShapeKind, &mut Random, N) -> Box<dyn Shape<N, D>>;
 
-/// A point up to `scale` away from the origin.
+/// A random point up to `scale` away from the origin.
 fn point<N: Real, const D: usize>(random: &mut Random, scale: N) -> Point<N, D> {
     let v = random.vector::<N, D>() * scale;
     Point::from(v.map(|x| x * N::lit(random.size_or_zero())))
 }
 
-/// A size between a fifth of `scale` and all of it.
+/// A random size between a fifth of `scale` and all of it.
 fn size<N: Real>(random: &mut Random, scale: N) -> N {
     N::lit(random.within(0.2, 1.0) * random.size_or_zero()) * scale
 }
 
-/// The kinds that both dimensions have.
+/// The kinds of both dimensions.
 fn common<N: Real, const D: usize>(
     kind: ShapeKind,
     random: &mut Random,
@@ -94,7 +94,7 @@ fn common<N: Real, const D: usize>(
     }
 }
 
-/// A solid of a random kind of both dimensions, rounded.
+/// A rounded solid of a random kind of both dimensions.
 fn rounded<N: Real, const D: usize>(random: &mut Random, scale: N) -> Box<dyn Shape<N, D>> {
     let radius = size(random, scale);
     let extents = Vector::<N, D>::from_fn(|_, _| size(random, scale));
@@ -115,7 +115,7 @@ pub fn sample2<N: Real>(kind: ShapeKind, random: &mut Random, scale: N) -> Box<d
     }
 }
 
-/// A convex polygon, counter-clockwise.
+/// A convex octagon, counter-clockwise.
 fn octagon<N: Real>(random: &mut Random, scale: N) -> Vec<Point<N, 2>> {
     let stretch = [random.within(0.4, 1.0), random.within(0.4, 1.0)];
     (0..8)

@@ -1,10 +1,10 @@
-//! Solids that only the tests know: they join every query by their support points.
+//! Solids that only the tests have: queries know them by their support points.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Real, Vector};
 use impinge::shape::{Geometry, Shape, SupportMap};
 
-/// The hull of some points, inflated by a radius.
+/// The hull of points, inflated by a radius.
 #[derive(Debug)]
 pub struct RoundHull<N: Real, const D: usize> {
     pub points: Vec<Point<N, D>>,
@@ -43,7 +43,7 @@ impl<N: Real, const D: usize> RoundHull<N, D> {
     }
 }
 
-/// The points whose coordinates, divided by the radii, are within the unit ball.
+/// The points whose coordinates, divided by the radii, lie in the unit ball.
 #[derive(Debug)]
 pub struct Ellipsoid<N: Real, const D: usize> {
     pub radii: Vector<N, D>,
@@ -58,7 +58,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
     }
 }
 
-/// The box of a support map.
+/// The box of a support map, from its support points along the axes.
 fn box_of<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> Aabb<N, D> {
     let (mut mins, mut maxs) = (Point::origin(), Point::origin());
     for axis in 0..D {

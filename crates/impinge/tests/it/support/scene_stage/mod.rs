@@ -1,4 +1,4 @@
-//! Scenes played in worlds of any scalar and dimension: what the tests of whole runs share.
+//! Plays scenes in worlds of any scalar and dimension, for tests of whole runs.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
@@ -122,7 +122,7 @@ fn groups_of(groups: &SceneGroups) -> CollisionGroups {
     all
 }
 
-/// A scene and the world that it is played in; the data of an object is its index in the scene.
+/// A scene and the world in which it is played; the data of an object are its index in the scene.
 pub(crate) struct Player<N: Play<D>, const D: usize> {
     scene: Scene<D>,
     scale: f64,
@@ -131,7 +131,7 @@ pub(crate) struct Player<N: Play<D>, const D: usize> {
     pub(crate) world: World<N, D>,
 }
 
-/// A state of a player.
+/// A saved state of a player.
 pub(crate) struct PlayerMark {
     world: WorldMark,
     step: u32,
@@ -147,36 +147,36 @@ impl<N: Play<D>, const D: usize> Player<N, D> {
         Self { scene, scale, step: 0, handles, world }
     }
 
-    /// How many steps were played.
+    /// Number of steps played.
     pub(crate) const fn step_number(&self) -> u32 {
         self.step
     }
 
-    /// The present state, to go back to.
+    /// Marks the present state, for [`Self::rewind`].
     pub(crate) fn mark(&mut self) -> PlayerMark {
         PlayerMark { world: self.world.mark(), step: self.step, handles: self.handles.clone() }
     }
 
-    /// Goes back to the state of a mark.
+    /// Returns to the state of a mark.
     pub(crate) fn rewind(&mut self, mark: &PlayerMark) {
         self.world.rewind(mark.world);
         self.step = mark.step;
         self.handles.clone_from(&mark.handles);
     }
 
-    /// Removes, adds and moves what the next step says, and updates the world.
+    /// Applies the removals, additions and moves of the next step, and updates the world.
     pub(crate) fn step(&mut self) {
         self.apply();
         self.update();
     }
 
-    /// Updates the world and goes on to the next step.
+    /// Updates the world and advances to the next step.
     pub(crate) fn update(&mut self) {
         self.world.update();
         self.step += 1;
     }
 
-    /// Everything of a step but the update.
+    /// Applies everything of a step except the update.
     pub(crate) fn apply(&mut self) {
         let mut dead = Vec::new();
         for (object, handle) in self.handles.iter_mut().enumerate() {
@@ -212,8 +212,8 @@ impl<N: Play<D>, const D: usize> Player<N, D> {
     }
 }
 
-/// FNV-1a over 64-bit words, each mixed as `SplitMix64` does: the same on every platform, unlike the
-/// standard library's hashers, to which the width of `usize` matters.
+/// FNV-1a over 64-bit words, each mixed as in `SplitMix64`. The digest is equal on every platform,
+/// unlike those of the standard library's hashers, which depend on the width of `usize`.
 #[derive(Clone, Debug)]
 pub(crate) struct Digest(u64);
 
@@ -260,7 +260,7 @@ impl Hasher for Digest {
     }
 }
 
-/// Manifolds read in pieces are those read in one go, in the same order.
+/// Asserts that manifolds read in pieces equal those read at once, in order.
 fn assert_pieces_agree<N: Space<D>, const D: usize, T: Sync>(world: &CollisionWorld<N, D, T>) {
     for most in [0, 1, 3, 50, usize::MAX] {
         let pieces = world.contact_view_pieces(most);
@@ -277,7 +277,7 @@ fn assert_pieces_agree<N: Space<D>, const D: usize, T: Sync>(world: &CollisionWo
     }
 }
 
-/// Manifolds read in place are the manifolds, to the bit.
+/// Asserts that manifolds read in place equal the manifolds to the bit.
 pub(crate) fn assert_views_agree<N: Space<D>, const D: usize, T: Sync>(
     world: &CollisionWorld<N, D, T>,
 ) {
@@ -303,8 +303,8 @@ pub(crate) fn assert_views_agree<N: Space<D>, const D: usize, T: Sync>(
     assert!(views.next().is_none(), "as many views as manifolds");
 }
 
-/// Everything that a world says after an update: contacts with features and names, proximities and
-/// events, in order.
+/// Digests everything that a world reports after an update: contacts with features and ids,
+/// proximities and events, in order.
 pub(crate) fn digest_state<N: Space<D>, const D: usize, T: Sync>(
     world: &CollisionWorld<N, D, T>,
     digest: &mut Digest,

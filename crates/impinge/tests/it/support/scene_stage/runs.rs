@@ -1,4 +1,4 @@
-//! The scenes whose hashes are golden, and how they are played.
+//! The scenes whose hashes are golden, and the ways in which they are played.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
@@ -11,7 +11,7 @@ use impinge_scenes::Scene;
 
 use crate::scene_stage::{Digest, Play, Player, digest_state};
 
-/// What the number of a run stands for, and how much of it there was.
+/// The hash of a run, and how many contacts and events there were.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Outcome {
     pub(crate) hash: u64,
@@ -19,7 +19,7 @@ pub(crate) struct Outcome {
     pub(crate) events: usize,
 }
 
-/// A scene and how long it is played.
+/// A scene and the number of steps.
 #[derive(Clone)]
 pub(crate) struct Run<const D: usize> {
     pub(crate) scene: Scene<D>,
@@ -27,13 +27,13 @@ pub(crate) struct Run<const D: usize> {
 }
 
 impl<const D: usize> Run<D> {
-    /// What the golden file calls this scene with a scalar.
+    /// Key of this scene with a scalar in the golden file.
     pub(crate) fn key(&self, scalar: &str) -> String {
         let name = self.scene.name.replace(' ', "-").replace('%', "percent");
         format!("{name} {D} {scalar}")
     }
 
-    /// Plays the scene in a world whose broad phase uses the given vectors.
+    /// Plays the scene in a world whose broad phase uses the given instruction set.
     pub(crate) fn play<N: Play<D>>(&self, lanes: Option<Lanes>) -> Outcome {
         let mut player = Player::<N, D>::new(self.scene.clone(), 1.0);
         if let Some(lanes) = lanes {
@@ -49,8 +49,8 @@ impl<const D: usize> Run<D> {
         score.finish()
     }
 
-    /// Plays the scene with a mark before each step. After every tenth new step it goes back, at most eight steps,
-    /// and plays these again; after every seventh, a clone goes on.
+    /// Plays the scene with a mark before each step. After every tenth new step it rewinds by at
+    /// most eight steps and plays these again; after every seventh it continues with a clone.
     pub(crate) fn play_again<N: Play<D>>(&self) -> Outcome {
         let mut player = Player::<N, D>::new(self.scene.clone(), 1.0);
         let mut score = Score { digest: Digest::new(), outcome: Outcome::default() };
@@ -78,7 +78,7 @@ impl<const D: usize> Run<D> {
     }
 }
 
-/// What a run has come to.
+/// Digest and counts of a run so far.
 #[derive(Clone, Debug)]
 struct Score {
     digest: Digest,
@@ -86,7 +86,7 @@ struct Score {
 }
 
 impl Score {
-    /// Takes in what the world says after a step.
+    /// Digests what the world reports after a step.
     fn note<N: Play<D>, const D: usize>(&mut self, player: &Player<N, D>) {
         let (world, outcome) = (&player.world, &mut self.outcome);
         digest_state(world, &mut self.digest);
@@ -99,7 +99,7 @@ impl Score {
     }
 }
 
-/// Hands all runs to a macro, each with the name of its test.
+/// Passes all runs to a macro, each with the name of its test.
 macro_rules! for_each_run {
     ($then:ident) => {
         $then! {

@@ -1,4 +1,4 @@
-//! Every built-in shape, and composites and convex solids of a user's own, by name.
+//! Every built-in shape, and custom composites and convex solids, by name.
 
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector};
 use impinge::procedural::space as surfaces;
@@ -12,7 +12,7 @@ use super::query_support::solids::RoundHull;
 
 pub(crate) type Shapes<N, const D: usize> = Vec<(&'static str, ShapeHandle<N, D>)>;
 
-/// Those of both dimensions, a few times `s` large.
+/// The shapes of both dimensions, a few times `s` large.
 fn common<N: Space<D>, const D: usize>(s: N, corners: &[Point<N, D>; 3]) -> Shapes<N, D> {
     let [a, b, c] = *corners;
     let half = Vector::<N, D>::from_fn(|axis, _| s * N::lit([1.0, 0.5, 2.0][axis]));
@@ -49,7 +49,7 @@ fn common<N: Space<D>, const D: usize>(s: N, corners: &[Point<N, D>; 3]) -> Shap
     ]
 }
 
-/// Those of the plane.
+/// The shapes in 2D.
 pub(crate) fn plane<N: Real>(s: N) -> Shapes<N, 2> {
     let p = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x) * s, N::lit(y) * s);
     let corners = [p(-1.0, -0.5), p(1.0, -0.25), p(0.25, 1.0)];
@@ -70,7 +70,7 @@ pub(crate) fn plane<N: Real>(s: N) -> Shapes<N, 2> {
     shapes
 }
 
-/// Those of space.
+/// The shapes in 3D.
 pub(crate) fn space<N: Real>(s: N) -> Shapes<N, 3> {
     let p =
         |x: f64, y: f64, z: f64| Point::<N, 3>::new(N::lit(x) * s, N::lit(y) * s, N::lit(z) * s);

@@ -1,4 +1,4 @@
-//! Floors of many pieces, and what a solid sees of them while it slides.
+//! Floors of many parts, and the contacts of a solid that slides over them.
 
 #![allow(dead_code, unreachable_pub, reason = "each test takes what it needs")]
 
@@ -12,7 +12,7 @@ use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, Cuboid, Cylinder, HeightField, Shape, ShapeHandle, TriMesh,
 };
 
-/// A small generator; the numbers are those of Numerical Recipes.
+/// A small generator with the constants of Numerical Recipes.
 pub struct Random(u64);
 
 impl Random {
@@ -25,29 +25,29 @@ impl Random {
         u32::try_from((self.0 >> 33) % u64::from(n)).expect("below")
     }
 
-    /// Between −1 and 1.
+    /// A random number from -1 to 1.
     pub fn unit(&mut self) -> f64 {
         f64::from(self.below(1 << 20)) / f64::from(1 << 19) - 1.0
     }
 }
 
-/// How the cells of a floor are divided.
+/// Division of the cells of a floor into triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pattern {
     Slash,
     Backslash,
     Zigzag,
-    /// Vertices off the grid, diagonals at random.
+    /// Vertices beside the grid, diagonals at random.
     Random,
-    /// Every triangle has vertices of its own.
+    /// Every triangle has its own vertices.
     Soup,
 }
 
 pub const PATTERNS: [Pattern; 5] =
     [Pattern::Slash, Pattern::Backslash, Pattern::Zigzag, Pattern::Random, Pattern::Soup];
 
-/// A flat floor of `2 n²` triangles, `n` cells of size `cell` each way around `center`; `height`
-/// gives the y of each vertex.
+/// A floor of `2 n²` triangles: `n` cells of size `cell` in each direction around `center`.
+/// `height` gives the y of each vertex.
 pub fn grid<N: Real + Space<3>>(
     n: u32,
     cell: f64,
@@ -98,14 +98,14 @@ pub fn grid<N: Real + Space<3>>(
     TriMesh::new(vertices, triangles)
 }
 
-/// A flat height field as large as [`grid`]'s floor around the origin.
+/// A flat height field as large as the floor of [`grid`], around the origin.
 pub fn field<N: Real>(n: usize, cell: f64) -> HeightField<N, 3> {
     let size = N::lit(n as f64 * cell);
     let heights = vec![N::ZERO; (n + 1) * (n + 1)];
     HeightField::<N, 3>::new(n + 1, n + 1, heights, Vector::<N, 3>::new(size, N::ONE, size))
 }
 
-/// The solids that slide in space.
+/// The solids that slide in 3D.
 pub fn solids3<N: Real>() -> Vec<(&'static str, ShapeHandle<N, 3>)> {
     let v = |x: f64, y: f64, z: f64| Vector::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z));
     let mut random = Random::new(3);
@@ -123,9 +123,9 @@ pub fn solids3<N: Real>() -> Vec<(&'static str, ShapeHandle<N, 3>)> {
     ]
 }
 
-/// What holds of every contact on the way.
+/// Properties that every contact on the path must have.
 pub struct Expected<N: Real, const D: usize> {
-    /// From the floor to the solid, in the world.
+    /// From the floor to the solid, in world coordinates.
     pub normal: Vector<N, D>,
     pub normal_tolerance: N,
     pub depth: N,
@@ -133,7 +133,7 @@ pub struct Expected<N: Real, const D: usize> {
     pub manifolds: usize,
 }
 
-/// A generator with its source of names.
+/// A generator with its source of contact ids.
 pub struct Sliding<N: Space<D>, const D: usize> {
     generator: PairManifoldGenerator<N, D>,
     ids: IdAllocator,
@@ -161,7 +161,7 @@ impl<N: Space<D>, const D: usize> Sliding<N, D> {
     }
 }
 
-/// Slides a solid along and holds every contact against what is expected.
+/// Slides a solid along the poses of `way` and compares every contact with `expected`.
 pub fn slide<N, R, const D: usize>(
     name: &str,
     (floor_pose, floor): (&Isometry<N, R, D>, &dyn Shape<N, D>),
@@ -203,7 +203,7 @@ pub fn slide<N, R, const D: usize>(
     assert!(steps > 0, "{name}: slid");
 }
 
-/// The height of the lowest point of a solid turned like this.
+/// Height of the lowest point of a solid at a pose.
 pub fn lowest<N: Real>(solid: &dyn Shape<N, 3>, turned: &Isometry3<N>) -> N {
     let pose = Pose::from_isometry(turned);
     let geometry = solid.geometry();

@@ -1,6 +1,7 @@
-//! Shapes with a slow and obvious description: a convex function that is zero on the boundary.
+//! Shapes with a slow and simple description: a convex level function that is zero on the boundary.
 //!
-//! The function is negative inside and positive outside; all in `f64`, from numbers that `f32` holds.
+//! The function is negative inside and positive outside. It is computed in `f64` from numbers that
+//! `f32` represents exactly.
 
 #![allow(dead_code, reason = "each of the tests that share this file uses its part")]
 
@@ -22,7 +23,7 @@ impl Rng {
         Self::scaled(seed, 1.0)
     }
 
-    /// Its lengths are those of `new` times a power of two.
+    /// A generator whose lengths are those of `new` times a power of two.
     pub(crate) fn scaled(seed: u64, scale: f64) -> Self {
         Self { state: seed, scale }
     }
@@ -35,7 +36,7 @@ impl Rng {
         z ^ (z >> 31)
     }
 
-    /// A multiple of 1/1024 between the two, times the scale: exact in `f32`.
+    /// A multiple of 1/1024 between `low` and `high`, times the scale: exact in `f32`.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         let fraction = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
         ((low + (high - low) * fraction) * 1024.0).round() / 1024.0 * self.scale
@@ -54,7 +55,7 @@ pub(crate) fn wide<N: Real, const D: usize>(v: &Vector<N, D>) -> Vector<f64, D> 
     v.map(N::as_f64)
 }
 
-/// The point of the outer frame in the local one, in `f64`.
+/// A world point in the local frame of `m`, in `f64`.
 pub(crate) fn local<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     point: &Vector<f64, D>,
@@ -63,7 +64,7 @@ pub(crate) fn local<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     pose.rotation.map(N::as_f64).tr_mul(&(point - wide(&pose.translation)))
 }
 
-/// The direction of the outer frame in the local one, in `f64`.
+/// A world direction in the local frame of `m`, in `f64`.
 pub(crate) fn turned_back<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     direction: &Vector<N, D>,
@@ -80,7 +81,8 @@ pub(crate) struct Solid<N: Real, const D: usize> {
     pub(crate) level: Debugless<D>,
     /// A point inside.
     pub(crate) center: Vector<f64, D>,
-    /// No point is farther from the local origin (of those that rays aim at).
+    /// Greatest distance of the solid's points from the local origin, or of those at which rays
+    /// aim.
     pub(crate) size: f64,
 }
 
@@ -102,7 +104,8 @@ impl<N: Real, const D: usize> Solid<N, D> {
         (self.level.0)(point)
     }
 
-    /// Where the boundary is crossed on the way from the centre along a direction.
+    /// The point at which the boundary is crossed from the centre along a direction; `None` if
+    /// there is none.
     pub(crate) fn boundary(&self, direction: &Vector<f64, D>) -> Option<Vector<f64, D>> {
         let (mut low, mut high) = (0.0, 4.0 * self.size / direction.norm());
         if self.at(&(self.center + direction * high)) < 0.0 {
@@ -122,7 +125,7 @@ fn to_segment<const D: usize>(p: &Vector<f64, D>, a: &Vector<f64, D>, b: &Vector
     (p - (a + (b - a) * t.clamp(0.0, 1.0))).norm()
 }
 
-/// An ellipsoid (an ellipse), known to the library by its support points only.
+/// An ellipsoid (in 2D an ellipse) that the library knows by its support points only.
 #[derive(Debug)]
 pub(crate) struct Ellipsoid<N: Real, const D: usize>(pub(crate) Vector<N, D>);
 
@@ -226,7 +229,7 @@ pub(crate) fn common<N: Real, const D: usize>(rng: &mut Rng) -> Vec<Solid<N, D>>
     solids
 }
 
-/// A tapered capsule: the union of balls whose centres and radii change evenly.
+/// A tapered capsule: the union of balls whose centres and radii change linearly.
 fn club<N: Real, const D: usize>(rng: &mut Rng) -> Solid<N, D> {
     let (a, b) = (rng.vector::<D>(2.0), rng.vector::<D>(2.0));
     let (first, second) = (rng.between(0.25, 1.0), rng.between(0.25, 1.0));
@@ -281,7 +284,7 @@ pub(crate) fn plane_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 2>> {
     solids
 }
 
-/// Any corners, and two on each axis, to both sides: the origin is inside their hull.
+/// Eight random corners, and one on each half axis, so that the hull contains the origin.
 fn hull_corners<const D: usize>(rng: &mut Rng) -> Vec<Vector<f64, D>> {
     let mut corners: Vec<_> = (0..8).map(|_| rng.vector::<D>(2.0)).collect();
     for axis in 0..D {
@@ -294,7 +297,7 @@ fn hull_corners<const D: usize>(rng: &mut Rng) -> Vec<Vector<f64, D>> {
     corners
 }
 
-/// The height over the highest of all planes through `D` corners that have all corners on one side.
+/// Height above the highest of all planes through `D` corners that have all corners on one side.
 fn hull_level<const D: usize>(
     corners: Vec<Vector<f64, D>>,
     normal: impl Fn(&[Vector<f64, D>], [usize; D]) -> Vector<f64, D>,
@@ -354,7 +357,7 @@ fn spike<N: Real>(rng: &mut Rng) -> Solid<N, 3> {
     Solid::new("tetrahedron", shape, size, level)
 }
 
-/// Sets without thickness: their corners, of which they are the hull.
+/// A shape without thickness, and the corners of which it is the hull.
 #[derive(Debug)]
 pub(crate) struct Flat<N: Real, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,

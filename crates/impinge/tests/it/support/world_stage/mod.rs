@@ -1,4 +1,4 @@
-//! What the tests of the world share: positions and shapes for any scalar and dimension.
+//! Shared by the tests of worlds: positions and shapes for any scalar and dimension.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
@@ -7,12 +7,12 @@ use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, GeometricQueryT
 use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 use impinge::world::{CollisionGroups, CollisionWorld};
 
-/// A scalar and dimension that tests can place things in.
+/// A scalar and dimension in which tests can place objects.
 pub(crate) trait Stage<const D: usize>: Space<D> {
-    /// An unturned pose at these coordinates.
+    /// The unrotated pose at these coordinates.
     fn at(coordinates: [f64; D]) -> Self::Isometry;
 
-    /// An unturned pose on the x axis.
+    /// The unrotated pose at `x` on the first axis.
     fn on_x(x: f64) -> Self::Isometry {
         let mut coordinates = [0.0; D];
         coordinates[0] = x;
@@ -44,7 +44,8 @@ pub(crate) fn cube<N: Real, const D: usize>(half: f64) -> ShapeHandle<N, D> {
     ShapeHandle::new(Cuboid::new(vector([half; D])))
 }
 
-/// The half-space behind the origin, seen along an axis.
+/// The half-space whose surface goes through the origin, with its normal along an axis times
+/// `sign`.
 pub(crate) fn half_space<N: Real, const D: usize>(axis: usize, sign: f64) -> ShapeHandle<N, D> {
     let mut normal = [0.0; D];
     normal[axis] = sign;
@@ -69,7 +70,7 @@ pub(crate) fn add<N: Stage<D>, const D: usize>(
     world.add(N::on_x(x), shape.clone(), CollisionGroups::new(), query, ())
 }
 
-/// Updates, checks the bookkeeping, and answers the contact events.
+/// Updates the world, validates it, and returns the contact events.
 pub(crate) fn step<N: Space<D>, const D: usize, T>(
     world: &mut CollisionWorld<N, D, T>,
 ) -> Vec<ContactEvent> {

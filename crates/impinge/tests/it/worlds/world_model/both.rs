@@ -1,4 +1,4 @@
-//! A world and its naive twin, to which the same is done.
+//! A world and its naive twin, on which the same operations are performed.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use super::draw::{self, Grid};
 use super::twins::{self, OnGrid, Twins};
 use crate::support::world_stage::vector;
 
-/// What a run has reached.
+/// Counts of what happened in a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) updates: usize,
@@ -25,27 +25,29 @@ pub(crate) struct Tally {
     pub(crate) removal_events: usize,
     pub(crate) exchanges: usize,
     pub(crate) refusals: usize,
-    /// Pairs that the broad phase keeps and that are asked for contacts; those with contacts.
+    /// Number of pairs of contact queries that the broad phase keeps; `touching` counts those with
+    /// contacts.
     pub(crate) near: usize,
     pub(crate) touching: usize,
     pub(crate) queries: usize,
     pub(crate) hits: usize,
-    /// Pairs of fixed objects that overlap.
+    /// Number of pairs of fixed objects that overlap.
     pub(crate) fixed: usize,
-    /// Events that were kept over an update.
+    /// Number of events that were kept over an update.
     pub(crate) kept: usize,
-    /// Pairs computed between updates, and those of them that came to touch or parted thereby.
+    /// Number of pairs computed between updates; `changed` counts those that started or stopped
+    /// thereby.
     pub(crate) substeps: usize,
     pub(crate) changed: usize,
-    /// Pairs that a lent filter was asked about.
+    /// Number of pairs for which a filter passed to the update was called.
     pub(crate) asked: usize,
-    /// Removed objects that events name.
+    /// Number of removed objects to which events refer.
     pub(crate) named: usize,
-    /// Contacts of solids whose skins alone overlap.
+    /// Number of contacts of solids of which only the skins overlap.
     pub(crate) in_skins: usize,
 }
 
-/// The status of each pair as the events tell it.
+/// Status of each pair according to the events.
 #[derive(Default)]
 struct Told {
     touching: BTreeMap<(CollisionObjectHandle, CollisionObjectHandle), ()>,
@@ -60,15 +62,15 @@ pub(crate) struct Both<N: Grid<D>, const D: usize> {
     pub(super) alive: Vec<CollisionObjectHandle>,
     pub(super) stale: Vec<CollisionObjectHandle>,
     told: Told,
-    /// The data of all objects that ever were.
+    /// The data of all objects that ever existed.
     pub(super) data: BTreeMap<CollisionObjectHandle, u64>,
     /// Removed objects whose data were taken.
     pub(super) taken: Vec<CollisionObjectHandle>,
-    /// The number of the filter that is lent to each update, if one is; see [`Grid::register`].
+    /// Number of the filter that is passed to each update, if any; see [`Grid::register`].
     pub(super) lent: Option<usize>,
-    /// The next update keeps the events of the last one.
+    /// Whether the next update keeps the events of the last one.
     pub(super) keeps_events: bool,
-    /// The events of the last update, with those that it kept.
+    /// Events of the last update, including those that it kept.
     last: Events,
     pub(crate) tally: Tally,
 }
@@ -94,7 +96,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// Does one thing to both, at random.
+    /// Performs a random operation on both.
     pub(crate) fn operate(&mut self) {
         match self.random.below(124) {
             0..10 => self.add(),
@@ -114,7 +116,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// A living object, if there is one.
+    /// A random living object, if there is one.
     pub(super) fn someone(&mut self) -> Option<(CollisionObjectHandle, Handle)> {
         let handle = (!self.alive.is_empty()).then(|| *self.random.pick(&self.alive))?;
         Some((handle, self.twins[&handle]))
@@ -233,7 +235,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.tally.exchanges += 1;
     }
 
-    /// What must be refused and change nothing: the next checks would notice.
+    /// Calls that must be refused and change nothing; later checks would notice a change.
     fn try_nonsense(&mut self) {
         let (position, _) = draw::pose::<N, D>(&mut self.random);
         if !self.stale.is_empty() {
@@ -290,7 +292,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.tally.near += self.world.contact_pairs().count();
     }
 
-    /// The pairs on which the two disagree.
+    /// Describes the pairs on which the two differ.
     fn describe(&self) -> String {
         let mut text = String::new();
         let (world, naive) =
@@ -313,8 +315,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         text
     }
 
-    /// Follows the events behind those that were kept: each start has one stop, each status is the one that
-    /// was told before.
+    /// Follows the new events, after those that were kept: each start has one stop, and each old
+    /// status is the one reported before.
     fn listen(&mut self, kept: (usize, usize)) {
         for event in &self.world.contact_events()[kept.0..] {
             let consistent = match *event {
@@ -331,7 +333,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// The end: when nothing is left, everything has stopped.
+    /// Removes everything and asserts that every pair has stopped.
     pub(crate) fn finish(&mut self) {
         self.world.remove(&self.alive);
         let naive: Vec<Handle> = self.alive.iter().map(|handle| self.twins[handle]).collect();
@@ -342,7 +344,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         assert!(disjoint, "each proximity has ended");
     }
 
-    /// The same questions to both, at any moment.
+    /// Compares queries of both, at any moment.
     fn ask(&mut self) {
         let (groups, naive_groups) = draw::groups(&mut self.random);
         let (a, b) = (draw::point::<D>(&mut self.random), draw::point::<D>(&mut self.random));

@@ -1,4 +1,4 @@
-//! Random things with numbers on a grid, for the world and for the reference.
+//! Random positions, shapes and groups with numbers on a grid, for the world and for the reference.
 
 use impinge::math::Real;
 use impinge::math::na::{
@@ -15,19 +15,19 @@ use impinge_reference::world::{Groups, QueryType};
 
 use crate::support::world_stage::{Stage, half_space, vector};
 
-/// Objects live within this distance of the origin, except those that are far away.
+/// Objects lie within this distance of the origin, except for a few far away.
 const ROOM: u32 = 3;
 
-/// A scalar and dimension with rotations that round nothing.
+/// A scalar and dimension with rotations that do not round.
 pub(crate) trait Grid<const D: usize>: Stage<D> {
-    /// A pose with one of the rotations that permute the axes.
+    /// A pose with a random rotation that permutes the axes.
     fn posed(coordinates: [f64; D], random: &mut Random) -> (Self::Isometry, Pose<D>);
 
-    /// Forbids the pairs whose indices add up to a multiple of a number.
+    /// Registers a filter that refuses pairs whose indices add up to a multiple of `number`.
     fn register(world: &mut CollisionWorld<Self, D, u64>, name: &str, number: usize);
 }
 
-/// The sum of the two indices is not a multiple of this number.
+/// Filter that accepts pairs whose sum of indices is not a multiple of the number.
 struct NotMultipleOf(usize);
 
 impl NotMultipleOf {
@@ -89,13 +89,13 @@ impl<N: Real> Grid<3> for N {
     }
 }
 
-/// Somewhere in the room, at times far outside.
+/// A random pose in the room, sometimes far outside.
 pub(crate) fn pose<N: Grid<D>, const D: usize>(random: &mut Random) -> (N::Isometry, Pose<D>) {
     let room = if random.chance(0.05) { 40 } else { ROOM };
     N::posed(std::array::from_fn(|_| random.grid(room, 3)), random)
 }
 
-/// A pose near another.
+/// A random pose near another one.
 pub(crate) fn pose_near<N: Grid<D>, const D: usize>(
     from: &Pose<D>,
     random: &mut Random,
@@ -104,7 +104,7 @@ pub(crate) fn pose_near<N: Grid<D>, const D: usize>(
     N::posed(moved.map(|x| (x * 8.0).round() / 8.0), random)
 }
 
-/// A size, at times zero.
+/// A random size, sometimes zero.
 fn size(random: &mut Random) -> f64 {
     if random.chance(0.1) { 0.0 } else { 0.125 * (1 + random.below(8)) as f64 }
 }
@@ -137,7 +137,7 @@ pub(crate) fn shape<N: Grid<D>, const D: usize>(
     }
 }
 
-/// Most objects interact with most others.
+/// Random groups with which most objects interact with most others.
 pub(crate) fn groups(random: &mut Random) -> (CollisionGroups, Groups) {
     let mut groups = CollisionGroups::new();
     if random.chance(0.5) {
@@ -165,12 +165,12 @@ pub(crate) fn query_type<N: Real>(random: &mut Random) -> (GeometricQueryType<N>
     }
 }
 
-/// A point on the grid, in the room.
+/// A random point on the grid, in the room.
 pub(crate) fn point<const D: usize>(random: &mut Random) -> [f64; D] {
     std::array::from_fn(|_| random.grid(ROOM, 3))
 }
 
-/// A direction that is not aligned with anything.
+/// A random direction that is not aligned with an axis.
 pub(crate) fn direction<const D: usize>(random: &mut Random) -> [f64; D] {
     std::array::from_fn(|_| random.single(-1.0, 1.0))
 }

@@ -1,4 +1,4 @@
-//! Calls for those who write engines, done to both worlds.
+//! Operations for authors of engines, performed on both worlds.
 
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent};
 use impinge::world::{CollisionObject, WorldError};
@@ -8,11 +8,11 @@ use super::both::Both;
 use super::draw::{self, Grid};
 use super::twins;
 
-/// The name of the lent filter in the naive world.
+/// Name of the passed filter in the naive world.
 const LENT: &str = "lent";
 
 impl<N: Grid<D>, const D: usize> Both<N, D> {
-    /// Does one such thing to both, at random.
+    /// Performs a random operation of this kind on both.
     pub(super) fn operate_as_engine(&mut self) {
         match self.random.below(20) {
             0..3 => self.change_fixed(),
@@ -34,7 +34,8 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         assert_eq!(object.is_fixed(), is_fixed, "at once");
     }
 
-    /// The predicted pose has no effect but on pairs of the broad phase, which the world validates.
+    /// Predicts a pose, which affects only the pairs of the broad phase; validating the world
+    /// checks these.
     fn predict(&mut self) {
         let Some((handle, twin)) = self.someone() else { return };
         let from = self.naive.object(twin).expect("alive").pose;
@@ -92,7 +93,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// Computes a pair that the world keeps, or asks for two that may have none.
+    /// Computes a pair of the world between updates, or a pair that may not exist.
     fn update_pair(&mut self) {
         let Some((one, _)) = self.someone() else { return };
         let partners: Vec<_> = self.world.pairs_with(one).map(CollisionObject::handle).collect();
@@ -117,14 +118,14 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.tally.changed += usize::from(self.is_told(twins) != before);
     }
 
-    /// Two objects touch or are near in the naive world.
+    /// Whether two objects touch or are near in the naive world.
     fn is_told(&self, [first, second]: [Handle; 2]) -> bool {
         let is_near = |&(a, b, _): &(Handle, Handle, _)| (a, b) == (first, second);
         self.naive.touching_pairs().contains(&(first, second))
             || self.naive.close_pairs().iter().any(is_near)
     }
 
-    /// Updates the world, with the lent filter if there is one, and validates it.
+    /// Updates the world, with the passed filter if there is one, and validates it.
     pub(super) fn update_world(&mut self) {
         let Some(number) = self.lent else {
             self.world.update();
@@ -146,7 +147,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.world.validate_with(&allows).expect("the parts of the world agree");
     }
 
-    /// The pairs of each object are those of all objects that it is in.
+    /// The pairs of each object are all pairs of the world that contain it.
     pub(super) fn check_pairs_of_objects(&mut self) {
         let contacts = self.world.contact_pairs().map(|(a, b, _)| [a.handle(), b.handle()]);
         let proximities = self.world.proximity_pairs().map(|(a, b, _)| [a.handle(), b.handle()]);
@@ -163,7 +164,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         assert!(gone, "no pairs of removed objects");
     }
 
-    /// Every object that an event names has its data, whether it is there or not.
+    /// The data of every object in an event are available, whether it lives or was removed.
     pub(super) fn check_data(&self) {
         for handle in self.named() {
             let living = self.world.collision_object(handle);
@@ -174,7 +175,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// After an update no other removed object is kept.
+    /// After an update the world keeps no removed object other than those in events.
     pub(super) fn check_removed(&mut self) {
         let named = self.named();
         for &stale in &self.stale {
@@ -184,7 +185,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// The objects that the events of the last update name.
+    /// The objects in the events of the last update.
     fn named(&self) -> Vec<CollisionObjectHandle> {
         let contacts = self.world.contact_events().iter().map(ContactEvent::handles);
         let proximities = self.world.proximity_events().iter();

@@ -1,5 +1,5 @@
-//! Random operations with marks, returns, forks and copies: what a world comes to is what a new one comes to that is
-//! told the same from the start.
+//! Random operations with marks, rewinds, forks and copies: the world must end up as a new one on
+//! which the same operations are performed from the start.
 
 use std::collections::VecDeque;
 use std::hash::{Hash, Hasher};
@@ -16,14 +16,14 @@ use crate::support::samples::samples;
 use crate::support::scene_stage::{Digest, digest_state};
 use crate::support::world_stage::vector;
 
-/// As many objects as there may be.
+/// Greatest number of objects.
 const MOST: usize = 40;
-/// As many marks as the world keeps.
+/// Number of marks that the world keeps.
 const MARKS: usize = 5;
 
 type World<N, const D: usize> = CollisionWorld<N, D, u64>;
 
-/// A world before anything happened: some keep contacts of pairs that hardly move.
+/// A new world; those with even seeds reuse the contacts of pairs that hardly move.
 fn new_world<N: Grid<D>, const D: usize>(seed: u64) -> World<N, D> {
     let mut world = World::new(N::lit(0.125));
     if seed.is_multiple_of(2) {
@@ -60,7 +60,7 @@ fn shape<N: Grid<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
     ShapeHandle::new(Compound::new(children))
 }
 
-/// Does to a world what a seed says: the same to equal worlds.
+/// Performs the operation that a seed stands for; equal worlds stay equal.
 fn operate<N: Grid<D>, const D: usize>(world: &mut World<N, D>, seed: u64) {
     let random = &mut Random::new(seed);
     let handles: Vec<_> = world.collision_objects().map(CollisionObject::handle).collect();
@@ -105,7 +105,7 @@ fn update<N: Grid<D>, const D: usize>(world: &mut World<N, D>) {
     world.validate().expect("the parts of the world agree");
 }
 
-/// Everything that a world says, in the order in which it says it.
+/// Digest of everything that a world reports, in order.
 fn digest<N: Grid<D>, const D: usize>(world: &World<N, D>) -> u64 {
     let mut digest = Digest::new();
     for object in world.collision_objects() {
@@ -132,13 +132,13 @@ fn digest<N: Grid<D>, const D: usize>(world: &World<N, D>) -> u64 {
     digest.finish()
 }
 
-/// A world, what it was told from the start, and what it came to after each operation.
+/// A world, the seeds of its operations from the start, and its digest after each.
 struct Timeline<N: Grid<D>, const D: usize> {
     seed: u64,
     world: World<N, D>,
     told: Vec<u64>,
     digests: Vec<u64>,
-    /// With the number of operations before them.
+    /// Marks with the number of operations before each.
     marks: VecDeque<(WorldMark, usize)>,
 }
 
@@ -162,7 +162,7 @@ impl<N: Grid<D>, const D: usize> Timeline<N, D> {
         }
     }
 
-    /// Goes back, and at times does the same again.
+    /// Rewinds to a mark, and sometimes performs the same operations again.
     fn rewind(&mut self, random: &mut Random) {
         if self.marks.is_empty() {
             return;
@@ -184,7 +184,8 @@ impl<N: Grid<D>, const D: usize> Timeline<N, D> {
         }
     }
 
-    /// Goes on with a clone, which is told the same as the original first.
+    /// Performs the same operations on the world and on a clone, compares their digests, and
+    /// sometimes continues with the clone.
     fn fork(&mut self, random: &mut Random) {
         let mut clone = self.world.clone();
         if random.chance(0.5) {
@@ -216,7 +217,7 @@ impl<N: Grid<D>, const D: usize> Timeline<N, D> {
         }
     }
 
-    /// A new world that is told the same comes to the same, all along.
+    /// Asserts that a new world has the same digest after each of the operations.
     fn check(&self) {
         let mut world = new_world::<N, D>(self.seed);
         for (place, (&seed, &expected)) in self.told.iter().zip(&self.digests).enumerate() {
@@ -262,8 +263,8 @@ fn worlds_that_go_back_and_fork_in_space() {
     run::<f64, 3>(3);
 }
 
-/// A handle from before a fork names the same object in both worlds; those of the other's own objects name
-/// others.
+/// A handle from before a fork refers to the object in both worlds, and removing the object from
+/// one leaves it in the other.
 #[test]
 fn handles_of_two_branches() {
     let mut world = new_world::<f32, 2>(1);

@@ -1,8 +1,8 @@
-//! Random operations on a world and on the naive world of the reference, which must agree on every
-//! event, pair, status and query.
+//! Performs random operations on a world and on the naive world of the reference, which must agree
+//! on every event, pair, status and query.
 //!
-//! All numbers are multiples of 1/8 and all rotations permute the axes, so that touching is exact and
-//! rounding excuses no difference.
+//! All numbers are multiples of 1/8 and all rotations permute the axes, so touching is exact and no
+//! difference is due to rounding.
 
 mod both;
 mod draw;
@@ -13,7 +13,7 @@ mod twins;
 use both::Both;
 use draw::Grid;
 
-/// Runs so many operations and checks that the run reached what it claims to test.
+/// Runs `operations` operations and asserts that all kinds of events occurred often enough.
 fn run<N: Grid<D>, const D: usize>(seed: u64, operations: usize) {
     let mut both = Both::<N, D>::new(seed);
     for _ in 0..operations {

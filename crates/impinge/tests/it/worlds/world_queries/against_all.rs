@@ -1,4 +1,5 @@
-//! Random worlds against the same question put to every object: the answers must be the same to the bit.
+//! Compares queries of random worlds with the same query of every object: the results must be equal
+//! to the bit.
 
 use std::cell::Cell;
 
@@ -15,7 +16,7 @@ use super::stage::{
     random_shape, rows, vector,
 };
 
-/// How many answers were compared, by question: a test of empty answers tests nothing.
+/// Number of results compared, by query, so that a test can assert that there were enough.
 #[derive(Debug, Default)]
 struct Answers {
     rays: usize,
@@ -27,7 +28,7 @@ struct Answers {
     casts: usize,
 }
 
-/// A world and where it is.
+/// A world, and its offset from the origin.
 struct Scene<N: Space<D>, const D: usize> {
     world: World<N, D>,
     random: Random,
@@ -37,7 +38,7 @@ struct Scene<N: Space<D>, const D: usize> {
 
 type Counts<N, const D: usize> = dyn Fn(&Object<N, D>) -> bool;
 
-/// Which objects count, said to the world and to the test.
+/// A filter for the world, and the equivalent condition for the test.
 struct Choice<'a, N: Space<D>, const D: usize> {
     filter: Filter<'a, N, D>,
     counts: Box<Counts<N, D>>,
@@ -85,7 +86,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         N::pose_at(self.place(), self.random.range(-3.0, 3.0))
     }
 
-    /// Near the middle of an object half of the time.
+    /// A random point, half of the time near the middle of an object.
     fn point_to_ask(&mut self) -> Point<N, D> {
         let anywhere = point::<N, D>(self.place());
         let objects: Vec<_> = self.world.collision_objects().collect();
@@ -94,14 +95,14 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         if self.random.chance(0.5) { anywhere } else { Point::from(middle + beside) }
     }
 
-    /// How far to look.
+    /// A random greatest distance.
     fn reach(&mut self) -> N {
         if self.random.chance(0.2) { N::INFINITY } else { N::lit(self.random.range(0.0, 3.0)) }
     }
 
     fn add(&mut self, count: usize) {
         for _ in 0..count {
-            // Some are the same in every respect but the handle.
+            // Some objects are equal in everything but the handle.
             let (pose, shape) = (self.pose(), random_shape(&mut self.random));
             for _ in 0..1 + self.random.below(6) / 5 {
                 let groups = random_groups(&mut self.random);
@@ -111,7 +112,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         }
     }
 
-    /// Changes that no update has seen.
+    /// Makes changes that no update has seen.
     fn disturb(&mut self) {
         let handles: Vec<_> = self.world.collision_objects().map(Object::handle).collect();
         for &handle in handles.iter().skip(1) {
@@ -129,7 +130,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         self.add(8);
     }
 
-    /// One change that no update has seen, or an update.
+    /// Makes one change that no update has seen, or updates.
     fn change_one(&mut self) {
         let handles: Vec<_> = self.world.collision_objects().map(Object::handle).collect();
         let handle = *self.random.pick(&handles[1..]);
@@ -186,7 +187,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         }
     }
 
-    /// What every object that counts answers, by key, then by handle.
+    /// The results of all accepted objects, sorted by key, then by handle.
     fn ranked<A>(
         &self,
         choice: &Choice<'_, N, D>,
@@ -340,7 +341,8 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
     }
 }
 
-/// Before the first update, after it, after changes that it has not seen, and after those.
+/// Queries before the first update, after an update, after changes that no update has seen, and
+/// after the next update.
 fn play<N: Stage<D>, const D: usize>(seed: u64, offset: f64, is_ordered: bool) {
     let mut scene = Scene::<N, D>::new(seed, offset, is_ordered);
     scene.ask(8);
@@ -358,11 +360,12 @@ fn play<N: Stage<D>, const D: usize>(seed: u64, offset: f64, is_ordered: bool) {
 fn everywhere<N: Stage<D>, const D: usize>() {
     play::<N, D>(1, 0.0, true);
     play::<N, D>(2, 0.0, false);
-    // What is left of a unit of length there, the queries for one solid and two are given too.
+    // At this offset the coordinates are coarse; the queries of single solids and pairs get the
+    // same coordinates.
     play::<N, D>(3, 1e6, true);
 }
 
-/// A question after each change, whether the last update knows few or many of the boxes.
+/// A query after each change, so that the last update knows few or many of the boxes.
 fn changes_one_by_one<N: Stage<D>, const D: usize>() {
     let mut scene = Scene::<N, D>::new(5, 0.0, true);
     for change in 0..500 {
@@ -382,7 +385,8 @@ fn changes_one_by_one<N: Stage<D>, const D: usize>() {
     assert_eq!(scene.world.validate(), Ok(()), "the pairs after it");
 }
 
-/// Objects that moved since the last update are tested no more often than others: as many as lie near.
+/// Objects that moved since the last update are tested no more often than others: with any number
+/// of moved objects, fewer than 1.5 times as many objects are tested as with none.
 fn moved_objects_are_found_by_their_boxes<N: Stage<D>, const D: usize>() {
     let tested = [0, 100, 450, 1500].map(|moved| {
         let mut world = World::<N, D>::new(N::lit(0.1));
@@ -401,7 +405,7 @@ fn moved_objects_are_found_by_their_boxes<N: Stage<D>, const D: usize>() {
         };
         let filter = Filter::new().predicate(&count);
         for (question, &handle) in handles.iter().step_by(7).take(100).enumerate() {
-            // Moves come before the first question and between questions.
+            // Objects move before the first query and between queries.
             let some = handles.len() / 100 * question..handles.len() / 100 * (question + 1);
             for &other in handles[some].iter().take(moved / 100) {
                 world.set_position(other, place());
@@ -421,7 +425,7 @@ fn moved_objects_are_found_by_their_boxes<N: Stage<D>, const D: usize>() {
     assert!(2 * most < 3 * tested[0], "objects tested, with 0, 100, 450, 1500 moved: {tested:?}");
 }
 
-/// A predicate is asked once about an object, and about few.
+/// A predicate is called at most once for each object, and for few objects.
 fn predicates<N: Stage<D>, const D: usize>() {
     let mut scene = Scene::<N, D>::new(4, 0.0, true);
     scene.world.update();

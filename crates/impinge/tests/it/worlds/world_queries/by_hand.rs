@@ -1,4 +1,5 @@
-//! Values that can be worked out on paper, and the edges: ties, limits, nothing, NaN, planes, far away.
+//! Tests queries with results by hand, and edge cases: ties, limits, empty worlds, NaN,
+//! half-spaces, far away.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Space, Vector};
@@ -104,7 +105,7 @@ fn casts_in_order<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// What changed since the update is seen, where it is now, and nowhere else.
+/// Queries see changes since the update: objects are found at their present position only.
 fn changes_are_seen_at_once<N: Stage<D>, const D: usize>() {
     let (mut world, handles) = row::<N, D>(&[4.0, 8.0, 12.0]);
     world.update();
@@ -131,7 +132,8 @@ fn changes_are_seen_at_once<N: Stage<D>, const D: usize>() {
     assert_eq!(found.map(|near| near.object.handle()), Some(handles[0]), "where it went");
 }
 
-/// The first questions after a change come from many threads at once, of which some wait for each other.
+/// The first queries after a change come from many threads at once, some of which wait for each
+/// other.
 fn many_threads_ask_after_a_change<N: Stage<D>, const D: usize>()
 where
     N::Isometry: Sync,
@@ -155,7 +157,7 @@ where
     assert!(found.iter().copied().eq(expected.chain([None])), "each meets the next one");
 }
 
-/// A world of half-spaces: boxes without an end on one side or on all.
+/// A world of half-spaces, whose boxes are unbounded on one side or on all sides.
 fn planes<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::lit(0.1));
     let level = add(&mut world, [0.0; D], &ground());
@@ -177,7 +179,7 @@ fn planes<N: Stage<D>, const D: usize>() {
         assert_eq!((object.handle(), impact.toi), (level, N::ONE), "on the level one");
         let sky = Ray::new(point(up(3.0)), vector(up(1.0)));
         assert!(world.first_ray_hit(&sky, N::INFINITY, true, &all).is_none(), "nothing above");
-        // The solid asked about may be unbounded, too.
+        // The solid of the query may be unbounded too.
         let half = ground::<N, D>();
         let found = world.objects_overlapping(&here, &*half, &all);
         assert_eq!(handles_of(found), [level, tilted], "a half-space overlaps half-spaces");
@@ -185,7 +187,7 @@ fn planes<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// Solids without extent are as good as others.
+/// Solids of size zero are found like others.
 fn zero_sizes<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::ZERO);
     let dot = ball::<N, D>(0.0);
@@ -257,7 +259,7 @@ fn not_finite<N: Stage<D>, const D: usize>(world: &World<N, D>, bad: f64) {
     assert!(world.cast_shape(&here, &p.coords, &*own, &options, &all).is_none(), "at {bad}");
 }
 
-/// Exact numbers, as far as the scalar has them, a million units out.
+/// Positions a million units away that the scalar represents exactly.
 fn far_away<N: Stage<D>, const D: usize>() {
     let (mut world, handles) = row::<N, D>(&[1e6, 1e6 + 8.0, 1e6 + 16.0]);
     let (here, own) = (N::pose_at(on_x(1e6 + 4.0), 0.0), ball::<N, D>(1.0));
@@ -276,7 +278,7 @@ fn far_away<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// Distances whose squares are no numbers of the type, large and small.
+/// Distances whose squares overflow or underflow.
 fn huge_and_tiny<N: Stage<D>, const D: usize>() {
     let [large, small] = [N::MAX, N::MIN_POSITIVE].map(|limit| limit.as_f64().powf(0.75));
     for unit in [large, small, 1.0] {

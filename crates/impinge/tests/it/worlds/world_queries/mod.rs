@@ -1,4 +1,5 @@
-//! Queries about everything in a world: against every object one by one, by hand, and at the edges.
+//! Tests of queries of whole worlds: compared with queries of every object, by hand, and at the
+//! limits.
 
 mod against_all;
 mod by_hand;

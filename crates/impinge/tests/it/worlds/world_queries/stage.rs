@@ -1,4 +1,4 @@
-//! Worlds to ask, and the same questions put to every object one by one.
+//! Worlds for queries, and the same queries of every object one by one.
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::broad_phase::{BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle};
@@ -16,12 +16,12 @@ use impinge::shape::{
 use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, NearObject, QueryFilter};
 use impinge_reference::random::Random;
 
-/// The data of an object is a number of the test's own.
+/// The data of an object are a serial number.
 pub(crate) type World<N, const D: usize> = CollisionWorld<N, D, usize>;
 pub(crate) type Object<N, const D: usize> = CollisionObject<N, D, usize>;
 pub(crate) type Filter<'a, N, const D: usize> = QueryFilter<'a, N, D, usize>;
 
-/// A scalar and dimension whose queries for one solid and two can be asked.
+/// A scalar and dimension in which queries of one solid and of two are available.
 pub(crate) trait Stage<const D: usize>: Space<D> {
     fn pose_at(coordinates: [f64; D], turn: f64) -> Self::Isometry;
     fn distance(solid1: Placed<'_, Self, D>, solid2: Placed<'_, Self, D>) -> Self;
@@ -47,7 +47,7 @@ pub(crate) trait Stage<const D: usize>: Space<D> {
     ) -> Option<Impact<Self, D>>;
 }
 
-/// A solid where it is.
+/// A pose and the solid at it.
 pub(crate) type Placed<'a, N, const D: usize> =
     (&'a <N as Space<D>>::Isometry, &'a dyn Shape<N, D>);
 
@@ -128,7 +128,7 @@ pub(crate) fn point<N: Real, const D: usize>(coordinates: [f64; D]) -> Point<N, 
     Point::from(vector(coordinates))
 }
 
-/// The point at `x` on the first axis.
+/// The coordinates of the point at `x` on the first axis.
 pub(crate) fn on_x<const D: usize>(x: f64) -> [f64; D] {
     core::array::from_fn(|axis| if axis == 0 { x } else { 0.0 })
 }
@@ -137,7 +137,7 @@ pub(crate) fn placed<N: Space<D>, const D: usize>(object: &Object<N, D>) -> Plac
     (object.position(), &**object.shape())
 }
 
-/// One of the shapes that both dimensions have, of size 0 to 2 or so, or some of them together.
+/// A random shape of both dimensions of a size from 0 to about 2, or a compound of three.
 pub(crate) fn random_shape<N: Stage<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
     if random.below(8) == 0 {
         let mut child = || {
@@ -171,7 +171,7 @@ pub(crate) fn contacts<N: Real>() -> GeometricQueryType<N> {
     GeometricQueryType::Contacts(N::lit(0.01), N::ZERO)
 }
 
-/// Adds an object to `world` at some coordinates that interacts with everything.
+/// Adds an object to `world` that interacts with everything.
 pub(crate) fn add<N: Stage<D>, const D: usize>(
     world: &mut World<N, D>,
     coordinates: [f64; D],
@@ -182,7 +182,7 @@ pub(crate) fn add<N: Stage<D>, const D: usize>(
     world.add(position, shape.clone(), CollisionGroups::new(), contacts(), number)
 }
 
-/// The handle and the answer, to be compared.
+/// A handle and a result, for comparison.
 pub(crate) type Row<A> = (CollisionObjectHandle, A);
 
 pub(crate) fn rows<N: Space<D>, const D: usize, A>(found: Vec<(&Object<N, D>, A)>) -> Vec<Row<A>> {
@@ -195,7 +195,8 @@ pub(crate) fn neighbors<N: Space<D>, const D: usize>(
     found.iter().map(|near| (near.object.handle(), (near.distance, near.points))).collect()
 }
 
-/// A broad phase that has no order of its own: that of the library, without what it overrides.
+/// The library's broad phase with the provided methods of the trait instead of its own, so without
+/// ordered searches.
 #[derive(Clone, Debug)]
 pub(crate) struct Unordered<N: Space<D>, const D: usize>(
     DBVTBroadPhase<N, Aabb<N, D>, CollisionObjectHandle>,

@@ -1,35 +1,39 @@
-//! The separating axis test of eight pairs of boxes in 2D:
-//! `collide/separation/boxes/rectangle_axes.rs` in lanes.
+//! Separating axis test of `L` pairs of boxes in 2D: `collide/separation/boxes/rectangle_axes.rs`
+//! in lanes.
 
 use super::super::{Boxes, is_finite};
 use crate::math::lanes::{dot, either_mask, lit};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
-/// The axis of the largest gap of eight pairs.
+/// Direction of the largest gap of each pair.
 pub(super) struct BestSide<V, M> {
     /// The side belongs to the second box.
     pub(super) is_second: M,
     /// It is perpendicular to the second axis of its box.
     pub(super) is_y: M,
-    /// A unit vector from the first box to the second.
+    /// Unit vector from the first box to the second.
     pub(super) normal: [V; 2],
+    /// Signed distance along the normal.
     pub(super) gap: V,
+    /// Rounding error of lengths of the pair.
     pub(super) noise: V,
-    /// All numbers of the pose are finite, and so is their sum.
+    /// The sum of all numbers of the pose is finite.
     pub(super) is_finite: M,
 }
 
-/// The side of one box that leaves the larger gap.
+/// The side of one box with the larger gap.
 struct AxisSide<V, M> {
+    /// Signed distance along the best axis of the box.
     gap: V,
+    /// It is the box's second axis.
     is_y: M,
     /// The other box is on the positive side of the axis.
     is_positive: M,
 }
 
 impl<V> Boxes<V, 2> {
-    /// What arithmetic on these numbers cannot resolve.
+    /// Rounding error of lengths of each pair.
     #[inline(always)]
     fn noise<S: Simd, N: Real>(&self, simd: S) -> V
     where
@@ -41,7 +45,7 @@ impl<V> Boxes<V, 2> {
         lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * size
     }
 
-    /// The direction of the largest gap, as `Rectangles::best_axis` has it for one pair.
+    /// Returns the direction of the largest gap, as `Rectangles::best_axis` does for one pair.
     #[inline(always)]
     pub(super) fn best_side<S: Simd, N: Real, M>(&self, simd: S) -> BestSide<V, M>
     where
@@ -67,7 +71,8 @@ impl<V> Boxes<V, 2> {
         BestSide { is_second, is_y, normal, gap, noise, is_finite }
     }
 
-    /// The best side of each box; of equal gaps the one that comes first in the box's outline.
+    /// Returns the best side of each box; of equal gaps the one that comes first in the box's
+    /// outline.
     #[inline(always)]
     fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (AxisSide<V, M>, AxisSide<V, M>)
     where
@@ -85,6 +90,8 @@ impl<V> Boxes<V, 2> {
             |i| t[i].abs() - self.half1[i] - reach2[i],
         );
         let is = [t[0].simd_ge(zero), t[1].simd_gt(zero)];
+        // Ties go by the outline: below, right, above, left. So x is first only for right and
+        // above.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & !(is[0] & is[1]));
         let first = side(gaps, is_y, is);
         let seen = [dot(&r[0], t), dot(&r[1], t)];
@@ -93,11 +100,13 @@ impl<V> Boxes<V, 2> {
             |j| seen[j].abs() - self.half2[j] - dot(&leans[j], &self.half1),
         );
         let is = [seen[0].simd_gt(zero), seen[1].simd_ge(zero)];
+        // The side of the second box is opposite to the normal: x is first only for left and below.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & (is[0] | is[1]));
         (first, side(gaps, is_y, is))
     }
 }
 
+/// Selects the side on the second axis where `is_y`.
 #[inline(always)]
 fn side<S: Simd, V: Wide<S, Mask = M>, M: SimdMask<S>>(
     gaps: [V; 2],

@@ -1,4 +1,15 @@
-//! 2D boxes: the separating axis test and the overlap of the sides in lanes.
+//! Boxes in 2D: the separating axis test, and the overlap of both sides, in lanes.
+//!
+//! ```text
+//!    upper   0 *---.___            slot 0, 1   ends of the upper side, by place along the lower
+//!                      '---* 1     slot 2, 3   ends of the lower side: low end, high end
+//!    lower     2 *========* 3      at_ends     two bits for each slot: at the first or second end
+//!                                              of the other side, in the order of places
+//!
+//!   byte `sides` of a pair, from bit 0 on: lower side is across y, and faces up; upper side is
+//!   across its own y, and on its positive side; lower side is the second box's; upper ends swapped;
+//!   beyond the prediction; slots are filled. `names` encodes bits 0..6 in a code.
+//! ```
 
 mod axis;
 mod names;
@@ -16,23 +27,29 @@ use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
-/// The ends of the upper side, the one with the smaller place first, and of the lower one.
+/// Slots: the ends of the upper side, the one with the smaller place first, and of the lower side.
 const SLOTS: usize = 4;
 
-/// `L` pairs, measured, before points are chosen.
+/// Results of the kernel for `L` pairs.
 pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     slots: Slots<N, 2, SLOTS, L>,
+    /// Signed distance of the boxes.
     gap: [N; L],
+    /// Lengths up to this are rounding errors.
     tolerance: [N; L],
+    /// Half the diagonal of the smaller box.
     size: [N; L],
+    /// Unit, from the first box to the second, in the frame of the first.
     normal: [[N; L]; 2],
-    /// The lanes: the axis across the lower side is the second, the side is on the positive side of
-    /// it; the same of the upper side; the lower side is the second box's; the upper side's first
-    /// end is the one on the positive side of its box; too far apart; the slots are filled.
+    /// Masks, after `turn` a byte for each pair: the axis across the lower side is the second; that
+    /// side is on its positive side; both for the upper side, in its own box; the lower side is the
+    /// second box's; the upper side's first end is on the positive side of its box; beyond the
+    /// prediction; slots filled.
     sides: [u8; 8],
-    /// Of each slot, whether it is at the first end of the other side, and at the second.
+    /// Two masks for each slot: at the first end of the other side, and at the second.
     at_ends: [u8; 2 * SLOTS],
-    /// For each pair the slots that hold a candidate, and those with the smallest distance.
+    /// Byte of each pair: in the low half the filled slots, in the high half those with the
+    /// smallest distance.
     filled: [u8; 8],
 }
 
@@ -93,6 +110,7 @@ impl<N: Real> Batch<N, 2> for Boxes2 {
 }
 
 impl<N: Real, const L: usize> LaneSides<N, L> {
+    /// Runs the kernel: axis, sides, slots. Lanes beyond the prediction stop after the axis.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -101,6 +119,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         let is_apart = bits(is_apart & axis.is_finite);
         let is_asked = bits(is_near) & inputs.is_usable;
+        // Valid for batches that end here.
         self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
         if is_asked == 0 {
             return;
@@ -134,7 +153,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         );
     }
 
-    /// From masks of all pairs to a byte for each pair.
+    /// Transposes masks of all pairs into a byte for each pair.
     #[inline(always)]
     fn turn(&mut self) {
         let [a, b, c, d] = self.slots.valid;
@@ -143,6 +162,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         (self.sides, self.at_ends) = (turned(self.sides), turned(self.at_ends));
     }
 
+    /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
     fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
         let names = SideNames { sides: self.sides[lane], at_ends: self.at_ends[lane] };

@@ -1,4 +1,10 @@
-//! Names of the slots of one pair in 2D.
+//! Features and codes of the slots of one pair in 2D.
+//!
+//! ```text
+//!   code   31   12             7         5       0
+//!          [1 | ... | 6 bits of | at_end | slot ]
+//!                     the sides
+//! ```
 
 use super::SLOTS;
 use crate::collide::RawPoint;
@@ -6,18 +12,18 @@ use crate::collide::batch::boxes::choose::Naming;
 use crate::math::Real;
 use crate::shape::FeatureId;
 
-/// A side, the end on the negative side of the axis along it, the other end.
+/// Features of a side: the side, its end on the negative side of its axis, and its other end.
 type PartNames = [FeatureId; 3];
 
-/// The sides of a box by their axis, plus twice whether they are on its positive side.
+/// Sides of a box, by axis across them plus 2 on the positive side.
 static SIDES: [PartNames; 4] = [parts(0, false), parts(1, false), parts(0, true), parts(1, true)];
 
-/// The vertex with these positive coordinates: along the axis, and along the other one.
+/// Returns the vertex with these signs: of the coordinate on `axis`, and of the other coordinate.
 const fn vertex(axis: usize, is_positive: bool, other_is_positive: bool) -> FeatureId {
     FeatureId::Vertex((is_positive as u32) << axis | (other_is_positive as u32) << (1 - axis))
 }
 
-/// The side that is perpendicular to an axis.
+/// Returns the side perpendicular to an axis.
 const fn side(axis: usize, is_positive: bool) -> FeatureId {
     FeatureId::Face(2 * (axis == 1) as u32 + !is_positive as u32)
 }
@@ -26,30 +32,31 @@ const fn parts(axis: usize, is_positive: bool) -> PartNames {
     [side(axis, is_positive), vertex(axis, is_positive, false), vertex(axis, is_positive, true)]
 }
 
-/// The part of these that has a name.
+/// Returns the index of the part with this id.
 #[inline(always)]
 fn part(parts: &PartNames, id: FeatureId) -> Option<usize> {
     let end = usize::from(id == parts[1]) + 2 * usize::from(id == parts[2]);
     (id == parts[end]).then_some(end)
 }
 
-/// How the slots of one pair are named: from the bits of the sides (`EightSides::sides`), and two bits for
-/// each slot that say whether it is at the first end of the other side or the second.
+/// Names of the slots of one pair: the byte `LaneSides::sides`, and two bits for each slot that say
+/// whether it is at the first or the second end of the other side.
 #[derive(Clone, Copy)]
 pub(super) struct SideNames {
+    /// Byte of the pair in `LaneSides::sides`.
     pub(super) sides: u8,
+    /// Byte of the pair in `LaneSides::at_ends`: two bits for each slot.
     pub(super) at_ends: u8,
 }
 
-/// The bits of the sides that names depend on, and where they stand in a code; every code has the
-/// last bit.
+/// The bits of the sides that a code holds, and their positions in it; bit 31 of every code is set.
 const SIDE_BITS: u8 = 63;
 const AT_END_AT: u32 = 5;
 const SIDES_AT: u32 = 7;
 const MARK: u32 = 1 << 31;
 
 impl SideNames {
-    /// The side that a slot is beside (0), or its first or second end.
+    /// Returns 0 for a slot beside the other side's inside, 1 at its first end, 2 at its second.
     #[inline(always)]
     const fn at_end(self, slot: usize) -> u8 {
         self.at_ends >> (2 * slot) & 3
@@ -65,7 +72,7 @@ impl SideNames {
         &SIDES[usize::from(self.sides >> 2 & 3)]
     }
 
-    /// An end of the upper side by its place along the lower one, or the reverse.
+    /// Maps an end of the upper side from the order of places to the order of its box, or back.
     #[inline(always)]
     const fn turned(self, part: usize) -> usize {
         if self.sides & 32 != 0 && part != 0 { 3 - part } else { part }

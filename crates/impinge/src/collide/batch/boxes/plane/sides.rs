@@ -1,8 +1,17 @@
-//! The two sides that meet, of eight pairs, and the ends of what they share.
+//! The reference side and the incident side of `L` pairs, and the ends of their overlap.
 //!
-//! The side that the separating axis test names is an interval along an axis of its own box, the most aligned
-//! side of the other box a slanted one above it, and the contact points are the ends of their overlap. Of a side
-//! that is tilted too much the lower end alone counts, the corner that faces the other box.
+//! The side of the separating axis test is an interval along an axis of its own box (the lower
+//! side). The most aligned side of the other box is a tilted one above it (the upper side). The
+//! contact points are the ends of their overlap. If the upper side is tilted too far, only its
+//! lower end counts: the corner that faces the other box.
+//!
+//! ```text
+//!      height |    *-- ends[1]               place: coordinate along the lower side, origin in its
+//!             | .-'                                 middle; from -half to half
+//!    ends[0]  *'                             height: above the lower side
+//!      -half ===================== half
+//!                place ->
+//! ```
 
 use super::super::admit::{Admission, Slots};
 use super::super::{Boxes, other, tolerance};
@@ -13,53 +22,59 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 use crate::shape::FACING_SINE_SQUARED;
 
-/// A side of a box, and the side of the other above it, in the frame of the first of these.
+/// A side of a box, and the side of the other box above it, in the frame of the lower side's box.
 pub(super) struct BoxSides<V, M> {
-    /// The axis across the lower side is the second; the side is on its positive side.
+    /// Lanes where the axis across the lower side is the second; and where it is on the positive
+    /// side.
     pub(super) is_y: M,
     pub(super) is_upward: M,
-    /// The side's place on that axis, and half of its length.
+    /// Coordinate of the lower side on that axis, and half its length.
     level: V,
     half: V,
-    /// The same of the upper side, in its own box.
+    /// As `is_y` and `is_upward`, for the upper side in its own box.
     pub(super) is_own_y: M,
     pub(super) is_positive: M,
-    /// The end with the smaller place is that on the positive side of the upper box.
+    /// Lanes where the end with the smaller place is on the positive side of the upper box.
     pub(super) is_turned: M,
-    /// The ends of the upper side, the one with the smaller place first.
+    /// Ends of the upper side, the one with the smaller place first.
     ends: [End<V>; 2],
+    /// Length of the upper side along the lower one.
     length: V,
-    /// The upper side leans too far, and of its ends the second is the one that faces the other box.
+    /// Lanes where the upper side is tilted too far; where its second end faces the other box.
     is_corner: M,
     is_second_lower: M,
+    /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
-    /// Neither side is too short.
+    /// Lanes where neither side is too short.
     pub(super) is_fit: M,
 }
 
-/// A place along the lower side and a height above it.
+/// A point by its place along the lower side and its height above it.
 #[derive(Clone, Copy)]
 struct End<V> {
+    /// Coordinate along the lower side, zero at its middle.
     place: V,
+    /// Height above the lower side, outward from its box.
     height: V,
 }
 
-/// An end of one side as the other side sees it.
+/// An end of one side, compared with the other side.
 struct SideCandidate<V, M> {
     end: End<V>,
+    /// It lies beside the other side's inside or its ends, up to rounding.
     is_inside: M,
-    /// At the first end of the other side, at the second.
+    /// Lanes where it is at the first end of the other side, and at the second.
     at_end: [M; 2],
 }
 
-/// The number that an axis has, the second where the mask says so.
+/// Selects the coordinate on the first axis, or on the second where `is_y`.
 #[inline(always)]
 fn on<S: Simd, V: Wide<S>>(is_y: V::Mask, v: &[V; 2]) -> V {
     is_y.select(v[1], v[0])
 }
 
 impl<V, M> BoxSides<V, M> {
-    /// The sides that meet along the axes.
+    /// Finds both sides from the separating axis.
     #[inline(always)]
     pub(super) fn meeting<S: Simd, N: Real>(
         simd: S,
@@ -103,8 +118,8 @@ impl<V, M> BoxSides<V, M> {
         }
     }
 
-    /// Fills the slots with the ends of what the sides share. Answers for
-    /// each slot whether it is at the first or the second end of the other side, a bit for each pair.
+    /// Fills the slots with the ends of the overlap. Returns two masks for each slot: at the first
+    /// end of the other side, and at the second.
     #[inline(always)]
     pub(super) fn share<S: Simd, N: Real, const L: usize>(
         &self,
@@ -120,7 +135,7 @@ impl<V, M> BoxSides<V, M> {
         above[0].is_inside &= !self.is_corner | !self.is_second_lower;
         above[1].is_inside &= !self.is_corner | self.is_second_lower;
         let mut below = [self.below(simd, -self.half), self.below(simd, self.half)];
-        // Ends of both sides are there already.
+        // Where ends of both sides coincide, the upper one is already a candidate.
         for (end, found) in below.iter_mut().enumerate() {
             found.is_inside &= !self.is_corner;
             for (other, known) in above.iter().enumerate() {
@@ -138,8 +153,9 @@ impl<V, M> BoxSides<V, M> {
         at_ends
     }
 
-    /// Where a place along the lower side, so high above it, is on the first box, in its frame: as
-    /// `Pose::point` has it for a lower side of the second box, above which the first one is.
+    /// Returns the point on the first box, in its frame, of a place and a height. A lower side of
+    /// the second box lies below the point by the height; the point is transformed as `Pose::point`
+    /// does.
     #[inline(always)]
     pub(super) fn point1<S: Simd, N: Real>(
         &self,
@@ -166,7 +182,7 @@ impl<V, M> BoxSides<V, M> {
         )
     }
 
-    /// An end of the upper side as the lower one sees it.
+    /// Compares an end of the upper side with the lower one.
     #[inline(always)]
     fn above<S: Simd, N: Real>(&self, simd: S, end: usize) -> SideCandidate<V, M>
     where
@@ -177,7 +193,7 @@ impl<V, M> BoxSides<V, M> {
         self.beside(simd, end, end.place + self.half, self.half + self.half)
     }
 
-    /// An end of the lower side as the upper one sees it.
+    /// Compares an end of the lower side with the upper one.
     #[inline(always)]
     fn below<S: Simd, N: Real>(&self, simd: S, place: V) -> SideCandidate<V, M>
     where
@@ -192,7 +208,7 @@ impl<V, M> BoxSides<V, M> {
         self.beside(simd, End { place, height }, along, self.length)
     }
 
-    /// An end that is so far along the other side, of a given length.
+    /// Compares an end with the other side, of the given length, at the coordinate `along` on it.
     #[inline(always)]
     fn beside<S: Simd, N: Real>(
         &self,
@@ -215,6 +231,7 @@ impl<V, M> BoxSides<V, M> {
 
 /// The side of the other box that is most aligned with the lower one.
 struct Upper<V, M> {
+    /// Masks and ends as in [`BoxSides`].
     is_own_y: M,
     is_positive: M,
     is_turned: M,
@@ -224,7 +241,8 @@ struct Upper<V, M> {
 }
 
 impl<V, M> Upper<V, M> {
-    /// Above a side at a level that faces up or down.
+    /// Finds the incident side of the other box, above the reference side at height `level`;
+    /// `is_upward` says which way the reference side faces.
     #[inline(always)]
     fn facing<S: Simd, N: Real>(
         simd: S,
@@ -247,6 +265,7 @@ impl<V, M> Upper<V, M> {
         );
         let is_own_y = facing[1].abs().simd_gt(facing[0].abs());
         let (across, lean) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
+        // The limit of supporting features: `FACING_SINE_SQUARED`.
         let is_aligned = (lean * lean).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
         let zero = V::all(simd, N::ZERO);
         let is_positive = across.simd_gt(zero);
@@ -273,7 +292,7 @@ impl<V, M> Upper<V, M> {
         );
         let is_turned = far.place.simd_lt(near.place);
         let ends = [in_order(is_turned, far, near), in_order(is_turned, near, far)];
-        // The far end faces the other box, and the ends are not exchanged, or neither.
+        // Both hold, or neither: the far end faces the other box, the ends are exchanged.
         let is_second_lower = is_turned ^ !lean.simd_lt(zero);
         Self { is_own_y, is_positive, is_turned, ends, is_second_lower, is_aligned }
     }

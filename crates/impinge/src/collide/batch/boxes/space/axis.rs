@@ -1,27 +1,29 @@
-//! The separating axis test of eight pairs of boxes: `collide/separation/boxes/cuboid_axes.rs` in lanes.
+//! Separating axis test of `L` pairs of boxes: `collide/separation/boxes/cuboid_axes.rs` in lanes.
 
 use super::super::{Boxes, is_finite};
 use crate::math::lanes::{dot, lit};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
-/// The axis of the largest gap of eight pairs.
+/// Direction of the largest gap of each pair.
 pub(super) struct BestAxis<V, M> {
-    /// The number of the axis that the face is perpendicular to.
+    /// Index of the axis that the best face is perpendicular to, as a number of the scalar type.
     pub(super) face: V,
     /// The face belongs to the second box, and no edges are better.
     pub(super) is_second: M,
     /// Edges are better than any face.
     pub(super) is_edges: M,
-    /// A unit vector from the first box to the second.
+    /// Unit vector from the first box to the second.
     pub(super) normal: [V; 3],
+    /// Signed distance along the normal.
     pub(super) gap: V,
+    /// Rounding error of lengths of the pair.
     pub(super) noise: V,
-    /// All numbers of the pose are finite, and so is their sum.
+    /// The sum of all numbers of the pose is finite.
     pub(super) is_finite: M,
 }
 
-/// The vector whose number each lane names, of three.
+/// Selects one of three vectors in each lane.
 #[inline(always)]
 pub(super) fn of_three<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], three: [&[V; 3]; 3]) -> [V; 3] {
     filled(
@@ -30,7 +32,7 @@ pub(super) fn of_three<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], three: [&[V; 3]; 
     )
 }
 
-/// The lanes that hold 0, 1 and 2.
+/// Returns the lanes that hold 0, 1 and 2.
 #[inline(always)]
 pub(super) fn which<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V) -> [V::Mask; 3] {
     [
@@ -40,7 +42,7 @@ pub(super) fn which<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V
     ]
 }
 
-/// The rotation without signs.
+/// Absolute values of the rotation.
 #[inline(always)]
 fn leans<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
     filled(
@@ -50,7 +52,7 @@ fn leans<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
 }
 
 impl<V> Boxes<V, 3> {
-    /// What arithmetic on these numbers cannot resolve.
+    /// Rounding error of lengths of each pair.
     #[inline(always)]
     fn noise<S: Simd, N: Real>(&self, simd: S) -> V
     where
@@ -62,7 +64,7 @@ impl<V> Boxes<V, 3> {
         lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * (sizes + farthest)
     }
 
-    /// The direction of the largest gap, as `Boxes::best_axis` has it for one pair.
+    /// Returns the direction of the largest gap, as `BoxPair::best_axis` does for one pair.
     #[inline(always)]
     pub(super) fn best_axis<S: Simd, N: Real>(&self, simd: S) -> BestAxis<V, V::Mask>
     where
@@ -72,6 +74,7 @@ impl<V> Boxes<V, 3> {
         let (face, is_second, gap) = self.best_face(simd, &leans);
         let noise = self.noise(simd);
         let (edges, bound) = self.best_edges(simd, &leans, (gap + noise).larger(gap));
+        // The axes are negative if no pair of edges is better.
         let is_edges = V::all(simd, N::ZERO).simd_le(edges[0]);
         let is_second = is_second & !is_edges;
         let ends = [is_edges.select(edges[0], face), is_edges.select(edges[1], face)];
@@ -81,7 +84,8 @@ impl<V> Boxes<V, 3> {
         BestAxis { face, is_second, is_edges, normal, gap, noise, is_finite }
     }
 
-    /// The face that leaves the largest gap: its axis, whether it is the second box's, the gap.
+    /// Returns the face with the largest gap: its axis, whether it is the second box's, and the
+    /// gap.
     #[inline(always)]
     fn best_face<S: Simd, N: Real>(&self, simd: S, leans: &[[V; 3]; 3]) -> (V, V::Mask, V)
     where
@@ -108,8 +112,8 @@ impl<V> Boxes<V, 3> {
         (best, is_second, gap)
     }
 
-    /// The pair of edges that leaves the largest gap, if that is more than `bound`: the axis of each
-    /// box, negative where no pair does, and the gap.
+    /// Returns the pair of edges with the largest gap, if it exceeds `bound`: the axis of each box,
+    /// negative if no pair does, and the gap.
     #[inline(always)]
     fn best_edges<S: Simd, N: Real>(
         &self,
@@ -130,6 +134,8 @@ impl<V> Boxes<V, 3> {
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
                 let along = t[i2] * r[j][i1] - t[i1] * r[j][i2];
                 let reach1 = self.half1[i1] * leans[j][i2] + self.half1[i2] * leans[j][i1];
+                // Components of the product on the other axes of the second box; see
+                // `BoxPair::best_edges`.
                 let lean1 = (r[j][i1] * r[j1][i2] - r[j][i2] * r[j1][i1]).abs();
                 let lean2 = (r[j][i1] * r[j2][i2] - r[j][i2] * r[j2][i1]).abs();
                 let reach2 = self.half2[j1] * lean1 + self.half2[j2] * lean2;
@@ -146,8 +152,8 @@ impl<V> Boxes<V, 3> {
         (best, bound)
     }
 
-    /// The unit vector along the axes, turned to point from the first box to the second: `ends` are
-    /// the numbers of the edges, or twice that of the face.
+    /// Returns the unit vector of a face or a pair of edges, pointing from the first box to the
+    /// second. `ends` are the axes of both edges, or the axis of the face twice.
     #[inline(always)]
     fn direction<S: Simd, N: Real>(
         &self,

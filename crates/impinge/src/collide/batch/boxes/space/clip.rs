@@ -1,8 +1,19 @@
-//! The corners of the common area of two faces, of eight pairs, each in a place of its own.
+//! Corners of the common area of two faces, for `L` pairs, each in a slot of its own.
 //!
-//! A corner of the parallelogram, a corner of the rectangle and a crossing of two sides are identified
-//! by their numbers, so there are places for 4 + 4 + 16 of them and a bit that says which there are:
-//! nothing is moved until all is known.
+//! ```text
+//!   slot  0..4    corner of the parallelogram         signs of slot, by both axes of its own face:
+//!         4..8    corner of the rectangle             0 ++   1 -+   2 --   3 +-
+//!         8..24   crossing of two sides:              8 + 8 * arm + 4 * (arm's negative end)
+//!                                                       + 2 * axis + (axis' negative end)
+//!           1 ---------- 0
+//!          /  5 --------/x---- 4     x: the side at the positive end of arm 0 crosses that at the
+//!         /   |        /       |        positive end of axis 1: slot 8 + 0 + 0 + 2 + 0
+//!        2 ---------- 3        |
+//!             6 -------------- 7
+//! ```
+//!
+//! `valid` says which of the 24 exist, so nothing is moved until all is known. `names` has the same
+//! order.
 
 use super::super::admit::{Admission, Limits, Slots};
 use super::SLOTS;
@@ -12,14 +23,14 @@ use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The first eight slots are corners, above which or below which the other face is to be named.
+/// The first eight slots are corners; their features depend on what they lie above or below.
 pub(super) const CORNERS: usize = 8;
 
-/// Whether each of the two coordinates of a corner is positive, in the order of the slots.
+/// Signs of the two coordinates of a corner, in the order of the slots.
 pub(super) const SIGNS: [[bool; 2]; 4] =
     [[true, true], [false, true], [false, false], [true, false]];
 
-/// How the corners of eight pairs lie to the other face, of each pair a bit.
+/// Positions of the corners relative to the other face: masks of `L` pairs.
 pub(super) struct Corners {
     /// At an end of the other face along its first or second axis.
     pub(super) at_end: [[u8; CORNERS]; 2],
@@ -33,12 +44,17 @@ impl Corners {
     }
 }
 
-/// A corner as the other face sees it.
+/// A corner of one face, relative to the other face.
 struct CornerPlace<V, M> {
+    /// Coordinates along the axes `u` and `v` of the rectangle.
     flat: [V; 2],
+    /// Height above the rectangle along the normal.
     height: V,
+    /// It lies inside the other face, or outside by at most twice the tolerance.
     is_inside: M,
+    /// For each axis of the other face: it is at one of its ends, up to the tolerance.
     at_end: [M; 2],
+    /// For each axis of the other face: it is on the positive side.
     beyond: [M; 2],
 }
 
@@ -47,21 +63,22 @@ fn signed<S: Simd, V: Wide<S>>(value: V, is_positive: bool) -> V {
     if is_positive { value } else { -value }
 }
 
-/// The end of the side that lies at `sign` of `arm`: the lower or the upper one.
+/// Returns one end of the side at the end `sign` of `arm`: the lower or the upper one.
 const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }
 
-/// The clipping of eight pairs under way.
+/// The clipping of `L` pairs.
 pub(super) struct Clip<'a, S, N: Real, V, M, const L: usize> {
     simd: S,
     faces: &'a FacesInLanes<V, M>,
-    /// What is shown of the rectangle, and of the parallelogram.
+    /// Supporting features of the rectangle and of the parallelogram.
     shown: [ShownFaces<M>; 2],
+    /// Collects heights and level candidates while the slots are filled.
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS, L>,
     corners: &'a mut Corners,
-    /// One of the faces leans too far in some lane.
+    /// One of the faces is tilted too far in some lane.
     is_partial: bool,
 }
 
@@ -108,7 +125,7 @@ where
         self.admission
     }
 
-    /// Where a corner of the parallelogram is seen, and its height.
+    /// Returns coordinates and height of a corner of the parallelogram.
     #[inline(always)]
     fn arm_end(&self, signs: [bool; 2]) -> ([V; 2], V) {
         let (center, arms, climbs) = (&self.faces.center, &self.faces.arms, &self.faces.climbs);
@@ -118,11 +135,12 @@ where
         ([x, y], height)
     }
 
-    /// A corner of the parallelogram as the rectangle sees it; edges that cross have none.
+    /// Compares a corner of the parallelogram with the rectangle.
     #[inline(always)]
     fn above(&self, corner: usize) -> CornerPlace<V, M> {
         let (flat, height) = self.arm_end(SIGNS[corner]);
         let across = &self.faces.across;
+        // Distances inside the sides of the rectangle, along both of its axes.
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
         let mut place = self.place((flat, height), inside, flat);
         if self.is_partial {
@@ -131,12 +149,13 @@ where
         place
     }
 
-    /// A corner of the rectangle as the parallelogram sees it.
+    /// Compares a corner of the rectangle with the parallelogram.
     #[inline(always)]
     fn below(&self, corner: usize) -> CornerPlace<V, M> {
         let signs = SIGNS[corner];
         let (faces, one) = (self.faces, V::all(self.simd, N::ONE));
         let flat = [signed(faces.across[0], signs[0]), signed(faces.across[1], signs[1])];
+        // Coordinates along the arms are 1 and -1 at the sides of the parallelogram.
         let arm = [flat[0] - faces.center[0], flat[1] - faces.center[1]];
         let along =
             [cross(&arm, &faces.arms[1]) / faces.area, cross(&faces.arms[0], &arm) / faces.area];
@@ -151,8 +170,8 @@ where
         place
     }
 
-    /// A place that is `inside` the ends of the other face by this much along each of its axes, and
-    /// at `coordinates` on them.
+    /// Compares a point with the other face, whose ends it lies `inside` of along both axes, with
+    /// the coordinates `coordinates` on them.
     #[inline(always)]
     fn place(
         &self,
@@ -161,8 +180,8 @@ where
         coordinates: [V; 2],
     ) -> CornerPlace<V, M> {
         let (tolerance, zero) = (self.faces.tolerance, V::all(self.simd, N::ZERO));
-        // A crossing is farther than the tolerance from all ends. Corners are let in up to twice as far out, so that
-        // no rounding puts one out while the crossing that would stand for it is not there either.
+        // A crossing is farther than the tolerance from all ends. Corners are admitted up to twice
+        // as far outside, so that rounding never drops both a corner and the crossing next to it.
         let out = -(tolerance + tolerance);
         CornerPlace {
             flat,
@@ -173,6 +192,7 @@ where
         }
     }
 
+    /// Stores a corner in its slot, and its position relative to the other face.
     #[inline(always)]
     fn corner(&mut self, slot: usize, place: &CornerPlace<V, M>) {
         for axis in 0..2 {
@@ -182,7 +202,7 @@ where
         self.store(slot, &place.flat, place.height, place.is_inside);
     }
 
-    /// Crossings of a side of the parallelogram with all sides of the rectangle.
+    /// Crosses a side of the parallelogram with all sides of the rectangle.
     #[inline(always)]
     fn crossings(&mut self, slot: usize, arm: usize, sign: bool) {
         let (from, low) = self.arm_end(ends(arm, sign, false));
@@ -197,8 +217,8 @@ where
         self.crossing(slot + 3, ends, (1, false), is_shown);
     }
 
-    /// The crossing with the side of the rectangle that is at one end of an axis, away from the ends
-    /// of both.
+    /// Crosses a side with the side of the rectangle at one end of an axis; only crossings away
+    /// from the ends of both count.
     #[inline(always)]
     fn crossing(
         &mut self,
@@ -210,6 +230,7 @@ where
         let (across, tolerance) = (&self.faces.across, self.faces.tolerance);
         let at = signed(across[axis], is_positive);
         let (before, after) = (from.0[axis] - at, to.0[axis] - at);
+        // Both ends farther than the tolerance from the line, on opposite sides.
         let leaves = before.simd_gt(tolerance) & after.simd_lt(-tolerance);
         let enters = before.simd_lt(-tolerance) & after.simd_gt(tolerance);
         if M::LEN == 1 && !(leaves | enters).any_true() {
@@ -228,14 +249,14 @@ where
         self.store(slot, &flat, height, is_there);
     }
 
-    /// Stores a candidate where it is.
+    /// Stores a candidate.
     #[inline(always)]
     fn store(&mut self, slot: usize, flat: &[V; 2], height: V, is_there: M) {
         self.admission.store(self.simd, self.slots, slot, flat, height, is_there);
     }
 }
 
-/// Leaves out corners of the rectangle that are corners of the parallelogram, which are there already.
+/// Drops corners of the rectangle that coincide with a corner of the parallelogram.
 #[inline(always)]
 fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
     above: &[CornerPlace<V, M>; 4],
@@ -254,7 +275,7 @@ fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
     }
 }
 
-/// The signs of a place's coordinates are these.
+/// Returns the lanes where the coordinates have these signs.
 #[inline(always)]
 fn is_at<S: Simd, V, M: SimdMask<S>>(place: &CornerPlace<V, M>, signs: [bool; 2]) -> M {
     let [x, y] = place.beyond;

@@ -1,5 +1,19 @@
-//! The two faces that meet, of eight pairs side by side: a rectangle of one box, and a face of the other seen along
-//! the normal as a parallelogram.
+//! The two reference faces of `L` pairs: a rectangle of one box, and a face of the other, projected
+//! along the normal onto the plane of the rectangle as a parallelogram.
+//!
+//! ```text
+//!    rectangle                          parallelogram
+//!      +-------^ v-----+                     .-----^------.
+//!      |       |       |                    /   arms[1]  /       c: `center`, in (u, v)
+//!      |       o-----> u                   /      c---> arms[0]
+//!      |               |                  /            /
+//!      +---------------+                 '------------'
+//! ```
+//!
+//! `w` is the axis across the rectangle, `u` and `v` those along its sides: the axes of its box in
+//! cyclic order ("in turn"). `across` are half the sides of the rectangle. `height` is that of `c`
+//! above the rectangle along the normal, `climbs` how much higher the end of each arm is, and
+//! `widths` the distances of `c` from the sides at the ends of the arms.
 
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
@@ -8,40 +22,50 @@ use crate::math::lanes::{dot, either, lit, negated, norm, seen_from};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
-/// A face of a box, and the face of the other above it, in the frame of the first of these.
+/// A face of a box, and the face of the other box above it, in the frame of the first of these.
 pub(super) struct FacesInLanes<V, M> {
-    /// The rectangle is the second box's.
+    /// Lanes where the rectangle belongs to the second box.
     pub(super) is_second: M,
-    /// It is, and the normal is not its own.
+    /// Lanes where it does, and the normal is that of edges, tilted against it.
     is_leaning: M,
-    /// The axis across the rectangle is the first, the second.
+    /// Masks of the axis across the rectangle: the first, the second, the third.
     pub(super) is_w: [M; 3],
-    /// The normal away from the rectangle's box, by its axes in turn.
+    /// Normal away from the rectangle's box, by its axes in turn.
     toward: [V; 3],
+    /// Lanes where the rectangle is on the positive side of its axis.
     pub(super) is_upward: M,
-    /// Half of the rectangle's box across, and of its sides.
+    /// Half extent of the rectangle's box across it, and along its sides.
     pub(super) half: V,
     pub(super) across: [V; 2],
-    /// What leans along these sides, of the normal.
+    /// Components of the normal along these sides: its tilt.
     leans: [V; 2],
-    /// The axis across the parallelogram, in its own box; its normal is on the positive side.
+    /// Masks of the axis across the parallelogram, in its own box; and where its normal is on the
+    /// positive side.
     pub(super) is_m: [M; 3],
     pub(super) is_positive: M,
+    /// Components of the normal along the axes of the parallelogram, as it faces the rectangle.
     leans_above: [V; 2],
-    /// Neither face leans too far: all of both is shown.
+    /// Lanes where neither face is tilted too far, so that all of both is used.
     pub(super) is_whole: M,
+    /// Centre of the parallelogram in the coordinates `u`, `v` of the rectangle.
     pub(super) center: [V; 2],
+    /// Vectors from the centre to the middles of two sides of the parallelogram.
     pub(super) arms: [[V; 2]; 2],
+    /// Height of the centre above the rectangle, along the normal.
     pub(super) height: V,
+    /// How much higher the end of each arm is than the centre.
     pub(super) climbs: [V; 2],
+    /// Cross product of the arms: a quarter of the area, with a sign.
     pub(super) area: V,
+    /// Distances of the centre from the sides at the ends of the arms.
     pub(super) widths: [V; 2],
+    /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
-    /// Neither face is too narrow.
+    /// Lanes where neither face is too narrow.
     pub(super) is_fit: M,
 }
 
-/// The component on the axis that each lane names, on the next and on the one after.
+/// Returns the components on the selected axis, on the next and on the one after.
 #[inline(always)]
 fn in_turn<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], v: &[V; 3]) -> [V; 3] {
     filled(
@@ -50,7 +74,7 @@ fn in_turn<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], v: &[V; 3]) -> [V; 3] {
     )
 }
 
-/// The lanes whose first, second or third component is the largest, the first of equals.
+/// Returns masks of the largest component by magnitude, the first of equals.
 #[inline(always)]
 fn largest<S: Simd, V: Wide<S>>(v: &[V; 3]) -> [V::Mask; 3] {
     let (first, second, third) = (v[0].abs(), v[1].abs(), v[2].abs());
@@ -59,24 +83,29 @@ fn largest<S: Simd, V: Wide<S>>(v: &[V; 3]) -> [V::Mask; 3] {
     [!(is_second | is_third), is_second & !is_third, is_third]
 }
 
-/// One with the sign of a mask.
+/// Returns 1 or -1.
 #[inline(always)]
 fn sign<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, is_positive: V::Mask) -> V {
     is_positive.select(V::all(simd, N::ONE), V::all(simd, -N::ONE))
 }
 
-/// The rectangle's side of the two.
+/// The rectangle of the two faces.
 struct Below<V, M> {
+    /// Lanes where the rectangle is the second box's.
     is_second: M,
+    /// Masks of the axis across the rectangle.
     is_w: [M; 3],
-    /// By the axes of the box.
+    /// Normal away from the rectangle's box, by the axes of the box.
     toward: [V; 3],
-    /// The same in turn.
+    /// Components of `toward` by the axes in turn.
     in_turn: [V; 3],
     is_upward: M,
+    /// Half extents of the rectangle's box, by the axes in turn.
     half: [V; 3],
 }
 
+/// Chooses the rectangle: the face of the separating axis, or, between edges, the most aligned face
+/// of the first box. If that is tilted too far and the second box's is not, it is the second box's.
 #[inline(always)]
 fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -109,8 +138,8 @@ fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     }
 }
 
-/// The normal away from the box whose face is to be the rectangle where edges decide, and whether that
-/// is the second box, there and elsewhere.
+/// Where edges decide, returns the normal away from the box whose face becomes the rectangle, and
+/// the lanes where the rectangle is the second box's, there and elsewhere.
 #[inline(always)]
 fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -126,7 +155,7 @@ fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask
     (either(is_second, &toward2, &axis.normal), axis.is_second | is_second)
 }
 
-/// The face of a box that is most aligned with a unit vector does not lean too far.
+/// Returns the lanes where the face of a box most aligned with a unit vector is not tilted too far.
 #[inline(always)]
 fn is_shown<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -136,14 +165,15 @@ fn is_shown<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     ShownFaces::is_all(simd, [u, v])
 }
 
-/// The axis that each lane names, of three, times a length.
+/// Selects one of three axes in each lane, times a length.
 #[inline(always)]
 fn arm<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], axes: [&[V; 3]; 3], length: V) -> [V; 3] {
     let [x, y, z] = of_three(is, axes);
     [x * length, y * length, z * length]
 }
 
-/// Where a vector, by the axes in turn, ends when seen along the normal, and how far along.
+/// Projects a vector, by the axes in turn, along the normal onto the rectangle's plane; returns its
+/// coordinates there and its height along the normal.
 #[inline(always)]
 fn seen<S: Simd, V: Wide<S>>([w, u, v]: [V; 3], toward: &[V; 3]) -> ([V; 2], V) {
     let height = w / toward[0];
@@ -156,7 +186,7 @@ pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 2], b: &[V; 2]) -> V {
 }
 
 impl<V, M> FacesInLanes<V, M> {
-    /// The faces that meet along the axes.
+    /// Finds both faces from the separating axis.
     #[inline(always)]
     pub(super) fn meeting<S: Simd, N: Real>(
         simd: S,
@@ -176,6 +206,7 @@ impl<V, M> FacesInLanes<V, M> {
         let is_positive = f0.simd_gt(V::all(simd, N::ZERO));
         let half = in_turn(&is_m, &either(below.is_second, &boxes.half1, &boxes.half2));
         let [x, y, z] = &rotation;
+        // From the centre of the box to that of its face.
         let up = arm(&is_m, [x, y, z], half[0]);
         let outward: V = sign(simd, is_positive);
         let from_plane =
@@ -219,7 +250,7 @@ impl<V, M> FacesInLanes<V, M> {
         }
     }
 
-    /// What the rectangle shows of itself, and the parallelogram.
+    /// Returns the supporting features of the rectangle and of the parallelogram.
     #[inline(always)]
     pub(super) fn shown<S: Simd, N: Real>(&self, simd: S) -> [ShownFaces<M>; 2]
     where
@@ -230,9 +261,9 @@ impl<V, M> FacesInLanes<V, M> {
         [below, ShownFaces::of(simd, self.is_m[1], self.leans_above)]
     }
 
-    /// Where a place that is seen at `flat` and so high is on the first box, in its frame: as
-    /// `Pose::point` has it for a rectangle of the second box, above which the first one is. That
-    /// rectangle does not lean unless `is_partial`, when a face may lean too far.
+    /// Returns the point on the first box, in its frame, of projected coordinates and a height. A
+    /// rectangle of the second box lies below the point by the height; the point is transformed as
+    /// `Pose::point` does. Only where `is_partial` may that rectangle be tilted against the normal.
     #[inline(always)]
     pub(super) fn point1<S: Simd, N: Real>(
         &self,

@@ -1,4 +1,12 @@
-//! Boxes in 3D: the separating axis test, and the corners of the area that the two faces share.
+//! Boxes in 3D: the separating axis test, and the corners of the common area of both faces.
+//!
+//! ```text
+//!   find:    axis -> faces -> clip (24 slots) -> admit        masks: one byte per slot or flag
+//!   turn:    Columns: bytes 0..3 the valid slots of a pair (24 bits), 3..6 the level ones,
+//!            6 its faces: rectangle's axis (2 bits) and side, parallelogram's axis and side,
+//!            bit 6: the rectangle is the second box's
+//!   settle:  choose, names
+//! ```
 
 mod axis;
 mod clip;
@@ -19,21 +27,25 @@ use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
 
-/// The slots of a pair.
+/// Slots of a pair; `clip` has their order.
 const SLOTS: usize = 24;
 
-/// `L` pairs, measured, before points are chosen.
+/// Results of the kernel for `L` pairs.
 pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     slots: Slots<N, 3, SLOTS, L>,
     corners: Corners,
+    /// Signed distance of the boxes.
     gap: [N; L],
+    /// Lengths up to this are rounding errors.
     tolerance: [N; L],
+    /// Half the diagonal of the smaller box.
     size: [N; L],
+    /// Unit, from the first box to the second, in the frame of the first.
     normal: [[N; L]; 3],
-    /// The lanes: the axis across the rectangle is the first, the second, the rectangle is on the
-    /// positive side of it; the same of the parallelogram; the rectangle is the second box's.
+    /// Masks: the axis across the rectangle is the first, or the second; the rectangle is on the
+    /// positive side of it; these three for the parallelogram; the rectangle is the second box's.
     sides: [u8; 8],
-    /// The lanes that are too far apart, and those whose slots are filled.
+    /// Bits of the lanes beyond the prediction, and of those with filled slots.
     is_apart: u8,
     is_built: u8,
     columns: Columns,
@@ -98,6 +110,7 @@ impl<N: Real> Batch<N, 3> for Boxes3 {
 }
 
 impl<N: Real, const L: usize> LaneFaces<N, L> {
+    /// Runs the kernel: axis, faces, slots. Lanes beyond the prediction stop after the axis.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -113,6 +126,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         let faces = FacesInLanes::meeting(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
         let limits = Limits { gap, prediction, sine, tolerance };
+        // If no face of the batch is tilted too far, nothing of the faces has to be excluded.
         let is_partial = bits(!faces.is_whole) & is_asked != 0;
         let is_found = self.fill::<S, V>(simd, &boxes, &faces, &limits, is_partial);
         self.is_built = bits(is_found & faces.is_fit) & is_asked;
@@ -134,12 +148,13 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         }
     }
 
-    /// From masks of all pairs to a byte for each pair.
+    /// Transposes masks of all pairs into a byte for each pair.
     #[inline(always)]
     fn turn(&mut self) {
         self.columns = Columns::of(self);
     }
 
+    /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
     fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
         if self.is_apart >> lane & 1 == 1 {
@@ -154,7 +169,8 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         is_built
     }
 
-    /// Fills the slots; answers where they hold the separation. `is_partial` where some face leans too far.
+    /// Fills the slots; returns the lanes where they confirm the separation. `is_partial` if a face
+    /// is tilted too far in some lane.
     #[inline(always)]
     fn fill<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -176,7 +192,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         found.is_found()
     }
 
-    /// The candidates of one pair, and how they are named.
+    /// Returns the candidates of one pair, and their names.
     #[inline(always)]
     fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS, L>, BoxPairNames) {
         let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
@@ -204,7 +220,7 @@ struct FaceSides {
 }
 
 impl FaceSides {
-    /// From the bits of `LaneFaces::sides`.
+    /// Decodes a byte of `LaneFaces::sides`.
     #[inline(always)]
     fn of(bits: u8) -> Self {
         const AXES: [usize; 4] = [2, 0, 1, 0];
@@ -214,8 +230,8 @@ impl FaceSides {
     }
 }
 
-/// The masks of all pairs, turned so that a byte has the bits of one pair: three bytes of the slots
-/// that are there, three of those that are level, one of the faces.
+/// Transposed masks: for each pair three bytes of the filled slots, three of the level ones, and
+/// one of the faces.
 struct Columns([[u8; 8]; 7]);
 
 impl Columns {
@@ -243,7 +259,7 @@ impl Columns {
         self.0[row][lane & 7]
     }
 
-    /// The bits of all slots.
+    /// Returns the 24 bits of the slots of a pair.
     #[inline(always)]
     fn slots(&self, row: usize, lane: usize) -> u32 {
         let bytes = [self.byte(row, lane), self.byte(row + 1, lane), self.byte(row + 2, lane), 0];
@@ -251,7 +267,7 @@ impl Columns {
     }
 }
 
-/// Eight bytes in a row.
+/// Returns eight bytes in a row.
 #[inline(always)]
 fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; 8] {
     filled(

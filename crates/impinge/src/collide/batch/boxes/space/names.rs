@@ -1,4 +1,16 @@
-//! Names of the slots of one pair, and the slots of names.
+//! Features and codes of the slots of one pair in 3D, and slots by features.
+//!
+//! ```text
+//!   parts of a face: 3 * p + q, p along its first axis, q along its second;
+//!   0 at the negative end, 1 between, 2 at the positive end
+//!
+//!        2  5  8      corners 0 2 6 8, sides 1 3 5 7, 4 the face        pair of parts:
+//!        1  4  7                                                        9 * rectangle's part
+//!        0  3  6      q up, p to the right                              + parallelogram's part
+//!
+//!   code   31   19    12       5       0
+//!          [1 | ... | faces | pair  | slot ]     faces: byte 6 of `Columns`
+//! ```
 
 use super::super::choose::Naming;
 use super::FaceSides;
@@ -8,22 +20,22 @@ use crate::collide::RawPoint;
 use crate::math::Real;
 use crate::shape::FeatureId;
 
-/// The parts of a face: three times the place along its first axis plus that along its second, where
-/// a place is at the negative end, between, at the positive end.
+/// Parts of a face; see the figure.
 const PARTS: usize = 9;
-/// A box has fewer features of each kind than that.
+/// Bound of the numbers of features of each kind: a box has at most 12.
 const NUMBERS: usize = 12;
-/// What is no part, and no slot.
+/// No part, or no slot.
 const NONE: u8 = u8::MAX;
 
-/// A face of a box.
+/// Features of a face of a box.
 struct FaceNames {
+    /// Feature of each part.
     parts: [FeatureId; PARTS],
-    /// The part of each feature by kind and number.
+    /// Part of each feature, by kind and number.
     part_of: [u8; 3 * NUMBERS],
 }
 
-/// By axis, and whether the face is on its positive side.
+/// Faces by axis, and by whether they are on its positive side.
 static FACES: [[FaceNames; 2]; 3] = [
     [FaceNames::new(0, false), FaceNames::new(0, true)],
     [FaceNames::new(1, false), FaceNames::new(1, true)],
@@ -31,6 +43,7 @@ static FACES: [[FaceNames; 2]; 3] = [
 ];
 
 impl FaceNames {
+    /// Lists the features of the face of `axis`.
     const fn new(axis: usize, is_positive: bool) -> Self {
         let mut parts = [face(axis, is_positive); PARTS];
         let mut part_of = [NONE; 3 * NUMBERS];
@@ -44,14 +57,14 @@ impl FaceNames {
         Self { parts, part_of }
     }
 
-    /// The part that bears a name; [`NONE`] for another face's.
+    /// Returns the part that owns the feature `id`, or [`NONE`] if the id belongs to another face.
     #[inline(always)]
     fn part(&self, id: FeatureId) -> u8 {
         self.part_of.get(index_of(id)).copied().unwrap_or(NONE)
     }
 }
 
-/// Where a feature stands in a list by kind and number; beyond it for features of other solids.
+/// Returns the index of a feature by kind and number; beyond the list for features of other solids.
 #[inline(always)]
 const fn index_of(id: FeatureId) -> usize {
     let (kind, number) = match id {
@@ -62,23 +75,24 @@ const fn index_of(id: FeatureId) -> usize {
     if number < NUMBERS { NUMBERS * kind + number } else { usize::MAX }
 }
 
-/// The number of the vertex with these positive coordinates.
+/// Returns the vertex with these signs of its coordinates.
 const fn vertex([a, b, c]: [(usize, bool); 3]) -> FeatureId {
     FeatureId::Vertex((a.1 as u32) << a.0 | (b.1 as u32) << b.0 | (c.1 as u32) << c.0)
 }
 
-/// The number of the edge along an axis, given the signs of the next axis and the one after.
+/// Returns the edge along an axis, given the signs on the next axis and the one after.
 const fn edge(axis: usize, next: bool, after: bool) -> FeatureId {
     const FIRST: [u32; 3] = [0, 4, 8];
     FeatureId::Edge(FIRST[axis] + next as u32 + 2 * after as u32)
 }
 
-/// The number of the face on one side of an axis.
+/// Returns the face on one side of an axis.
 const fn face(axis: usize, is_positive: bool) -> FeatureId {
     const FIRST: [u32; 3] = [0, 2, 4];
     FeatureId::Face(FIRST[axis] + !is_positive as u32)
 }
 
+/// Returns the feature of a part of the face across `w`, given 0, 1 or 2 for both axes.
 const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> FeatureId {
     let (u, v) = ((w + 1) % 3, (w + 2) % 3);
     match (first, second) {
@@ -89,11 +103,12 @@ const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> 
     }
 }
 
-/// The four sides in the order of the slots: at the ends of the first axis, then of the second.
+/// Parts of the four sides in the order of the slots: at both ends of the first axis, then the
+/// second.
 const SIDES: [u8; 4] = [7, 1, 5, 3];
-/// The part that a corner is of its own face.
+/// Part of each corner on its own face.
 const OWN: [u8; 4] = own_parts();
-/// Two parts, of rectangle and parallelogram, in one number: that many of the first, and the second.
+/// Number of pairs of parts: rectangle's times 9 plus parallelogram's.
 const PAIRS: usize = PARTS * PARTS;
 
 const fn own_parts() -> [u8; 4] {
@@ -107,7 +122,7 @@ const fn own_parts() -> [u8; 4] {
     own
 }
 
-/// The pairs of parts that the slots stand for; of a corner only what its own part adds.
+/// Pair of parts of each slot; for a corner only what its own part contributes.
 const OWN_PAIRS: [u8; PLACES] = own_pairs();
 
 const fn own_pairs() -> [u8; PLACES] {
@@ -126,9 +141,10 @@ const fn own_pairs() -> [u8; PLACES] {
     pairs
 }
 
-/// The two parts of a pair.
+/// Both parts of each pair.
 static PARTS_OF: [[u8; 2]; PAIRS] = parts_of();
 
+/// Computes [`PARTS_OF`].
 const fn parts_of() -> [[u8; 2]; PAIRS] {
     let mut all = [[0; 2]; PAIRS];
     let mut pair: u8 = 0;
@@ -139,10 +155,11 @@ const fn parts_of() -> [[u8; 2]; PAIRS] {
     all
 }
 
-/// The slots that may stand for two parts: of a corner of the parallelogram or a crossing, and of a
+/// The slots that may have a pair of parts: a corner of the parallelogram or a crossing, and a
 /// corner of the rectangle.
 static SLOTS_OF: [[u8; 2]; PAIRS] = slots_of();
 
+/// Computes [`SLOTS_OF`]: each slot is entered for all pairs that it may have.
 const fn slots_of() -> [[u8; 2]; PAIRS] {
     let mut all = [[NONE; 2]; PAIRS];
     let mut slot: u8 = 0;
@@ -167,30 +184,33 @@ const fn slots_of() -> [[u8; 2]; PAIRS] {
 /// One in each byte.
 const ONES: u64 = 0x0101_0101_0101_0101;
 
-/// How the slots of one pair are named.
+/// Names of the slots of one pair.
 pub(super) struct BoxPairNames {
     rectangle: &'static FaceNames,
     parallelogram: &'static FaceNames,
+    /// The rectangle is the second box's.
     is_second: bool,
-    /// The faces as a code has them.
+    /// Bits of the faces, at their position in a code.
     faces: u32,
+    /// Pair of parts of each slot.
     pairs: [u8; PLACES],
 }
 
-/// As many as a code may name slots.
+/// Number of slots that a code can name.
 const PLACES: usize = 32;
-/// Where the two parts stand in a code, and the faces; every code has the last bit.
+/// Positions of the pair of parts and of the faces in a code; bit 31 of every code is set.
 const PARTS_AT: u32 = 5;
 const FACES_AT: u32 = 12;
 const MARK: u32 = 1 << 31;
-/// The bits of the two parts.
+/// Mask of a pair of parts.
 const PAIR_BITS: u32 = 127;
 
 impl BoxPairNames {
-    /// From the two faces, as bits too.
+    /// Names for two faces, given decoded and as the byte `bits`; `parts` is from [`parts_at`].
     #[inline(always)]
     pub(super) fn new(sides: &FaceSides, bits: u8, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
+        // A byte for each corner: its own part, and the part of the other face that it lies on.
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
         ]);
@@ -209,7 +229,7 @@ impl BoxPairNames {
 }
 
 impl BoxPairNames {
-    /// The two parts that bear these names, as one number.
+    /// Returns the pair of parts that own two features; `None` if one belongs to another face.
     #[inline(always)]
     fn pair(&self, [first, second]: [FeatureId; 2]) -> Option<usize> {
         let (below, above) = if self.is_second { (second, first) } else { (first, second) };
@@ -258,14 +278,15 @@ pub(super) struct FaceSide {
     pub(super) is_positive: bool,
 }
 
-/// The part of the other face that each of eight corners lies on, a byte for each: from the bits of
-/// one lane, of which `at_end` and `beyond` have a byte for each corner.
+/// Returns the part of the other face that each of eight corners lies on, a byte for each: from the
+/// bits of one lane in `at_end` and `beyond`.
 #[inline(always)]
 pub(super) fn parts_at(
     lane: usize,
     at_end: &[[u8; CORNERS]; 2],
     beyond: &[[u8; CORNERS]; 2],
 ) -> u64 {
+    // 0 at the negative end, 1 between, 2 at the positive end.
     let third = |axis: usize| {
         let at_end = u64::from_le_bytes(at_end[axis]) >> lane & ONES;
         let beyond = u64::from_le_bytes(beyond[axis]) >> lane;

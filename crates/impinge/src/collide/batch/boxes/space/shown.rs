@@ -1,5 +1,10 @@
-//! The supporting feature on the most aligned face of a box, of eight pairs, by the rule of
+//! Supporting feature on the most aligned face of a box, for `L` pairs, by the rule of
 //! `SupportMap::core_feature`: the face, its nearest side, or its nearest corner.
+//!
+//! ```text
+//!    is_free     [1, 1]  the whole face     [1, 0] or [0, 1]  one side     [0, 0]  one corner
+//!    tilt        small                      large along one axis           large along both
+//! ```
 
 use super::clip::SIGNS;
 use crate::math::lanes::lit;
@@ -7,8 +12,8 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;
 
-/// The part of a face: by its axes, the lanes where it ranges along the axis, and those where the end
-/// that it is confined to elsewhere is on the positive side.
+/// A part of a face, by its two axes: the lanes where it extends along the axis, and, for the
+/// others, those where it is at the positive end.
 #[derive(Clone, Copy)]
 pub(super) struct ShownFaces<M> {
     is_free: [M; 2],
@@ -16,8 +21,9 @@ pub(super) struct ShownFaces<M> {
 }
 
 impl<M> ShownFaces<M> {
-    /// By the components of a unit vector on the axes after that of the face; `is_middle` are the lanes
-    /// where that is the second axis of the box.
+    /// Computes the feature from the components of a unit vector on the two axes of the face.
+    /// `is_middle` are the lanes where the face's own axis is the second axis of the box; it breaks
+    /// ties.
     #[inline(always)]
     pub(super) fn of<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
@@ -31,6 +37,7 @@ impl<M> ShownFaces<M> {
         let squares = [leans[0] * leans[0], leans[1] * leans[1]];
         let is_all = Self::is_all(simd, leans);
         let [one, other] = [leans[0].abs(), leans[1].abs()];
+        // The weaker tilt is free first; ties go by the order of the box's axes.
         let is_first_weaker = one.simd_lt(other) | (one.simd_eq(other) & !is_middle);
         Self {
             is_free: [
@@ -41,7 +48,7 @@ impl<M> ShownFaces<M> {
         }
     }
 
-    /// The face does not lean too far: by the components along it.
+    /// Returns the lanes where a face with these components along it is not tilted too far.
     #[inline(always)]
     pub(super) fn is_all<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
@@ -50,7 +57,7 @@ impl<M> ShownFaces<M> {
         (u * u + v * v).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED))
     }
 
-    /// All of the face is part of it.
+    /// Returns the lanes where the whole face is the feature.
     #[inline(always)]
     pub(super) fn is_whole<S: Simd>(&self) -> M
     where
@@ -59,7 +66,7 @@ impl<M> ShownFaces<M> {
         self.is_free[0] & self.is_free[1]
     }
 
-    /// Of the corners that have a place among the slots, which are part of it.
+    /// Returns the lanes where a corner, in the order of the slots, belongs to the feature.
     #[inline(always)]
     pub(super) fn has_corner<S: Simd>(&self, corner: usize) -> M
     where
@@ -69,7 +76,7 @@ impl<M> ShownFaces<M> {
         (self.is_free[0] | self.is_at(0, x)) & (self.is_free[1] | self.is_at(1, y))
     }
 
-    /// The side at one end of an axis is part of it.
+    /// Returns the lanes where the side at one end of an axis belongs to the feature.
     #[inline(always)]
     pub(super) fn has_side<S: Simd>(&self, axis: usize, is_positive: bool) -> M
     where
@@ -78,8 +85,8 @@ impl<M> ShownFaces<M> {
         self.is_free[1 - axis] & (self.is_free[axis] | self.is_at(axis, is_positive))
     }
 
-    /// Where more than a corner is shown: a place that is at an end of some axes, on positive sides or
-    /// not, is part of it.
+    /// Returns the lanes where a point at some ends of the face (`at_end`), on their positive sides
+    /// or not (`beyond`), belongs to the feature, if that is more than a corner.
     #[inline(always)]
     pub(super) fn has_place<S: Simd>(&self, at_end: &[M; 2], beyond: &[M; 2]) -> M
     where
@@ -90,6 +97,8 @@ impl<M> ShownFaces<M> {
             & (self.is_free[1] | (at_end[1] & !y & self.is_free[0]))
     }
 
+    /// Returns the lanes where the feature is at this end of an axis, if it does not extend along
+    /// it.
     #[inline(always)]
     fn is_at<S: Simd>(&self, axis: usize, is_positive: bool) -> M
     where
