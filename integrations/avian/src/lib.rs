@@ -31,17 +31,18 @@
 //!
 //! # Contacts
 //!
-//! Two convex shapes are asked anew in each step: their contacts are a function of their poses, and have the names of their
-//! features, by which Avian's solver finds the impulses of the last step. Of a pair with a mesh, a line, a height field or a
-//! compound the resource [`PairContacts`] keeps what is known: there the two feature ids of an Avian contact are a
-//! name that the point keeps while it moves from part to part, and say nothing about vertices, edges or faces.
-//! The answers do not depend on the number of threads.
+//! A pair of convex shapes is computed anew in each step: its contacts are a function of the poses, and its feature ids
+//! name vertices, edges and faces. Avian's solver matches points by these ids and starts from their last impulses.
+//!
+//! A pair with a mesh, a polyline, a height field or a compound has state in the resource [`PairContacts`]. Its two
+//! feature ids are a contact id, which the point keeps while it moves from part to part; they name no feature.
+//! Each pair is computed independently of all others.
 //!
 //! # Errors
 //!
-//! Nothing panics on bad sizes. A collider that could not be made has an [error](Collider::error), no contacts and no mass. A
-//! scale that the shape does not have exactly is approximated, as Avian's trait asks; one that is zero or not
-//! finite is refused, with a line in the log, and the last one stays.
+//! Bad sizes do not panic. A collider with bad arguments has an [error](Collider::error), no contacts and no mass. If a
+//! shape cannot be scaled exactly, a convex hull approximates it, as Avian's trait asks. A scale of zero, infinity or NaN is
+//! refused with a line in the log, and the last scale stays.
 #![forbid(unsafe_code)]
 #![warn(missing_docs, missing_debug_implementations)]
 
@@ -64,7 +65,7 @@ pub use scaling::Dimension;
 /// The collision library itself: shapes, queries.
 pub use impinge;
 
-/// The page of the crate and the chapter of the guide, run as tests; they are about apps without parry.
+/// The README and the guide's chapter, run as tests; their apps have no parry.
 #[cfg(all(doctest, feature = "2d", feature = "3d", not(feature = "parry")))]
 #[doc = include_str!("../README.md")]
 #[doc = include_str!("../../../guide/avian.md")]
