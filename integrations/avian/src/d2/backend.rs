@@ -1,0 +1,178 @@
+//! The traits of `avian2d` that a collider implements.
+
+use avian2d::collision::contact_types::PackedFeatureId;
+use avian2d::prelude::{
+    AabbContext, AnyCollider, ColliderAabb, ComputeMassProperties2d, ContactManifold,
+    ContactManifoldContext, ContactPoint, MassProperties2d, NarrowPhaseConfig, Rotation,
+    ScalableCollider,
+};
+use bevy_ecs::system::lifetimeless::SRes;
+use bevy_impinge::Glam;
+use bevy_math::{Isometry2d, Rot2, Vec2};
+use impinge::dim2::math::Isometry;
+use impinge::dim2::query::ContactManifold as Found;
+
+use super::{Collider, PairContacts};
+use crate::manifolds::{Meeting, Touch};
+
+pub(super) fn isometry(position: Vec2, rotation: Rotation) -> Isometry<f32> {
+    <f32 as Glam<2>>::isometry_of(&Isometry2d::new(
+        position,
+        Rot2 { cos: rotation.cos, sin: rotation.sin },
+    ))
+}
+
+/// Two poses in a frame with the world's axes and its origin at the first position.
+fn beside(positions: [Vec2; 2], rotations: [Rotation; 2]) -> [Isometry<f32>; 2] {
+    let [from, to] = positions;
+    [isometry(Vec2::ZERO, rotations[0]), isometry(to - from, rotations[1])]
+}
+
+impl Collider {
+    /// The box around the shape at a pose.
+    #[must_use]
+    pub fn aabb(&self, position: Vec2, rotation: impl Into<Rotation>) -> ColliderAabb {
+        let [min, max] = self.corners(&isometry(position, rotation.into()));
+        ColliderAabb::from_min_max(min, max)
+    }
+
+    /// The contacts with another collider, without memory of earlier ones: the points are relative to the
+    /// positions of the two.
+    #[must_use]
+    pub fn contact_manifolds(
+        &self,
+        other: &Self,
+        [position1, position2]: [Vec2; 2],
+        [rotation1, rotation2]: [Rotation; 2],
+        prediction_distance: f32,
+    ) -> Vec<ContactManifold> {
+        let poses = beside([position1, position2], [rotation1, rotation2]);
+        let (meeting, mut manifolds) = (Meeting::new([self, other], poses), Vec::new());
+        meeting.contacts(prediction_distance, |found| {
+            rewrite(&meeting, found, position1, &mut manifolds);
+        });
+        manifolds
+    }
+}
+
+impl AnyCollider for Collider {
+    type Context = (SRes<PairContacts>, SRes<NarrowPhaseConfig>);
+
+    fn aabb_with_context(
+        &self,
+        position: Vec2,
+        rotation: impl Into<Rotation>,
+        _: AabbContext<'_, '_, '_, Self::Context>,
+    ) -> ColliderAabb {
+        self.aabb(position, rotation)
+    }
+
+    fn contact_manifolds_with_context(
+        &self,
+        other: &Self,
+        position1: Vec2,
+        rotation1: impl Into<Rotation>,
+        position2: Vec2,
+        rotation2: impl Into<Rotation>,
+        prediction_distance: f32,
+        manifolds: &mut Vec<ContactManifold>,
+        context: ContactManifoldContext<'_, '_, '_, Self::Context>,
+    ) {
+        let poses = beside([position1, position2], [rotation1.into(), rotation2.into()]);
+        let (meeting, margin) = (Meeting::new([self, other], poses), prediction_distance);
+        if !meeting.has_parts() {
+            return meeting
+                .contacts(margin, |found| rewrite(&meeting, found, position1, manifolds));
+        }
+        let old = warmth(manifolds);
+        context.0.with((context.entity1, context.entity2), |state| {
+            meeting.update(state, margin, |found| rewrite(&meeting, found, position1, manifolds));
+        });
+        if context.1.match_contacts && manifolds.len() > MATCHED {
+            warm(manifolds, &old);
+        }
+    }
+}
+
+/// Avian itself matches the points of pairs with at most this number of manifolds.
+const MATCHED: usize = 4;
+
+/// The feature ids of a point, and its normal and tangential impulse for warm starting.
+type Warmth = ([PackedFeatureId; 2], f32, f32);
+
+/// The ids and impulses of the points of a pair with at least [`MATCHED`] manifolds, which may exceed that number after
+/// the update; empty otherwise.
+fn warmth(manifolds: &[ContactManifold]) -> Vec<Warmth> {
+    let many = if manifolds.len() >= MATCHED { manifolds } else { &[] };
+    let points = many.iter().flat_map(|manifold| &manifold.points);
+    let of = |point: &ContactPoint| {
+        let name = [point.feature_id1, point.feature_id2];
+        (name, point.warm_start_normal_impulse, point.warm_start_tangent_impulse)
+    };
+    points.map(of).collect()
+}
+
+/// Copies the impulses of old points to new points with equal feature ids.
+fn warm(manifolds: &mut [ContactManifold], old: &[Warmth]) {
+    for point in manifolds.iter_mut().flat_map(|manifold| &mut manifold.points) {
+        let name = [point.feature_id1, point.feature_id2];
+        if let Some((_, normal, tangent)) = old.iter().find(|old| old.0 == name) {
+            (point.warm_start_normal_impulse, point.warm_start_tangent_impulse) =
+                (*normal, *tangent);
+        }
+    }
+}
+
+/// Writes the contacts of a pair over those of the last step.
+fn rewrite(
+    meeting: &Meeting<'_, 2>,
+    found: &[&Found<f32>],
+    position1: Vec2,
+    manifolds: &mut Vec<ContactManifold>,
+) {
+    manifolds.resize_with(found.len(), || ContactManifold::new([], Vec2::ZERO));
+    for (manifold, found) in manifolds.iter_mut().zip(found) {
+        manifold.normal = Meeting::normal(found).unwrap_or_default();
+        manifold.points.clear();
+        manifold.points.extend(meeting.touches(found).map(|touch| point(&touch, position1)));
+    }
+}
+
+fn point(touch: &Touch<2>, position1: Vec2) -> ContactPoint {
+    let ([anchor1, anchor2], [name1, name2]) = (touch.anchors, touch.name);
+    let point = ContactPoint::new(anchor1, anchor2, position1 + anchor1, touch.penetration);
+    point.with_feature_ids(name1.into(), name2.into())
+}
+
+impl ScalableCollider for Collider {
+    fn scale(&self) -> Vec2 {
+        self.scale()
+    }
+
+    fn set_scale(&mut self, scale: Vec2, detail: u32) {
+        self.rescale(scale, detail);
+    }
+}
+
+impl ComputeMassProperties2d for Collider {
+    fn mass(&self, density: f32) -> f32 {
+        self.weighed(density).mass()
+    }
+
+    fn unit_angular_inertia(&self) -> f32 {
+        self.weighed_as_one().inertia()
+    }
+
+    fn center_of_mass(&self) -> Vec2 {
+        f32::vec(&self.weighed(1.0).center_of_mass().coords)
+    }
+
+    fn mass_properties(&self, density: f32) -> MassProperties2d {
+        let found = self.weighed(density);
+        MassProperties2d {
+            mass: found.mass(),
+            angular_inertia: found.inertia(),
+            center_of_mass: f32::vec(&found.center_of_mass().coords),
+        }
+    }
+}

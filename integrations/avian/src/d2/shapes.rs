@@ -1,0 +1,105 @@
+//! Colliders that 2D alone has, with the arguments of Avian's own.
+
+use avian2d::prelude::{Position, Rotation};
+use bevy_impinge::ColliderError;
+use bevy_math::Vec2;
+use bevy_math::primitives::RegularPolygon;
+use impinge::dim2::math::{Isometry, Point};
+use impinge::dim2::query::{ContactManifold, ContactPrediction, contact_manifolds};
+use impinge::dim2::shape::{Shape, ShapeHandle};
+use impinge::dim2::transformation::convex_shape;
+
+use super::Collider;
+use super::backend::isometry;
+use crate::collider::points;
+use crate::scaling::Dimension;
+
+impl Dimension<2> for f32 {
+    fn contacts(
+        [pose1, pose2]: &[Isometry<Self>; 2],
+        [shape1, shape2]: [&dyn Shape<Self, 2>; 2],
+        prediction: &ContactPrediction<Self>,
+    ) -> Vec<ContactManifold<Self>> {
+        contact_manifolds(pose1, shape1, pose2, shape2, prediction, None)
+    }
+
+    fn hull(points: &[Point<Self>]) -> Result<ShapeHandle<Self>, ColliderError> {
+        Ok(convex_shape(points)?)
+    }
+}
+
+impl Collider {
+    /// A disk around the origin.
+    #[must_use]
+    pub fn circle(radius: f32) -> Self {
+        Self::new(bevy_impinge::d2::Collider::circle(radius))
+    }
+
+    /// An ellipse with its middle at the origin, given half of its lengths.
+    #[must_use]
+    pub fn ellipse(half_width: f32, half_height: f32) -> Self {
+        Self::new(bevy_impinge::d2::Collider::ellipse(half_width, half_height))
+    }
+
+    /// A rectangle with its middle at the origin, given its full lengths.
+    #[must_use]
+    pub fn rectangle(x_length: f32, y_length: f32) -> Self {
+        Self::new(bevy_impinge::d2::Collider::rectangle(x_length, y_length))
+    }
+
+    /// A rectangle, and all points within `border_radius` of it.
+    #[must_use]
+    pub fn round_rectangle(x_length: f32, y_length: f32, border_radius: f32) -> Self {
+        Self::rectangle(x_length, y_length).rounded(border_radius)
+    }
+
+    /// A polygon whose corners are evenly spread on a circle, one of them at the top.
+    #[must_use]
+    pub fn regular_polygon(circumradius: f32, sides: u32) -> Self {
+        let is_one = sides >= 3 && circumradius >= 0.0 && circumradius.is_finite();
+        // A polygon that there is not has no corners.
+        let corners = is_one.then(|| RegularPolygon::new(circumradius, sides).vertices(0.0));
+        Self::new(bevy_impinge::d2::Collider::convex_hull(corners.into_iter().flatten()))
+    }
+
+    /// All that is behind a line through the origin; the normal points out of it, and need not have length 1.
+    #[must_use]
+    pub fn half_space(outward_normal: Vec2) -> Self {
+        Self::new(bevy_impinge::d2::Collider::half_plane(outward_normal.normalize_or_zero()))
+    }
+
+    /// The convex hull of points; `None` if they are none, or not finite. Of points on a line it is a segment.
+    #[must_use]
+    pub fn convex_hull(vertices: Vec<Vec2>) -> Option<Self> {
+        convex_shape(&points::<2>(vertices)).ok().map(Self::from_handle)
+    }
+
+    /// The convex polygon with these corners: the same as their hull.
+    #[must_use]
+    pub fn convex_polyline(vertices: Vec<Vec2>) -> Option<Self> {
+        Self::convex_hull(vertices)
+    }
+
+    /// A line over evenly spaced heights, centred on the origin: `scale.x` wide, and `scale.y` times the heights high.
+    #[must_use]
+    pub fn heightfield(heights: Vec<f32>, scale: Vec2) -> Self {
+        Self::new(bevy_impinge::d2::Collider::heightfield(heights, scale))
+    }
+
+    /// Colliders side by side, each at its position and rotation in the frame of the whole.
+    #[must_use]
+    pub fn compound(
+        shapes: Vec<(impl Into<Position>, impl Into<Rotation>, impl Into<Self>)>,
+    ) -> Self {
+        Self::side_by_side(shapes.into_iter().map(|(position, rotation, shape)| {
+            (isometry(position.into().0, rotation.into()), shape.into())
+        }))
+    }
+}
+
+/// Avian's default: a square with sides of 0.5.
+impl Default for Collider {
+    fn default() -> Self {
+        Self::rectangle(0.5, 0.5)
+    }
+}

@@ -1,0 +1,186 @@
+//! The traits of `avian3d` that a collider implements.
+
+use avian3d::collision::contact_types::PackedFeatureId;
+use avian3d::prelude::{
+    AabbContext, AnyCollider, ColliderAabb, ComputeMassProperties3d, ContactManifold,
+    ContactManifoldContext, ContactPoint, MassProperties3d, NarrowPhaseConfig, Rotation,
+    ScalableCollider,
+};
+use bevy_ecs::system::lifetimeless::SRes;
+use bevy_impinge::Glam;
+use bevy_math::{Isometry3d, Quat, Vec2, Vec3};
+use impinge::dim3::math::Isometry;
+use impinge::dim3::query::ContactManifold as Found;
+use impinge::dim3::query::MassProperties;
+
+use super::{Collider, PairContacts};
+use crate::manifolds::{Meeting, Touch};
+
+pub(super) fn isometry(position: Vec3, rotation: Rotation) -> Isometry<f32> {
+    <f32 as Glam<3>>::isometry_of(&Isometry3d::new(position, rotation.0))
+}
+
+/// Two poses in a frame with the world's axes and its origin at the first position.
+fn beside(positions: [Vec3; 2], rotations: [Rotation; 2]) -> [Isometry<f32>; 2] {
+    let [from, to] = positions;
+    [isometry(Vec3::ZERO, rotations[0]), isometry(to - from, rotations[1])]
+}
+
+impl Collider {
+    /// The box around the shape at a pose.
+    #[must_use]
+    pub fn aabb(&self, position: Vec3, rotation: impl Into<Rotation>) -> ColliderAabb {
+        let [min, max] = self.corners(&isometry(position, rotation.into()));
+        ColliderAabb::from_min_max(min, max)
+    }
+
+    /// The contacts with another collider, without memory of earlier ones: the points are relative to the
+    /// positions of the two.
+    #[must_use]
+    pub fn contact_manifolds(
+        &self,
+        other: &Self,
+        [position1, position2]: [Vec3; 2],
+        [rotation1, rotation2]: [Rotation; 2],
+        prediction_distance: f32,
+    ) -> Vec<ContactManifold> {
+        let poses = beside([position1, position2], [rotation1, rotation2]);
+        let (meeting, mut manifolds) = (Meeting::new([self, other], poses), Vec::new());
+        meeting.contacts(prediction_distance, |found| {
+            rewrite(&meeting, found, position1, &mut manifolds);
+        });
+        manifolds
+    }
+}
+
+impl AnyCollider for Collider {
+    type Context = (SRes<PairContacts>, SRes<NarrowPhaseConfig>);
+
+    fn aabb_with_context(
+        &self,
+        position: Vec3,
+        rotation: impl Into<Rotation>,
+        _: AabbContext<'_, '_, '_, Self::Context>,
+    ) -> ColliderAabb {
+        self.aabb(position, rotation)
+    }
+
+    fn contact_manifolds_with_context(
+        &self,
+        other: &Self,
+        position1: Vec3,
+        rotation1: impl Into<Rotation>,
+        position2: Vec3,
+        rotation2: impl Into<Rotation>,
+        prediction_distance: f32,
+        manifolds: &mut Vec<ContactManifold>,
+        context: ContactManifoldContext<'_, '_, '_, Self::Context>,
+    ) {
+        let poses = beside([position1, position2], [rotation1.into(), rotation2.into()]);
+        let (meeting, margin) = (Meeting::new([self, other], poses), prediction_distance);
+        if !meeting.has_parts() {
+            return meeting
+                .contacts(margin, |found| rewrite(&meeting, found, position1, manifolds));
+        }
+        let old = warmth(manifolds);
+        context.0.with((context.entity1, context.entity2), |state| {
+            meeting.update(state, margin, |found| rewrite(&meeting, found, position1, manifolds));
+        });
+        if context.1.match_contacts && manifolds.len() > MATCHED {
+            warm(manifolds, &old);
+        }
+    }
+}
+
+/// Avian itself matches the points of pairs with at most this number of manifolds.
+const MATCHED: usize = 4;
+
+/// The feature ids of a point, and its normal and tangential impulse for warm starting.
+type Warmth = ([PackedFeatureId; 2], f32, Vec2);
+
+/// The ids and impulses of the points of a pair with at least [`MATCHED`] manifolds, which may exceed that number after
+/// the update; empty otherwise.
+fn warmth(manifolds: &[ContactManifold]) -> Vec<Warmth> {
+    let many = if manifolds.len() >= MATCHED { manifolds } else { &[] };
+    let points = many.iter().flat_map(|manifold| &manifold.points);
+    let of = |point: &ContactPoint| {
+        let name = [point.feature_id1, point.feature_id2];
+        (name, point.warm_start_normal_impulse, point.warm_start_tangent_impulse)
+    };
+    points.map(of).collect()
+}
+
+/// Copies the impulses of old points to new points with equal feature ids.
+fn warm(manifolds: &mut [ContactManifold], old: &[Warmth]) {
+    for point in manifolds.iter_mut().flat_map(|manifold| &mut manifold.points) {
+        let name = [point.feature_id1, point.feature_id2];
+        if let Some((_, normal, tangent)) = old.iter().find(|old| old.0 == name) {
+            (point.warm_start_normal_impulse, point.warm_start_tangent_impulse) =
+                (*normal, *tangent);
+        }
+    }
+}
+
+/// Writes the contacts of a pair over those of the last step.
+fn rewrite(
+    meeting: &Meeting<'_, 3>,
+    found: &[&Found<f32>],
+    position1: Vec3,
+    manifolds: &mut Vec<ContactManifold>,
+) {
+    manifolds.resize_with(found.len(), || ContactManifold::new([], Vec3::ZERO));
+    for (manifold, found) in manifolds.iter_mut().zip(found) {
+        manifold.normal = Meeting::normal(found).unwrap_or_default();
+        manifold.points.clear();
+        manifold.points.extend(meeting.touches(found).map(|touch| point(&touch, position1)));
+    }
+}
+
+fn point(touch: &Touch<3>, position1: Vec3) -> ContactPoint {
+    let ([anchor1, anchor2], [name1, name2]) = (touch.anchors, touch.name);
+    let point = ContactPoint::new(anchor1, anchor2, position1 + anchor1, touch.penetration);
+    point.with_feature_ids(name1.into(), name2.into())
+}
+
+impl ScalableCollider for Collider {
+    fn scale(&self) -> Vec3 {
+        self.scale()
+    }
+
+    fn set_scale(&mut self, scale: Vec3, detail: u32) {
+        self.rescale(scale, detail);
+    }
+}
+
+fn principal_frame(found: &MassProperties<f32>) -> Quat {
+    let q = found.principal_frame().coords;
+    Quat::from_xyzw(q.x, q.y, q.z, q.w)
+}
+
+impl ComputeMassProperties3d for Collider {
+    fn mass(&self, density: f32) -> f32 {
+        self.weighed(density).mass()
+    }
+
+    fn unit_principal_angular_inertia(&self) -> Vec3 {
+        f32::vec(self.weighed_as_one().principal_moments())
+    }
+
+    fn local_inertial_frame(&self) -> Quat {
+        principal_frame(&self.weighed(1.0))
+    }
+
+    fn center_of_mass(&self) -> Vec3 {
+        f32::vec(&self.weighed(1.0).center_of_mass().coords)
+    }
+
+    fn mass_properties(&self, density: f32) -> MassProperties3d {
+        let found = self.weighed(density);
+        MassProperties3d {
+            mass: found.mass(),
+            principal_angular_inertia: f32::vec(found.principal_moments()),
+            local_inertial_frame: principal_frame(&found),
+            center_of_mass: f32::vec(&found.center_of_mass().coords),
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Converts impinge's contacts to numbers that both of Avian's crates take.
+
+use core::hash::{Hash, Hasher};
+
+use bevy_impinge::Glam;
+use impinge::math::{Point, Space, Vector};
+use impinge::narrow_phase::{
+    ContactManifoldGenerator, ContactPrediction, DefaultContactDispatcher,
+};
+use impinge::query::{Contact, ContactId, ContactManifold, TrackedContact};
+use impinge::shape::{FeatureId, Shape};
+
+use crate::Collider;
+use crate::collider::{Isometry, Vec_};
+use crate::pairs::PairState;
+use crate::scaling::Dimension;
+
+/// Two placed colliders. The frame has the world's axes and its origin at the first collider's position, so contacts
+/// far from the world's origin lose no digits.
+pub(crate) struct Meeting<'a, const D: usize>
+where
+    f32: Dimension<D>,
+{
+    /// `None` if either is in error.
+    shapes: Option<[&'a dyn Shape<f32, D>; 2]>,
+    /// Both rotations, and the position of the second relative to the first.
+    poses: [Isometry<D>; 2],
+    has_parts: bool,
+}
+
+/// A point of contact as Avian has it.
+pub(crate) struct Touch<const D: usize>
+where
+    f32: Dimension<D>,
+{
+    /// The midpoint between the two surfaces, relative to the origin of each collider.
+    pub(crate) anchors: [Vec_<D>; 2],
+    /// Positive if they overlap.
+    pub(crate) penetration: f32,
+    /// Avian's feature ids, by which it finds a point of the last step; neither is zero.
+    pub(crate) name: [u32; 2],
+}
+
+impl<'a, const D: usize> Meeting<'a, D>
+where
+    f32: Dimension<D>,
+{
+    pub(crate) fn new(colliders: [&'a Collider<D>; 2], poses: [Isometry<D>; 2]) -> Self {
+        let shapes = match colliders.map(Collider::shape_scaled) {
+            [Ok(shape1), Ok(shape2)] => Some([&**shape1, &**shape2]),
+            _ => None,
+        };
+        let is_composite = |shape: &&dyn Shape<f32, D>| shape.geometry().as_composite().is_some();
+        let has_parts = shapes.is_some_and(|shapes| shapes.iter().any(is_composite));
+        Self { shapes, poses, has_parts }
+    }
+
+    /// Whether either shape is a composite, whose contacts move from part to part.
+    pub(crate) fn has_parts(&self) -> bool {
+        self.has_parts
+    }
+
+    /// Calls `read` with the manifolds of the pair up to the distance `prediction`, computed without memory; none is empty.
+    pub(crate) fn contacts(&self, prediction: f32, read: impl FnOnce(&[&ContactManifold<f32, D>])) {
+        let Some(shapes) = self.shapes else { return read(&[]) };
+        let found = f32::contacts(&self.poses, shapes, &ahead(prediction));
+        match &found[..] {
+            // Two convex shapes have one at most.
+            [one] => read(&[one]),
+            found => read(&found.iter().collect::<Vec<_>>()),
+        }
+    }
+
+    /// Updates `state` and calls `read` with the manifolds of the pair up to the distance `prediction`; none is empty.
+    pub(crate) fn update(
+        &self,
+        state: &mut PairState<D>,
+        prediction: f32,
+        read: impl FnOnce(&[&ContactManifold<f32, D>]),
+    ) {
+        let Some([shape1, shape2]) = self.shapes else { return read(&[]) };
+        let ([pose1, pose2], prediction) = (&self.poses, ahead(prediction));
+        let dispatcher = DefaultContactDispatcher::<D>::new();
+        let PairState { generator, ids } = state;
+        generator.update(&dispatcher, pose1, shape1, pose2, shape2, &prediction, ids);
+        let mut manifolds = Vec::new();
+        if generator.num_contacts() > 0 {
+            generator.contacts(&mut manifolds);
+        }
+        read(&manifolds);
+    }
+
+    /// The normal of a manifold, from the first collider to the second.
+    pub(crate) fn normal(manifold: &ContactManifold<f32, D>) -> Option<Vec_<D>> {
+        manifold.contacts().first().map(|tracked| f32::vec(&tracked.contact.normal))
+    }
+
+    /// The points of a manifold.
+    pub(crate) fn touches(
+        &self,
+        manifold: &ContactManifold<f32, D>,
+    ) -> impl Iterator<Item = Touch<D>> {
+        let between: Vector<f32, D> = f32::translation(&self.poses[1]);
+        let contacts = manifold.contacts();
+        contacts.iter().enumerate().map(move |(index, tracked)| {
+            let name =
+                if self.has_parts { own_name(tracked.id) } else { feature_names(contacts, index) };
+            touch(&tracked.contact, &between, name)
+        })
+    }
+}
+
+/// The prediction for a margin; a negative or NaN margin finds touching shapes only.
+fn ahead(prediction: f32) -> ContactPrediction<f32> {
+    ContactPrediction::new(prediction.max(0.0), 0.0, 0.0)
+}
+
+/// `between` is the way from the first origin to the second.
+fn touch<const D: usize>(
+    contact: &Contact<f32, D>,
+    between: &Vector<f32, D>,
+    name: [u32; 2],
+) -> Touch<D>
+where
+    f32: Dimension<D>,
+{
+    let middle: Point<f32, D> = impinge::math::na::center(&contact.world1, &contact.world2);
+    let anchors = [middle.coords, middle.coords - between].map(|anchor| f32::vec(&anchor));
+    Touch { anchors, penetration: contact.depth, name }
+}
+
+/// Encodes the features of two convex shapes as Avian does: the kind in the two upper bits. The four bits below count
+/// points with equal features, such as the points of a round cap.
+fn feature_names<const D: usize>(contacts: &[TrackedContact<f32, D>], index: usize) -> [u32; 2] {
+    let features = |tracked: &TrackedContact<f32, D>| {
+        [tracked.kinematic.feature1(), tracked.kinematic.feature2()]
+    };
+    let own = features(&contacts[index]);
+    let before = contacts[..index].iter().filter(|other| features(other) == own).count();
+    let code =
+        |kind: u32, number: u32| kind << 30 | (before as u32 & 0xF) << 26 | number & 0x3FF_FFFF;
+    own.map(|feature| match feature {
+        FeatureId::Vertex(number) => code(1, number),
+        FeatureId::Edge(number) => code(2, number),
+        FeatureId::Face(number) => code(3, number),
+    })
+}
+
+/// Encodes a contact id as two feature ids. Avian matches two points if both of their ids agree, in either order, so
+/// both ids are bits of one hash.
+fn own_name(id: ContactId) -> [u32; 2] {
+    let mut hasher = Fnv(0xCBF2_9CE4_8422_2325);
+    id.hash(&mut hasher);
+    let hash = hasher.finish();
+    // The two upper bits are Avian's kinds of features, here zero: none. Zero in all is `UNKNOWN`.
+    [hash, hash >> 32].map(|half| (half as u32 & 0x3FFF_FFFF).max(1))
+}
+
+/// The hash of Fowler, Noll and Vo, with a last step that brings the upper bits down.
+struct Fnv(u64);
+
+impl Hasher for Fnv {
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3);
+        }
+    }
+
+    fn finish(&self) -> u64 {
+        (self.0 ^ (self.0 >> 29)).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    }
+}

@@ -1,0 +1,6 @@
+//! 2D.
+
+mod bodies;
+mod scenes;
+mod shapes;
+mod surfaces;

@@ -1,0 +1,8 @@
+//! 3D.
+
+mod bodies;
+mod mass;
+mod queries;
+mod scenes;
+mod shapes;
+mod surfaces;
