@@ -3,6 +3,7 @@
 
 use impinge::math::{Isometry2, Isometry3, Point, Real, Vector};
 use impinge::narrow_phase::{ContactPrediction, contact_manifolds};
+use impinge::query::ContactManifold;
 use impinge::shape::{
     Ball, Capsule, CompositeShape, Compound, ConvexHull, Cuboid, Cylinder, EdgeNeighbor,
     HeightField, MeshError, Shape, ShapeHandle, TriMesh, Triangle,
@@ -100,7 +101,7 @@ fn normals<N: Real>(
 ) -> Vec<Vector<N, 3>> {
     let prediction = ContactPrediction::new(N::lit(0.01), N::ZERO, N::ZERO);
     let found = contact_manifolds(at, shape, pose, solid, &prediction, None);
-    let contacts = found.iter().flat_map(|manifold| manifold.contacts());
+    let contacts = found.iter().flat_map(ContactManifold::contacts);
     contacts.map(|tracked| *tracked.contact.normal).collect()
 }
 
@@ -205,7 +206,7 @@ fn line_bumps<N: Real>(border: usize) -> usize {
                 let found = contact_manifolds(&at, &tile, &pose, &**solid, &prediction, None);
                 count += found.len();
                 let is_up = |normal: &Vector<N, 2>| normal.y >= N::ONE - l(1e-5);
-                let contacts = found.iter().flat_map(|manifold| manifold.contacts());
+                let contacts = found.iter().flat_map(ContactManifold::contacts);
                 bumps += contacts.filter(|tracked| !is_up(&tracked.contact.normal)).count();
             }
             assert!(count > 0, "step {step}");
