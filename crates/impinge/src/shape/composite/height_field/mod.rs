@@ -13,6 +13,7 @@
 //! ```
 
 mod entries;
+mod ghosts;
 mod grid;
 mod marks;
 mod pyramid;

@@ -53,41 +53,6 @@ impl<N: Real> HeightField<N, 2> {
         self
     }
 
-    /// Makes exactly the cells ghosts for which `is_ghost(cell)` is true; see [`Self::set_ghost`].
-    #[must_use]
-    pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize) -> bool) -> Self {
-        let cells = self.num_cells();
-        for cell in 0..cells {
-            self.marks.set_ghost(cell, is_ghost(cell), cells);
-        }
-        self.rebuild();
-        self
-    }
-
-    /// Makes the first and the last cell ghosts: the outermost heights are samples of the
-    /// neighbouring fields, so that nothing bumps into the ends of this one.
-    ///
-    /// ```
-    /// use impinge::dim2::math::{Isometry, Vector};
-    /// use impinge::dim2::query::{self, ContactPrediction};
-    /// use impinge::dim2::shape::{Ball, HeightField};
-    ///
-    /// // A flat field from -1 to 1, with one more sample at each end.
-    /// let field = HeightField::<f32>::new(vec![0.0; 5], Vector::new(4.0, 1.0)).with_ghost_border();
-    /// assert_eq!(field.height_at(1.5), None, "a ghost");
-    /// // Beyond its end a ball touches the last point: as a part of one flat line, so straight up.
-    /// let (ball, at) = (Ball::new(0.5), Isometry::translation(1.0625, 0.48));
-    /// let found = query::contact_manifolds(
-    ///     &Isometry::identity(), &field, &at, &ball, &ContactPrediction::new(0.01, 0.0, 0.0), None);
-    /// let mut contacts = found.iter().flat_map(|manifold| manifold.contacts());
-    /// assert!(contacts.all(|tracked| tracked.contact.normal.y == 1.0));
-    /// ```
-    #[must_use]
-    pub fn with_ghost_border(self) -> Self {
-        let last = self.num_cells() - 1;
-        self.with_ghosts(|cell| cell == 0 || cell == last)
-    }
-
     /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
     ///
     /// # Errors
@@ -133,15 +98,6 @@ impl<N: Real> HeightField<N, 2> {
     #[must_use]
     pub fn is_hole(&self, part: u32) -> bool {
         self.marks.is_hole(self.cell_of(part), 0)
-    }
-
-    /// Whether the part is a ghost; see [`Self::set_ghost`].
-    ///
-    /// # Panics
-    /// If there is no such part.
-    #[must_use]
-    pub fn is_ghost(&self, part: u32) -> bool {
-        self.marks.is_ghost(self.cell_of(part))
     }
 
     /// The scaled height of the line at `x`; `None` beside the field, at a hole and at a ghost.
@@ -204,30 +160,19 @@ impl<N: Real> HeightField<N, 2> {
         self.refresh(cell);
     }
 
-    /// Makes a cell a ghost, or restores its segment: nothing touches a ghost, and no search finds
-    /// it, but the seams beside it are those of a line that goes on. A hole stays a hole.
-    ///
-    /// # Panics
-    /// If there is no such cell.
-    pub fn set_ghost(&mut self, cell: usize, is_ghost: bool) {
-        assert!(cell < self.num_cells(), "there is no cell {cell}");
-        self.marks.set_ghost(cell, is_ghost, self.num_cells());
-        self.refresh(cell);
-    }
-
-    fn refresh(&mut self, cell: usize) {
+    pub(super) fn refresh(&mut self, cell: usize) {
         let mut pyramid = self.pyramid.take();
         pyramid.refresh(0, cell, |row, column| self.cell_span(row, column));
         (self.pyramid, self.revision) = (pyramid, Revision::new());
     }
 
-    fn rebuild(&mut self) {
+    pub(super) fn rebuild(&mut self) {
         self.pyramid = entries::pyramid_over(self);
         self.revision = Revision::new();
     }
 
     #[track_caller]
-    fn cell_of(&self, part: u32) -> usize {
+    pub(super) fn cell_of(&self, part: u32) -> usize {
         assert!((part as usize) < self.num_cells(), "there is no part {part}");
         part as usize
     }

@@ -74,40 +74,6 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes exactly the cells ghosts for which `is_ghost(row, column)` is true; see
-    /// [`Self::set_ghost`].
-    #[must_use]
-    pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize, usize) -> bool) -> Self {
-        let [rows, columns] = self.pyramid.cells();
-        for cell in 0..rows * columns {
-            let is_ghost = is_ghost(cell / columns, cell % columns);
-            self.marks.set_ghost(cell, is_ghost, rows * columns);
-        }
-        self.rebuild();
-        self
-    }
-
-    /// Makes the outermost ring of cells ghosts: the outermost heights are samples of the
-    /// neighbouring fields, so that nothing bumps into the seam between two tiles of a terrain.
-    ///
-    /// ```
-    /// use impinge::dim3::math::Vector;
-    /// use impinge::dim3::shape::HeightField;
-    ///
-    /// // A tile of 4 x 4 cells, 8 metres wide, and a ring of cells of its neighbours.
-    /// let tile = HeightField::<f32>::new(7, 7, vec![0.0; 49], Vector::new(12.0, 1.0, 12.0));
-    /// let tile = tile.with_ghost_border();
-    /// assert!(tile.height_at(3.9, 0.0).is_some() && tile.height_at(4.1, 0.0).is_none());
-    /// assert!(tile.is_ghost(0) && !tile.is_hole(0));
-    /// ```
-    #[must_use]
-    pub fn with_ghost_border(self) -> Self {
-        let [last_row, last_column] = self.pyramid.cells().map(|count| count - 1);
-        self.with_ghosts(|row, column| {
-            row == 0 || row == last_row || column == 0 || column == last_column
-        })
-    }
-
     /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
     ///
     /// # Errors
@@ -197,15 +163,6 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.is_hole(cell, k)
     }
 
-    /// Whether the part belongs to a ghost; see [`Self::set_ghost`].
-    ///
-    /// # Panics
-    /// If there is no such part.
-    #[must_use]
-    pub fn is_ghost(&self, part: u32) -> bool {
-        self.marks.is_ghost(self.locate(part).1)
-    }
-
     /// The scaled height of the surface at (x, z); `None` beside the field, at a hole and at a
     /// ghost.
     #[must_use]
@@ -282,17 +239,6 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Makes a cell a ghost, or restores its triangles: nothing touches a ghost, and no search
-    /// finds it, but the seams beside it are those of a surface that goes on. Holes in it stay.
-    ///
-    /// # Panics
-    /// If there is no such cell.
-    pub fn set_ghost(&mut self, row: usize, column: usize, is_ghost: bool) {
-        let (cell, cells) = (self.cell(row, column), self.num_cells());
-        self.marks.set_ghost(cell, is_ghost, cells);
-        self.refresh(row, column);
-    }
-
     /// Changes the diagonal of a cell; its parts keep their numbers and their holes.
     ///
     /// # Panics
@@ -303,13 +249,13 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    fn refresh(&mut self, row: usize, column: usize) {
+    pub(super) fn refresh(&mut self, row: usize, column: usize) {
         let mut pyramid = self.pyramid.take();
         pyramid.refresh(row, column, |row, column| self.cell_span(row, column));
         (self.pyramid, self.revision) = (pyramid, Revision::new());
     }
 
-    fn rebuild(&mut self) {
+    pub(super) fn rebuild(&mut self) {
         self.pyramid = entries::pyramid_over(self);
         self.revision = Revision::new();
     }
