@@ -1,7 +1,6 @@
 //! Requirements of recordings on a scalar and a dimension.
 
-use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
-use impinge::math::{Isometry2, Isometry3, Point, Real, Space};
+use impinge::math::{Point, Real, Space};
 use impinge::shape::{
     Cone, ConvexHull, ConvexPolygon, Cylinder, Diagonal, HeightField, MeshError, Polyline, Shape,
     ShapeHandle, Tetrahedron, TriMesh,
@@ -14,26 +13,14 @@ use crate::shape_data::{Field, ShapeData};
 pub trait Scalar: Real {
     /// The number of bytes of a number.
     const BYTES: usize;
-
-    /// Returns the number of these bits: the inverse of [`Real::bits`].
-    fn of_bits(bits: u64) -> Self;
 }
 
 impl Scalar for f32 {
     const BYTES: usize = 4;
-
-    #[expect(clippy::cast_possible_truncation, reason = "the upper half of the bits is zero")]
-    fn of_bits(bits: u64) -> Self {
-        Self::from_bits(bits as u32)
-    }
 }
 
 impl Scalar for f64 {
     const BYTES: usize = 8;
-
-    fn of_bits(bits: u64) -> Self {
-        Self::from_bits(bits)
-    }
 }
 
 /// A scalar and a dimension whose worlds can be recorded: every [`Scalar`] with `D` = 2 and `D` = 3.
@@ -42,12 +29,18 @@ pub trait Recordable<const D: usize>: Space<D> + Scalar {
     const ISOMETRY_NUMBERS: usize;
 
     /// Returns the scalars of an isometry: the translation, then cosine and sine of the rotation in 2D, the
-    /// components i, j, k, w of its quaternion in 3D.
-    fn isometry_numbers(isometry: &Self::Isometry) -> Vec<Self>;
+    /// components i, j, k, w of its quaternion in 3D. They are unchanged: normalizing them could change bits.
+    fn isometry_numbers(isometry: &Self::Isometry) -> Vec<Self> {
+        Self::numbers(isometry)[..Self::ISOMETRY_NUMBERS].to_vec()
+    }
 
     /// Returns the isometry of these scalars, unchanged: the rotation is not normalized. `None` if their number
     /// is wrong.
-    fn isometry_of(numbers: &[Self]) -> Option<Self::Isometry>;
+    fn isometry_of(numbers: &[Self]) -> Option<Self::Isometry> {
+        let mut padded = [Self::ZERO; 7];
+        padded[..Self::ISOMETRY_NUMBERS].copy_from_slice(numbers.get(..Self::ISOMETRY_NUMBERS)?);
+        (numbers.len() == Self::ISOMETRY_NUMBERS).then(|| Self::of_numbers(&padded))
+    }
 
     /// Returns shapes that exist in one dimension only as data; `None` for others.
     fn own_data(shape: &dyn Shape<Self, D>) -> Option<ShapeData<Self, D>>;
@@ -83,18 +76,6 @@ const FOREIGN: Problem = Problem::BadValue { what: "the kind of a shape" };
 impl<N: Scalar> Recordable<2> for N {
     const ISOMETRY_NUMBERS: usize = 4;
 
-    /// The complex number is unit up to rounding and is written unchanged: normalizing it could change bits.
-    fn isometry_numbers(isometry: &Isometry2<N>) -> Vec<N> {
-        let (translation, turn) = (&isometry.translation.vector, isometry.rotation.as_ref());
-        vec![translation.x, translation.y, turn.re, turn.im]
-    }
-
-    fn isometry_of(numbers: &[N]) -> Option<Isometry2<N>> {
-        let &[x, y, cosine, sine] = numbers else { return None };
-        let turn = UnitComplex::from_cos_sin_unchecked(cosine, sine);
-        Some(Isometry2::from_parts(Translation2::new(x, y), turn))
-    }
-
     fn own_data(shape: &dyn Shape<N, 2>) -> Option<ShapeData<N, 2>> {
         if let Some(polygon) = shape.as_shape::<ConvexPolygon<N>>() {
             return Some(ShapeData::Outline(polygon.vertices().to_vec()));
@@ -129,17 +110,6 @@ impl<N: Scalar> Recordable<2> for N {
 
 impl<N: Scalar> Recordable<3> for N {
     const ISOMETRY_NUMBERS: usize = 7;
-
-    fn isometry_numbers(isometry: &Isometry3<N>) -> Vec<N> {
-        let (translation, turn) = (&isometry.translation.vector, &isometry.rotation.coords);
-        [translation.as_slice(), turn.as_slice()].concat()
-    }
-
-    fn isometry_of(numbers: &[N]) -> Option<Isometry3<N>> {
-        let &[x, y, z, i, j, k, w] = numbers else { return None };
-        let turn = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
-        Some(Isometry3::from_parts(Translation3::new(x, y, z), turn))
-    }
 
     fn own_data(shape: &dyn Shape<N, 3>) -> Option<ShapeData<N, 3>> {
         if let Some(hull) = shape.as_shape::<ConvexHull<N>>() {

@@ -34,6 +34,12 @@ impl Generation {
         Self((count as u32) << 16)
     }
 
+    /// Returns the generation of the same table after `count` objects.
+    #[cfg(feature = "serde")]
+    pub(crate) const fn with_count(self, count: u16) -> Self {
+        Self((count as u32) << 16 | self.0 & (ONE - 1))
+    }
+
     /// Returns the number of objects that had the index before.
     pub(crate) const fn count(self) -> u16 {
         (self.0 >> 16) as u16

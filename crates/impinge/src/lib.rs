@@ -62,7 +62,7 @@
 //! * `f64`: the scalar `f64` besides `f32`.
 //! * `parallel`: updates and batches on several threads, with the same bits.
 //! * `debug_render`: drawing worlds, shapes and queries with your own back end.
-//! * `serde`: `Serialize` and `Deserialize` for plain values.
+//! * `serde`: `Serialize` and `Deserialize` for plain values and whole worlds.
 //! * `mint`: conversions to and from other vector libraries, through nalgebra.
 //! * `glam`: conversions to and from glam 0.33 for points, vectors, rotations and isometries, by
 //!   `into`.

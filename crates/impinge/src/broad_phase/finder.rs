@@ -16,7 +16,8 @@ use crate::pairs::PairTable;
 
 /// The container of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Home {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum Home {
     /// None: there is no such object, or no update has applied its box yet.
     Nowhere,
     /// The tree of moving objects.

@@ -58,13 +58,13 @@ impl ProxyHandle {
 #[derive(Debug)]
 pub(super) struct Handles {
     /// Generation of the first object at each index.
-    first: Generation,
+    pub(super) first: Generation,
     /// By index: the generation of the present or the next object.
-    generations: Vec<Generation>,
+    pub(super) generations: Vec<Generation>,
     /// By index: there is an object.
-    is_present: Vec<bool>,
+    pub(super) is_present: Vec<bool>,
     /// Indices without an object; the last one freed is used first.
-    free: Vec<u32>,
+    pub(super) free: Vec<u32>,
 }
 
 clone_fields!([] Handles { first, generations, is_present, free });

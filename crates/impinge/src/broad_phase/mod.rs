@@ -24,6 +24,8 @@ mod interface;
 mod proposal;
 mod rest;
 mod rewind;
+#[cfg(feature = "serde")]
+pub(crate) mod saved;
 mod search;
 mod sieve;
 

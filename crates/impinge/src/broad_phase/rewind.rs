@@ -97,15 +97,20 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         while let Some(note) = journal.undo(number) {
             self.bring_back(&note);
         }
-        for tree in [&mut self.moving, &mut self.still] {
-            tree.refit();
-            tree.commit_boxes();
-        }
+        self.settle_trees();
         self.pairs.rewind(number, |_| ());
         if let Some(head) = journal.head() {
             self.wait_again(head);
         }
         self.journal = journal;
+    }
+
+    /// Makes the boxes in the trees those of the last update.
+    pub(super) fn settle_trees(&mut self) {
+        for tree in [&mut self.moving, &mut self.still] {
+            tree.refit();
+            tree.commit_boxes();
+        }
     }
 
     fn wait_again(&mut self, head: &FinderHead<N, D>) {

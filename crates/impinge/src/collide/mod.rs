@@ -19,6 +19,8 @@ pub(crate) mod packet;
 pub(crate) mod pair;
 pub(crate) mod parts;
 mod raw_manifold;
+#[cfg(feature = "serde")]
+pub(crate) mod saved;
 pub(crate) mod separation;
 mod size;
 

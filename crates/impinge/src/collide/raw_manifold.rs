@@ -111,6 +111,7 @@ impl<N: Real, const D: usize> Clone for RawManifold<N, D> {
 /// It outlives the contacts: a contact that ended and comes back gets a new id. A pair with several
 /// manifolds passes one counter through all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PairIds {
     given: u32,
 }

@@ -165,6 +165,8 @@ pub mod world {
         CollisionObjectHandle, ContactQuery, GeometricQueryType, ProximityQuery,
     };
     pub use crate::world::{CollisionGroups, GroupError, NarrowPhase, WorldError, WorldMark};
+    #[cfg(feature = "serde")]
+    pub use crate::world::{RestoreError, SaveError};
 
     /// A world in 3D.
     pub type CollisionWorld<N, T> = crate::world::CollisionWorld<N, 3, T>;
@@ -176,6 +178,12 @@ pub mod world {
     pub type QueryFilter<'a, N, T> = crate::world::QueryFilter<'a, N, 3, T>;
     /// An object near the point or solid of a query.
     pub type NearObject<'a, N, T> = crate::world::NearObject<'a, N, 3, T>;
+    /// Shapes and filters of the user's own that saved worlds name.
+    #[cfg(feature = "serde")]
+    pub type Registry<N, T> = crate::world::Registry<N, 3, T>;
+    /// A world as data.
+    #[cfg(feature = "serde")]
+    pub type SavedWorld<N, T> = crate::world::SavedWorld<N, 3, T>;
 }
 
 /// Queries about one solid or two.
@@ -228,6 +236,8 @@ pub mod query {
 
 /// The solids.
 pub mod shape {
+    #[cfg(feature = "serde")]
+    pub use crate::shape::SavedShape;
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
         EdgeNeighbor, FeatureId, MAX_NESTING, MeshError, PartPath, PartSearch, ScaleError, Shape,

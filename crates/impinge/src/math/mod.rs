@@ -19,6 +19,8 @@ pub(crate) mod filled;
 pub(crate) mod halves;
 pub(crate) mod lanes;
 pub(crate) mod lone;
+#[cfg(feature = "serde")]
+pub(crate) mod numbers;
 pub(crate) mod ones;
 pub(crate) mod order;
 pub(crate) mod outward;

@@ -57,6 +57,8 @@ pub trait Real: RealField + Scalar + Copy + Default + Compiled<2> + Compiled<3> 
     }
     /// The bits, widened to 64; equal for equal bits.
     fn bits(self) -> u64;
+    /// The number of these bits, the inverse of [`Self::bits`]; of more than the scalar has, the lowest count.
+    fn of_bits(bits: u64) -> Self;
     /// The largest power of two that is not above the magnitude; dividing by it is exact.
     ///
     /// The smallest normal number for zero and subnormal numbers, 1 for infinity and NaN.
@@ -92,6 +94,12 @@ impl Real for f32 {
     #[inline]
     fn bits(self) -> u64 {
         u64::from(self.to_bits())
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "the upper half does not count")]
+    #[inline]
+    fn of_bits(bits: u64) -> Self {
+        Self::from_bits(bits as u32)
     }
 
     #[inline]

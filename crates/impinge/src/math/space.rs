@@ -1,6 +1,6 @@
 //! The operations that differ between 2D and 3D, behind one bound.
 
-use super::na::{Rotation2, Rotation3, UnitComplex, UnitQuaternion};
+use super::na::{Quaternion, Rotation2, Rotation3, UnitComplex, UnitQuaternion};
 use super::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
 use crate::tables::{ByDimension, Compiled, Here};
 use core::fmt::Debug;
@@ -37,6 +37,10 @@ pub trait Space<const D: usize>: Real + Compiled<D> {
     /// The numbers of an isometry in a row, padded with zeros.
     #[doc(hidden)]
     fn numbers(isometry: &Self::Isometry) -> [Self; 7];
+
+    /// The isometry of [`Self::numbers`], as they are: the rotation is not normalised.
+    #[doc(hidden)]
+    fn of_numbers(numbers: &[Self; 7]) -> Self::Isometry;
 
     /// Converts a pose to an isometry, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
@@ -89,6 +93,11 @@ impl<N: Real> Space<2> for N {
         [t.x, t.y, r.re, r.im, N::ZERO, N::ZERO, N::ZERO]
     }
 
+    fn of_numbers(&[x, y, re, im, ..]: &[N; 7]) -> Isometry2<N> {
+        let rotation = UnitComplex::from_cos_sin_unchecked(re, im);
+        Isometry2::from_parts(Vector::<N, 2>::new(x, y).into(), rotation)
+    }
+
     fn isometry(pose: &Pose<N, 2>) -> Isometry2<N> {
         let rotation = Rotation2::from_matrix_unchecked(pose.rotation);
         let rotation = UnitComplex::from_rotation_matrix(&rotation);
@@ -132,6 +141,11 @@ impl<N: Real> Space<3> for N {
     fn numbers(isometry: &Isometry3<N>) -> [N; 7] {
         let (t, r) = (&isometry.translation.vector, &isometry.rotation.coords);
         [t.x, t.y, t.z, r.x, r.y, r.z, r.w]
+    }
+
+    fn of_numbers(&[x, y, z, i, j, k, w]: &[N; 7]) -> Isometry3<N> {
+        let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
+        Isometry3::from_parts(Vector::<N, 3>::new(x, y, z).into(), rotation)
     }
 
     fn isometry(pose: &Pose<N, 3>) -> Isometry3<N> {

@@ -104,4 +104,8 @@ impl<N: Space<D>, const D: usize> ProximityDispatcher<N, D> for DefaultProximity
     fn is_built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> bool {
         true
     }
+
+    fn is_built_in_for_all(&self) -> bool {
+        true
+    }
 }

@@ -14,6 +14,7 @@
 /// assert_ne!(ids.allocate(), ids.allocate());
 /// ```
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdAllocator {
     next: u64,
 }

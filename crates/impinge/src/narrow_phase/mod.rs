@@ -31,6 +31,8 @@ mod pair_batch;
 mod query_type;
 mod reuse;
 mod rewind;
+#[cfg(feature = "serde")]
+pub(crate) mod saved;
 mod state;
 mod stateless;
 mod substep;

@@ -54,14 +54,14 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
 #[derive(Clone, Debug)]
 pub(crate) struct Reference<N: Real, const D: usize> {
     /// Pose of the solid in whose frame contacts are stored, relative to the other solid.
-    pose21: Pose<N, D>,
+    pub(super) pose21: Pose<N, D>,
     /// Upper bound of the distance of the relevant points from the origin of that solid; infinite if the contacts
     /// cannot be reused.
-    reach: N,
+    pub(super) reach: N,
     /// Number of further updates for which the reference is neither compared nor set, because the pair is fast.
-    pause: u8,
+    pub(super) pause: u8,
     /// Distance of each contact, in order.
-    distances: SmallVec<[N; 4]>,
+    pub(super) distances: SmallVec<[N; 4]>,
 }
 
 /// A pair is fast if it has moved by more than `FAST` times the limit of reuse.

@@ -116,8 +116,8 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Defau
 #[repr(C)]
 pub(crate) struct InOrder<C> {
     /// The canonical order at the last update was the reverse of the pair's own order.
-    swapped: bool,
-    contacts: C,
+    pub(super) swapped: bool,
+    pub(super) contacts: C,
 }
 
 clone_fields!([C: Clone] InOrder<C> { swapped, contacts });

@@ -14,8 +14,8 @@ use crate::math::{Mapped, Pose, Real, Space};
 /// A pair, with shapes and poses at the time of its computation.
 #[derive(Clone, Debug)]
 pub(super) struct PairSolids<N: Real, const D: usize> {
-    key: PairKey,
-    solids: [ObjectSolid<N, D>; 2],
+    pub(super) key: PairKey,
+    pub(super) solids: [ObjectSolid<N, D>; 2],
 }
 
 /// The poses of the last update, while the rows of a pair hold other ones.

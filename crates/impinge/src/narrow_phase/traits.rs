@@ -139,6 +139,12 @@ pub trait ContactDispatcher<N: Space<D>, const D: usize>: Send + Sync {
     fn built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> Option<usize> {
         None
     }
+
+    /// [`Self::built_in`] of all shapes alike.
+    #[doc(hidden)]
+    fn built_in_for_all(&self) -> Option<usize> {
+        None
+    }
 }
 
 /// Proximity of one pair of solids, kept from update to update.
@@ -208,6 +214,12 @@ pub trait ProximityDispatcher<N: Space<D>, const D: usize>: Send + Sync {
     /// Returns `true` if the library's own algorithm serves the pair without a box.
     #[doc(hidden)]
     fn is_built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> bool {
+        false
+    }
+
+    /// [`Self::is_built_in`] of all shapes alike.
+    #[doc(hidden)]
+    fn is_built_in_for_all(&self) -> bool {
         false
     }
 }

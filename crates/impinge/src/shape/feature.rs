@@ -22,6 +22,7 @@ use crate::math::{Point, Real, Vector};
 /// assert_eq!(cube.feature_normal(hit.feature), hit.normal);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FeatureId {
     /// A corner.
     Vertex(u32),

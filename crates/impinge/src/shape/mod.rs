@@ -20,6 +20,8 @@ mod handle;
 mod mass;
 pub(crate) mod polytope;
 mod revision;
+#[cfg(feature = "serde")]
+pub(crate) mod saved;
 mod scale;
 mod side_or_vertex;
 pub(crate) mod solids;
@@ -51,6 +53,8 @@ pub use polytope::convex_hull::ConvexHull;
 pub use polytope::convex_polygon::ConvexPolygon;
 pub use polytope::{Polytope, PolytopeEdge, PolytopeFace};
 pub(crate) use revision::Revision;
+#[cfg(feature = "serde")]
+pub use saved::SavedShape;
 pub use scale::ScaleError;
 pub(crate) use side_or_vertex::SideOrVertex;
 pub use solids::ball::Ball;
@@ -140,6 +144,13 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     /// convex solid by its support points, and refuses a user's surface. `None` (the default)
     /// selects the method of the query.
     fn unit_mass_properties(&self) -> Option<MassProperties<N, D>> {
+        None
+    }
+
+    /// Returns the name of the type and the data of the shape for a saved world; see [`SavedShape`] for an example.
+    /// Not called for shapes of the library. `None` (the default) for a shape that cannot be saved.
+    #[cfg(feature = "serde")]
+    fn saved(&self) -> Option<SavedShape> {
         None
     }
 

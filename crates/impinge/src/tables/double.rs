@@ -38,6 +38,11 @@ impl Real for f64 {
     }
 
     #[inline]
+    fn of_bits(bits: u64) -> Self {
+        Self::from_bits(bits)
+    }
+
+    #[inline]
     fn power_of_two_below(self) -> Self {
         f64_power_of_two_below(self)
     }

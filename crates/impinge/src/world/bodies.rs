@@ -158,6 +158,18 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state & PREDICTED != 0
     }
 
+    /// Marks the object as fixed, as it was before it was saved.
+    #[cfg(feature = "serde")]
+    pub(super) const fn fix_again(&mut self) {
+        self.state |= FIXED;
+    }
+
+    /// Marks the pose of the object as predicted, as it was before it was saved.
+    #[cfg(feature = "serde")]
+    pub(super) const fn predict_again(&mut self) {
+        self.state |= PREDICTED;
+    }
+
     /// Returns the row of the object for the narrow phase.
     pub(crate) fn row(&self) -> ObjectRow<N, D> {
         ObjectRow {

@@ -22,7 +22,8 @@ const GONE: u32 = u32::MAX;
 
 /// Kinds of changes of an object since the last update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct BodyChanges {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct BodyChanges {
     /// Another object, shape or query type: the whole row of the table must be written.
     row: bool,
     /// The shape or query type of an object that may have pairs has changed.
@@ -357,6 +358,23 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
         if let Some(prediction) = prediction {
             self.predict(index, prediction);
+        }
+    }
+
+    /// Returns the changes of an object since the last update.
+    #[cfg(feature = "serde")]
+    pub(super) fn of_body(&self, body: &WorldBody<N, D>) -> Option<BodyChanges> {
+        body.place().map(|place| self.entries[place as usize].changes)
+    }
+
+    /// Restores the changes of an object since the last update.
+    #[cfg(feature = "serde")]
+    pub(super) fn note_again(&mut self, body: &mut WorldBody<N, D>, changes: BodyChanges) {
+        let (place, aabb) = (self.note(body), body.aabb());
+        let entry = &mut self.entries[place as usize];
+        entry.changes = changes;
+        if changes.volume {
+            entry.aabb = aabb;
         }
     }
 

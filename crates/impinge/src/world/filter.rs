@@ -101,6 +101,12 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         self.have_changed = false;
     }
 
+    /// Whether they are others than at the last update.
+    #[cfg(feature = "serde")]
+    pub(super) const fn note_change(&mut self, have_changed: bool) {
+        self.have_changed = have_changed;
+    }
+
     pub(super) const fn have_changed(&self) -> bool {
         self.have_changed
     }

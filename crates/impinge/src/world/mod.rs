@@ -34,6 +34,8 @@ mod pairs;
 mod queries;
 mod reasons;
 mod removed;
+#[cfg(feature = "serde")]
+mod saved;
 mod skin;
 mod step;
 mod substep;
@@ -52,3 +54,5 @@ pub use narrow_phase::{
 pub use object::CollisionObject;
 pub use objects::CollisionObjects;
 pub use queries::{NearObject, QueryFilter};
+#[cfg(feature = "serde")]
+pub use saved::{Registry, RestoreError, SaveError, SavedWorld};

@@ -66,6 +66,14 @@ pub(crate) struct Slot {
     pub(super) place: u32,
 }
 
+#[cfg(feature = "serde")]
+impl Slot {
+    /// A slot whose next object has this generation.
+    pub(super) const fn without_object(generation: Generation) -> Self {
+        Self { generation, place: NOWHERE }
+    }
+}
+
 /// Returns the handle of the object at an index, which must be in use.
 #[inline]
 pub(super) fn handle_at(slots: &[Slot], index: u32) -> CollisionObjectHandle {

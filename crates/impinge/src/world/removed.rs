@@ -11,7 +11,7 @@ use crate::narrow_phase::{CollisionObjectHandle, Events};
 ///
 /// Until an object is removed, nothing is stored and no event is read.
 pub(super) struct RemovedObjects<N: Space<D>, const D: usize, T> {
-    objects: BTreeMap<CollisionObjectHandle, CollisionObject<N, D, T>>,
+    pub(super) objects: BTreeMap<CollisionObjectHandle, CollisionObject<N, D, T>>,
     /// Handles named by the events that [`Self::note`] has read since the update.
     named: BTreeSet<CollisionObjectHandle>,
     /// Numbers of contact and proximity events already read: of the last update, and queued since.

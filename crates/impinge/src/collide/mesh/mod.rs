@@ -37,6 +37,8 @@ mod patch;
 mod patch_groups;
 mod patch_points;
 mod resolve;
+#[cfg(feature = "serde")]
+pub(crate) mod saved;
 mod scene;
 mod within;
 

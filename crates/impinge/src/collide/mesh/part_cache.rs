@@ -18,7 +18,8 @@ use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportM
 
 /// The margin around a box in which parts are cached for later updates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum CacheMargin {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) enum CacheMargin {
     /// Until it holds more parts than one packet, or another given number.
     #[default]
     Large,
@@ -72,6 +73,19 @@ pub(super) struct PartCache<N: Real, const D: usize> {
     half: Option<Vector<N, D>>,
     /// The margin of the next search; it never grows.
     margin: CacheMargin,
+}
+
+#[cfg(feature = "serde")]
+impl<N: Real, const D: usize> PartCache<N, D> {
+    /// The box whose parts are cached, and the margin of the next search.
+    pub(super) const fn room(&self) -> (Option<&Aabb<N, D>>, CacheMargin) {
+        (self.within.as_ref(), self.margin)
+    }
+
+    /// Sets the margin of the next search.
+    pub(super) const fn set_room(&mut self, margin: CacheMargin) {
+        self.margin = margin;
+    }
 }
 
 impl<N: Real, const D: usize> PartCache<N, D> {
@@ -134,11 +148,23 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
             within = with_margin(self.margin);
             self.search(composite, &within);
         }
+        self.keep_found(composite, within);
+        self.keep_seams(&before);
+    }
+
+    /// Caches the parts that the search in a box found.
+    fn keep_found(&mut self, composite: &dyn CompositeShape<N, D>, within: Aabb<N, D>) {
         self.tiles.clear();
         self.parts.sort_unstable();
         self.within = Some(within);
         self.fill_tiles(composite);
-        self.keep_seams(&before);
+    }
+
+    /// Restores the cache of a saved world: the parts in its box.
+    #[cfg(feature = "serde")]
+    pub(super) fn fill_again(&mut self, composite: &dyn CompositeShape<N, D>, within: Aabb<N, D>) {
+        self.search(composite, &within);
+        self.keep_found(composite, within);
     }
 
     /// Keeps the seams of parts that were cached before, and drops the rest.

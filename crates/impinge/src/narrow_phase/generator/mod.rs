@@ -427,4 +427,8 @@ impl<N: Space<D>, const D: usize> ContactDispatcher<N, D> for DefaultContactDisp
     fn built_in(&self, _: &dyn Shape<N, D>, _: &dyn Shape<N, D>) -> Option<usize> {
         Some(self.max_points)
     }
+
+    fn built_in_for_all(&self) -> Option<usize> {
+        Some(self.max_points)
+    }
 }

@@ -28,8 +28,15 @@ impl Joints {
         vertices: &[Point<N, D>],
         parts: &[[u32; K]],
     ) -> Self {
-        let of_vertex = welded(vertices);
-        let mut starts = vec![0; vertices.len() + 1];
+        Self::of_vertices(welded(vertices), parts)
+    }
+
+    /// The joints of parts with `K` vertices each, given the joint of each vertex: its first vertex.
+    pub(in crate::shape) fn of_vertices<const K: usize>(
+        of_vertex: Vec<u32>,
+        parts: &[[u32; K]],
+    ) -> Self {
+        let mut starts = vec![0; of_vertex.len() + 1];
         let each = |visit: &mut dyn FnMut(u32, u32)| {
             for (part, corners) in (0..).zip(parts) {
                 let joints = corners.mapped(|vertex| of_vertex[vertex as usize]);
@@ -59,6 +66,12 @@ impl Joints {
     #[inline]
     pub(in crate::shape) fn of(&self, vertex: u32) -> u32 {
         self.of_vertex[vertex as usize]
+    }
+
+    /// The joint of each vertex.
+    #[cfg(feature = "serde")]
+    pub(in crate::shape) fn of_vertices_in_order(&self) -> &[u32] {
+        &self.of_vertex
     }
 
     /// The parts that meet at a joint, ascending.

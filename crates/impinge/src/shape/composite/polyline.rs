@@ -59,7 +59,7 @@ pub struct Polyline<N: Real, const D: usize> {
     /// in 3D.
     pub(in crate::shape) front: Option<Front<N, D>>,
     /// Whether `solid` was called; valid while [`Self::is_cycle`].
-    is_solid: bool,
+    pub(in crate::shape) is_solid: bool,
     pub(in crate::shape) keeps_internal_edges: bool,
     /// The first segment of the piece of each segment.
     pieces: OnceLock<Vec<u32>>,
@@ -68,7 +68,7 @@ pub struct Polyline<N: Real, const D: usize> {
 }
 
 /// Maps the direction of a segment to the normal on its front.
-pub(in crate::shape) type Front<N, const D: usize> = fn(&Vector<N, D>) -> Vector<N, D>;
+pub(crate) type Front<N, const D: usize> = fn(&Vector<N, D>) -> Vector<N, D>;
 
 impl<N: Space<D>, const D: usize> Polyline<N, D> {
     /// The line through the vertices in order.
@@ -193,6 +193,16 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         let is_whole = self.joints.are_together(vertices);
         self.is_cycle = is_whole && is_cycle(vertices.len(), &self.segments, &self.joints);
         Ok(())
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<N: Real, const D: usize> Polyline<N, D> {
+    /// The joints are these: vertices were moved since they were together.
+    pub(in crate::shape) fn move_joints(&mut self, joints: Joints) {
+        let is_whole = joints.are_together(&self.vertices);
+        self.is_cycle = is_whole && is_cycle(self.vertices.len(), &self.segments, &joints);
+        (self.joints, self.is_moved) = (joints, true);
     }
 }
 

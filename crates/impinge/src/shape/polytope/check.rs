@@ -2,6 +2,8 @@
 
 use crate::math::{Real, cross2};
 use crate::shape::Polytope;
+#[cfg(feature = "serde")]
+use crate::shape::PolytopeFace;
 
 /// The largest height of a vertex above a face, in units of `N::EPSILON · reach`: the tolerances of
 /// the hull plus the rounding error of the plane.
@@ -41,6 +43,28 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
         let ends = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() } * 2;
         if self.fans.len() == ends { Ok(()) } else { Err("a side lacks an end") }
+    }
+}
+
+/// How far vertices may be in front of faces, as a part of the solid's size, where coarse damage is looked for.
+#[cfg(feature = "serde")]
+const ROUGHLY: f64 = 1e-3;
+
+#[cfg(feature = "serde")]
+impl<N: Real, const D: usize> Polytope<N, D> {
+    /// No vertex is far in front of a face.
+    pub(in crate::shape) fn is_roughly_convex(&self) -> bool {
+        let most = N::lit(ROUGHLY) * self.reach;
+        // False for NaN: lengths beyond the range of the scalar are no damage.
+        let is_in_front = |face: &PolytopeFace<N, D>| {
+            self.vertices.iter().any(|vertex| face.height_of(vertex) > most)
+        };
+        !self.faces.iter().any(is_in_front)
+    }
+
+    /// Sides end at each vertex.
+    pub(in crate::shape) fn has_all_fans(&self) -> bool {
+        (0..self.vertices.len()).all(|vertex| self.fan(vertex).len() >= D)
     }
 }
 

@@ -127,7 +127,7 @@ pub(crate) struct SupportPart<N: Real, const D: usize> {
 impl<N: Real, const D: usize> SupportPart<N, D> {
     /// The direction of edge `index` of a box in 3D.
     pub(crate) fn edge_direction(index: u32) -> Vector<N, D> {
-        axis_vector((index / 4) as usize)
+        axis_vector((index / 4) as usize % D)
     }
 
     /// The direction of the side of the part that is most nearly perpendicular to a vector, the

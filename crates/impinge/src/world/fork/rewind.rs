@@ -79,6 +79,18 @@ impl<N: Space<D>, const D: usize, T> History<N, D, T> {
         Self { name: None, next: 0, most: USUAL_MARKS, heads: VecDeque::new() }
     }
 
+    /// Creates a history without marks that keeps at most `most`.
+    #[cfg(feature = "serde")]
+    pub(in crate::world) fn for_marks(most: usize) -> Self {
+        Self { most, ..Self::new() }
+    }
+
+    /// The maximal number of marks.
+    #[cfg(feature = "serde")]
+    pub(in crate::world) const fn most_marks(&self) -> usize {
+        self.most
+    }
+
     /// Creates a history without marks and with the same maximum, for a clone.
     pub(super) fn without_marks(&self) -> Self {
         Self { most: self.most, ..Self::new() }

@@ -1,6 +1,8 @@
 //! Tests of collision worlds: rules, events and queries, also against models.
 
 mod extremes_of_worlds;
+#[cfg(feature = "serde")]
+mod saved_worlds;
 mod world_ball_in_room;
 mod world_corpus;
 mod world_engines;

@@ -81,6 +81,19 @@ impl Marks {
         Self { diagonals, ..self }
     }
 
+    /// The rule, and the bits of each cell if any has one.
+    #[cfg(feature = "serde")]
+    pub(super) fn parts(&self) -> (Diagonals, &[u8]) {
+        (self.diagonals, &self.bits)
+    }
+
+    /// What [`Self::parts`] gave, for as many cells as there are bits, if any.
+    #[cfg(feature = "serde")]
+    pub(super) fn of_parts(diagonals: Diagonals, bits: Vec<u8>) -> Self {
+        let ghosts = bits.iter().filter(|&bits| bits & GHOST != 0).count();
+        Self { diagonals, bits, ghosts }
+    }
+
     /// Whether part `k`, 0 or 1, of a cell is a hole.
     pub(super) fn is_hole(&self, cell: usize, k: usize) -> bool {
         self.has(cell, 1 << k)

@@ -18,6 +18,8 @@ mod grid;
 mod marks;
 mod pyramid;
 mod question;
+#[cfg(feature = "serde")]
+mod saved;
 mod segments;
 mod surface;
 mod triangles;

@@ -166,6 +166,13 @@ impl<N: Real> HeightField<N, 2> {
         (self.pyramid, self.revision) = (pyramid, Revision::new());
     }
 
+    /// Returns the field after its marks were replaced.
+    #[cfg(feature = "serde")]
+    pub(in crate::shape) fn with_all_rebuilt(mut self) -> Self {
+        self.rebuild();
+        self
+    }
+
     pub(super) fn rebuild(&mut self) {
         self.pyramid = entries::pyramid_over(self);
         self.revision = Revision::new();

@@ -1,11 +1,19 @@
-//! Algorithms of meshes that differ between 2D and 3D.
+//! Algorithms of meshes, and of shapes as data, that differ between 2D and 3D.
 
 use super::rays::RayBounds;
 use super::{TriMesh, surface3};
 use crate::bvh::Triangles;
+#[cfg(feature = "serde")]
+use crate::math::numbers::Damage;
 use crate::math::{Point, Real, Vector};
 use crate::partitioning::BoxTree;
+#[cfg(feature = "serde")]
+use crate::shape::composite::polyline::Front;
+#[cfg(feature = "serde")]
+use crate::shape::saved::{ShapeRecord, front2, front3, make2, make3, record2, record3};
 use crate::shape::{FaceSeams, FeatureId, Part, Polyline};
+#[cfg(feature = "serde")]
+use crate::shape::{Shape, ShapeHandle};
 use crate::tables::Here;
 
 /// The algorithms of meshes that differ by dimension.
@@ -69,6 +77,18 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         bounds: &RayBounds<'_, N, D>,
         visit: &mut dyn FnMut(u32, Part<'_, N, D>) -> N,
     );
+
+    /// A shape of one dimension alone as data; `None` for others.
+    #[cfg(feature = "serde")]
+    fn shape_record(shape: &dyn Shape<N, D>) -> Option<ShapeRecord<N>>;
+
+    /// The shape of [`Self::shape_record`].
+    #[cfg(feature = "serde")]
+    fn make_shape(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, D>, Damage>;
+
+    /// Which normal of a segment is that of its front, where segments have one.
+    #[cfg(feature = "serde")]
+    fn line_front() -> Option<Front<N, D>>;
 }
 
 #[expect(private_interfaces, reason = "for this crate alone")]
@@ -135,6 +155,21 @@ impl<N: Real> MeshByDimension<N, 2> for Here {
         visit: &mut dyn FnMut(u32, Part<'_, N, 2>) -> N,
     ) {
         mesh.boxes_along(bounds, visit);
+    }
+
+    #[cfg(feature = "serde")]
+    fn shape_record(shape: &dyn Shape<N, 2>) -> Option<ShapeRecord<N>> {
+        record2(shape)
+    }
+
+    #[cfg(feature = "serde")]
+    fn make_shape(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 2>, Damage> {
+        make2(record)
+    }
+
+    #[cfg(feature = "serde")]
+    fn line_front() -> Option<Front<N, 2>> {
+        front2()
     }
 }
 
@@ -206,5 +241,20 @@ impl<N: Real> MeshByDimension<N, 3> for Here {
         visit: &mut dyn FnMut(u32, Part<'_, N, 3>) -> N,
     ) {
         mesh.parts_on_ray(bounds, visit);
+    }
+
+    #[cfg(feature = "serde")]
+    fn shape_record(shape: &dyn Shape<N, 3>) -> Option<ShapeRecord<N>> {
+        record3(shape)
+    }
+
+    #[cfg(feature = "serde")]
+    fn make_shape(record: &ShapeRecord<N>) -> Result<ShapeHandle<N, 3>, Damage> {
+        make3(record)
+    }
+
+    #[cfg(feature = "serde")]
+    fn line_front() -> Option<Front<N, 3>> {
+        front3()
     }
 }

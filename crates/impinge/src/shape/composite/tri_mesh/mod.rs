@@ -7,6 +7,8 @@ mod by_dimension;
 mod composite;
 mod entries;
 mod rays;
+#[cfg(feature = "serde")]
+mod saved;
 mod solid;
 mod surface2;
 mod surface3;

@@ -85,7 +85,11 @@ impl Topology {
         vertices: &[Point<N, D>],
         triangles: &[[u32; 3]],
     ) -> Self {
-        let joints = Joints::new(vertices, triangles);
+        Self::of_joints(Joints::new(vertices, triangles), triangles)
+    }
+
+    /// The adjacency of triangles that meet at these joints.
+    pub(super) fn of_joints(joints: Joints, triangles: &[[u32; 3]]) -> Self {
         let mut across = vec![[BORDER; 3]; triangles.len()];
         let (mut is_cycle, (mut sides, ends)) = (true, sides_by_joint(&joints, triangles));
         let mut start = 0;

@@ -164,6 +164,14 @@ impl<N: Play<D>, const D: usize> Player<N, D> {
         self.handles.clone_from(&mark.handles);
     }
 
+    /// Continues with another world, which was restored from this one.
+    pub(crate) fn go_on_with(&mut self, world: World<N, D>) {
+        for handle in self.handles.iter_mut().flatten() {
+            *handle = world.counterpart(*handle).expect("it has the same objects");
+        }
+        self.world = world;
+    }
+
     /// Applies the removals, additions and moves of the next step, and updates the world.
     pub(crate) fn step(&mut self) {
         self.apply();

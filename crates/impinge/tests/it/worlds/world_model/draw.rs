@@ -1,18 +1,28 @@
 //! Random positions, shapes and groups with numbers on a grid, for the world and for the reference.
 
+#[cfg(feature = "serde")]
+use impinge::math::Point;
 use impinge::math::Real;
 use impinge::math::na::{
     Complex, Isometry2, Isometry3, Quaternion, Translation2, Translation3, UnitComplex,
     UnitQuaternion,
 };
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+#[cfg(feature = "serde")]
+use impinge::procedural::space as surfaces;
 use impinge::shape::{Ball, Capsule, Cuboid, ShapeHandle};
+#[cfg(feature = "serde")]
+use impinge::shape::{ConvexHull, Diagonals, HeightField, Polyline, Tetrahedron, TriMesh};
+#[cfg(feature = "serde")]
+use impinge::world::Registry;
 use impinge::world::{CollisionGroups, CollisionWorld};
 use impinge::{dim2, dim3};
 use impinge_reference::geometry::{Pose, Solid};
 use impinge_reference::random::Random;
 use impinge_reference::world::{Groups, QueryType};
 
+#[cfg(feature = "serde")]
+use crate::support::shape_table::{self, Shapes};
 use crate::support::world_stage::{Stage, half_space, vector};
 
 /// Objects lie within this distance of the origin, except for a few far away.
@@ -25,6 +35,14 @@ pub(crate) trait Grid<const D: usize>: Stage<D> {
 
     /// Registers a filter that refuses pairs whose indices add up to a multiple of `number`.
     fn register(world: &mut CollisionWorld<Self, D, u64>, name: &str, number: usize);
+
+    /// Names what [`Self::register`] registers.
+    #[cfg(feature = "serde")]
+    fn name(registry: Registry<Self, D, u64>, name: &str, number: usize) -> Registry<Self, D, u64>;
+
+    /// Shapes of all sorts, a few times as large as a number.
+    #[cfg(feature = "serde")]
+    fn all_shapes(size: f64) -> Shapes<Self, D>;
 }
 
 /// Filter that accepts pairs whose sum of indices is not a multiple of the number.
@@ -69,6 +87,24 @@ impl<N: Real> Grid<2> for N {
     fn register(world: &mut CollisionWorld<N, 2, u64>, name: &str, number: usize) {
         world.register_broad_phase_pair_filter(name, NotMultipleOf(number));
     }
+
+    #[cfg(feature = "serde")]
+    fn name(registry: Registry<N, 2, u64>, name: &str, number: usize) -> Registry<N, 2, u64> {
+        registry.with_filter(name, NotMultipleOf(number))
+    }
+
+    #[cfg(feature = "serde")]
+    fn all_shapes(size: f64) -> Shapes<N, 2> {
+        let mut shapes = shape_table::plane(N::lit(size));
+        let corner = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x * size), N::lit(y * size));
+        let square =
+            vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        let line = Polyline::closed(square);
+        shapes.push(("one-sided line", ShapeHandle::new(line.clone().one_sided())));
+        shapes.push(("kept edges", ShapeHandle::new(line.clone().with_internal_edges_kept())));
+        shapes.push(("solid line", ShapeHandle::new(line.solid())));
+        shapes
+    }
 }
 
 impl<N: Real> Grid<3> for N {
@@ -86,6 +122,38 @@ impl<N: Real> Grid<3> for N {
 
     fn register(world: &mut CollisionWorld<N, 3, u64>, name: &str, number: usize) {
         world.register_broad_phase_pair_filter(name, NotMultipleOf(number));
+    }
+
+    #[cfg(feature = "serde")]
+    fn name(registry: Registry<N, 3, u64>, name: &str, number: usize) -> Registry<N, 3, u64> {
+        registry.with_filter(name, NotMultipleOf(number))
+    }
+
+    #[cfg(feature = "serde")]
+    fn all_shapes(size: f64) -> Shapes<N, 3> {
+        let mut shapes = shape_table::space(N::lit(size));
+        let corner = |at: [f64; 3]| Point::from(vector(at.map(|x| x * size)));
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.5], [0.0, 1.0, 0.0], [0.25, 0.0, 1.0]];
+        let tetrahedron = Tetrahedron::<N>::new(corners.map(corner));
+        shapes.push(("tetrahedron", ShapeHandle::new(tetrahedron)));
+        let surface = surfaces::cuboid(&Cuboid::new(vector([size; 3])));
+        let mesh = TriMesh::new(surface.vertices, surface.triangles);
+        shapes.push(("one-sided mesh", ShapeHandle::new(mesh.clone().one_sided())));
+        shapes.push(("kept edges", ShapeHandle::new(mesh.clone().with_internal_edges_kept())));
+        let (own, ghosts) = mesh.triangles().split_at(8);
+        let open = TriMesh::new(mesh.vertices().to_vec(), own.to_vec()).with_ghosts(ghosts);
+        shapes.push(("mesh with ghosts", ShapeHandle::new(open)));
+        shapes.push(("solid mesh", ShapeHandle::new(mesh.solid())));
+        let heights = (0..20_u8).map(|n| N::lit(0.1 * f64::from(n * 7 % 5))).collect();
+        let field = HeightField::<N, 3>::new(4, 5, heights, vector([2.0 * size, size, size]));
+        shapes.push(("ghost border", ShapeHandle::new(field.clone().with_ghost_border())));
+        let field = field.with_diagonals(Diagonals::Zigzag).with_holes(|row, _| row == 1);
+        shapes.push(("zigzag field", ShapeHandle::new(field.one_sided())));
+        let random = &mut Random::new(7);
+        let mut point = |_| corner([0; 3].map(|_: u8| random.range(-1.0, 1.0)));
+        let points: Vec<_> = (0..40).map(&mut point).collect();
+        shapes.push(("random hull", ShapeHandle::new(ConvexHull::from_points(&points))));
+        shapes
     }
 }
 

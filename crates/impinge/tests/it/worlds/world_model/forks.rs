@@ -21,10 +21,13 @@ const MOST: usize = 40;
 /// Number of marks that the world keeps.
 const MARKS: usize = 5;
 
-type World<N, const D: usize> = CollisionWorld<N, D, u64>;
+/// The filters that may be registered, each with its number as name.
+pub(super) const FILTERS: [usize; 2] = [3, 5];
+
+pub(super) type World<N, const D: usize> = CollisionWorld<N, D, u64>;
 
 /// A new world; those with even seeds reuse the contacts of pairs that hardly move.
-fn new_world<N: Grid<D>, const D: usize>(seed: u64) -> World<N, D> {
+pub(super) fn new_world<N: Grid<D>, const D: usize>(seed: u64) -> World<N, D> {
     let mut world = World::new(N::lit(0.125));
     if seed.is_multiple_of(2) {
         world.set_narrow_phase(Box::new(DefaultNarrowPhase::new().reusing(N::lit(0.02))));
@@ -34,7 +37,7 @@ fn new_world<N: Grid<D>, const D: usize>(seed: u64) -> World<N, D> {
     world
 }
 
-fn position<N: Grid<D>, const D: usize>(random: &mut Random) -> N::Isometry {
+pub(super) fn position<N: Grid<D>, const D: usize>(random: &mut Random) -> N::Isometry {
     let at = std::array::from_fn(|_| random.range(-3.0, 3.0));
     N::posed(at, random).0
 }
@@ -60,8 +63,18 @@ fn shape<N: Grid<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
     ShapeHandle::new(Compound::new(children))
 }
 
-/// Performs the operation that a seed stands for; equal worlds stay equal.
+/// Performs the operation that a seed stands for; equal worlds stay equal. Validates the world after an update.
 fn operate<N: Grid<D>, const D: usize>(world: &mut World<N, D>, seed: u64) {
+    if is_updated_by(world, seed) {
+        world.validate().expect("the parts of the world agree");
+    }
+}
+
+/// Performs the operation that a seed stands for; returns whether it is an update.
+pub(super) fn is_updated_by<N: Grid<D>, const D: usize>(
+    world: &mut World<N, D>,
+    seed: u64,
+) -> bool {
     let random = &mut Random::new(seed);
     let handles: Vec<_> = world.collision_objects().map(CollisionObject::handle).collect();
     let kind = random.below(100);
@@ -69,10 +82,10 @@ fn operate<N: Grid<D>, const D: usize>(world: &mut World<N, D>, seed: u64) {
         let (groups, _) = draw::groups(random);
         let (query_type, _) = draw::query_type(random);
         world.add(position::<N, D>(random), shape(random), groups, query_type, random.bits());
-        return;
+        return false;
     }
     let handle = *random.pick(&handles);
-    let name = *random.pick(&["one", "another"]);
+    let number = *random.pick(&FILTERS);
     match kind {
         0..14 => world.remove(&[handle]),
         14..40 => world.set_position(handle, position::<N, D>(random)),
@@ -86,27 +99,24 @@ fn operate<N: Grid<D>, const D: usize>(world: &mut World<N, D>, seed: u64) {
             world.set_position_with_prediction(handle, now, then);
         }
         57..59 => *world.collision_object_mut(handle).expect("alive").data_mut() = random.bits(),
-        59..61 => {
-            N::register(world, name, 2 + random.below(4));
-        }
-        61..63 => world.unregister_broad_phase_pair_filter(name),
+        59..61 => N::register(world, &number.to_string(), number),
+        61..63 => world.unregister_broad_phase_pair_filter(&number.to_string()),
         63 => world.refilter_pairs_of(handle),
         64 => world.keep_events(),
         65..72 => {
             world.update_pair(handle, *random.pick(&handles));
         }
         72 => drop(world.take_removed(handle)),
-        _ => update(world),
+        _ => {
+            world.update();
+            return true;
+        }
     }
-}
-
-fn update<N: Grid<D>, const D: usize>(world: &mut World<N, D>) {
-    world.update();
-    world.validate().expect("the parts of the world agree");
+    false
 }
 
 /// Digest of everything that a world reports, in order.
-fn digest<N: Grid<D>, const D: usize>(world: &World<N, D>) -> u64 {
+pub(super) fn digest<N: Grid<D>, const D: usize>(world: &World<N, D>) -> u64 {
     let mut digest = Digest::new();
     for object in world.collision_objects() {
         let handle = object.handle();
@@ -211,7 +221,8 @@ impl<N: Grid<D>, const D: usize> Timeline<N, D> {
 
     fn exchange_phases(&mut self) {
         self.world.set_broad_phase(Box::new(DBVTBroadPhase::new(N::lit(0.125))));
-        update(&mut self.world);
+        self.world.update();
+        self.world.validate().expect("the parts of the world agree");
         for (mark, _) in self.marks.drain(..) {
             assert_eq!(self.world.try_rewind(mark), Err(WorldError::MarkGone(mark)), "ended");
         }

@@ -8,6 +8,8 @@ mod both;
 mod draw;
 mod engine;
 mod forks;
+#[cfg(feature = "serde")]
+mod saved;
 mod twins;
 
 use both::Both;

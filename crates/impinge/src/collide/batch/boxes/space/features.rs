@@ -259,7 +259,7 @@ impl SlotFeatures for BoxPairFeatures {
             let slot = usize::from(slot);
             slot < SLOTS && usize::from(self.pairs[slot]) == pair && valid >> slot & 1 == 1
         };
-        let [one, other] = SLOTS_OF[pair];
+        let &[one, other] = SLOTS_OF.get(pair)?;
         let slot = if is_it(one) { one } else { other };
         is_it(slot).then_some(usize::from(slot))
     }

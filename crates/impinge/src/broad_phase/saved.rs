@@ -1,0 +1,239 @@
+//! The broad phase of a saved world: the boxes that decide about pairs.
+//!
+//! Where an object is in a tree decides about time alone ([`rewind`](super::rewind)): trees are made again.
+
+use serde::{Deserialize, Serialize};
+
+use super::finder::{Home, Waiting, small};
+use super::handle::Handles;
+use super::{DBVTBroadPhase, PairFinder, ProxyHandle};
+use crate::bounding_volume::Aabb;
+use crate::bvh::{Bounds, NONE};
+use crate::generation::Generation;
+use crate::math::numbers::{Damage, NumberSource, Numbers, ensure};
+use crate::math::{Mapped, Real, Space};
+
+/// A broad phase as data.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct BroadRecord<N: Real> {
+    margin: Numbers<N>,
+    /// By index, of the object there or of the next one.
+    generations: Vec<u16>,
+    free: Vec<u32>,
+    boxes: Vec<BoxRecord<N>>,
+    /// In the order in which they came.
+    waiting: Vec<(u32, Numbers<N>)>,
+    again: Vec<u32>,
+    is_all_again: bool,
+    clock: u32,
+}
+
+/// The boxes of an object.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct BoxRecord<N: Real> {
+    proxy: u32,
+    /// By handle index.
+    object: u32,
+    home: Home,
+    exact: Numbers<N>,
+    /// If an update has seen the object.
+    loose: Option<Numbers<f32>>,
+    last_change: u32,
+}
+
+impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
+    /// The margin, of a broad phase that nothing was added to; `None` of others.
+    pub(crate) fn unused_margin(&self) -> Option<Numbers<N>> {
+        self.proxies.is_empty().then(|| Numbers::of([self.margin()]))
+    }
+
+    /// The broad phase as data; `index_of` gives the handle index of an object.
+    pub(crate) fn record(&self, index_of: impl Fn(&T) -> u32) -> BroadRecord<N> {
+        let (generations, free) = self.handles.record();
+        let there = (0..).zip(&self.proxies).filter_map(|(id, data)| Some((id, data.as_ref()?)));
+        let finder = &self.finder;
+        let waiting = finder.waiting.iter().filter(|waiting| waiting.id != NONE);
+        BroadRecord {
+            margin: Numbers::of([self.margin()]),
+            generations,
+            free,
+            boxes: there.map(|(id, data)| finder.box_record(id, index_of(data))).collect(),
+            waiting: waiting.map(|waiting| (waiting.id, numbers(&waiting.aabb))).collect(),
+            // Changes are left over only where a filter panicked.
+            again: finder.again.iter().chain(&finder.changes).copied().collect(),
+            is_all_again: finder.is_all_again,
+            clock: finder.clock,
+        }
+    }
+}
+
+fn numbers<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Numbers<N> {
+    Numbers::of_points(&[*aabb.mins(), *aabb.maxs()])
+}
+
+fn aabb<N: Real, const D: usize>(numbers: &Numbers<N>) -> Result<Aabb<N, D>, Damage> {
+    let [mins, maxs] = numbers.all(NumberSource::points)?;
+    Aabb::try_new(mins, maxs).map_err(|error| Damage::found(&error))
+}
+
+impl Handles {
+    /// The generations by index, and the free indices.
+    fn record(&self) -> (Vec<u16>, Vec<u32>) {
+        let count = |generation: &Generation| generation.count();
+        (self.generations.iter().map(count).collect(), self.free.clone())
+    }
+
+    /// The handles of these generations, of which none is in use yet.
+    fn restored(generations: &[u16], free: Vec<u32>) -> Self {
+        let first = Generation::of_new_table();
+        let generations: Vec<_> =
+            generations.iter().map(|&count| first.with_count(count)).collect();
+        Self { first, is_present: vec![false; generations.len()], generations, free }
+    }
+
+    /// The index comes into use, unless there is none or it is in use.
+    fn use_again(&mut self, index: u32) -> Result<ProxyHandle, Damage> {
+        let place = self.is_present.get_mut(index as usize);
+        let is_unused = place.is_some_and(|is_present| !core::mem::replace(is_present, true));
+        ensure(is_unused, "a proxy is there twice, or has no handle")?;
+        Ok(self.at(index))
+    }
+
+    /// The free indices are those of no object, each once.
+    fn check_free(&self) -> Result<(), Damage> {
+        let mut is_taken = self.is_present.clone();
+        let is_free = |&index: &u32| {
+            is_taken
+                .get_mut(index as usize)
+                .is_some_and(|is_taken| !core::mem::replace(is_taken, true))
+        };
+        ensure(self.free.iter().all(is_free), "a proxy is free and in use, or free twice")
+    }
+}
+
+impl<N: Real, const D: usize> PairFinder<N, D> {
+    fn box_record(&self, id: u32, object: u32) -> BoxRecord<N> {
+        let (home, index) = (self.homes[id as usize], id as usize);
+        let loose = &self.loose[index];
+        let loose = || Numbers::of(loose.lo.into_iter().chain(loose.hi));
+        BoxRecord {
+            proxy: id,
+            object,
+            home,
+            exact: numbers(&self.exact[index]),
+            loose: (home != Home::Nowhere).then(loose),
+            last_change: self.last_change[index],
+        }
+    }
+
+    /// Makes room for so many objects.
+    fn make_room(&mut self, count: usize) {
+        self.exact.resize(count, Aabb::unbounded());
+        self.loose.resize(count, Bounds::NOWHERE);
+        self.homes.resize(count, Home::Nowhere);
+        self.marks.resize(count, 0);
+        self.last_change.resize(count, 0);
+        self.waiting_at.resize(count, NONE);
+    }
+
+    /// Brings an object to its home, with its boxes.
+    fn take_home(&mut self, record: &BoxRecord<N>) -> Result<(), Damage> {
+        let (id, index) = (record.proxy, record.proxy as usize);
+        self.exact[index] = aabb(&record.exact)?;
+        self.last_change[index] = record.last_change;
+        let Some(loose) = &record.loose else {
+            return ensure(record.home == Home::Nowhere, "a proxy has no loosened box");
+        };
+        let [lo, hi] = loose.all(|loose| Ok([loose.array()?, loose.array()?]))?;
+        let loose = Bounds { lo, hi };
+        let is_around = loose.contains(&Bounds::enclosing(&self.exact[index]));
+        ensure(is_around, "a loosened box does not hold the exact one")?;
+        match record.home {
+            Home::Nowhere => return Err(Damage("a proxy is nowhere".into())),
+            Home::Unbounded => self.unbounded.push(id),
+            Home::Moving | Home::Still => {
+                ensure(loose.is_finite(), "an unbounded box is in a tree")?;
+                let tree =
+                    if record.home == Home::Still { &mut self.still } else { &mut self.moving };
+                tree.insert_still(id, &loose);
+            }
+        }
+        (self.homes[index], self.loose[index]) = (record.home, loose);
+        Ok(())
+    }
+}
+
+impl<N: Real> BroadRecord<N> {
+    /// The broad phase, without its pairs. `object` gives what the phase keeps of the object at a handle index, and takes
+    /// the handle of its proxy.
+    pub(crate) fn restore<T, const D: usize>(
+        &self,
+        mut object: impl FnMut(u32, ProxyHandle) -> Result<T, Damage>,
+    ) -> Result<DBVTBroadPhase<N, Aabb<N, D>, T>, Damage>
+    where
+        N: Space<D>,
+    {
+        let [margin] = self.margin.array()?;
+        let phase = DBVTBroadPhase::<N, Aabb<N, D>, T>::try_new(margin);
+        let mut phase = phase.map_err(|error| Damage::found(&error))?;
+        let count = self.generations.len();
+        phase.handles = Handles::restored(&self.generations, self.free.clone());
+        phase.proxies.resize_with(count, || None);
+        phase.finder.make_room(count);
+        for record in &self.boxes {
+            let handle = phase.handles.use_again(record.proxy)?;
+            phase.proxies[handle.uid()] = Some(object(record.object, handle)?);
+            phase.finder.take_home(record)?;
+        }
+        phase.handles.check_free()?;
+        for (id, waiting) in &self.waiting {
+            let is_there = matches!(phase.proxies.get(*id as usize), Some(Some(_)));
+            ensure(is_there, "a box waits for no proxy")?;
+            phase.finder.wait_once(*id, aabb(waiting)?)?;
+        }
+        ensure(self.again.iter().all(|&id| (id as usize) < count), "no proxy is to be filtered")?;
+        phase.finder.again.clone_from(&self.again);
+        (phase.finder.is_all_again, phase.finder.clock) = (self.is_all_again, self.clock);
+        phase.finder.settle_trees();
+        Ok(phase)
+    }
+}
+
+impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
+    /// The box that an object was given last.
+    pub(crate) fn given_volume(&self, handle: ProxyHandle) -> &Aabb<N, D> {
+        let waiting = self.finder.waiting_at[handle.uid()];
+        let waiting = self.finder.waiting.get(waiting as usize);
+        waiting.map_or(&self.finder.exact[handle.uid()], |waiting| &waiting.aabb)
+    }
+
+    /// Adds the pairs of the last update.
+    pub(crate) fn restore_pairs(
+        &mut self,
+        pairs: impl Iterator<Item = [ProxyHandle; 2]>,
+    ) -> Result<(), Damage> {
+        let Self { handles, finder, .. } = self;
+        // Where a filter panicked, boxes are ahead of pairs.
+        let are_ahead = !finder.again.is_empty();
+        for [one, other] in pairs {
+            ensure(handles.is_alive(one) && handles.is_alive(other), "a pair has no proxies")?;
+            let [a, b] = [one, other].mapped(|handle| small(handle.uid()));
+            let are_near = finder.loose[a as usize].overlaps(&finder.loose[b as usize]);
+            ensure(a != b && (are_near || are_ahead), "the boxes of a pair do not overlap")?;
+            ensure(finder.pairs.insert(a, b).is_new, "a pair is there twice")?;
+        }
+        Ok(())
+    }
+}
+
+impl<N: Real, const D: usize> PairFinder<N, D> {
+    /// A box waits for an object for which none does.
+    fn wait_once(&mut self, id: u32, aabb: Aabb<N, D>) -> Result<(), Damage> {
+        ensure(self.waiting_at[id as usize] == NONE, "two boxes wait for a proxy")?;
+        self.waiting_at[id as usize] = small(self.waiting.len());
+        self.waiting.push(Waiting { id, aabb });
+        Ok(())
+    }
+}

@@ -1,0 +1,73 @@
+//! Contact points of saved worlds, as the narrow phase keeps them.
+
+use serde::{Deserialize, Serialize};
+
+use super::{PairIds, RawManifold, RawPoint};
+use crate::math::Real;
+use crate::math::numbers::{Damage, NumberSource, Numbers};
+use crate::shape::FeatureId;
+
+/// What a point has beside numbers.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct PointRecord {
+    features: [FeatureId; 2],
+    id: u32,
+    code: u32,
+}
+
+impl PointRecord {
+    /// Appends the place and the distance of a point to numbers.
+    pub(super) fn of<N: Real, const D: usize>(
+        point: &RawPoint<N, D>,
+        numbers: &mut Numbers<N>,
+    ) -> Self {
+        numbers.extend(&point.point1.coords);
+        numbers.extend(&[point.distance]);
+        let RawPoint { feature1, feature2, id, code, .. } = *point;
+        Self { features: [feature1, feature2], id, code }
+    }
+
+    pub(super) fn restore<N: Real, const D: usize>(
+        &self,
+        numbers: &mut NumberSource<'_, N>,
+    ) -> Result<RawPoint<N, D>, Damage> {
+        let Self { features: [feature1, feature2], id, code } = *self;
+        let (point1, distance) = (numbers.point()?, numbers.number()?);
+        Ok(RawPoint { point1, distance, feature1, feature2, id, code })
+    }
+}
+
+/// A manifold.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct ManifoldRecord<N: Real> {
+    ids: PairIds,
+    /// The normal, the points with their distances, and the pose if it is kept.
+    numbers: Numbers<N>,
+    points: Vec<PointRecord>,
+    has_pose: bool,
+}
+
+impl<N: Real, const D: usize> RawManifold<N, D> {
+    /// The manifold as data.
+    pub(crate) fn record(&self) -> ManifoldRecord<N> {
+        let Self { normal, ids, points, pose12 } = self;
+        let mut numbers = Numbers::of(normal.iter().copied());
+        let points = points.iter().map(|point| PointRecord::of(point, &mut numbers)).collect();
+        pose12.iter().for_each(|pose| numbers.extend_pose(pose));
+        ManifoldRecord { ids: *ids, numbers, points, has_pose: pose12.is_some() }
+    }
+}
+
+impl<N: Real> ManifoldRecord<N> {
+    /// The manifold of the data.
+    pub(crate) fn restore<const D: usize>(&self) -> Result<RawManifold<N, D>, Damage> {
+        self.numbers.all(|numbers| {
+            let normal = numbers.vector()?;
+            let points = self.points.iter().map(|point| point.restore(numbers));
+            let points = points.collect::<Result<_, _>>()?;
+            let pose12 = if self.has_pose { Some(numbers.pose()?) } else { None };
+            Ok(RawManifold { normal, ids: self.ids, points, pose12 })
+        })
+    }
+}

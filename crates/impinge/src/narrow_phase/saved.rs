@@ -1,0 +1,300 @@
+//! The narrow phase of a saved world: its pairs, in the order in which contacts are read.
+//!
+//! What a pair is asked, the copies of its solids and whether it touches follow from the rest. Which algorithm serves it
+//! does too, so data cannot bring a pair to another.
+
+use serde::{Deserialize, Serialize};
+
+use super::default_narrow_phase::new_entry;
+use super::entry::{ContactEntry, ProximityEntry, Status};
+use super::group::{Group, PairKey};
+use super::lanes::{Lane, Location};
+use super::objects::ObjectSolid;
+use super::reuse::Reference;
+use super::rewind::Parts;
+use super::state::{CompositeState, InOrder, KeptPoints};
+use super::substep::PairSolids;
+use super::{
+    DefaultContactDispatcher, DefaultNarrowPhase, DefaultProximityDispatcher, ObjectTable,
+};
+use super::{IdAllocator, PairQuery};
+use crate::collide::mesh::saved::CompositeRecord;
+use crate::collide::saved::ManifoldRecord;
+use crate::collide::{CompositeContacts, ManifoldRequest};
+use crate::math::numbers::{Damage, Numbers, ensure};
+use crate::math::{Mapped, Real, Space};
+use crate::query::Proximity;
+
+/// What a narrow phase was made with.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct PhaseRecord<N: Real> {
+    max_points: u32,
+    tolerance: Option<Numbers<N>>,
+}
+
+/// A narrow phase as data.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct NarrowRecord<N: Real> {
+    phase: PhaseRecord<N>,
+    ids: IdAllocator,
+    pub(crate) pairs: Vec<PairRecord<N>>,
+}
+
+/// A pair as data.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct PairRecord<N: Real> {
+    /// By handle index, in order.
+    pub(crate) objects: PairKey,
+    is_due: bool,
+    state: StateRecord<N>,
+    reference: Option<ReferenceRecord<N>>,
+}
+
+/// What is kept of a pair, by what is asked of it.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+enum StateRecord<N: Real> {
+    Contacts { number: u64, is_swapped: bool, manifold: ManifoldRecord<N> },
+    Composite { number: u64, is_swapped: bool, contacts: CompositeRecord<N> },
+    Proximity(Proximity),
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+struct ReferenceRecord<N: Real> {
+    /// The pose, then the reach.
+    numbers: Numbers<N>,
+    distances: Numbers<N>,
+    pause: u8,
+}
+
+/// A pair that was computed since the last update.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct SubstepRecord<N: Real> {
+    objects: PairKey,
+    /// The poses of both.
+    poses: Numbers<N>,
+}
+
+impl<N: Real, const D: usize> Reference<N, D> {
+    fn record(&self) -> ReferenceRecord<N> {
+        let mut numbers = Numbers::default();
+        numbers.extend_pose(&self.pose21);
+        numbers.extend(&[self.reach]);
+        let distances = Numbers::of(self.distances.iter().copied());
+        ReferenceRecord { numbers, distances, pause: self.pause }
+    }
+}
+
+impl<N: Real> ReferenceRecord<N> {
+    /// The reference, of a pair with so many contacts.
+    fn restore<const D: usize>(&self, contacts: usize) -> Result<Reference<N, D>, Damage> {
+        let (pose21, reach) = self.numbers.all(|n| Ok((n.pose()?, n.number()?)))?;
+        // That of a fast pair, which is not used before it is noted again, may be of other contacts.
+        let is_used = self.pause == 0 && reach.is_finite_number();
+        let is_whole = self.distances.len() == contacts || !is_used;
+        ensure(is_whole, "a reference has other distances than contacts")?;
+        let distances = self.distances.clone().into_vec().into();
+        Ok(Reference { pose21, reach, pause: self.pause, distances })
+    }
+}
+
+impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
+    /// What the phase was made with; `None` if dispatchers of the user's choose its algorithms.
+    pub(crate) fn phase_record(&self) -> Option<PhaseRecord<N>> {
+        let max_points = self.contact_dispatcher.built_in_for_all()?;
+        let is_reusing = self.lanes.composites.references.is_some();
+        let record = PhaseRecord {
+            max_points: u32::try_from(max_points).unwrap_or(u32::MAX),
+            tolerance: is_reusing.then(|| Numbers::of([self.tolerance])),
+        };
+        self.proximity_dispatcher.is_built_in_for_all().then_some(record)
+    }
+
+    /// The phase as data; `None` if dispatchers of the user's choose its algorithms.
+    pub(crate) fn record(&self) -> Option<NarrowRecord<N>> {
+        let phase = self.phase_record()?;
+        let mut pairs = Vec::with_capacity(self.pairs.len());
+        for group in &self.lanes.contacts {
+            pairs.extend(group.pair_records(Reference::record, |entry| {
+                let (raw, is_swapped) = entry.state.kept();
+                StateRecord::Contacts { number: entry.number, is_swapped, manifold: raw.record() }
+            }));
+        }
+        pairs.extend(self.lanes.composites.pair_records(Reference::record, |entry| {
+            let InOrder { swapped, contacts } = &entry.state;
+            let (number, is_swapped) = (entry.number, *swapped);
+            StateRecord::Composite { number, is_swapped, contacts: contacts.record() }
+        }));
+        for group in &self.lanes.proximity {
+            let unused = |(): &()| unreachable!("proximities have no references");
+            let state = |entry: &ProximityEntry<N>| StateRecord::Proximity(entry.status.0);
+            pairs.extend(group.pair_records(unused, state));
+        }
+        Some(NarrowRecord { phase, ids: self.ids.clone(), pairs })
+    }
+}
+
+impl<S: Parts, V, R> Group<S, V, R> {
+    /// The pairs as data, in the order in which they lie.
+    fn pair_records<'a, N: Real>(
+        &'a self,
+        reference: impl Fn(&R) -> ReferenceRecord<N> + 'a,
+        state: impl Fn(&S) -> StateRecord<N> + 'a,
+    ) -> impl Iterator<Item = PairRecord<N>> + 'a {
+        (0..self.keys.len()).map(move |at| PairRecord {
+            objects: self.keys[at],
+            is_due: self.due[at],
+            state: state(&self.states[at]),
+            reference: self.references.as_ref().map(|references| reference(&references[at])),
+        })
+    }
+}
+
+impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
+    /// Adds a pair as it was, and answers its place.
+    fn push_again(&mut self, (key, state): (PairKey, S), is_touching: bool, is_due: bool) -> u32 {
+        let place = self.push(key, state, is_touching);
+        self.due[place as usize] = is_due;
+        place
+    }
+
+    /// The pair at a place has this reference, if pairs have any.
+    fn refer_again(&mut self, place: u32, reference: Option<R>) {
+        if let Some((references, reference)) = self.references.as_mut().zip(reference) {
+            references[place as usize] = reference;
+        }
+    }
+}
+
+impl<N: Real> PhaseRecord<N> {
+    /// The phase, without pairs.
+    pub(crate) fn restore<const D: usize>(&self) -> Result<DefaultNarrowPhase<N, D>, Damage>
+    where
+        N: Space<D>,
+    {
+        let contacts = DefaultContactDispatcher::<D>::with_max_points(self.max_points as usize);
+        let proximity = DefaultProximityDispatcher::<D>::new();
+        let phase = DefaultNarrowPhase::with_dispatchers(Box::new(contacts), Box::new(proximity));
+        let Some(tolerance) = &self.tolerance else { return Ok(phase) };
+        let [tolerance] = tolerance.array()?;
+        phase.try_reusing(tolerance).map_err(|error| Damage::found(&error))
+    }
+}
+
+impl<N: Real> NarrowRecord<N> {
+    /// The phase; the table has the rows of its pairs' objects.
+    pub(crate) fn restore<const D: usize>(
+        self,
+        table: &ObjectTable<N, D>,
+    ) -> Result<DefaultNarrowPhase<N, D>, Damage>
+    where
+        N: Space<D>,
+    {
+        let mut phase = self.phase.restore()?;
+        phase.ids = self.ids;
+        for pair in &self.pairs {
+            let [first, second] = pair.objects;
+            let is_known = first <= second && table.has_row(first) && table.has_row(second);
+            ensure(is_known, "a pair has no objects")?;
+            ensure(phase.pairs.insert(first, second).is_new, "a pair is there twice")?;
+            let location = phase.enter_again(table, pair)?;
+            phase.locations.push(location);
+            if pair.is_due {
+                phase.due.push(pair.objects);
+            }
+        }
+        Ok(phase)
+    }
+}
+
+impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
+    /// Enters the state of a pair.
+    fn enter_again(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        pair: &PairRecord<N>,
+    ) -> Result<Location, Damage> {
+        let (key, other) = (pair.objects, || Damage("a pair is kept as another sort is".into()));
+        let (lane, max_points) = self.built_in_lane(table, key).ok_or_else(other)?;
+        let (query, lanes) = (table.query(key[0]).pair(table.query(key[1])), &mut self.lanes);
+        let reference = |contacts| pair.reference.as_ref().map(|r| r.restore(contacts)).transpose();
+        let place = match (lane, query, &pair.state) {
+            (
+                Lane::Contacts(group),
+                PairQuery::Contacts { linear, angular },
+                StateRecord::Contacts { number, is_swapped, manifold },
+            ) => {
+                let request =
+                    ManifoldRequest::new(table.beyond_skins(key, linear), angular, max_points);
+                let mut entry = new_entry(table, key, request, *number);
+                entry.state.keep(manifold.restore()?, *is_swapped);
+                let (group, contacts) =
+                    (&mut lanes.contacts[usize::from(group)], entry.state.len());
+                let place = group.push_again((key, entry), contacts > 0, pair.is_due);
+                group.refer_again(place, reference(contacts)?);
+                place
+            }
+            (
+                Lane::Composites,
+                PairQuery::Contacts { linear, angular },
+                StateRecord::Composite { number, is_swapped, contacts },
+            ) => {
+                let request =
+                    ManifoldRequest::new(table.beyond_skins(key, linear), angular, max_points);
+                let mut entry = ContactEntry::<N, CompositeState<N, D>>::new(request, *number);
+                let order = if *is_swapped { [key[1], key[0]] } else { key };
+                let shapes = order.mapped(|object| table.shape(object).geometry());
+                let contacts = CompositeContacts::restored(contacts, shapes)?;
+                entry.state = InOrder { swapped: *is_swapped, contacts };
+                let (group, contacts) = (&mut lanes.composites, entry.state.len());
+                let place = group.push_again((key, entry), contacts > 0, pair.is_due);
+                group.refer_again(place, reference(contacts)?);
+                place
+            }
+            (
+                Lane::Proximity(group),
+                PairQuery::Proximity { margin },
+                StateRecord::Proximity(status),
+            ) => {
+                let entry = ProximityEntry { margin, status: Status(*status) };
+                let group = &mut lanes.proximity[usize::from(group)];
+                group.push_again((key, entry), false, pair.is_due)
+            }
+            _ => return Err(other()),
+        };
+        Ok(Location { lane, place })
+    }
+}
+
+impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
+    /// The pairs that were computed since the last update, as data.
+    pub(crate) fn substep_records(&self) -> Vec<SubstepRecord<N>> {
+        let record = |pair: &PairSolids<N, D>| {
+            let mut poses = Numbers::default();
+            pair.solids.iter().for_each(|solid| poses.extend_pose(&solid.pose));
+            SubstepRecord { objects: pair.key, poses }
+        };
+        self.substeps.iter().map(record).collect()
+    }
+
+    /// These pairs were computed since the last update. Their objects have rows.
+    pub(crate) fn restore_substeps(&mut self, records: &[SubstepRecord<N>]) -> Result<(), Damage> {
+        let are_sorted = records.is_sorted_by(|one, other| one.objects < other.objects);
+        ensure(are_sorted, "substeps are not in order")?;
+        for SubstepRecord { objects, poses } in records {
+            ensure(objects.iter().all(|&object| self.has_row(object)), "a substep has no objects")?;
+            let poses = poses.all(|poses| Ok([poses.pose()?, poses.pose()?]))?;
+            let [first, second] = [0, 1].map(|side| {
+                let shape = self.shape(objects[side]).clone();
+                ObjectSolid { pose: poses[side], shape }
+            });
+            self.substeps.push(PairSolids { key: *objects, solids: [first, second] });
+        }
+        Ok(())
+    }
+}

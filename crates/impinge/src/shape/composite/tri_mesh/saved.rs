@@ -1,0 +1,45 @@
+//! Meshes of saved worlds.
+
+use super::topology::Topology;
+use super::{TriMesh, entries};
+use crate::math::Space;
+use crate::math::numbers::{Damage, Numbers, ensure};
+use crate::shape::saved::MeshRecord;
+
+impl<N: Space<D>, const D: usize> TriMesh<N, D> {
+    /// The mesh as data.
+    pub(in crate::shape) fn record(&self) -> MeshRecord<N> {
+        let joints = &self.topology.joints;
+        MeshRecord {
+            vertices: Numbers::of_points(&self.vertices),
+            parts: self.triangles.as_flattened().to_vec(),
+            ghosts: u32::try_from(self.ghosts).unwrap_or(u32::MAX),
+            joints: self.topology.is_moved.then(|| joints.of_vertices_in_order().to_vec()),
+            is_one_sided: self.is_one_sided,
+            is_solid: self.is_solid,
+            keeps_internal_edges: self.keeps_internal_edges,
+        }
+    }
+
+    /// The mesh of its data.
+    pub(in crate::shape) fn of_record(record: &MeshRecord<N>) -> Result<Self, Damage> {
+        let (triangles, ghosts) = (record.parts()?, record.ghosts as usize);
+        ensure(ghosts < triangles.len(), "all triangles of a mesh are ghosts")?;
+        let mesh = entries::build_mesh(record.vertices.points()?, triangles, ghosts);
+        let mut mesh = mesh.map_err(|error| Damage::found(&error))?;
+        let vertices = mesh.vertices.len();
+        let own = record.moved_joints(vertices, mesh.triangles())?;
+        let all = record.moved_joints(vertices, &mesh.triangles)?;
+        if let Some((own, all)) = own.zip(all) {
+            let is_whole = all.are_together(&mesh.vertices);
+            let is_cycle = Topology::of_joints(own, mesh.triangles()).is_cycle;
+            mesh.topology = Topology::of_joints(all, &mesh.triangles);
+            (mesh.topology.is_moved, mesh.topology.is_cycle) = (true, is_cycle);
+            mesh.is_cycle = is_cycle && is_whole;
+        }
+        mesh.is_one_sided = record.is_one_sided;
+        mesh.is_solid = record.is_solid && record.is_one_sided;
+        mesh.keeps_internal_edges = record.keeps_internal_edges;
+        Ok(mesh)
+    }
+}

@@ -1,0 +1,348 @@
+//! Shapes of saved worlds: each once, by number; those that others hold come before these.
+//!
+//! A shape is saved by what its constructor takes, or by what it is made of where the constructor would change that: a
+//! hull by its faces, a mesh whose vertices were moved by the joints that it was made with. What is derived is derived
+//! again, and has the same bits.
+
+mod mesh;
+mod plane;
+mod space;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+pub(crate) use self::mesh::MeshRecord;
+pub(crate) use self::plane::{front2, make2, record2};
+pub(crate) use self::space::{front3, make3, record3};
+use crate::math::numbers::{Damage, NumberSource, Numbers, ensure};
+use crate::math::{Real, Space, Unit};
+use crate::shape::{
+    Ball, Capsule, CompositeShape, Compound, Cuboid, Ellipsoid, MeshByDimension, Plane, Polyline,
+    Rounded, Segment, Shape, ShapeHandle, TaperedCapsule, TriMesh, Triangle,
+};
+
+/// The name and the data of a shape of your own, in a saved world; see [`Shape::saved`].
+///
+/// ```
+/// use impinge::dim2::bounding_volume::Aabb;
+/// use impinge::dim2::math::{Isometry, Point, Vector};
+/// use impinge::dim2::shape::{Ball, Geometry, SavedShape, Shape, ShapeHandle};
+/// use impinge::dim2::world::{CollisionGroups, CollisionWorld, ContactQuery, Registry};
+///
+/// /// A ball that has a colour.
+/// #[derive(Debug)]
+/// struct Marble(Ball<f32>, u8);
+///
+/// impl Shape<f32, 2> for Marble {
+///     fn geometry(&self) -> Geometry<'_, f32> {
+///         self.0.geometry()
+///     }
+///     fn local_aabb(&self) -> Aabb<f32> {
+///         self.0.local_aabb()
+///     }
+///     fn saved(&self) -> Option<SavedShape> {
+///         let radius = self.0.radius().to_le_bytes();
+///         Some(SavedShape { name: "marble".to_owned(), data: [&radius[..], &[self.1]].concat() })
+///     }
+/// }
+///
+/// fn marble(data: &[u8]) -> Option<ShapeHandle<f32>> {
+///     let (radius, colour) = data.split_first_chunk::<4>()?;
+///     let ball = Ball::try_new(f32::from_le_bytes(*radius)).ok()?;
+///     Some(ShapeHandle::new(Marble(ball, *colour.first()?)))
+/// }
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// let shape = ShapeHandle::new(Marble(Ball::new(0.5), 7));
+/// let at = Isometry::translation(1.0, 2.0);
+/// let handle = world.add(at, shape, CollisionGroups::new(), ContactQuery::default(), ());
+///
+/// let text = serde_json::to_string(&world).expect("all of it can be saved");
+/// let registry = Registry::<f32, ()>::new().with_shape("marble", marble);
+/// let restored = registry.restore(&mut serde_json::Deserializer::from_str(&text)).expect("saved just now");
+/// let again = restored.counterpart(handle).and_then(|handle| restored.collision_object(handle));
+/// let marble = again.and_then(|object| object.shape().as_shape::<Marble>()).expect("a marble");
+/// assert_eq!((marble.0.radius(), marble.1), (0.5, 7));
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SavedShape {
+    /// The name of the type, for [`Registry::with_shape`](crate::world::Registry::with_shape).
+    pub name: String,
+    /// The data of the shape, in a format of yours.
+    pub data: Vec<u8>,
+}
+
+/// Why a shape cannot be saved.
+#[derive(Clone, Debug)]
+pub(crate) enum UnsavedShape {
+    /// It is of a user's type that says nothing of itself; printed with `Debug`.
+    Own(String),
+    /// Compounds hold the parts of others more often than is restored.
+    TooManyParts,
+}
+
+/// A shape as data.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) enum ShapeRecord<N: Real> {
+    Ball(Numbers<N>),
+    /// The ends.
+    Segment(Numbers<N>),
+    /// The ends and the radius.
+    Capsule(Numbers<N>),
+    Triangle(Numbers<N>),
+    /// Half extents.
+    Cuboid(Numbers<N>),
+    /// Half axes.
+    Ellipsoid(Numbers<N>),
+    /// The ends and both radii.
+    TaperedCapsule(Numbers<N>),
+    /// The normal, which is not normalised again.
+    HalfSpace(Numbers<N>),
+    Rounded(u32, Numbers<N>),
+    Compound(Vec<(u32, Numbers<N>)>),
+    Polyline(MeshRecord<N>),
+    TriMesh(MeshRecord<N>),
+    HeightField(FieldRecord<N>),
+    /// The vertices.
+    ConvexPolygon(Numbers<N>),
+    ConvexHull {
+        vertices: Numbers<N>,
+        /// By face.
+        normals: Numbers<N>,
+        faces: Vec<Vec<u32>>,
+    },
+    /// Half the height, and the radius.
+    Cylinder(Numbers<N>),
+    Cone(Numbers<N>),
+    Tetrahedron(Numbers<N>),
+    Own(SavedShape),
+}
+
+/// A height field as data.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(crate) struct FieldRecord<N: Real> {
+    pub(in crate::shape) columns: u32,
+    pub(in crate::shape) heights: Numbers<N>,
+    pub(in crate::shape) scale: Numbers<N>,
+    /// 0 forward, 1 backward, 2 in turn.
+    pub(in crate::shape) diagonals: u8,
+    /// By cell, if any has one: holes in bits 0 and 1, another diagonal in bit 2, a ghost in bit 3.
+    pub(in crate::shape) marks: Vec<u8>,
+    pub(in crate::shape) is_one_sided: bool,
+    pub(in crate::shape) keeps_internal_edges: bool,
+}
+
+/// The shapes that are being saved.
+#[derive(Debug)]
+pub(crate) struct ShapeRecords<N: Real> {
+    /// By address, which is only looked up: that all shapes are alive makes it their identity.
+    numbers: BTreeMap<usize, u32>,
+    limit: PartLimit,
+    pub(crate) records: Vec<ShapeRecord<N>>,
+}
+
+impl<N: Real> ShapeRecords<N> {
+    pub(crate) fn new() -> Self {
+        Self { numbers: BTreeMap::new(), limit: PartLimit::default(), records: Vec::new() }
+    }
+
+    /// The number of a shape, which is saved if it was not before.
+    pub(crate) fn number<const D: usize>(
+        &mut self,
+        shape: &ShapeHandle<N, D>,
+    ) -> Result<u32, UnsavedShape>
+    where
+        N: Space<D>,
+    {
+        let address = core::ptr::from_ref(&**shape).cast::<()>().addr();
+        if let Some(&number) = self.numbers.get(&address) {
+            return Ok(number);
+        }
+        let record = self.record(shape)?;
+        if !self.limit.admits(&record, &**shape) {
+            return Err(UnsavedShape::TooManyParts);
+        }
+        let number = u32::try_from(self.records.len()).map_err(|_| UnsavedShape::TooManyParts)?;
+        self.numbers.insert(address, number);
+        self.records.push(record);
+        Ok(number)
+    }
+
+    fn record<const D: usize>(
+        &mut self,
+        shape: &ShapeHandle<N, D>,
+    ) -> Result<ShapeRecord<N>, UnsavedShape>
+    where
+        N: Space<D>,
+    {
+        if let Some(rounded) = shape.as_shape::<Rounded<N, D>>() {
+            let inner = self.number(rounded.shape())?;
+            return Ok(ShapeRecord::Rounded(inner, Numbers::of([rounded.radius()])));
+        }
+        if let Some(compound) = shape.as_shape::<Compound<N, D>>() {
+            let children = compound.children().iter();
+            let children = children
+                .map(|(at, child)| Ok((self.number(child)?, Numbers::of_isometry::<D>(at))));
+            return Ok(ShapeRecord::Compound(children.collect::<Result<_, _>>()?));
+        }
+        let record = solid::<N, D>(&**shape)
+            .or_else(|| mesh::record::<N, D>(&**shape))
+            .or_else(|| <N::Algorithms>::shape_record(&**shape))
+            .or_else(|| shape.saved().map(ShapeRecord::Own));
+        record.ok_or_else(|| UnsavedShape::Own(format!("{:?}", &**shape)))
+    }
+}
+
+/// The convex solids of both dimensions, and the half-space.
+fn solid<N: Real, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeRecord<N>> {
+    let ends = |segment: &Segment<N, D>| Numbers::of_points(&[*segment.a(), *segment.b()]);
+    let and = |mut numbers: Numbers<N>, more: &[N]| {
+        numbers.extend(more);
+        numbers
+    };
+    let of = |vector: &[N]| Numbers::of(vector.iter().copied());
+    Some(if let Some(ball) = shape.as_shape::<Ball<N>>() {
+        ShapeRecord::Ball(Numbers::of([ball.radius()]))
+    } else if let Some(segment) = shape.as_shape::<Segment<N, D>>() {
+        ShapeRecord::Segment(ends(segment))
+    } else if let Some(capsule) = shape.as_shape::<Capsule<N, D>>() {
+        ShapeRecord::Capsule(and(ends(capsule.segment()), &[capsule.radius()]))
+    } else if let Some(triangle) = shape.as_shape::<Triangle<N, D>>() {
+        ShapeRecord::Triangle(Numbers::of_points(triangle.corners()))
+    } else if let Some(cuboid) = shape.as_shape::<Cuboid<N, D>>() {
+        ShapeRecord::Cuboid(of(cuboid.half_extents().as_slice()))
+    } else if let Some(ellipsoid) = shape.as_shape::<Ellipsoid<N, D>>() {
+        ShapeRecord::Ellipsoid(of(ellipsoid.half_axes().as_slice()))
+    } else if let Some(capsule) = shape.as_shape::<TaperedCapsule<N, D>>() {
+        ShapeRecord::TaperedCapsule(and(ends(capsule.segment()), &capsule.radii()))
+    } else {
+        ShapeRecord::HalfSpace(of(shape.as_shape::<Plane<N, D>>()?.normal().as_slice()))
+    })
+}
+
+/// Makes shapes of their data; `own` makes those of the user's types.
+pub(crate) fn make_all<N: Space<D>, E: From<Damage>, const D: usize>(
+    records: Vec<ShapeRecord<N>>,
+    own: &mut dyn FnMut(&SavedShape) -> Result<ShapeHandle<N, D>, E>,
+) -> Result<Vec<ShapeHandle<N, D>>, E> {
+    let (mut shapes, mut limit) = (Vec::new(), PartLimit::default());
+    for record in records {
+        let shape = match &record {
+            ShapeRecord::Own(saved) => own(saved)?,
+            record => make(record, &shapes)?,
+        };
+        ensure(limit.admits(&record, &*shape), "compounds have too many parts")?;
+        shapes.push(shape);
+    }
+    Ok(shapes)
+}
+
+/// Makes a shape of the library.
+fn make<N: Space<D>, const D: usize>(
+    record: &ShapeRecord<N>,
+    known: &[ShapeHandle<N, D>],
+) -> Result<ShapeHandle<N, D>, Damage> {
+    let held = |number: u32| shape_of(known, number).cloned();
+    Ok(match record {
+        ShapeRecord::Rounded(inner, radius) => {
+            let [radius] = radius.array()?;
+            let made = Rounded::try_from_handle(held(*inner)?, radius);
+            ShapeHandle::new(made.map_err(|error| Damage::found(&error))?)
+        }
+        ShapeRecord::Compound(children) => {
+            let children = children.iter().map(|(number, at)| Ok((at.isometry()?, held(*number)?)));
+            let made = Compound::try_new(children.collect::<Result<_, Damage>>()?);
+            ShapeHandle::new(made.map_err(|error| Damage::found(&error))?)
+        }
+        ShapeRecord::Polyline(mesh) => ShapeHandle::new(Polyline::of_record(mesh)?),
+        ShapeRecord::TriMesh(mesh) => ShapeHandle::new(TriMesh::of_record(mesh)?),
+        record => match make_solid(record)? {
+            Some(shape) => shape,
+            None => <N::Algorithms>::make_shape(record)?,
+        },
+    })
+}
+
+/// The shape of a number.
+pub(crate) fn shape_of<N: Real, const D: usize>(
+    shapes: &[ShapeHandle<N, D>],
+    number: u32,
+) -> Result<&ShapeHandle<N, D>, Damage> {
+    shapes.get(number as usize).ok_or(Damage("there is no shape of a number".into()))
+}
+
+/// Makes what [`solid`] saved; `None` of other kinds.
+fn make_solid<N: Real, const D: usize>(
+    record: &ShapeRecord<N>,
+) -> Result<Option<ShapeHandle<N, D>>, Damage> {
+    Ok(Some(match record {
+        ShapeRecord::Ball(radius) => {
+            let [radius] = radius.array()?;
+            made(Ball::try_new(radius))?
+        }
+        ShapeRecord::Segment(ends) => {
+            let [a, b] = ends.all(NumberSource::points)?;
+            made(Segment::<N, D>::try_new(a, b))?
+        }
+        ShapeRecord::Capsule(sizes) => {
+            let ([a, b], radius) = sizes.all(|sizes| Ok((sizes.points()?, sizes.number()?)))?;
+            made(Capsule::<N, D>::try_from_ends(a, b, radius))?
+        }
+        ShapeRecord::Triangle(corners) => {
+            let [a, b, c] = corners.all(NumberSource::points)?;
+            made(Triangle::<N, D>::try_new(a, b, c))?
+        }
+        ShapeRecord::Cuboid(sizes) => {
+            made(Cuboid::<N, D>::try_new(sizes.all(NumberSource::vector)?))?
+        }
+        ShapeRecord::Ellipsoid(sizes) => {
+            made(Ellipsoid::<N, D>::try_new(sizes.all(NumberSource::vector)?))?
+        }
+        ShapeRecord::TaperedCapsule(sizes) => {
+            let ([a, b], radii) = sizes.all(|sizes| Ok((sizes.points()?, sizes.array()?)))?;
+            made(TaperedCapsule::<N, D>::try_from_ends(a, b, radii))?
+        }
+        ShapeRecord::HalfSpace(normal) => {
+            let normal = Unit::new_unchecked(normal.all(NumberSource::vector)?);
+            made(Plane::<N, D>::try_new(normal))?
+        }
+        _ => return Ok(None),
+    }))
+}
+
+/// The shape, unless the constructor refused it.
+fn made<N: Real, S: Shape<N, D>, E: core::fmt::Display, const D: usize>(
+    result: Result<S, E>,
+) -> Result<ShapeHandle<N, D>, Damage> {
+    result.map(ShapeHandle::new).map_err(|error| Damage::found(&error))
+}
+
+/// Parts that compounds may have however few there are in the data.
+const FREE_PARTS: u64 = 1 << 20;
+
+/// How many parts a compound may have: those that are in the data, and some more. A few compounds that hold each other
+/// twice would have more parts than there is memory for their contacts.
+#[derive(Debug, Default)]
+struct PartLimit {
+    listed: u64,
+}
+
+impl PartLimit {
+    /// The shape has no more parts than is allowed.
+    fn admits<N: Real, const D: usize>(
+        &mut self,
+        record: &ShapeRecord<N>,
+        shape: &dyn Shape<N, D>,
+    ) -> bool {
+        let parts = shape.geometry().as_composite().map_or(1, CompositeShape::num_parts);
+        let (listed, may_repeat) = match record {
+            ShapeRecord::Compound(children) => (children.len() as u64, true),
+            _ => (parts.into(), false),
+        };
+        self.listed = self.listed.saturating_add(listed);
+        !may_repeat || u64::from(parts) <= FREE_PARTS.saturating_add(self.listed)
+    }
+}
