@@ -2,10 +2,10 @@
 //!
 //! The squared distance of a point from a box is a sum over the axes. Along a segment its slope is
 //! piecewise linear, with breaks where the segment crosses the planes of faces, so the nearest
-//! point is found between two of them. If the two overlap, the separating axis test over three
-//! faces and three pairs of edges is exact. Answers whose points are not as far apart as supporting
-//! planes go to the general algorithm. The test of [`hulls`](crate::collide::separation::hulls)
-//! takes twice as long.
+//! point is found between two breaks. If the two overlap, the separating axis test over three faces
+//! and three pairs of edges is exact. Results whose points are not as far apart as supporting
+//! planes fall back to the general algorithm. The test of
+//! [`hulls`](crate::collide::separation::hulls) takes twice as long.
 //!
 //! ```text
 //!   slope of the squared distance along the segment, by share of its length
@@ -68,8 +68,9 @@ struct LocalSegment<'a, N: Real> {
 struct Parting<N: Real> {
     /// Unit vector from the solid to the segment.
     outward: Vector<N, 3>,
-    /// Points of the segment and of the solid, across from each other.
+    /// Point of the core that faces `on_solid`.
     on_segment: Vector<N, 3>,
+    /// Point of the solid that faces `on_segment`.
     on_solid: Vector<N, 3>,
     /// Signed distance of the core from the solid.
     distance: N,
@@ -80,7 +81,7 @@ enum SegmentResult<N: Real> {
     /// The core is farther from the solid than the limit.
     Beyond,
     Found(Parting<N>),
-    /// No answer is proved.
+    /// No result is proved; the general algorithm has to decide.
     Unproved,
 }
 
@@ -90,7 +91,7 @@ fn rounding_error<N: Real>() -> N {
 }
 
 impl<'a, N: Real> LocalSegment<'a, N> {
-    /// `None` if the size of the pair, or its reciprocal, is zero or not finite.
+    /// Scales a segment; `None` if the size of the pair, or its reciprocal, is zero or not finite.
     fn new(ends: [&Point<N, 3>; 2], pose12: &'a Pose<N, 3>, reach: N) -> Option<Self> {
         let of_ends = max(max_component(&ends[0].coords), max_component(&ends[1].coords));
         let size = max(max(reach, max_component(&pose12.translation)), of_ends);
