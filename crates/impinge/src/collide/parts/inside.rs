@@ -39,7 +39,7 @@ pub(crate) struct InsidePiece<N: Real, const D: usize> {
     /// Nearest pair of a part of the piece and a part of the boundary behind which the body ends;
     /// `None` before one is found.
     nearest: Option<PartSeparation<N, D>>,
-    /// Nearest pair behind whose boundary part another body begins; used only if `nearest` is
+    /// Nearest pair behind whose boundary part the body does not end; used only if `nearest` is
     /// `None`.
     blocked: Option<PartSeparation<N, D>>,
 }
