@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A ball around the origin of its frame contains a solid at any rotation. So the balls of two
-//! solids, whose radii cost little to read, and the difference of their positions reject most pairs,
-//! without computing a rotation, an order of the two, or a feature.
+//! solids, whose radii cost little to read, and the difference of their positions reject most
+//! pairs, without computing a rotation, an order of the two, or a feature.
 //!
 //! A pair is rejected only if the algorithms would reject it. Their errors are some hundred epsilon
 //! of the lengths of the pair, and all of these are at most twice the distance of the origins if

@@ -15,7 +15,7 @@ use crate::math::order::askew;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, SupportMap};
 
-/// Two solids, the first at the origin of the frame of the answer.
+/// Two solids in the frame of the first, in which results are computed.
 ///
 /// The kinds are in the fixed order of [`crate::shape::ShapeKind`]: `first ≤ second`.
 #[derive(Clone, Copy)]
@@ -90,8 +90,8 @@ impl<'a, N: Real, const D: usize> Placing<'a, N, D> for Placed<'a, N, D> {
 /// Returns the pair in an order that does not depend on the order of the arguments, and whether
 /// that order is the reverse of theirs.
 ///
-/// Every answer about two solids is computed in this order and flipped at the end, so that swapping
-/// the arguments flips the answer bit for bit. Kinds come in the order of
+/// Every result about two solids is computed in this order and flipped at the end, so that swapping
+/// the arguments flips the result bit for bit. Kinds come in the order of
 /// [`crate::shape::ShapeKind`]. Equal kinds are ordered by their world translations along an
 /// [`askew`] direction, then by all coordinates, then by rotation (a ball has none), then by their
 /// own numbers. Solids that agree in all of these are the same, and so is the answer. (The numbers

@@ -189,15 +189,16 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
                 let mix = Mix::nearest(&best, &corners);
                 return finish(difference, &best, &mix, hull.vertices());
             }
-            // Flat faces are close; smooth parts are found faster by Newton's method than by growing.
+            // Flat faces are close; smooth parts are found faster by Newton's method than by
+            // growing.
             if converges(difference, &mut best) {
                 hull.keep(&[best.vertex]);
                 return locate(difference, &best, hull.vertices());
             }
         }
         if hull.contains(&candidate.vertex) {
-            // The support point is already a vertex, yet lies beyond this face: rounding has made the
-            // hull non-convex. The face grows no more; its offset becomes `-candidate.height`.
+            // The support point is already a vertex, yet lies beyond this face: rounding has made
+            // the hull non-convex. The face grows no more; its offset becomes `-candidate.height`.
             hull.finalize(index, -candidate.height);
         } else {
             hull.extend(index, candidate.vertex);

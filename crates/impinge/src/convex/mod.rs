@@ -66,14 +66,14 @@ use gjk::Answer;
 /// beyond rounding. At a distance of exactly `limit` the answer is `Some`; with an infinite limit
 /// it always is, for finite input. NaN or infinity in the pose gives `None`.
 ///
-/// `distance` is the certificate of `normal`. Let `s` be the sum of the reaches of the cores and of
-/// the distance of their origins. `distance` falls short of the exact value by a few
+/// `distance` is the height of `normal`. Let `s` be the sum of the bounding radii of the cores and
+/// of the distance of their origins. `distance` falls short of the exact value by a few
 /// `N::EPSILON · s` for flat-faced cores and for curved ones that provide their curvature
 /// ([`SupportMap::curved_support`]); for other curved ones by about the larger of that and
 /// `2⁻⁴⁰ · s`. If a whole ring of normals is nearly as good, as deep in nearly coaxial cylinders or
 /// cones, the ring of a round side is searched ([`SupportMap::round_side`]). Only if there is none,
-/// and all normals around are about as good, as in the middle of a ball, a local search ends the
-/// work, which may fall short by more. The points lie on the cores to the same accuracy; on curved
+/// and all normals nearby are about as good, as in the middle of a ball, a local search gives the
+/// result, which may fall short by more. The points lie on the cores to the same accuracy; on curved
 /// cores without curvature to about its square root at worst. Of several equally good normals (for
 /// coincident centres, say) the same one is chosen each time. Cores that are single coincident
 /// points have no direction: the first axis is taken.

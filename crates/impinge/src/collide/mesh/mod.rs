@@ -87,8 +87,8 @@ pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     ids: PairIds,
     /// Centre of the first shape, in the frame of the second, at the last update in which it had
     /// not crossed the surface. It decides sides: a solid that was pushed halfway through a
-    /// two-sided surface, or jumped across it, still counts as being on its old side. `None` before
-    /// the first update.
+    /// two-sided surface, or jumped across it, still counts as being on its old side. `None` if
+    /// there is no such update, or the first shape is not convex.
     reference: Reference<N, D>,
     /// Pose of the second shape in the frame of the first at the last update.
     pose12: Pose<N, D>,

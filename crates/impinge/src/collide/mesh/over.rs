@@ -65,8 +65,8 @@ struct Border<N: Real> {
     margin: N,
 }
 
-/// Returns the side or corner whose Voronoi region contains the point; `None` close to the border of
-/// a region.
+/// Returns the side or corner whose Voronoi region contains the point; `None` close to the border
+/// of a region.
 fn beside<N: Real>(border: &Border<N>) -> Option<FeatureId> {
     let Border { sides, arms, lengths, insides, margin } = border;
     // Where two sides meet at a small angle, the nearest point may be on the other side.

@@ -231,9 +231,9 @@ impl<N: Real> SegmentQuery<'_, N> {
         (first <= last).then_some((first, last))
     }
 
-    /// Queries the edge directions: returns the edge that forms a face of the Minkowski difference
-    /// with the segment and separates the two most, with that separation. `None` unless it does so
-    /// more than the reference face, by more than rounding.
+    /// Queries the edge directions. Returns the edge that forms a face of the Minkowski difference
+    /// with the segment and has the largest signed distance, with that distance. `None` unless it
+    /// exceeds the distance along the reference face by more than rounding.
     #[inline(always)]
     fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -261,7 +261,7 @@ impl<N: Real> SegmentQuery<'_, N> {
                 |axis| end[axis] - V::load(simd, &block.from[axis]),
             );
             let height = dot(&across, &away) * V::load(simd, &outward) / squared.sqrt();
-            // Parallel edges have no perpendicular; faces separate the two as much.
+            // Parallel edges have no common perpendicular; faces then separate the two as much.
             let separations = squared.simd_gt(tiny).select(height, V::all(simd, -N::INFINITY));
             let highest = highest_lane(separations);
             if highest > largest {
@@ -273,16 +273,16 @@ impl<N: Real> SegmentQuery<'_, N> {
         best.map(|edge| (edge, largest))
     }
 
-    /// Returns the sign that turns the cross product of an edge and the segment out of the solid.
-    /// The edge runs around its first face, so the product points outwards if the segment climbs
-    /// over that face.
+    /// Returns the sign that makes the cross product of an edge and the segment point out of the
+    /// solid. The edge runs around its first face, so the product points outwards if the segment
+    /// climbs over that face.
     fn outward(&self, edge: usize, climbed: u64) -> N {
         let [first, _] = self.solid.edges[edge].faces;
         if climbed >> first & 1 == 1 { N::ONE } else { -N::ONE }
     }
 
-    /// Returns the answer at the nearest points of an edge and the segment along their
-    /// perpendicular, if proved.
+    /// Returns the separation at the nearest points of an edge and the segment along their common
+    /// perpendicular; `None` without a proof.
     #[inline(always)]
     fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -296,7 +296,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         self.proved::<S, V>(simd, vertices, &normal, points)
     }
 
-    /// Returns the answer at the nearest of the visible edges, if supporting planes prove it.
+    /// Returns the separation at the nearest of the visible edges; `None` unless supporting planes
+    /// prove it.
     #[inline(always)]
     fn nearest_edge<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -327,8 +328,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         self.proved::<S, V>(simd, vertices, &normal_between(&points, &across)?, points)
     }
 
-    /// Returns the answer along the unit vector `normal`, if proved: both points are as far apart
-    /// along it as the supporting planes.
+    /// Returns the separation along the unit vector `normal`; `None` unless both points are as far
+    /// apart along it as the supporting planes.
     #[inline(always)]
     fn proved<S: Simd, V: Wide<S, Scalar = N>>(
         &self,

@@ -25,8 +25,8 @@ pub(crate) struct Nearest<V, M, const D: usize> {
     pub(crate) is_inside: M,
     /// Vector from the first end to the last.
     pub(crate) along: [V; D],
-    /// Coordinate of the given point along `along`, measured from the first end, times the length of
-    /// the segment.
+    /// Coordinate of the given point along `along`, measured from the first end, times the length
+    /// of the segment.
     pub(crate) from_first: V,
     /// Coordinate of the given point against `along`, measured from the last end, times the length
     /// of the segment.

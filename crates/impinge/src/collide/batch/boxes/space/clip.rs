@@ -185,9 +185,9 @@ where
         coordinates: [V; 2],
     ) -> CornerPosition<V, M> {
         let (tolerance, zero) = (self.faces.tolerance, V::all(self.simd, N::ZERO));
-        // A crossing counts only farther than the tolerance from all ends. Corners count up to twice
-        // the tolerance outside, so that rounding never drops both a corner and the crossing next
-        // to it.
+        // A crossing counts only farther than the tolerance from all ends. Corners count up to
+        // twice the tolerance outside, so that rounding never drops both a corner and the crossing
+        // next to it.
         let out = -(tolerance + tolerance);
         CornerPosition {
             flat,
