@@ -1,4 +1,4 @@
-//! Rejects shapes that are certainly too far apart, before anything is rotated.
+//! Rejects pairs of shapes that are certainly too far apart, before any rotation is computed.
 //!
 //! ```text
 //!     (  o1  ) - - - - between - - - - (   o2   )      balls around the origins hold the shapes
@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A ball around the origin of its frame contains a solid at any rotation. So the balls of two
-//! solids, whose radii are known at once, and the difference of their positions reject most pairs,
-//! without a rotation, an order of the two, or a feature.
+//! solids, whose radii cost little to read, and the difference of their positions reject most
+//! pairs, without computing a rotation, an order of the two, or a feature.
 //!
 //! A pair is rejected only if the algorithms would reject it. Their errors are some hundred epsilon
 //! of the lengths of the pair, and all of these are at most twice the distance of the origins if
@@ -22,7 +22,8 @@ use crate::shape::{Geometry, Kind, Shape};
 /// Factor by which a squared distance must exceed the squared lengths that it is compared with.
 const ROOM: f64 = 1.0 + 1.0 / 64.0;
 
-/// Two shapes and the vector from the origin of the first to that of the second, in any frame.
+/// Two shapes and the vector from the origin of the first to the origin of the second, in any
+/// frame.
 #[derive(Clone, Copy)]
 pub(crate) struct Apart<'a, N: Real, const D: usize> {
     pub(crate) shapes: [Geometry<'a, N, D>; 2],
@@ -39,8 +40,8 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         !self.shapes.iter().any(is_without)
     }
 
-    /// Returns [`Self::is_beyond`] where the answer costs less than the call: for two balls, and
-    /// for shapes without balls, which are never beyond. `None` for other pairs.
+    /// Returns the result of [`Self::is_beyond`] if it is cheaper than the call: for two balls, and
+    /// for shapes without known balls, which are never beyond. `None` for other pairs.
     #[inline]
     pub(crate) fn is_known_beyond(&self, limit: N) -> Option<bool> {
         if let [Kind::Ball(one), Kind::Ball(other)] = self.shapes.mapped(|shape| shape.0) {
@@ -50,7 +51,7 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         (!self.has_balls()).then_some(false)
     }
 
-    /// Returns [`Self::is_known_beyond`] if that is known, else [`Self::is_beyond`].
+    /// Returns [`Self::is_known_beyond`] if it is `Some`, else [`Self::is_beyond`].
     #[inline]
     pub(crate) fn is_certainly_beyond(&self, limit: N) -> bool {
         self.is_known_beyond(limit).unwrap_or_else(|| are_beyond(self, limit))
@@ -59,13 +60,13 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
     /// Returns whether the shapes are certainly farther apart than `limit`; a negative limit and
     /// NaN count as zero.
     ///
-    /// `false` proves nothing; it is the answer for half-spaces, composites and users' support
-    /// maps, for which no ball is known.
+    /// `false` proves nothing. It is also the result for half-spaces, composites and user-defined
+    /// support maps, for which no ball is known.
     pub(crate) fn is_beyond(&self, limit: N) -> bool {
         exceeds(self.between.norm_squared(), max_distance(self.extents(), limit))
     }
 
-    /// Sum of the radii of the balls.
+    /// Returns the sum of the radii of the balls.
     fn extents(&self) -> N {
         self.shapes[0].extent() + self.shapes[1].extent()
     }
@@ -84,7 +85,7 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         }
         let nearest = if is_still { N::ZERO } else { -along / speed_squared };
         let offset = self.between + velocity * max(min(nearest, end), N::ZERO);
-        // The vector has an error of some epsilon of the distance that it began with.
+        // The offset has an error of some epsilons of the distance at time zero.
         let rounding = max_component(&self.between) * N::lit(4096.0) * N::EPSILON;
         exceeds(offset.norm_squared(), max_distance(self.extents(), limit) + rounding)
     }
@@ -93,7 +94,8 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
 /// Bounds of a shape in its own frame: a ball around the origin and a box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReachBounds<N: Real, const D: usize> {
-    /// Radius of the ball; infinite if none is known, and the box then proves nothing.
+    /// Radius of the ball; infinite if no ball is known, in which case the box proves nothing
+    /// either.
     extent: N,
     middle: Vector<N, D>,
     half: Vector<N, D>,
@@ -112,14 +114,14 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
         }
     }
 
-    /// Returns [`Geometry::turns`].
+    /// Returns whether rotating the shape changes it: [`Geometry::turns`].
     #[inline]
     pub(crate) const fn turns(&self) -> bool {
         self.turns
     }
 
-    /// Returns a bound of the distance of the shape's points from the origin of its frame; infinite
-    /// if none is known.
+    /// Returns an upper bound of the distance of the shape's points from the origin of its frame;
+    /// infinite if no bound is known.
     pub(crate) fn reach(&self) -> N {
         // NaN for the box of a half-space, which proves nothing.
         let corner = (self.middle.abs() + self.half).norm();
@@ -132,11 +134,11 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
         exceeds(between.norm_squared(), max_distance(self.extent + other.extent, limit))
     }
 
-    /// Returns whether the boxes are farther apart than `limit` along an axis of one of them, by
-    /// 2⁻⁸ of all lengths of the pair: 2¹⁵ epsilon of `f32`. `pose12` is the pose of the other
-    /// shape in the frame of this one.
+    /// Returns whether the boxes are farther apart than `limit` along an axis of one of them, by at
+    /// least 2⁻⁸ of all lengths of the pair: 2¹⁵ epsilons of `f32`. `pose12` is the pose of the
+    /// other shape in the frame of this one.
     ///
-    /// `false` proves nothing; it is the answer for NaN and if the sum of the lengths is not
+    /// `false` proves nothing. It is also the result for NaN, and if the sum of the lengths is not
     /// finite.
     pub(crate) fn has_box_clear_of(&self, other: &Self, pose12: &Pose<N, D>, limit: N) -> bool {
         let turn = &pose12.rotation;
@@ -153,12 +155,12 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
             }
             widest = max(widest, max(away[one].abs() - first, back[one].abs() - second));
         }
-        // Subnormal lengths are not precise.
+        // Subnormal lengths have too few digits.
         widest > least && least > N::MIN_POSITIVE
     }
 }
 
-/// Largest distance of the origins at which the shapes can be within `limit`.
+/// Returns the largest distance of the origins at which the shapes can be within `limit`.
 #[inline]
 fn max_distance<N: Real>(extents: N, limit: N) -> N {
     extents + max(limit, N::ZERO)

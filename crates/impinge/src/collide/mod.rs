@@ -1,7 +1,7 @@
 //! Computes contacts: from two shapes and their poses to the points of a manifold.
 //!
-//! This is the floor between the algorithms that know no shapes ([`crate::convex`]) and the queries
-//! of users ([`crate::query`]). From bottom to top:
+//! This layer lies between the algorithms on convex sets, which use no shapes ([`crate::convex`]),
+//! and the public queries ([`crate::query`]). From bottom to top:
 //!
 //! - [`pair`] puts two shapes in canonical order, and one in the frame of the other;
 //! - [`separation`] computes the signed distance, normal and nearest points of two solids;

@@ -1,23 +1,24 @@
-//! Parts of a surface side by side, for computing with 8 at a time.
+//! Corners of the parts of a surface side by side, for computing with 8 parts at a time.
 //!
 //! ```text
 //!   corners[c][axis][lane]     c: corner 0, 1, 2 of the part; a segment has its second end twice
 //!                              lane: part `tile * 8 + lane` of a list; the last part fills up
 //! ```
 //!
-//! `mesh/part_cache.rs` keeps lists of them, called tiles. `mesh/cull.rs`, `separation/triangles`,
-//! `separation/chain` and `manifold/face_lanes` read them 8 lanes at a time.
+//! `mesh/part_cache.rs` keeps lists of packets, called tiles. `mesh/cull.rs`,
+//! `separation/triangles`, `separation/chain` and `manifold/face_lanes` read packets 8 lanes at a
+//! time.
 
 use crate::math::{Point, Real};
 
-/// Parts in one packet.
+/// Number of parts in one packet.
 pub(crate) const LANES: usize = 8;
 
-/// Corners of 8 parts in the frame of their composite. A segment has its second end twice; if
-/// there are fewer parts, the last one fills the rest.
+/// Corners of 8 parts in the frame of their composite. For a segment, the second end occurs twice;
+/// if there are fewer parts, copies of the last one fill the remaining lanes.
 #[derive(Clone, Debug)]
 pub(crate) struct PartPacket<N, const D: usize> {
-    /// Indexed by corner and coordinate.
+    /// Coordinates, indexed by corner, axis and lane.
     pub(crate) corners: [[[N; LANES]; D]; 3],
 }
 
@@ -26,7 +27,7 @@ impl<N: Real, const D: usize> PartPacket<N, D> {
         Self { corners: [[[N::ZERO; LANES]; D]; 3] }
     }
 
-    /// Copies part `lane` of another packet to the lane `at`.
+    /// Copies part `lane` of another packet into the lane `at`.
     #[inline]
     pub(crate) fn copy(&mut self, at: usize, given: &Self, lane: usize) {
         for (rows, given) in self.corners.iter_mut().zip(&given.corners) {

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! `pose12` is computed from the difference of the positions, so two solids near each other lose no
-//! digits far from the world's origin. A ball has no rotation, wherever it is placed.
+//! digits far from the world's origin. The rotation of a ball is ignored.
 
 use core::cmp::Ordering;
 
@@ -15,19 +15,20 @@ use crate::math::order::askew;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, SupportMap};
 
-/// Two solids, the first at the origin of the frame of the answer.
+/// Two solids in the frame of the first, in which results are computed.
 ///
 /// The kinds are in the fixed order of [`crate::shape::ShapeKind`]: `first ≤ second`.
 #[derive(Clone, Copy)]
 pub(crate) struct Pair<'a, N: Real, const D: usize> {
     pub(crate) first: Kind<'a, N, D>,
     pub(crate) second: Kind<'a, N, D>,
-    /// The pose of the second solid in the frame of the first.
+    /// Pose of the second solid in the frame of the first.
     pub(crate) pose12: Pose<N, D>,
 }
 
 impl<'a, N: Real, const D: usize> Pair<'a, N, D> {
-    /// Pairs two solids in canonical order at poses in the world; a ball counts as unrotated.
+    /// Makes a pair of two solids in canonical order, with poses in the world; the rotation of a
+    /// ball is ignored.
     #[inline]
     pub(crate) fn new(
         [first, second]: [Geometry<'a, N, D>; 2],
@@ -38,7 +39,8 @@ impl<'a, N: Real, const D: usize> Pair<'a, N, D> {
     }
 }
 
-/// Returns the pose of a solid in the frame of the first one; `first_turns` is false for a ball.
+/// Returns the pose of the second solid in the frame of the first. `first_turns` is `false` if the
+/// first is a ball, whose rotation is ignored.
 #[inline]
 pub(crate) fn pose_between<N: Real, const D: usize>(
     first_turns: bool,
@@ -50,19 +52,19 @@ pub(crate) fn pose_between<N: Real, const D: usize>(
     Pose { rotation: pose2.rotation, translation: pose2.translation - pose1.translation }
 }
 
-/// A solid at its pose in the world. The rotation of a ball counts as none.
+/// A solid and its pose in the world. The rotation of a ball is ignored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'a, N: Real, const D: usize> {
     pub(crate) pose: Pose<N, D>,
     pub(crate) shape: Geometry<'a, N, D>,
 }
 
-/// A shape that is placed when it is near enough: its position is read before its rotation is
-/// converted to a matrix.
+/// A shape whose full pose is computed only if it is near: its position is read first, and its
+/// rotation is converted to a matrix only by [`Self::placed`].
 pub(crate) trait Placing<'a, N: Real, const D: usize> {
     fn shape(&self) -> Geometry<'a, N, D>;
 
-    /// Position of the origin of its frame.
+    /// Returns the position of the frame's origin in the world.
     fn translation(&self) -> Vector<N, D>;
 
     fn placed(&self) -> Placed<'a, N, D>;
@@ -86,10 +88,10 @@ impl<'a, N: Real, const D: usize> Placing<'a, N, D> for Placed<'a, N, D> {
 }
 
 /// Returns the pair in an order that does not depend on the order of the arguments, and whether
-/// that is the reverse of theirs.
+/// that order is the reverse of theirs.
 ///
-/// Every answer about two solids is computed in this order and flipped at the end, so that swapping
-/// the arguments flips the answer bit for bit. Kinds come in the order of
+/// Every result about two solids is computed in this order and flipped at the end, so that swapping
+/// the arguments flips the result bit for bit. Kinds come in the order of
 /// [`crate::shape::ShapeKind`]. Equal kinds are ordered by their world translations along an
 /// [`askew`] direction, then by all coordinates, then by rotation (a ball has none), then by their
 /// own numbers. Solids that agree in all of these are the same, and so is the answer. (The numbers
@@ -116,7 +118,7 @@ pub(crate) fn canonical<'a, N: Real, const D: usize>(
 pub(crate) struct Ordered<'p, 'a, N: Real, const D: usize> {
     pub(crate) first: &'p Placed<'a, N, D>,
     pub(crate) second: &'p Placed<'a, N, D>,
-    /// This order is the reverse of that of the arguments.
+    /// Whether this order is the reverse of the arguments' order.
     pub(crate) swapped: bool,
 }
 
@@ -146,9 +148,9 @@ impl<'p, 'a, N: Real, const D: usize> Ordered<'p, 'a, N, D> {
     }
 }
 
-/// Returns whether the order of [`canonical`] is the reverse of that of the arguments.
+/// Returns whether the order of [`canonical`] is the reverse of the arguments' order.
 ///
-/// Solids of one kind come in either order equally often. The answer is computed as a value, not by
+/// Solids of one kind come in either order equally often. The result is computed as a value, not by
 /// a branch, so that mispredictions do not stall on distant memory.
 #[inline]
 pub(crate) fn is_swapped<N: Real, const D: usize>(
@@ -166,8 +168,8 @@ pub(crate) fn is_swapped<N: Real, const D: usize>(
     if kind1 == kind2 { is_beyond } else { kind1 > kind2 }
 }
 
-/// Compares by the order of [`canonical`]: equal if nothing distinguishes the solids and their
-/// poses.
+/// Compares two placed solids by the order of [`canonical`]; equal if nothing distinguishes the
+/// solids and their poses.
 #[inline]
 pub(crate) fn order<N: Real, const D: usize>(
     placed1: &Placed<'_, N, D>,
@@ -176,7 +178,8 @@ pub(crate) fn order<N: Real, const D: usize>(
     compare(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape)
 }
 
-/// Compares by the order of [`canonical`]. Nearly always positions decide for solids of one kind.
+/// Compares two solids by the order of [`canonical`]. For solids of one kind, positions nearly
+/// always decide.
 #[inline]
 fn compare<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -198,14 +201,15 @@ fn compare<N: Real, const D: usize>(
     }
 }
 
-/// Signed distance from one solid to another along an [`askew`] direction. So the order of two
-/// solids that vibrate on each other, or stand in a grid, does not change.
+/// Returns the signed distance from one solid's position to the other's along an [`askew`]
+/// direction. With this direction, the order does not change for solids that vibrate on each other,
+/// or stand in a grid.
 #[inline]
 fn signed_distance<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> N {
     askew(&(pose2.translation - pose1.translation))
 }
 
-/// Compares solids of one kind whose positions do not decide.
+/// Compares solids of one kind whose signed distance does not decide.
 #[cold]
 fn compare_at_length<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -247,7 +251,7 @@ fn compare_parts<N: Real, const D: usize>(
     counts.then_with(|| orders.find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
 }
 
-/// Compares lexicographically; NaN and zeros of two signs by their bits.
+/// Compares lexicographically; NaN, and zeros of different sign, are ordered by their bits.
 fn compare_numbers<N: Real>(numbers1: &[N], numbers2: &[N]) -> Ordering {
     for (number1, number2) in numbers1.iter().zip(numbers2) {
         let by_value = number1.partial_cmp(number2).unwrap_or(Ordering::Equal);
@@ -259,7 +263,7 @@ fn compare_numbers<N: Real>(numbers1: &[N], numbers2: &[N]) -> Ordering {
     numbers1.len().cmp(&numbers2.len())
 }
 
-/// Returns the defining numbers of a solid. Only called if kinds and poses agree.
+/// Returns the defining numbers of a solid; needed only if kinds and poses are equal.
 fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
     match kind {
         Kind::Ball(ball) => vec![ball.radius()],
@@ -287,7 +291,7 @@ fn numbers<N: Real, const D: usize>(kind: &Kind<'_, N, D>) -> Vec<N> {
         }
         Kind::SupportMap(map) => probed(*map),
         Kind::Plane(plane) => plane.normal().as_slice().to_vec(),
-        // Compared part by part.
+        // Composites are compared part by part.
         Kind::Composite(_) => Vec::new(),
     }
 }
@@ -297,8 +301,8 @@ fn coordinates<N: Real, const D: usize>(points: &[Point<N, D>]) -> Vec<N> {
     points.iter().flat_map(|point| point.coords.as_slice().to_vec()).collect()
 }
 
-/// Returns numbers of an unknown solid: its rounding and its support points along both directions
-/// of each axis and along the diagonals.
+/// Returns numbers that characterise a user-defined solid: its rounding radius, and its support
+/// points along both directions of each axis and along the diagonals.
 fn probed<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> Vec<N> {
     let mut numbers = vec![map.rounding()];
     for axis in 0..D {

@@ -6,9 +6,11 @@
 //!                point2 = point1 + normal · distance
 //! ```
 //!
-//! The `code` of a point names its features and its slot in a batch
-//! (`collide/batch/boxes/choose.rs`), or is 0: all other code that makes a point or changes its
-//! features sets it to 0.
+//! The `code` of a point of a box pair identifies its features and its slot in a batch
+//! (`collide/batch/boxes/choose.rs`); 0 stands for neither. Code that makes a point of a convex
+//! pair, or changes its features, must set `code` to 0, because the batch kernels trust it. Points
+//! of composite pieces (`mesh/scene.rs`) may keep a code that does not fit their features; no
+//! kernel reads them.
 
 use smallvec::SmallVec;
 

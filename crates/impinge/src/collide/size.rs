@@ -1,15 +1,15 @@
-//! Size of the solids of a pair, for lengths that are proportional to it.
+//! Size of a pair of solids, for lengths that are proportional to it.
 //!
-//! The tolerances of `manifold/ids.rs` (`SHARE`, `REACH`) and of `manifold/mod.rs` (`SLACK`) are
-//! shares of it; `batch` computes it in lanes.
+//! The tolerances in `manifold/ids.rs` (`SHARE`, `REACH`) and in `manifold/mod.rs` (`SLACK`) are
+//! fractions of this size; `batch` computes it in lanes.
 
 use crate::math::{Point, Real, Vector, min};
 use crate::shape::{Geometry, Kind, SupportMap};
 
 /// Returns half the diagonal of the local box of the smaller solid; infinite if both are unbounded.
 ///
-/// The box is used, not the reach from the local origin: a part's vertices may lie far from its
-/// origin.
+/// The box is used, not the bounding radius around the local origin, because a part's vertices may
+/// lie far from its origin.
 pub(crate) fn smaller_size<N: Real, const D: usize>(kinds: [Kind<'_, N, D>; 2]) -> N {
     min(half_diagonal(kinds[0]), half_diagonal(kinds[1]))
 }

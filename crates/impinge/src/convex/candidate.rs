@@ -1,20 +1,22 @@
-//! A normal and the proof of how far it separates.
+//! A normal and a lower bound of the signed distance along it.
 
 use super::difference::{Difference, Vertex};
 use crate::math::{Real, Vector};
 
-/// A unit vector from the first core to the second with its certificate.
+/// Unit vector from the first core to the second, and the height that proves how far it separates
+/// them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SupportCandidate<N: Real, const D: usize> {
     pub(super) normal: Vector<N, D>,
-    /// `min n·b − max n·a`: a lower bound of the signed distance, whatever the normal.
+    /// `min n·b − max n·a` for this normal `n`: a lower bound of the signed distance, for any
+    /// normal.
     pub(super) height: N,
-    /// The point of the difference at that height.
+    /// Point of the difference with that height along the normal.
     pub(super) vertex: Vertex<N, D>,
 }
 
 impl<N: Real, const D: usize> SupportCandidate<N, D> {
-    /// Computes the certificate of a unit vector.
+    /// Computes the height of a unit vector.
     #[inline]
     pub(super) fn along<S>(difference: &S, normal: Vector<N, D>) -> Self
     where
@@ -24,7 +26,7 @@ impl<N: Real, const D: usize> SupportCandidate<N, D> {
         Self { normal, height: normal.dot(&vertex.point), vertex }
     }
 
-    /// Replaces this by `other` if that proves more; returns whether it did.
+    /// Replaces this candidate by `other` if that has a larger height; returns whether it did.
     #[inline]
     pub(super) fn improve(&mut self, other: &Self) -> bool {
         let better = other.height > self.height;
@@ -34,7 +36,8 @@ impl<N: Real, const D: usize> SupportCandidate<N, D> {
         better
     }
 
-    /// Replaces this by `other` if that proves as much, up to `slack`.
+    /// Replaces this candidate by `other` unless the height of `other` is lower by more than
+    /// `slack`.
     pub(super) fn prefer(&mut self, other: Self, slack: N) {
         if other.height >= self.height - slack {
             *self = other;

@@ -1,4 +1,4 @@
-//! From a good normal of an overlap to the best one nearby.
+//! Local search for the normal of an overlap with the largest height, from a good one.
 
 use super::candidate::SupportCandidate;
 use super::difference::{Difference, Moved, rounding_error};
@@ -6,20 +6,20 @@ use super::gjk::nearest_normal;
 use super::simplex::Simplicial;
 use crate::math::{Vector, max, unit_or};
 
-/// Cap on the number of steps; each finds a nearest point.
+/// Cap on the number of steps; each step searches a nearest point.
 const STEPS: usize = 40;
 /// Cap on the doublings of one step.
 const DOUBLINGS: usize = 16;
 
-/// Raises the height of `best` as far as a local search can.
+/// Raises the height of `best` to a local maximum, up to the cap on the steps.
 ///
 /// The difference is moved along the normal `n` by `D` until it is free of the origin. The normal
 /// `m` of its nearest point then maximises `h(m) + D m·n`. As `m·n` is largest at `n`, the height
 /// of `m` is at least that of `n`. This is the proximal point method (R. T. Rockafellar, "Monotone
-/// Operators and the Proximal Point Algorithm", 1976), which is not disturbed by kinks of `h`, the
-/// flat faces. If heights hardly differ nearby, its steps are short, so each is doubled while that
-/// helps. If that does not help, the ascent may follow a curved ridge: then each trial is first
-/// brought back to the ridge by a step of its own.
+/// Operators and the Proximal Point Algorithm", 1976), which also works at the kinks of `h`, the
+/// normals of flat faces. If heights hardly differ nearby, its steps are short, so each step is
+/// doubled while the height grows. If doubling does not raise the height, the ascent may follow a
+/// curved ridge: then each trial is first moved back to the ridge by a step of the method.
 pub(super) fn climb<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -40,8 +40,8 @@ pub(super) fn climb<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Continues in the direction of a step, twice as far each time, while that helps; returns whether
-/// it did. `trial` makes a candidate from a normal.
+/// Continues in the direction of a step, twice as far each time, while the height grows; returns
+/// whether it did. `trial` makes a candidate from a normal.
 fn stride<N: Simplicial<D>, const D: usize>(
     best: &mut SupportCandidate<N, D>,
     step: &Vector<N, D>,
@@ -58,7 +58,7 @@ fn stride<N: Simplicial<D>, const D: usize>(
     true
 }
 
-/// Computes one step of the method.
+/// Returns the candidate after one step of the proximal point method.
 fn raised<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     from: &SupportCandidate<N, D>,

@@ -1,24 +1,25 @@
-//! Difference of two cores as one convex set, in units in which it is about 1 large.
+//! Difference of two cores as one convex set, in units in which its size is about 1.
 
 use super::peak::{Peak, Peaks};
 use super::{Separation, Units};
 use crate::math::{Matrix, Point, Pose, Real, Vector, max, max_component, unit_or};
 use crate::shape::SupportMap;
 
-/// Returns the rounding error of arithmetic, in units of the pair.
+/// Returns the bound of arithmetic rounding errors, in units of the pair.
 pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// Returns the gap between the bounds of an answer that iterations aim for, in units of the pair.
+/// Returns the gap between the lower and upper bound of the distance at which iterations stop, in
+/// units of the pair.
 ///
-/// Flat-faced cores are solved exactly after finitely many steps; curved ones stop at this gap:
-/// 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
+/// Flat-faced cores are solved exactly after finitely many steps; iterations on curved ones stop at
+/// this gap: 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
 pub(super) fn tolerance<N: Real>() -> N {
     max(rounding_error(), N::lit(1.0 / 1_099_511_627_776.0))
 }
 
-/// A point of the difference, and the points of the two cores that it comes from.
+/// A point of the difference, and the points of the two cores of which it is the difference.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex<N: Real, const D: usize> {
     /// `on2 − on1`.
@@ -28,59 +29,61 @@ pub(crate) struct Vertex<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Vertex<N, D> {
-    /// The origin, to fill arrays with.
+    /// Returns the origin, to fill arrays with.
     pub(super) fn zero() -> Self {
         let zero = Vector::<N, D>::zeros();
         Self { point: zero, on1: zero, on2: zero }
     }
 }
 
-/// A point of one core that stays extreme nearby as the normal turns.
+/// A point of one core, extreme along a normal, and how it moves as the normal turns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Branch<N: Real, const D: usize> {
     pub(super) is_second: bool,
     pub(super) on: Vector<N, D>,
-    /// Derivative of the point by the outward normal of its own core; `None` for a corner.
+    /// Derivative of the point with respect to the outward normal of its own core; `None` for a
+    /// corner, which stays.
     pub(super) bend: Option<Matrix<N, D>>,
 }
 
-/// A convex set of differences `b − a`, given by its lowest points.
+/// A convex set of differences `b − a`, given by its support points.
 pub(crate) trait Difference<N: Real, const D: usize> {
     /// Returns the point of the set that is lowest along the unit vector `normal`.
     fn lowest(&self, normal: &Vector<N, D>) -> Vertex<N, D>;
 
-    /// Returns whether both cores are hulls of points: without round faces or branches with a
-    /// `bend`.
+    /// Returns whether both cores are hulls of points, so that there are no round faces, and no
+    /// branch has a `bend`.
     fn is_flat(&self) -> bool;
 
-    /// Returns whether neither core has edges or rims; one may be a segment. Local maxima of the
-    /// height are well apart then.
+    /// Returns whether neither core has edges or rims, except that one may be a segment. Then local
+    /// maxima of the height are far apart.
     fn is_smooth(&self) -> bool {
         false
     }
 
-    /// Returns the normals of flat round faces of either core close to `normal`, as normals from
-    /// the first core to the second.
+    /// Returns the normals of the flat round faces of each core that are close to `normal`, as
+    /// directions from the first core to the second; `None` for a core without one.
     fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2];
 
-    /// Returns the axes of the round sides of both cores, with the component of their normals along
-    /// the axis; as normals from the first core to the second.
+    /// Returns the axis of the round side of each core, and the component of the side's normals
+    /// along the axis, as directions from the first core to the second; `None` for a core without
+    /// one.
     fn round_sides(&self) -> [Option<(Vector<N, D>, N)>; 2] {
         [None, None]
     }
 
-    /// Returns the point of the first core that is highest along the unit vector `normal`, or of
-    /// the second that is lowest, on the part of the core that `on` lies on.
+    /// Returns the extreme point on the part of one core that contains `on`: of the first core the
+    /// highest along the unit vector `normal`, or of the second the lowest.
     fn branch(&self, is_second: bool, on: &Vector<N, D>, normal: &Vector<N, D>) -> Branch<N, D>;
 
-    /// Returns the best normal of a difference that contains the origin, if the caller can compute
-    /// it.
+    /// Returns the best normal of a difference that contains the origin, if the caller of the
+    /// search can compute it.
     fn peak(&self) -> Option<Peak<N, D>> {
         None
     }
 }
 
-/// The cores of two solids, in the frame of the first, in their [`Units`].
+/// The cores of two solids, in the frame of the first, in their common [`Units`].
 pub(super) struct CorePair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
     solid1: &'a A,
     solid2: &'a B,
@@ -94,7 +97,8 @@ pub(super) struct CorePair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
     peaks: Option<&'a dyn Peaks<N, D>>,
 }
 
-/// Returns a solid's reach, without squaring where squares would overflow or underflow.
+/// Returns a solid's bounding radius, computed without squares if these would overflow or
+/// underflow.
 pub(crate) fn safe_reach<N: Real, S: SupportMap<N, D> + ?Sized, const D: usize>(solid: &S) -> N {
     let reach = solid.reach();
     if reach.is_finite_number() && reach * reach > N::MIN_POSITIVE {
@@ -116,7 +120,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    /// `None` if a number of the pose is infinite or NaN.
+    /// Creates the pair of cores; `None` if the pose is not finite.
     pub(super) fn new(solid1: &'a A, solid2: &'a B, pose12: &Pose<N, D>) -> Option<Self> {
         if !pose12.is_finite() {
             return None;
@@ -136,27 +140,27 @@ where
         })
     }
 
-    /// Marks both cores as hulls of points.
+    /// Declares both cores as hulls of points.
     pub(super) fn between_flat_cores(self) -> Self {
         Self { is_flat: true, ..self }
     }
 
-    /// Marks the cores as having neither edges nor rims; one may be a segment.
+    /// Declares that the cores have neither edges nor rims, except that one may be a segment.
     pub(super) fn between_smooth_cores(self) -> Self {
         Self { is_smooth: true, ..self }
     }
 
-    /// Adds a known set of possible normals, used if the cores overlap.
+    /// Adds a known set of possible normals, which is used if the cores overlap.
     pub(super) fn with_peaks(self, peaks: &'a dyn Peaks<N, D>) -> Self {
         Self { peaks: Some(peaks), ..self }
     }
 
-    /// The length of one unit.
+    /// Returns the length of one unit, in the units of the caller.
     pub(super) fn scale(&self) -> N {
         self.scale
     }
 
-    /// Returns a first guess of the normal: from the middle of the first core to that of the
+    /// Returns a first guess of the normal: from the centre of the first core to that of the
     /// second.
     pub(super) fn start(&self) -> Vector<N, D> {
         let middle2 = self.rotation * (self.solid2.center().coords * self.shrink);
@@ -166,7 +170,7 @@ where
         unit_or(&away, first_axis)
     }
 
-    /// Converts an answer from units of the pair to those of the caller.
+    /// Converts a separation from units of the pair to units of the caller.
     pub(super) fn restored(&self, found: &Separation<N, D>) -> Separation<N, D> {
         found.scaled(self.scale)
     }
@@ -246,7 +250,7 @@ fn rotated_symmetric<N: Real, const D: usize>(
     Matrix::<N, D>::from_fn(|i, j| product(&half, i, rotation, j))
 }
 
-/// A difference moved by `by`; the points of the cores stay.
+/// A difference translated by `by`; the points of the cores are not moved.
 pub(super) struct Moved<'a, N: Real, const D: usize> {
     pub(super) inner: &'a dyn Difference<N, D>,
     pub(super) by: Vector<N, D>,

@@ -9,9 +9,9 @@
 //! ```
 //!
 //! G. van den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects"
-//! (2001): a polygon inside the difference grows outwards at its side nearest to the origin. Here
-//! the polygon need not contain the origin: sides with the origin in front of them have a negative
-//! offset, count as nearest, and grow first.
+//! (2001): a polygon inside the difference grows outwards at its side nearest to the origin. Unlike
+//! there, the polygon need not contain the origin: sides with the origin in front of them have a
+//! negative offset, so they are the nearest and grow first.
 
 use smallvec::SmallVec;
 
@@ -26,20 +26,22 @@ use super::simplex::Simplex;
 use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Real, Vector, cross2, perp, unit};
 
-/// Cap on the number of support points. Polygons need as many as they have sides near the origin.
+/// Cap on the number of support points. Polygons need about as many as they have sides near the
+/// origin.
 const ROUNDS: usize = 96;
 
-/// A side of the polygon, from its vertex to that of the next side.
+/// A side of the polygon, from `start` to the `start` of the next side.
 #[derive(Clone, Copy)]
 struct PolygonEdge<N: Real> {
     start: Vertex<N, 2>,
     /// Outward unit normal of the polygon.
     outward: Vector<N, 2>,
-    /// Signed distance of the side from the origin; infinite if it is too short to have a normal.
+    /// Signed distance of the side from the origin, negative if the origin is in front; infinite if
+    /// the side is too short to have a normal.
     offset: N,
 }
 
-/// The sides, counter-clockwise.
+/// Sides of the polygon, counter-clockwise.
 type EpaRing<N> = SmallVec<[PolygonEdge<N>; 16]>;
 
 impl<N: Real> PolygonEdge<N> {
@@ -71,7 +73,8 @@ fn ring_of<N: Real>(corners: &[Vertex<N, 2>]) -> EpaRing<N> {
     corners.iter().zip(next).map(|(&start, end)| PolygonEdge::new(start, end)).collect()
 }
 
-/// Returns the triangle that contains the origin, if there is one and it is no sliver.
+/// Returns the triangle that contains the origin; `None` if the simplex is not a triangle or is a
+/// sliver.
 fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<EpaRing<N>> {
     let &[a, b, c] = simplex.vertices() else { return None };
     let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
@@ -86,7 +89,8 @@ fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<EpaRing<N>> {
     }
 }
 
-/// Returns a polygon of extreme points; or the answer, if the difference is a segment or a point.
+/// Returns a polygon of extreme points; or, as the error, the separation if the difference is a
+/// segment or a point.
 fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>, Separation<N, 2>> {
     let [a, b] = widest_pair(difference);
     let edge = b.point - a.point;
@@ -105,11 +109,11 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>,
     if ring.len() > 2 {
         return Ok(ring_of(&ring));
     }
-    // A segment through the origin, or nearly: its depth across is zero.
+    // A segment through the origin, or nearly: its depth perpendicular to it is zero.
     Err(locate(difference, &best_of(difference, &[left]), &ring))
 }
 
-/// Grows the polygon until it reaches the difference at its nearest side.
+/// Grows the polygon until its nearest side is on the boundary of the difference.
 fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Separation<N, 2> {
     let mut best = SupportCandidate::along(difference, -ring[0].outward);
     for _ in 0..ROUNDS {
@@ -130,14 +134,16 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Se
                 let mix = Mix::nearest(&best, &[side.start, next]);
                 return finish(difference, &best, &mix, &vertices(ring, &best));
             }
-            // Flat sides are not far; smooth parts are found faster than by growing.
+            // Flat sides are close already; smooth parts are found faster by Newton's method than
+            // by growing.
             if converges(difference, &mut best) {
                 return locate(difference, &best, &vertices(ring, &best));
             }
         }
         let known = ring.iter().any(|other| other.start.point == candidate.vertex.point);
         if known {
-            // It grows no more: from now on its certificate counts.
+            // The support point is already a vertex, so the side grows no more; its offset becomes
+            // `-candidate.height`.
             ring[index].offset = -candidate.height;
             continue;
         }
@@ -148,7 +154,7 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Se
     locate(difference, &best, &vertices(ring, &best))
 }
 
-/// Returns all known points.
+/// Returns all known points of the difference.
 fn vertices<N: Real>(
     ring: &EpaRing<N>,
     best: &SupportCandidate<N, 2>,

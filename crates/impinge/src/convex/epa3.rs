@@ -3,8 +3,9 @@
 //! G. van den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects"
 //! (2001): a polytope inside the difference ([`Hull`]) grows outwards at its face nearest to the
 //! origin; `epa2` has the figure in 2D. The polytope need not contain the origin: faces with the
-//! origin in front of them have a negative offset, count as nearest, and grow first. Every normal
-//! tried has a certificate, and the best one is the answer however the growth ends.
+//! origin in front of them have a negative offset, so they are the nearest and grow first. The
+//! height of every normal tried is a lower bound of the signed distance, and the normal with the
+//! largest height is the answer, however the growth ends.
 
 use super::Separation;
 use super::candidate::SupportCandidate;
@@ -20,21 +21,23 @@ use super::simplex::Simplex;
 use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Mapped, Real, Vector, cross, max, orthonormal_basis, unit};
 
-/// Cap on the local searches if the hull ends without an answer, and the cosine of the angle within
-/// which one stands for another.
+/// Cap on the number of local searches, if the hull ends without an answer.
 const CLIMBS: usize = 6;
+/// Cosine of the angle between two normals within which only one of them starts a local search.
 const SAME_CLIMB: f64 = 0.95;
 /// Cap on the number of support points. Flat faces take about ten, smooth cores about twenty, rims
-/// up to a hundred. If a whole ring of normals is about as good and no `peak` is known, the cap
-/// stops it.
+/// up to a hundred. Only if a whole ring of normals has nearly the largest height, and no `peak` is
+/// known, does the growth end at the cap.
 const ROUNDS: usize = 128;
 
-/// Gap between a face and a smooth difference at which Newton's method is tried, and cosine of the
-/// angle within which the normal that it finds is the only local maximum.
+/// Largest gap between a face and a smooth difference at which Newton's method is tried.
 const COARSE: f64 = 1.0 / 1024.0;
+/// Cosine of the angle to the face's normal within which the normal found by Newton's method is the
+/// only local maximum.
 const SAME_SUMMIT: f64 = 1.0 - 1.0 / 64.0;
-/// Gap and cosine near a normal already found, where the method need not be run again.
+/// Largest gap of a face near a maximum already found at which Newton's method is not run again.
 const FINE: f64 = 1.0 / 65536.0;
+/// Cosine of the angle between face and maximum within which Newton's method is not run again.
 const SAME_PLACE: f64 = 1.0 - 1.0 / 2048.0;
 
 /// Computes [`super::Simplicial::deepest`].
@@ -57,7 +60,7 @@ pub(super) fn deepest<N: Real>(
     }
 }
 
-/// Returns a better answer from the rings of round sides, if there is one.
+/// Returns a better separation from the rings of round sides; `None` if there is none.
 fn beside<N: Real>(
     difference: &dyn Difference<N, 3>,
     vertices: &[Vertex<N, 3>],
@@ -71,14 +74,15 @@ fn beside<N: Real>(
     })
 }
 
-/// Corners of a tetrahedron to start with; or the answer, if the difference is flat.
+/// Corners of a tetrahedron to start with; or, as the error, the separation if the difference is
+/// flat.
 type Start<N> = Result<[Vertex<N, 3>; 4], Separation<N, 3>>;
 
-/// Least thickness of a simplex to build on, as a share of its length.
+/// Smallest thickness of a simplex to build on, as a fraction of its length.
 const THICK: f64 = 1.0 / 1024.0;
 
-/// Extends the simplex that contains the origin, or nearly, to a tetrahedron by extreme points; a
-/// sliver is replaced by a new one.
+/// Extends the simplex that contains the origin, or nearly does, to a tetrahedron by support
+/// points; a sliver is replaced by a new tetrahedron.
 fn from_simplex<N: Real>(difference: &dyn Difference<N, 3>, simplex: &Simplex<N, 3>) -> Start<N> {
     match *simplex.vertices() {
         [a, b, c, d] if is_thick(&[a, b, c, d]) => Ok([a, b, c, d]),
@@ -88,7 +92,7 @@ fn from_simplex<N: Real>(difference: &dyn Difference<N, 3>, simplex: &Simplex<N,
     }
 }
 
-/// Returns whether the volume is not small for the largest face and the longest edge at `a`.
+/// Returns whether the volume is not small relative to the largest face and longest edge at `a`.
 fn is_thick<N: Real>([a, b, c, d]: &[Vertex<N, 3>; 4]) -> bool {
     let (e, f, g) = (b.point - a.point, c.point - a.point, d.point - a.point);
     let (ef, fg, ge) = (cross(&e, &f), cross(&f, &g), cross(&g, &e));
@@ -97,7 +101,7 @@ fn is_thick<N: Real>([a, b, c, d]: &[Vertex<N, 3>; 4]) -> bool {
     ef.dot(&g).abs() > N::lit(THICK) * area * length
 }
 
-/// Returns whether the area is not small for the longest edge, nor that edge for the pair.
+/// Returns whether the area is not small relative to the longest edge, nor that edge to the pair.
 fn is_wide<N: Real>([a, b, c]: &[Vertex<N, 3>; 3]) -> bool {
     let (e, f, g) = (b.point - a.point, c.point - a.point, c.point - b.point);
     let length = max(max(e.norm(), f.norm()), g.norm());
@@ -121,7 +125,7 @@ fn from_segment<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3
     if found > rounding_error() {
         return from_triangle(difference, [a, b, c]);
     }
-    // A segment through the origin, or nearly: all directions across are equal.
+    // A segment through the origin, or nearly: all directions perpendicular to it are equal.
     Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
 }
 
@@ -138,11 +142,11 @@ fn from_triangle<N: Real>(
     if max(height, depth) > rounding_error() {
         return Ok([a, b, c, if height > depth { above } else { below }]);
     }
-    // A flat disk through the origin, or nearly: its depth across is zero.
+    // A flat disk through the origin, or nearly: its depth along its normal is zero.
     Err(locate(difference, &best_of(difference, &[normal]), &[a, b, c]))
 }
 
-/// Returns the answer if the points found lie on a line: across it.
+/// Returns the separation if the points found lie on a line; its normal is perpendicular to them.
 fn from_needle<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>; 2]) -> Start<N> {
     let along = unit(&(b.point - a.point)).map(|(along, _)| along);
     let axis = Vector::<N, 3>::new(N::ONE, N::ZERO, N::ZERO);
@@ -150,7 +154,7 @@ fn from_needle<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>
     Err(locate(difference, &best_of(difference, &[u, v]), &[a, b]))
 }
 
-/// Grows the hull until it reaches the difference at its nearest face.
+/// Grows the hull until its nearest face is on the boundary of the difference.
 fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separation<N, 3> {
     let Some(first) = hull.nearest() else { return locate_any(difference, hull) };
     let mut best = SupportCandidate::along(difference, -hull.face(first).outward);
@@ -185,14 +189,16 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
                 let mix = Mix::nearest(&best, &corners);
                 return finish(difference, &best, &mix, hull.vertices());
             }
-            // Flat faces are not far; smooth parts are found faster than by growing.
+            // Flat faces are close; smooth parts are found faster by Newton's method than by
+            // growing.
             if converges(difference, &mut best) {
                 hull.keep(&[best.vertex]);
                 return locate(difference, &best, hull.vertices());
             }
         }
         if hull.contains(&candidate.vertex) {
-            // Rounding has bent the hull. From now on the certificate counts.
+            // The support point is already a vertex, yet lies beyond this face: rounding has made
+            // the hull non-convex. The face grows no more; its offset becomes `-candidate.height`.
             hull.finalize(index, -candidate.height);
         } else {
             hull.extend(index, candidate.vertex);
@@ -207,10 +213,12 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
     }
 }
 
-/// Local maxima that Newton's method found from the faces of a hull in a smooth difference.
+/// Local maxima of the height that Newton's method found from faces of the hull; used only in a
+/// smooth difference.
 struct Summits<N: Real> {
     highest: Option<Summit<N>>,
-    /// Largest gap of a face from which it is tried.
+    /// Largest gap of a face from which Newton's method is tried; 0 if the difference is not
+    /// smooth.
     coarse: N,
 }
 
@@ -220,8 +228,8 @@ impl<N: Real> Summits<N> {
         Self { highest: None, coarse }
     }
 
-    /// Returns the answer, if no face is nearer to the origin than the highest maximum and no
-    /// better normal was found.
+    /// Returns the separation of the highest maximum if no face is nearer to the origin and no
+    /// better normal was found; else `None`.
     fn answer(
         &self,
         nearest: &EpaFace<N>,
@@ -233,7 +241,8 @@ impl<N: Real> Summits<N> {
         is_answer.then(|| placed(top, mix, N::HALF))
     }
 
-    /// Returns the local maximum beyond a face with this candidate, if it is the only one.
+    /// Returns the local maximum beyond a face, found by Newton's method from `candidate`; `None`
+    /// if the method is not tried or the maximum may not be the only one.
     fn beyond(
         &mut self,
         difference: &dyn Difference<N, 3>,
@@ -260,20 +269,20 @@ impl<N: Real> Summits<N> {
     }
 }
 
-/// A normal with points across from each other along it: a stationary point of the height.
+/// A local maximum of the height: a normal, and points of the cores that face each other along it.
 struct Summit<N: Real> {
     top: SupportCandidate<N, 3>,
     mix: Mix<N, 3>,
 }
 
 impl<N: Real> Summit<N> {
-    /// Returns whether a face with this gap lies at this very maximum.
+    /// Returns whether a face with this gap lies at this maximum.
     fn stands_for(&self, face: &EpaFace<N>, gap: N) -> bool {
         gap <= N::lit(FINE) && -self.top.normal.dot(&face.outward) >= N::lit(SAME_PLACE)
     }
 
-    /// Returns the maximum that Newton's method finds from a face, if it is close: then none lies
-    /// between.
+    /// Returns the maximum that Newton's method finds from a face, if its normal is close to the
+    /// face's normal, so that no other lies between.
     fn beside(
         difference: &dyn Difference<N, 3>,
         hull: &Hull<N>,
@@ -287,15 +296,15 @@ impl<N: Real> Summit<N> {
     }
 }
 
-/// Continues from the best normals of the faces if the hull is of no more use: at the cap, or bent
-/// by rounding. For a small solid deep in a large round one, many normals far apart are nearly as
-/// good as the best, so several are tried.
+/// Continues by local searches from the best normals of the faces, if the hull can grow no more: at
+/// the cap, or after rounding made it non-convex. For a small solid deep in a large round one, many
+/// normals far apart are nearly as good as the best, so several are tried.
 fn climb_on<N: Real>(
     difference: &dyn Difference<N, 3>,
     hull: &Hull<N>,
     best: &mut SupportCandidate<N, 3>,
 ) {
-    // A better normal than the best is beyond a face that is nearer.
+    // A better normal than the best can only be beyond a face that is nearer.
     let nearer = hull.nearer_than(-best.height - tolerance());
     let mut starts: Vec<_> =
         nearer.map(|outward| SupportCandidate::along(difference, -outward)).collect();
@@ -303,7 +312,7 @@ fn climb_on<N: Real>(
     for _ in 0..CLIMBS {
         let Some(mut start) = starts.iter().copied().reduce(higher) else { break };
         starts.retain(|other| other.normal.dot(&start.normal) < N::lit(SAME_CLIMB));
-        // If Newton's method proves a maximum, there is nothing left to climb.
+        // If Newton's method confirms a maximum, a local search cannot improve it.
         let near = lowest(hull.vertices(), &start.normal);
         if polish(difference, &mut start, &near).is_none() {
             climb(difference, &mut start);
@@ -321,7 +330,7 @@ fn higher<N: Real>(
     if second.height > first.height { second } else { first }
 }
 
-/// Returns an answer if no face of the hull has a normal.
+/// Returns the separation for the best coordinate axis, if no face of the hull has a normal.
 fn locate_any<N: Real>(difference: &dyn Difference<N, 3>, hull: &Hull<N>) -> Separation<N, 3> {
     let axes = [
         Vector::<N, 3>::new(N::ONE, N::ZERO, N::ZERO),

@@ -1,12 +1,12 @@
-//! Extent of a difference, and the points that attain it.
+//! Extreme points of a difference along given directions.
 
 use super::candidate::SupportCandidate;
 use super::difference::{Difference, Vertex};
 use crate::math::{Real, Vector};
 
-/// Returns the two points of a difference that are farthest apart along a coordinate axis.
+/// Returns the two extreme points of a difference along the coordinate axis of its largest extent.
 ///
-/// They are at least the diameter of the set over the square root of `D` apart.
+/// Their distance along this axis is at least the set's diameter over the square root of `D`.
 pub(super) fn widest_pair<N: Real, const D: usize>(
     difference: &dyn Difference<N, D>,
 ) -> [Vertex<N, D>; 2] {
@@ -23,8 +23,8 @@ pub(super) fn widest_pair<N: Real, const D: usize>(
     pair
 }
 
-/// Returns the point of a difference farthest along the unit vector `outward`, and how far it is
-/// beyond `base`.
+/// Returns the point of a difference farthest along the unit vector `outward`, and its signed
+/// distance beyond `base` in that direction.
 pub(super) fn farthest<N: Real, const D: usize>(
     difference: &dyn Difference<N, D>,
     outward: &Vector<N, D>,
@@ -34,7 +34,7 @@ pub(super) fn farthest<N: Real, const D: usize>(
     (vertex, outward.dot(&(vertex.point - base)))
 }
 
-/// Returns the best of some normals, each tried in both directions.
+/// Returns the candidate with the largest height among some normals, each tried in both directions.
 pub(super) fn best_of<N: Real, const D: usize>(
     difference: &dyn Difference<N, D>,
     normals: &[Vector<N, D>],

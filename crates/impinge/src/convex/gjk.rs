@@ -1,4 +1,4 @@
-//! The point of a difference nearest to the origin.
+//! Finds the point of a difference nearest to the origin.
 //!
 //! ```text
 //!              difference                upper = |nearest point of the simplex|
@@ -26,50 +26,50 @@ use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Real, Vector, max, unit_or};
 
 /// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty.
-/// A search that reaches it is refined from the best normal so far.
+/// A search that ends at the cap is refined from the best normal so far.
 const ROUNDS: usize = 64;
 
-/// A depth, in units of the pair, that is far more than rounding: 2⁻¹⁰.
+/// A depth, in units of the pair, far larger than rounding errors: 2⁻¹⁰.
 const CLEAR: f64 = 1.0 / 1024.0;
 
 /// How the search ended.
 enum Outcome {
-    /// The difference is certainly beyond the limit.
+    /// The difference is beyond the limit for certain.
     Beyond,
-    /// The difference contains the origin, or is nearer to it than the noise.
+    /// The difference contains the origin, or its distance is below the rounding error.
     Overlap,
-    /// The nearest point is found, or arithmetic comes no closer.
+    /// The nearest point is found, or rounding prevents a nearer one.
     Apart,
-    /// A point is nearer than `near`.
+    /// A point of the difference is nearer to the origin than `near`.
     Near,
 }
 
 struct GjkSearch<N: Real, const D: usize> {
     simplex: Simplex<N, D>,
-    /// Best normal so far; its height is a lower bound of the distance.
+    /// Best normal so far; its height is the largest lower bound of the distance.
     best: SupportCandidate<N, D>,
     /// Normal of the nearest point so far.
     last: SupportCandidate<N, D>,
     /// Length of the nearest point so far: an upper bound of the distance.
     upper: N,
-    /// Gap between the bounds at which the search stops.
+    /// Gap between upper and lower bound at which the search stops.
     gap: N,
-    /// The lower bound used is that of `last`, whose points lie across from each other, not that of
-    /// `best`.
+    /// Whether the lower bound used is the height of `last`, whose points face each other, not the
+    /// height of `best`.
     for_points: bool,
-    /// A point nearer than this ends the search.
+    /// The search ends at a point nearer than this.
     near: N,
 }
 
-/// Result for two cores.
+/// Result of a search for two cores.
 pub(super) enum Answer<N: Real, const D: usize> {
     Signed(Separation<N, D>),
-    /// The cores inflated by their radii certainly overlap; the depth was not asked for.
+    /// The cores, inflated by their radii, overlap for certain; the depth was not requested.
     Overlap,
 }
 
-/// Returns the signed distance of the difference from the origin, searched from the unit vector
-/// `start`, in units of the pair; `None` if it is above `limit`.
+/// Returns the separation of the difference from the origin, in units of the pair, searched from
+/// the unit vector `start`; `None` if the distance is above `limit`.
 pub(super) fn solve<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -85,8 +85,8 @@ where
     }
 }
 
-/// Computes [`solve`]; with a `rounding`, a certain overlap of the cores inflated by it is enough
-/// (see [`overlaps`]). If they are apart, the steps are the same.
+/// Computes [`solve`]. With a `rounding`, the search ends at a certain overlap of the cores
+/// inflated by it (see [`overlaps`]). If the cores are apart, the result has the same bits.
 pub(super) fn answer<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -126,14 +126,15 @@ where
     }
 }
 
-/// Returns the distance of points below which solids with this radius certainly overlap.
+/// Returns the distance of two core points below which solids with this sum of radii overlap for
+/// certain.
 fn near<N: Real>(rounding: N) -> N {
     rounding - N::lit(CLEAR)
 }
 
-/// Returns whether the difference inflated by `radius` certainly contains the origin: by a simplex
-/// that contains a ball around it, or by a point nearer than the radius. `false` without a search
-/// if the depth along `start` is less than `min_depth`.
+/// Returns whether the difference inflated by `radius` certainly contains the origin, proved by a
+/// simplex that contains a ball around it, or by a point nearer than the radius. Returns `false`
+/// without a search if the depth along `start` is less than `min_depth`.
 pub(super) fn overlaps<N, S, const D: usize>(
     difference: &S,
     start: &Vector<N, D>,
@@ -156,7 +157,7 @@ where
     }
 }
 
-/// Returns the normal of the nearest point of a difference well away from the origin.
+/// Returns the normal of the nearest point of a difference that is well away from the origin.
 pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     difference: &impl Difference<N, D>,
     start: &Vector<N, D>,
@@ -167,7 +168,8 @@ pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     search.best.normal
 }
 
-/// Computes [`nearest_normal`] to the limit of arithmetic, with the points around the nearest one.
+/// Computes [`nearest_normal`] to the precision of the arithmetic, with the simplex around the
+/// nearest point.
 pub(super) fn nearest_simplex<N: Simplicial<D>, const D: usize>(
     difference: &impl Difference<N, D>,
     start: &Vector<N, D>,
@@ -192,13 +194,13 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     }
 
     /// Returns whether the inflated difference certainly contains a ball around the origin. For
-    /// solids that lie symmetrically the search from their middles ends at a corner, edge or face;
-    /// another start avoids that.
+    /// solids that lie symmetrically, the search from their centres ends with the origin on a
+    /// corner, edge or face of the simplex; a second search from a skew axis avoids that.
     fn clears(&self, difference: &impl Difference<N, D>, radius: N) -> bool {
         self.is_clear() || overlaps(difference, &skew_axis(), radius, N::ZERO)
     }
 
-    /// Returns whether the simplex contains a ball around the origin.
+    /// Returns whether the simplex contains a ball of radius `CLEAR` around the origin.
     fn is_clear(&self) -> bool {
         let points = self.simplex.points();
         N::nearest(points).enclosed && N::clears(points, N::lit(CLEAR))
@@ -207,7 +209,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     fn run(&mut self, difference: &impl Difference<N, D>, limit: N) -> Outcome {
         let mut nearest = N::nearest(self.simplex.points());
         for _ in 0..ROUNDS {
-            // Written so that NaN counts as an overlap, whose loops end by their caps.
+            // Written so that NaN counts as an overlap, because the loops for overlaps end by their
+            // caps.
             let away = nearest.squared > rounding_error::<N>() * rounding_error();
             if nearest.enclosed || !away {
                 return Outcome::Overlap;
@@ -236,8 +239,9 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         Outcome::Apart
     }
 
-    /// Adds the last support point to the simplex; `None`, and no change, if that brings the origin
-    /// no nearer: arithmetic is at its limit.
+    /// Adds the last support point to the simplex; returns the new nearest point. `None`, and no
+    /// change, if the new point is not nearer to the origin: the precision of the arithmetic is
+    /// reached.
     fn advanced(&mut self, nearest: &NearestOfSimplex<N, D>) -> Option<NearestOfSimplex<N, D>> {
         self.simplex.push(self.last.vertex);
         let next = N::nearest(self.simplex.points());
@@ -249,21 +253,21 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         Some(next)
     }
 
-    /// Returns whether the bounds lie farther apart than they should.
+    /// Returns whether the gap between the bounds is larger than twice the tolerance.
     fn open(&self) -> bool {
         let closed = self.upper - self.best.height <= N::TWO * tolerance();
         !closed
     }
 
-    /// Returns whether the bounds meet, up to rounding. Rounding may also have put the upper below
-    /// the lower: slivers give poor nearest points.
+    /// Returns whether the bounds agree up to rounding. Slivers give poor nearest points, so
+    /// rounding may also put the upper bound below the lower.
     fn met(&self) -> bool {
         (self.upper - self.best.height).abs() <= N::TWO * gap()
     }
 
-    /// Returns the answer from the features found, refined first if the bounds do not meet. That
-    /// happens near touching, where the direction of the nearest point is mostly rounding, and if
-    /// one solid is much larger than the other.
+    /// Returns the separation from the simplex, refined first if the bounds do not agree. They do
+    /// not agree near touching, where the direction of the nearest point is mostly rounding error,
+    /// and if one solid is much larger than the other.
     fn finish(&mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.met() {
             return self.final_separation(difference);
@@ -287,8 +291,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         if deep.distance > apart.distance { deep } else { apart }
     }
 
-    /// Returns the answer if the difference contains the origin, or nearly: at once if a normal is
-    /// known with the origin on its supporting plane.
+    /// Returns the separation if the difference contains the origin, or nearly does: directly if a
+    /// normal is known whose supporting plane contains the origin.
     fn finish_overlap(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.best.height >= -rounding_error::<N>() {
             return self.final_separation(difference);
@@ -296,8 +300,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         N::deepest(difference, &self.simplex)
     }
 
-    /// Returns the answer of Newton's method from the current normal, if it leads to points that
-    /// prove it: they are as far apart as the height of the normal.
+    /// Returns the separation that Newton's method finds from the current normal; `None` unless it
+    /// ends at points whose distance equals the height of the normal.
     fn polished(&self, difference: &dyn Difference<N, D>) -> Option<Separation<N, D>> {
         let mut best = self.best;
         let mix = polish(difference, &mut best, self.simplex.vertices())?;
@@ -305,8 +309,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         is_apart.then(|| placed(&best, &mix, N::HALF))
     }
 
-    /// Returns the answer if the bounds meet. Of several valid normals, that of the nearest point
-    /// is taken if its points lie across from each other along no other.
+    /// Returns the separation if the bounds agree. Of several valid normals, the one of the nearest
+    /// point (`last`) is taken only if no points were found that face each other along another.
     fn final_separation(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         let (mix, mut best) = (Mix::of(&self.simplex), self.best);
         if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {
@@ -314,7 +318,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         }
         let raised = best.height > self.best.height;
         if !raised && !mix.meets(&best) {
-            // The points of a sliver do not prove that its plane is as near as it seems.
+            // The points of a sliver do not prove that its plane is as near as computed.
             if converges(difference, &mut best) {
                 return locate(difference, &best, &[best.vertex]);
             }
@@ -324,7 +328,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     }
 }
 
-/// Returns a unit vector that is no axis of symmetry of solids aligned with the axes.
+/// Returns a unit vector that is not an axis of symmetry of solids aligned with the axes.
 fn skew_axis<N: Real, const D: usize>() -> Vector<N, D> {
     let mut next = N::ONE;
     let skew = Vector::<N, D>::from_fn(|_, _| {
@@ -334,17 +338,19 @@ fn skew_axis<N: Real, const D: usize>() -> Vector<N, D> {
     unit_or(&skew, skew)
 }
 
-/// Gap at which curved cores first go to Newton's method, which mostly finds the answer from there.
+/// Returns the gap at which Newton's method is first tried for curved cores; it mostly finds the
+/// answer from there.
 fn coarse_gap<N: Real>() -> N {
     max(rough_gap(), N::lit(1.0 / 128.0))
 }
 
-/// Gap at which they go to it once more, which succeeds from there: 2⁻⁹ in `f32`, 2⁻¹⁹ in `f64`.
+/// Returns the gap at which Newton's method is tried again, and succeeds: 2⁻⁹ in `f32`, 2⁻¹⁹ in
+/// `f64`.
 fn rough_gap<N: Real>() -> N {
     N::TWO * tolerance::<N>().sqrt()
 }
 
-/// Gap that is good enough: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`.
+/// Returns the gap at which the search stops: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`.
 fn gap<N: Real>() -> N {
     max(rounding_error(), N::lit(1.0 / 70_368_744_177_664.0))
 }

@@ -1,4 +1,4 @@
-//! A polytope of triangles that grows, for `epa3`.
+//! A growing polytope of triangles, for `epa3`.
 //!
 //! ```text
 //!       a ----- b              a ----- b
@@ -8,28 +8,32 @@
 //!                              d ----- c
 //! ```
 //!
-//! There are no links between faces. The orientation of new faces follows from that of old ones,
-//! never from a sign that rounding could turn, and the surface stays closed whatever rounding makes
-//! visible. Indices of vertices are `u16`: the rounds of `epa3` are capped.
+//! Faces have no links to their neighbours. The orientation of a new face follows from that of the
+//! removed ones, never from a sign that rounding could change, so the surface stays closed whatever
+//! faces rounding makes visible. Indices of vertices are `u16`, because the rounds of `epa3` are
+//! capped.
 
 use smallvec::SmallVec;
 
 use super::difference::{Vertex, rounding_error};
 use crate::math::{Mapped, Real, Vector, cross, max, unit};
 
-/// A triangle, counter-clockwise seen from outside.
+/// A triangle; its corners run counter-clockwise seen from outside.
 #[derive(Clone, Copy)]
 pub(super) struct EpaFace<N: Real> {
     pub(super) corners: [u16; 3],
     /// Outward unit normal.
     pub(super) outward: Vector<N, 3>,
-    /// Signed distance of the face from the origin; infinite if it is too thin to have a normal.
+    /// Signed distance of the face from the origin, negative if the origin is in front; infinite if
+    /// the face is too thin to have a normal.
     pub(super) offset: N,
-    /// `offset` has been set to the difference's certificate; the face grows no more.
+    /// Whether `offset` has been set from the height of the face's normal; the face then grows no
+    /// more.
     pub(super) is_final: bool,
 }
 
-/// Directed sides of a hole in the surface, each running as in the removed face.
+/// Directed sides of a hole in the surface, each with the direction that it has in the removed
+/// face.
 type Horizon = SmallVec<[[u16; 2]; 24]>;
 
 /// Indices of faces.
@@ -68,12 +72,12 @@ impl<N: Real> Hull<N> {
         &self.faces[index]
     }
 
-    /// Returns whether exactly this point is a vertex.
+    /// Returns whether a vertex has exactly this point.
     pub(super) fn contains(&self, vertex: &Vertex<N, 3>) -> bool {
         self.vertices.iter().any(|known| known.point == vertex.point)
     }
 
-    /// Returns the face nearest to the origin; `None` if all are too thin.
+    /// Returns the index of the face with the smallest offset; `None` if all faces are too thin.
     pub(super) fn nearest(&self) -> Option<usize> {
         let (mut nearest, mut offset) = (None, N::INFINITY);
         for (index, face) in self.faces.iter().enumerate() {
@@ -84,24 +88,25 @@ impl<N: Real> Hull<N> {
         nearest
     }
 
-    /// Outward unit normals of the faces that are nearer to the origin than `offset`.
+    /// Returns the outward unit normals of the faces whose offset is below `offset`.
     pub(super) fn nearer_than(&self, offset: N) -> impl Iterator<Item = Vector<N, 3>> + '_ {
         let faces = self.faces.iter().filter(move |face| face.offset < offset);
         faces.map(|face| face.outward)
     }
 
-    /// Moves a face outwards to `offset`, where the difference is known to end.
+    /// Sets the offset of a face to `offset`, where the difference is known to end, and marks the
+    /// face as final.
     pub(super) fn finalize(&mut self, index: usize, offset: N) {
         self.faces[index].offset = offset;
         self.faces[index].is_final = true;
     }
 
-    /// Keeps points for mixing witnesses, without a face.
+    /// Adds points as vertices without faces; they are only used to mix the points of the answer.
     pub(super) fn keep(&mut self, vertices: &[Vertex<N, 3>]) {
         self.vertices.extend_from_slice(vertices);
     }
 
-    /// Grows to a point beyond the face `from`.
+    /// Grows the polytope to include a point beyond the face `from`.
     pub(super) fn extend(&mut self, from: usize, vertex: Vertex<N, 3>) {
         let apex = u16::try_from(self.vertices.len()).expect("the number of rounds is capped");
         self.vertices.push(vertex);
@@ -129,8 +134,8 @@ impl<N: Real> Hull<N> {
         }
     }
 
-    /// Returns the faces other than `from` that a point lies beyond; faces too thin to decide
-    /// count.
+    /// Returns the faces other than `from` that a point lies beyond, including faces too thin to
+    /// decide.
     fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> FaceIndices {
         let mut visible = FaceIndices::new();
         for (index, face) in self.faces.iter().enumerate() {
@@ -142,13 +147,13 @@ impl<N: Real> Hull<N> {
         visible
     }
 
-    /// Returns whether a face shares a side with the hole.
+    /// Returns whether a face shares a side with the hole's outline.
     fn adjoins(&self, face: usize, outline: &Horizon) -> bool {
         let [a, b, c] = self.faces[face].corners;
         outline.iter().any(|side| [[b, a], [c, b], [a, c]].contains(side))
     }
 
-    /// Removes a face: its sides are added to the hole's, or cancel against them.
+    /// Removes a face from the surface: its sides are added to the outline, or cancel against it.
     fn uncover(&self, face: usize, outline: &mut Horizon) {
         let [a, b, c] = self.faces[face].corners;
         for [start, end] in [[a, b], [b, c], [c, a]] {

@@ -9,22 +9,22 @@
 //!    improved by  `refine`  `climb`  `newton`  `polish`  `side`        points: `witness`
 //! ```
 //!
-//! [`separation`] returns the signed distance of two convex solids with radii. It runs on their
+//! [`separation`] returns the signed distance of two convex solids with radii. It works on their
 //! cores: the difference of the cores (all `b − a`) is searched for its point nearest to the origin
 //! ([`gjk`]) or, if it contains the origin, for its nearest supporting plane (`epa2`, `epa3`). A
-//! normal `n` is never trusted for how it was found, only for its *certificate*: the height
-//! `h(n) = min n·b − max n·a`, by two support points, up to which `n` separates the cores. The
-//! signed distance is the largest height over all unit vectors. For curved cores that provide their
-//! curvature, Newton's method computes the last digits (`polish`).
+//! normal `n` is never trusted for how it was found, only for its height `h(n) = min n·b − max
+//! n·a`, called its *certificate*: two support points prove that `n` separates the cores by that
+//! much. The signed distance is the largest height over all unit vectors. For curved cores that
+//! provide their curvature, Newton's method computes the last digits (`polish`).
 //!
-//! All this happens in units in which the pair is about 1 large (`difference`), reached by an exact
-//! power of two. So every tolerance is a plain multiple of the machine epsilon, and scaling both
-//! solids by a power of two scales the answer exactly.
+//! All computations use units in which the size of the pair is about 1 (`difference`), reached by
+//! an exact power of two. So every tolerance is a plain multiple of the machine epsilon, and
+//! scaling both solids by a power of two scales the result exactly.
 //!
-//! [`gjk`] and `epa` find a normal from nothing. `refine` (support points), `climb` (apart from
-//! each other), `newton` and `polish` (curvature) and `side` (the ring of a round side) improve a
-//! good normal; `witness` finds the points that belong to it. Every loop has a cap, and the answer
-//! at the cap has a certificate like any other.
+//! [`gjk`] and `epa` find a normal without a guess. `refine` (support points), `climb` (proximal
+//! points), `newton` and `polish` (curvature) and `side` (the ring of a round side) improve a good
+//! normal; `witness` finds the points that belong to it. Every loop has a cap, and the result at
+//! the cap has a certificate like any other.
 
 mod candidate;
 mod climb;
@@ -66,14 +66,14 @@ use gjk::Answer;
 /// beyond rounding. At a distance of exactly `limit` the answer is `Some`; with an infinite limit
 /// it always is, for finite input. NaN or infinity in the pose gives `None`.
 ///
-/// `distance` is the certificate of `normal`. Let `s` be the sum of the reaches of the cores and of
-/// the distance of their origins. `distance` falls short of the exact value by a few
+/// `distance` is the height of `normal`. Let `s` be the sum of the bounding radii of the cores and
+/// of the distance of their origins. `distance` falls short of the exact value by a few
 /// `N::EPSILON · s` for flat-faced cores and for curved ones that provide their curvature
 /// ([`SupportMap::curved_support`]); for other curved ones by about the larger of that and
 /// `2⁻⁴⁰ · s`. If a whole ring of normals is nearly as good, as deep in nearly coaxial cylinders or
 /// cones, the ring of a round side is searched ([`SupportMap::round_side`]). Only if there is none,
-/// and all normals around are about as good, as in the middle of a ball, a local search ends the
-/// work, which may fall short by more. The points lie on the cores to the same accuracy; on curved
+/// and all normals nearby are about as good, as in the middle of a ball, a local search gives the
+/// result, which may fall short by more. The points lie on the cores to the same accuracy; on curved
 /// cores without curvature to about its square root at worst. Of several equally good normals (for
 /// coincident centres, say) the same one is chosen each time. Cores that are single coincident
 /// points have no direction: the first axis is taken.
@@ -95,8 +95,8 @@ where
     of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
-/// Computes [`separation`] for solids whose cores have neither edges nor rims; one may be a
-/// segment. The best normal of an overlap takes fewer steps then.
+/// Computes [`separation`] for solids whose cores have neither edges nor rims, except that one may
+/// be a segment. Finding the best normal of an overlap then takes fewer steps.
 pub(crate) fn smooth_separation<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -112,8 +112,8 @@ where
     of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
-/// Computes [`separation`] for solids whose cores are hulls of points, in the same way but without
-/// the steps for curved cores. The search starts along the unit vector `start`, if it is given.
+/// Computes [`separation`] for solids whose cores are hulls of points, without the steps for curved
+/// cores. The search starts along the unit vector `start`, if it is given.
 pub(crate) fn flat_separation<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -131,8 +131,8 @@ where
     of_pair(&pair, &start, [a.rounding(), b.rounding()], limit)
 }
 
-/// Computes [`separation`] for solids with a known set of possible normals of an overlap: these are
-/// found without growing a polytope, and equal up to rounding.
+/// Computes [`separation`] for solids with a known set of possible normals of an overlap. The best
+/// of these is found without growing a polytope; results are equal up to rounding.
 pub(crate) fn separation_by<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -149,14 +149,15 @@ where
     of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
-/// Returns whether two solids certainly overlap: points of the difference of their cores span a
-/// simplex that contains a ball around the origin, far larger than rounding, or points of the cores
-/// are nearer to each other than their radii by as much. `false` proves nothing. It is also
-/// returned if the depth along the line of their middles is less than `min_depth`, in units of the
+/// Returns whether two solids certainly overlap. The proof is a simplex of points of the core
+/// difference that contains a ball around the origin, far larger than rounding errors, or two core
+/// points whose distance is smaller than the sum of the radii by as much. `false` proves nothing.
+/// It is also returned if the depth along the line of their centres is less than `min_depth`, in
+/// units of the pair.
 /// pair.
 ///
-/// If it is `true`, [`separation`] returns a negative distance. Cost: the support points up to a
-/// separating plane or such a simplex, about four.
+/// If the result is `true`, [`separation`] returns a negative distance. Cost: the support points
+/// until a separating plane or such a simplex is found, about four.
 pub(crate) fn overlap<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -173,8 +174,8 @@ where
     gjk::overlaps(&pair, &pair.start(), radius, min_depth)
 }
 
-/// Returns the distance of [`separation`], or zero if the solids certainly overlap by [`overlap`],
-/// which is tested on the way.
+/// Returns the distance of [`separation`], or zero if a certain overlap, as defined by [`overlap`],
+/// is found during the search.
 pub(crate) fn distance<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -189,7 +190,8 @@ where
     distance_of_pair(&CorePair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
 }
 
-/// Returns the distance of [`flat_separation`], or zero if the solids certainly overlap.
+/// Returns the distance of [`flat_separation`], or zero if a certain overlap is found during the
+/// search.
 pub(crate) fn flat_distance<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -205,7 +207,8 @@ where
     distance_of_pair(&pair, [a.rounding(), b.rounding()], limit)
 }
 
-/// Returns the distance of [`separation_by`], or zero if the solids certainly overlap.
+/// Returns the distance of [`separation_by`], or zero if a certain overlap is found during the
+/// search.
 pub(crate) fn distance_by<N, A, B, const D: usize>(
     a: &A,
     b: &B,
@@ -255,7 +258,8 @@ where
     Some(pair.restored(&found).rounded(radii[0], radii[1]))
 }
 
-/// Returns the limit for the distance of the cores, in units of the pair, raised by rounding.
+/// Returns the limit for the distance of the cores, in units of the pair, raised by the rounding
+/// error.
 fn limit_of_cores<N, A, B, const D: usize>(
     pair: &CorePair<'_, N, A, B, D>,
     radii: [N; 2],

@@ -1,20 +1,20 @@
-//! From a good normal to one that is accurate to rounding, where surfaces are curved.
+//! Newton's method on a good normal of curved cores, up to rounding.
 
 use super::candidate::SupportCandidate;
 use super::difference::{Difference, rounding_error};
 use super::simplex::Simplicial;
 use crate::math::{Vector, unit};
 
-/// Cap on the number of steps; one or two are enough after the iterations.
+/// Cap on the number of steps; one or two are enough after the other iterations.
 const STEPS: usize = 6;
 
-/// Runs Newton's method on the sphere of normals; returns whether it ended at a normal along which
-/// the two support points lie across from each other.
+/// Runs Newton's method on the sphere of normals, raising `best`. Returns whether it ended at a
+/// normal along which the two support points face each other.
 ///
 /// The height of a normal `n` is `n·w` for its lowest point `w`, so the slope of the height is the
-/// part of `w` perpendicular to `n`, and zero at the answer. Each step is judged by its certificate
-/// and by that slope: at kinks of the height (flat faces, sharp edges) steps fail and nothing is
-/// lost.
+/// part of `w` perpendicular to `n`, which is zero at the maximum. A step is accepted only if the
+/// height does not fall beyond rounding and the slope at least halves: at kinks of the height (flat
+/// faces, sharp edges) steps are rejected, and `best` stays.
 pub(super) fn converges<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -43,9 +43,9 @@ fn across<N: Simplicial<D>, const D: usize>(v: &Vector<N, D>, n: &Vector<N, D>) 
     v - n * n.dot(v)
 }
 
-/// Returns the step that takes the slope to zero, by conjugate gradients (M. Hestenes and E.
-/// Stiefel, 1952). Perpendicular to a normal there are `D − 1` directions, so as many rounds are
-/// exact. `None` if the height is not concave.
+/// Returns the step that makes the slope zero, by conjugate gradients (M. Hestenes and E. Stiefel,
+/// 1952). There are `D − 1` directions perpendicular to a normal, so as many rounds are exact.
+/// `None` if the height is not concave.
 fn step<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -72,8 +72,8 @@ fn step<N: Simplicial<D>, const D: usize>(
     Some(step)
 }
 
-/// Returns the derivative of the slope along a direction perpendicular to the normal, by a
-/// difference to both sides.
+/// Returns the derivative of the slope along a direction perpendicular to the normal, by central
+/// differences; `None` if the direction has no length.
 fn bend<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,

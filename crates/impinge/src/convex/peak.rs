@@ -1,4 +1,4 @@
-//! The best normal of an overlap, from callers that know where it can lie.
+//! The best normal of an overlap, for callers that know the possible normals.
 
 use smallvec::SmallVec;
 
@@ -13,27 +13,28 @@ use crate::math::{Real, Vector};
 /// Best normal of two overlapping cores, in the frame of the first and in units of the pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Peak<N: Real, const D: usize> {
-    /// Unit vector from the first core to the second; no other is better by more than the requested
-    /// gap.
+    /// Unit vector from the first core to the second. No other normal has a height larger by more
+    /// than the requested gap.
     pub(crate) normal: Vector<N, D>,
-    /// It is the normal of a flat face, so none beside it is slightly better.
+    /// Whether it is the normal of a flat face, so that no normal near it is slightly better.
     pub(crate) is_exact: bool,
-    /// It is one of a ring of normals of a round side, and others of the ring may be slightly
+    /// Whether it is one of a ring of normals of a round side, of which others may be slightly
     /// better.
     pub(crate) is_ring: bool,
-    /// Points of each core whose mixes lie across from each other along the normal.
+    /// Points of the first core, of which some mix faces a mix of `on2` along the normal.
     pub(crate) on1: SmallVec<[Vector<N, D>; 8]>,
+    /// Points of the second core.
     pub(crate) on2: SmallVec<[Vector<N, D>; 8]>,
 }
 
 /// Two cores with a known set of possible normals of an overlap.
 pub(crate) trait Peaks<N: Real, const D: usize> {
-    /// Returns the best normal up to `gap`; lengths times `shrink` are in units of the pair. `None`
-    /// leaves it to a search.
+    /// Returns a normal whose height is the largest up to `gap`; `None` leaves the choice to a
+    /// search. The result is in units of the pair: lengths are multiplied by `shrink`.
     fn best(&self, shrink: N, gap: N) -> Option<Peak<N, D>>;
 }
 
-/// Returns the answer with this normal, polished if cores are curved.
+/// Returns the separation for this normal, polished if cores are curved.
 pub(super) fn at_peak<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     peak: &Peak<N, D>,

@@ -1,14 +1,15 @@
-//! Curved cores: from half of the digits of a normal to all of them.
+//! Newton's method for curved cores: from a normal with half of its digits to all of them.
 //!
-//! Support points alone find a normal of curved cores up to about the root of the accuracy of its
-//! height, and the last digits of the height slowly. If a core says how its support points move
-//! ([`SupportMap::curved_support`](crate::shape::SupportMap::curved_support)), Newton's method
-//! finishes. At the best normal `n` a few points `a` of the first core are equally extreme, a few
-//! points `b` of the second, and some mix of them lies across: `Σ w b − Σ u a = λ n`, with weights
-//! that are not negative and sum to one. Their derivatives by `n`, the weights and `λ` are linear
-//! equations for a step. Combining active sets and curvature in this way is the VU-decomposition of
-//! C. Lemaréchal, F. Oustry and C. Sagastizábal, "The U-Lagrangian of a Convex Function" (2000). As
-//! everywhere, the normal that a step leads to is trusted for its certificate only.
+//! Support points alone find a normal of curved cores up to about the square root of the accuracy
+//! of its height, and the last digits of the height slowly. If a core provides how its support
+//! points move ([`SupportMap::curved_support`](crate::shape::SupportMap::curved_support)), Newton's
+//! method computes the rest. At the best normal `n`, a few points `a` of the first core are equally
+//! extreme, and a few points `b` of the second, and some mix of them faces along the normal: `Σ w b
+//! − Σ u a = λ n`, with weights that are not negative and sum to one. The derivatives with respect
+//! to `n`, the weights and `λ` give linear equations for a step. Combining active sets and
+//! curvature in this way is the VU-decomposition of C. Lemaréchal, F. Oustry and C. Sagastizábal,
+//! "The U-Lagrangian of a Convex Function" (2000). The normal after a step is accepted only by its
+//! height, as everywhere in this module.
 
 use smallvec::SmallVec;
 
@@ -22,27 +23,29 @@ use crate::math::{Mapped, Real, Vector, max, min, unit};
 /// becomes active or inactive. Along a ring of equally good normals, as for solids with almost the
 /// same axis, long steps leave the ring and the next ones return to it: up to twenty.
 const STEPS: usize = 24;
-/// How much less extreme than the most extreme point an active point may be along a normal that is
-/// not yet polished, in units of the root of the tolerance: the error of such a normal.
+/// Largest distance by which an active point may be less extreme than the most extreme one, along a
+/// normal that is not yet polished. In units of the square root of the tolerance, which is the
+/// error of such a normal.
 const SLACK: f64 = 8.0;
 /// Length of the longest step; Newton's method does not converge from farther away.
 const LONGEST: f64 = 0.25;
-/// Most equations, in 3D: of the step, and of a weight for each active point but the first of each
-/// core.
+/// Largest number of equations, in 3D: those of the step, and one for the weight of each active
+/// point but the first of each core.
 const ROWS: usize = 5;
-/// A column for each unknown, and one for the right side.
+/// One column for each unknown, and one for the right side.
 const COLUMNS: usize = ROWS + 1;
 const RIGHT: usize = ROWS;
 
-/// Active points of one core, which are or become equally extreme, and their weights in the mix.
+/// Active points of one core, which are equally extreme or become so, and their weights in the mix.
 struct ActiveSet<N: Real, const D: usize> {
     branches: SmallVec<[Branch<N, D>; 4]>,
     weights: SmallVec<[N; 4]>,
 }
 
-/// Raises the height of `best`, given points of the difference that are lowest along it, or nearly.
-/// Returns the points across from each other, if they were found; these are as accurate as the
-/// normal was before. `best` may be improved without them.
+/// Raises the height of `best`, given points of the difference that are lowest along it, or nearly
+/// so. Returns the points that face each other along the normal, if they were found; they are as
+/// accurate as the normal before the last step. `best` may be improved even if the result is
+/// `None`.
 ///
 /// Does nothing for flat cores. A point that the next normal finds below the active ones becomes
 /// active; one with a negative weight becomes inactive.
@@ -69,7 +72,7 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
         best.improve(&current);
         sides.iter_mut().for_each(|side| side.turn(difference, &current.normal));
         // The error after a step is about the square of the step, and weights are as accurate as
-        // the step. In the end no point may be outside its core by however little.
+        // the step. At the last step, no weight may be negative beyond rounding.
         let ends = squared <= N::EPSILON;
         let slack = if ends { rounding_error() } else { rounding_error::<N>().sqrt() };
         let changed = add_lower(difference, &current, &mut sides) || drop_worst(&mut sides, slack);
@@ -82,7 +85,7 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
             if mix.meets(best) {
                 return Some(mix);
             }
-            // A rim point moves fast if the normal is close to its axis: its points take one more
+            // A rim point moves fast if the normal is close to the rim's axis, so it takes one more
             // step.
             if squared >= left {
                 return None;
@@ -93,8 +96,8 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     None
 }
 
-/// Tries the exact normals of round faces close to the normal, where the height has a maximum
-/// without a derivative.
+/// Replaces `best` by the exact normal of a round face close to it if that is better. At such a
+/// normal the height has a maximum without a derivative.
 fn try_round_faces<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
@@ -107,7 +110,7 @@ fn try_round_faces<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Returns the points that are lowest along a normal, or nearly: those that [`polish`] may need.
+/// Returns the points that are lowest along a normal, or nearly so, for [`polish`].
 pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
     vertices: &[Vertex<N, D>],
     normal: &Vector<N, D>,
@@ -118,7 +121,7 @@ pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
     vertices.iter().filter(|vertex| height(vertex) <= least + slack).copied().collect()
 }
 
-/// Finds the active points of both cores; `None` if all are corners, or if extents are not finite.
+/// Finds the active points of both cores; `None` if all are corners, or if an extent is not finite.
 fn activate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -144,8 +147,8 @@ fn activate<N: Simplicial<D>, const D: usize>(
     sides.iter().all(|side| !side.branches.is_empty()).then_some(())
 }
 
-/// Drops points that are not extreme even if the normal is off by the root of the noise; then the
-/// least extreme ones, until no more are left than determine a normal.
+/// Drops points that are not extreme even if the normal is wrong by the square root of the rounding
+/// error; then the least extreme ones, until no more are left than determine a normal.
 fn keep_extreme<N: Simplicial<D>, const D: usize>(
     sides: &mut [ActiveSet<N, D>; 2],
     normal: &Vector<N, D>,
@@ -177,7 +180,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         Self { branches: SmallVec::new(), weights: SmallVec::new() }
     }
 
-    /// Adds a point unless it is known.
+    /// Adds a point unless it is already active.
     fn insert(&mut self, branch: Branch<N, D>) {
         if !self.branches.iter().any(|known| known.on == branch.on) {
             self.branches.push(branch);
@@ -190,7 +193,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         self.weights.resize(self.branches.len(), share);
     }
 
-    /// Moves the points to another normal.
+    /// Moves the points to where they are extreme along another normal.
     fn turn(&mut self, difference: &dyn Difference<N, D>, normal: &Vector<N, D>) {
         for branch in &mut self.branches {
             *branch = difference.branch(branch.is_second, &branch.on, normal);
@@ -202,7 +205,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         self.branches.iter().zip(&self.weights).fold(zero, |sum, (b, &weight)| sum + b.on * weight)
     }
 
-    /// Adds the derivative of the mix by the normal.
+    /// Adds the derivative of the mix with respect to the normal.
     fn add_bend(&self, rows: &mut [[N; COLUMNS]; ROWS]) {
         for (branch, &weight) in self.branches.iter().zip(&self.weights) {
             let Some(bend) = &branch.bend else { continue };
@@ -214,12 +217,12 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         }
     }
 
-    /// Vectors from the first point to each of the others.
+    /// Returns the vectors from the first point to each of the others.
     fn directions(&self) -> impl Iterator<Item = Vector<N, D>> {
         self.branches[1..].iter().map(|branch| branch.on - self.branches[0].on)
     }
 
-    /// Returns the least weight that is below `-slack`, with its index.
+    /// Returns the index and value of the smallest weight below `-slack`; `None` if there is none.
     fn worst(&self, slack: N) -> Option<(usize, N)> {
         let (mut worst, mut least) = (None, -slack);
         for (index, &weight) in self.weights.iter().enumerate() {
@@ -236,8 +239,8 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
     }
 }
 
-/// Adds the points that the last normal found beyond the active ones, by more than noise, as long
-/// as they can determine a normal; returns whether there were any.
+/// Adds the points that the last normal found beyond the active ones, by more than rounding, while
+/// they can determine a normal; returns whether any was added.
 fn add_lower<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     current: &SupportCandidate<N, D>,
@@ -258,7 +261,7 @@ fn add_lower<N: Simplicial<D>, const D: usize>(
     added
 }
 
-/// Drops the point with the most negative weight; returns whether there was one.
+/// Drops the point with the most negative weight below `-slack`; returns whether there was one.
 fn drop_worst<N: Simplicial<D>, const D: usize>(
     sides: &mut [ActiveSet<N, D>; 2],
     slack: N,
@@ -273,18 +276,19 @@ fn drop_worst<N: Simplicial<D>, const D: usize>(
     true
 }
 
-/// Returns a step of the normal, and sets the weights that go with it.
+/// Returns a step of the normal, and sets the weights that belong to it; `None` if the equations
+/// are dependent.
 ///
-/// Let `t` be the step, `P` the projection across the normal, `B` the sum of the weighted bends,
-/// `h` the height, `w` the weights of all active points but the first of each core, and `D` the
-/// vectors to these from the first (for the first core negated):
+/// Let `t` be the step, `P` the projection perpendicular to the normal, `B` the sum of the weighted
+/// bends, `h` the height, `w` the weights of all active points but the first of each core, and `D`
+/// the vectors to these points from the first one (negated for the first core):
 ///
 /// ```text
 /// | B + hP + nnᵀ  PD | |  t |   | P (b − a) |
 /// |    (PD)ᵀ       0 | | −w | = |  −D·n     |
 /// ```
 ///
-/// Bends map the normal to zero; `nnᵀ` keeps the step across it and changes nothing else.
+/// Bends map the normal to zero; `nnᵀ` keeps the step perpendicular to it and changes nothing else.
 fn step<N: Simplicial<D>, const D: usize>(
     current: &SupportCandidate<N, D>,
     sides: &mut [ActiveSet<N, D>; 2],
@@ -348,8 +352,8 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; ROWS], count: usize) -> Option<[N; RO
         }
         for row in &mut rows[column + 1..count] {
             let factor = row[column] / above[column];
-            // Entries to the left are not read again; updating whole rows is faster than parts of
-            // them.
+            // Entries to the left are not read again, but updating whole rows is faster than parts
+            // of them.
             for (entry, above) in row.iter_mut().zip(&above) {
                 *entry -= factor * *above;
             }

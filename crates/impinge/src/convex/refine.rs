@@ -1,4 +1,4 @@
-//! Better normals from a few support points.
+//! Finds better normals from a few support points, for cores that are apart.
 
 use smallvec::SmallVec;
 
@@ -7,21 +7,21 @@ use super::difference::{Difference, Vertex, rounding_error};
 use super::simplex::Simplicial;
 use crate::math::{Vector, min, unit};
 
-/// Support points near the one of interest.
+/// Support points near the nearest point.
 pub(super) type Bundle<N, const D: usize> = SmallVec<[Vertex<N, D>; 16]>;
 
 /// Cap on the number of support points computed.
 const ROUNDS: usize = 40;
-/// Number of points kept; the highest one makes room.
+/// Number of points kept; of more, the highest along the best normal are dropped.
 const KEPT: usize = 8;
 
-/// Raises the height of `best` as far as possible, for a difference without the origin.
+/// Raises the height of `best` to the maximum, for a difference that does not contain the origin.
 ///
 /// The height of a normal over a few support points is at least its height over the whole set. So
-/// the best normal over the bundle is computed, among those of its points, edges and facets, and
-/// its support point added, until the set agrees with the bundle. This is the cutting-plane method
-/// of J. Kelley (1960) on the sphere of normals. Over a set without the origin it is global; a set
-/// that contains the origin needs other methods. All points found are added to `support_points`.
+/// the best normal over the bundle is computed, among the normals of its points, edges and facets,
+/// and its support point is added, until both heights agree. This is the cutting-plane method of J.
+/// Kelley (1960) on the sphere of normals. It finds the global maximum only if the set does not
+/// contain the origin. All points found are added to `support_points`.
 pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     support_points: &mut Bundle<N, D>,
@@ -45,7 +45,7 @@ pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Returns the unit vector of the largest height over the bundle, and that height.
+/// Returns the unit vector with the largest height over the bundle, and that height.
 fn most_promising<N: Simplicial<D>, const D: usize>(
     bundle: &Bundle<N, D>,
     around: &Vector<N, D>,
@@ -73,7 +73,7 @@ fn most_promising<N: Simplicial<D>, const D: usize>(
     (best, promise)
 }
 
-/// Drops the points highest along the best normal until [`KEPT`] are left.
+/// Drops the points highest along `normal` until [`KEPT`] are left.
 fn drop_idle<N: Simplicial<D>, const D: usize>(bundle: &mut Bundle<N, D>, normal: &Vector<N, D>) {
     while bundle.len() > KEPT {
         let (mut idle, mut height) = (0, -N::MAX);

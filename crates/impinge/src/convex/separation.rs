@@ -4,13 +4,13 @@ use crate::math::{Point, Pose, Real, Vector};
 
 /// Signed distance, normal and points of two solids, in the frame of the first.
 ///
-/// `distance` is positive for disjoint solids, minus the length of the shortest translation that
-/// separates them if they overlap, and zero if they only touch. It is minus infinity for
-/// half-spaces that overlap without bound, and only then.
+/// `distance` is positive for disjoint solids, zero if they only touch, and negative if they
+/// overlap: minus the length of the shortest translation that separates them. It is minus infinity
+/// only for half-spaces that overlap without bound.
 ///
-/// Invariant: `point2 = point1 + normal · distance` up to rounding, `point1` on the surface of the
-/// first solid and `point2` on that of the second, `normal` unit from the first to the second.
-/// Moving the second by `-distance · normal` makes them touch.
+/// Invariant: `point2 = point1 + normal · distance` up to rounding. `point1` is on the surface of
+/// the first solid, `point2` on the surface of the second, and `normal` is the unit vector from the
+/// first to the second. Moving the second solid by `-distance · normal` makes the solids touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Separation<N: Real, const D: usize> {
     pub(crate) distance: N,
@@ -20,8 +20,8 @@ pub(crate) struct Separation<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Separation<N, D> {
-    /// Returns the separation with the solids swapped, in the frame of the second; `pose12` is its
-    /// pose.
+    /// Returns the separation with the solids swapped, in the frame of the second solid, whose pose
+    /// in the frame of the first is `pose12`.
     pub(crate) fn flipped(&self, pose12: &Pose<N, D>) -> Self {
         Self {
             distance: self.distance,

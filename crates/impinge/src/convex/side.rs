@@ -1,11 +1,11 @@
-//! The best normal of a round side.
+//! Finds the best normal among the ring of normals of a round side.
 //!
-//! If the axes of two solids almost coincide, or a small solid is near the axis of a large one, a
-//! whole ring of normals is about as good. A growing polytope does not find the best of them before
-//! its cap, and a local search makes tiny steps. But for solids with exactly the same axis the ring
-//! of the best normals is that of a side, as in the half-plane of the axis the best normal of two
-//! polygons is that of an edge. So the heights along the ring of each side are tried, a function of
-//! one angle with few maxima.
+//! If the axes of two solids nearly coincide, or a small solid is near the axis of a large one, a
+//! whole ring of normals has about the same height. A growing polytope does not find the best of
+//! them before its cap, and a local search makes tiny steps. But for solids with exactly the same
+//! axis, the best normals form the ring of a side, just as the best normal of two polygons, in the
+//! half-plane through the axis, is the normal of an edge. So the heights along the ring of each
+//! side are searched, as a function of one angle with few maxima.
 
 use smallvec::SmallVec;
 
@@ -16,31 +16,32 @@ use super::polish::polish;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, cross, filled, unit};
 
-/// Normals of a ring that are tried first.
+/// Number of normals of a ring that are tried first.
 const SAMPLES: usize = 16;
-/// The angle between them.
+/// Angle between two of these normals, in radians.
 const PITCH: f64 = core::f64::consts::TAU / 16.0;
-/// Cap on the maxima that are searched.
+/// Cap on the number of maxima that are searched.
 const TOPS: usize = 3;
-/// Largest difference between the components along the axis of a normal and of the side's normals.
+/// Largest difference, along the axis, between the component of a normal and that of the side's
+/// normals for which the ring is searched.
 const NEAR: f64 = 1.0 / 16.0;
-/// Largest difference of heights in a ring of about equal ones, for solids of about size 1.
+/// Largest difference of heights in a ring that counts as even, in units of the pair.
 const MAX_UNEVENNESS: f64 = 1.0 / 8.0;
-/// Share of an interval that a step of the golden section leaves.
+/// Fraction of an interval that is left after a step of the golden section.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
-/// Cap on these steps, which shrink an interval to 1e-9 of its length.
+/// Cap on the steps of the golden section; so many shrink an interval to 1e-9 of its length.
 const STEPS: usize = 43;
 
-/// A normal of a ring that is better than a given height, polished, with the points that are lowest
-/// along it, or nearly.
+/// A polished normal of a ring with a larger height than a given one, and the points that are
+/// lowest along it, or nearly so.
 pub(super) struct Better<N: Real> {
     pub(super) best: SupportCandidate<N, 3>,
     pub(super) mix: Option<Mix<N, 3>>,
     pub(super) lowest: SmallVec<[Vertex<N, 3>; 8]>,
 }
 
-/// Returns a normal from the rings of the sides near `normal` that is better than `height`, by more
-/// than rounding.
+/// Returns a normal from the rings of the sides near `normal` whose height exceeds `height` by more
+/// than rounding; `None` if there is none.
 pub(super) fn better<N: Real>(
     difference: &dyn Difference<N, 3>,
     normal: &Vector<N, 3>,
@@ -57,7 +58,7 @@ pub(super) fn better<N: Real>(
     found
 }
 
-/// A circle of unit vectors, with an origin for angles.
+/// A circle of unit vectors, parametrised by an angle.
 #[derive(Clone, Copy)]
 struct NormalRing<N: Real> {
     axis: Vector<N, 3>,
@@ -68,8 +69,8 @@ struct NormalRing<N: Real> {
 }
 
 impl<N: Real> NormalRing<N> {
-    /// Returns the ring of a side, with angles from a normal near it; `None` if the normal is not
-    /// near.
+    /// Returns the ring of a side, with angles measured from `normal`; `None` if the normal is not
+    /// near the ring.
     fn near(axis: Vector<N, 3>, rise: N, normal: &Vector<N, 3>) -> Option<Self> {
         let cosine = normal.dot(&axis);
         let is_near = (cosine - rise).abs() <= N::lit(NEAR);
@@ -83,7 +84,7 @@ impl<N: Real> NormalRing<N> {
         self.axis * self.rise + (self.from * cosine + self.aside * sine) * away
     }
 
-    /// Returns the ring with angles from another of its normals.
+    /// Returns the same ring with angles measured from its normal at `angle`.
     fn rotated(&self, angle: N) -> Option<Self> {
         Self::near(self.axis, self.rise, &self.at(angle))
     }
@@ -92,13 +93,14 @@ impl<N: Real> NormalRing<N> {
         SupportCandidate::along(difference, self.at(angle)).height
     }
 
-    /// Returns whether the opposite normal is about as good as `height`, that of the normal at
-    /// angle zero. Otherwise heights vary enough to find the best normal without the ring.
+    /// Returns whether the height of the opposite normal is close to `height`, the height at angle
+    /// zero. If it is not, the heights vary enough to find the best normal without the ring.
     fn is_even(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
         height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(MAX_UNEVENNESS)
     }
 
-    /// Returns the best normal, if it is higher than `least`, and the ring with angles from it.
+    /// Returns the best normal of the ring, and the ring with angles measured from it; `None` if
+    /// its height is not above `least`.
     fn best(
         &self,
         difference: &dyn Difference<N, 3>,
@@ -117,7 +119,8 @@ impl<N: Real> NormalRing<N> {
         best
     }
 
-    /// Returns the angles of the highest samples that are no lower than both neighbours.
+    /// Returns the angles of the samples that are no lower than both neighbours, at most `TOPS`,
+    /// the highest ones.
     fn tops(&self, difference: &dyn Difference<N, 3>) -> SmallVec<[N; TOPS]> {
         let mut next = N::ZERO;
         let samples: [(N, N); SAMPLES] = filled(|_| {
@@ -139,8 +142,8 @@ impl<N: Real> NormalRing<N> {
         highest
     }
 
-    /// Returns the ring with angles from its highest normal between the neighbouring samples, by
-    /// golden section.
+    /// Returns the ring with angles measured from its highest normal between the two neighbouring
+    /// samples, found by golden section.
     fn risen(&self, difference: &dyn Difference<N, 3>) -> Option<Self> {
         let (mut low, mut high) = (-N::lit(PITCH), N::lit(PITCH));
         let inner = |low: N, high: N| {
@@ -163,8 +166,8 @@ impl<N: Real> NormalRing<N> {
         self.rotated(if heights[0] >= heights[1] { left } else { right })
     }
 
-    /// Polishes the normal at angle zero by Newton's method, over the points that are lowest to all
-    /// sides of it.
+    /// Polishes the normal at angle zero by Newton's method, over the points that are lowest along
+    /// normals on all sides of it.
     fn polished(
         &self,
         difference: &dyn Difference<N, 3>,

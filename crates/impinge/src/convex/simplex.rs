@@ -14,28 +14,30 @@
 //!
 //! Deciding by the signs of volumes, and falling back to the faces of a simplex instead of dividing
 //! by a small volume, follows M. Montanari, N. Petrinic and E. Barbieri, "Improving the GJK
-//! Algorithm for Faster and More Reliable Distance Queries Between Convex Objects" (2017). The
-//! parts that depend on the dimension are in `simplex2` and `simplex3`; the same fan in lanes,
-//! without branches, is `collide/separation/apart/simplex.rs`.
+//! Algorithm for Faster and More Reliable Distance Queries Between Convex Objects" (2017). The code
+//! that depends on the dimension is in `simplex2` and `simplex3`;
+//! `collide/separation/apart/simplex.rs` has the same case analysis in lanes, without branches.
 
 use super::Separation;
 use super::difference::{Difference, Vertex, rounding_error};
 use crate::math::{Real, Vector};
 
-/// The scalar `Self` with the parts of the algorithms that depend on `D`.
+/// A scalar type, with the parts of the algorithms that depend on the dimension `D`.
 pub(crate) trait Simplicial<const D: usize>: Real {
     /// Returns the point of the hull of one to `D + 1` points that is nearest to the origin.
     fn nearest(points: &[Vector<Self, D>]) -> NearestOfSimplex<Self, D>;
 
-    /// Returns whether all facets of `D + 1` points are farther from the origin than `radius`: if
-    /// the points enclose the origin, they contain a ball around it. `false` for fewer points.
+    /// Returns whether all facets of `D + 1` points are farther from the origin than `radius`. If
+    /// the points enclose the origin, they then contain a ball of that radius around it. `false`
+    /// for fewer points.
     fn clears(points: &[Vector<Self, D>], radius: Self) -> bool;
 
-    /// Visits a vector perpendicular to each choice of `D` of the points; not of unit length.
+    /// Calls `visit` with a vector perpendicular to the differences of each choice of `D` of the
+    /// points; it need not have unit length.
     fn visit_facets(points: &[Vector<Self, D>], visit: &mut dyn FnMut(&Vector<Self, D>));
 
-    /// Returns the best normal of a difference that contains the origin, or misses it by rounding
-    /// only.
+    /// Returns the separation of a difference that contains the origin, or misses it only by
+    /// rounding. `simplex` is the last simplex of the search.
     fn deepest(
         difference: &dyn Difference<Self, D>,
         simplex: &Simplex<Self, D>,
@@ -45,15 +47,15 @@ pub(crate) trait Simplicial<const D: usize>: Real {
 /// The point of a simplex nearest to the origin.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearestOfSimplex<N: Real, const D: usize> {
-    /// The nearest point. It is computed from the feature that it lies on, not as a weighted sum of
-    /// corners, so its direction is accurate however near the origin is.
+    /// The nearest point, computed from the feature that it lies on, not as a weighted sum of
+    /// corners. So its direction is accurate however near the origin is.
     pub(super) point: Vector<N, D>,
     /// Squared length of `point`.
     pub(super) squared: N,
-    /// Barycentric weights of the corners, not negative, with sum 1; zero for corners outside the
-    /// feature.
+    /// Barycentric weights of the corners: not negative, with sum 1, and zero for corners outside
+    /// the feature.
     pub(super) weights: [N; 4],
-    /// The origin lies in the interior; `point` is zero then.
+    /// Whether the origin lies in the interior; `point` is then zero.
     pub(super) enclosed: bool,
 }
 
@@ -62,24 +64,24 @@ impl<N: Real, const D: usize> NearestOfSimplex<N, D> {
         Self { point, squared: point.norm_squared(), weights, enclosed: false }
     }
 
-    /// The origin is inside, with these weights.
+    /// Returns the result if the origin is inside, with these weights.
     pub(super) fn enclosed(weights: [N; 4]) -> Self {
         Self { enclosed: true, ..Self::new(Vector::<N, D>::zeros(), weights) }
     }
 
-    /// The corner `index`, at `point`.
+    /// Returns the result if the corner `index`, which lies at `point`, is nearest.
     pub(super) fn corner(index: usize, point: &Vector<N, D>) -> Self {
         let mut weights = [N::ZERO; 4];
         weights[index] = N::ONE;
         Self::new(*point, weights)
     }
 
-    /// Returns whether all of these corners have a weight.
+    /// Returns whether all of these corners have a positive weight.
     pub(super) fn weighs<const K: usize>(&self, corners: [usize; K]) -> bool {
         corners.iter().all(|&corner| self.weights[corner] > N::ZERO)
     }
 
-    /// Returns the nearer of two.
+    /// Returns the nearer of two results, `self` in a tie.
     pub(super) fn or_nearer(self, other: Option<Self>) -> Self {
         match other {
             Some(other) if other.squared < self.squared => other,
@@ -100,7 +102,7 @@ pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     let squared = edge.norm_squared();
     let (along, back) = (-a.dot(&edge), b.dot(&edge));
     let a_is_nearer = along < back;
-    // The test of `squared` keeps the division below safe; NaN ends here too.
+    // The test of `squared` makes the division below safe; NaN also ends here.
     let inside =
         squared > rounding_error::<N>() * rounding_error() && along > N::ZERO && back > N::ZERO;
     if !inside {
@@ -115,7 +117,7 @@ pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     let mut weights = [N::ZERO; 4];
     weights[j] = along / squared;
     weights[i] = N::ONE - weights[j];
-    // Subtracting the rest along the edge once more makes the direction accurate to rounding.
+    // Subtracting the remainder along the edge again makes the direction accurate to rounding.
     NearestOfSimplex::new(across - edge * (across.dot(&edge) / squared), weights)
 }
 
@@ -123,7 +125,7 @@ pub(super) fn nearest_on_segment<N: Real, const D: usize>(
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Simplex<N: Real, const D: usize> {
     vertices: [Vertex<N, D>; 4],
-    /// The points of `vertices` again, in a row.
+    /// Copies of the points in `vertices`, in contiguous memory.
     points: [Vector<N, D>; 4],
     /// Weights of the points in the nearest point, as given to [`Self::keep`].
     weights: [N; 4],
@@ -138,17 +140,17 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         Self { vertices: [vertex; 4], points: [vertex.point, zero, zero, zero], weights, len: 1 }
     }
 
-    /// The points, with the points of the cores that they come from.
+    /// Returns the vertices: points with the points of the cores that they come from.
     pub(super) fn vertices(&self) -> &[Vertex<N, D>] {
         &self.vertices[..self.len]
     }
 
-    /// The points.
+    /// Returns the points.
     pub(super) fn points(&self) -> &[Vector<N, D>] {
         &self.points[..self.len]
     }
 
-    /// The weights of the points.
+    /// Returns the weights of the points, as given to [`Self::keep`]; zero for points added later.
     pub(super) fn weights(&self) -> &[N] {
         &self.weights[..self.len]
     }
@@ -158,7 +160,7 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         self.points().contains(&vertex.point)
     }
 
-    /// Adds a point; there are at most `D` before.
+    /// Adds a point, with weight zero. Precondition: there are at most `D` points.
     pub(super) fn push(&mut self, vertex: Vertex<N, D>) {
         self.vertices[self.len] = vertex;
         self.points[self.len] = vertex.point;
@@ -171,7 +173,7 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         self.len -= 1;
     }
 
-    /// Drops the points without weight, and keeps the weights of the others.
+    /// Drops the points whose weight is not positive, and sets the weights of the others.
     pub(super) fn keep(&mut self, weights: &[N; 4]) {
         let mut kept = 0;
         for (index, &weight) in weights.iter().enumerate().take(self.len) {
@@ -184,7 +186,7 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
                 kept += 1;
             }
         }
-        // NaN weights leave one point: a simplex is never empty.
+        // NaN weights leave one point, because a simplex is never empty.
         self.len = kept.max(1);
     }
 }

@@ -35,7 +35,7 @@ impl<N: Real> Simplicial<2> for N {
     }
 }
 
-/// Computes [`nearest_on_segment`]; in 2D the edge alone gives the direction.
+/// Computes [`nearest_on_segment`] with the direction from the edge alone, which suffices in 2D.
 fn nearest_on_side<N: Real>(points: &[Vector<N, 2>], [i, j]: [usize; 2]) -> NearestOfSimplex<N, 2> {
     let nearest = nearest_on_segment(points, [i, j]);
     if nearest.weights[i] == N::ZERO || nearest.weights[j] == N::ZERO {
@@ -46,7 +46,7 @@ fn nearest_on_side<N: Real>(points: &[Vector<N, 2>], [i, j]: [usize; 2]) -> Near
     NearestOfSimplex::new(across * (across.dot(end) / across.norm_squared()), nearest.weights)
 }
 
-/// The three sides; each is opposite to the corner of its index.
+/// The three sides; side `i` is opposite to corner `i`.
 const SIDES: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 fn nearest_in_triangle<N: Real>(points: &[Vector<N, 2>]) -> NearestOfSimplex<N, 2> {
@@ -54,7 +54,8 @@ fn nearest_in_triangle<N: Real>(points: &[Vector<N, 2>]) -> NearestOfSimplex<N, 
     let (e, f) = (b - a, c - a);
     let area = cross2(&e, &f);
     let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
-    // Flatter than the noise: the sign of the area is unknown, and all three sides compete.
+    // The triangle is flat up to rounding: the sign of its area is unknown, and all three sides
+    // compete.
     let flat = area * area <= rounding_error::<N>() * rounding_error::<N>() * longest;
     let (on_b, on_c) = (-cross2(&a, &f) / area, -cross2(&e, &a) / area);
     let weights = [N::ONE - on_b - on_c, on_b, on_c];

@@ -39,8 +39,8 @@ impl<N: Real> Simplicial<3> for N {
     }
 }
 
-/// Returns the point of a triangle nearest to the origin; one flatter than `rounding_error` counts as its
-/// sides.
+/// Returns the point of a triangle nearest to the origin. For a triangle flatter than
+/// `rounding_error`, only its sides are searched.
 fn nearest_on_triangle<N: Real>(
     points: &[Vector<N, 3>],
     [i, j, k]: [usize; 3],
@@ -51,14 +51,15 @@ fn nearest_on_triangle<N: Real>(
     let squared = normal.norm_squared();
     let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
     let flat = squared <= rounding_error::<N>() * rounding_error::<N>() * longest;
-    // Coordinates of the origin in the frame of the sides from `a`: errors grow like 1/size only.
+    // Coordinates of the origin in the frame of the sides from `a`; errors grow only like 1/size.
     let (on_b, on_c) = (-normal.dot(&cross(a, &f)) / squared, -normal.dot(&cross(&e, a)) / squared);
     let on_a = N::ONE - on_b - on_c;
     let mut best: Option<NearestOfSimplex<N, 3>> = None;
     for (weight, side) in [(on_a, [j, k]), (on_b, [k, i]), (on_c, [i, j])] {
         if flat || weight <= N::ZERO {
             let found = nearest_on_segment(points, side);
-            // Beyond a side and beside neither end: no other point of the triangle is nearer.
+            // The origin projects beyond a side and between its ends, so no other point of the
+            // triangle is nearer.
             if !flat && found.weighs(side) {
                 return found;
             }
@@ -72,11 +73,12 @@ fn nearest_on_triangle<N: Real>(
     })
 }
 
-/// The four faces; each is opposite to the corner of its index.
+/// The four faces; face `i` is opposite to corner `i`.
 const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> NearestOfSimplex<N, 3> {
-    // Six times the signed volumes of the tetrahedron and of the four parts at the origin.
+    // Six times the signed volumes of the tetrahedron and of its four parts, each with a corner
+    // replaced by the origin.
     let (mut parts, mut largest) = ([N::ZERO; 4], N::ZERO);
     let mut volume = N::ZERO;
     for (corner, [i, j, k]) in FACES.into_iter().enumerate() {

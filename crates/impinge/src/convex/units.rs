@@ -1,11 +1,11 @@
-//! A unit of length for two solids.
+//! Length unit of a pair of solids.
 
 use crate::math::{Real, Vector, unit};
 
-/// A unit of length in which a pair is about 1 large: a power of two, so that scaling is exact.
+/// Unit of length in which the size of a pair is about 1: a power of two, so that scaling is exact.
 ///
-/// It is at most the sum of both reaches and of the distance of the origins, and more than half of
-/// it.
+/// The unit is at most the sum of both bounding radii and the distance of the origins, and more
+/// than half of that sum.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Units<N> {
     /// The length of one unit.
@@ -15,9 +15,9 @@ pub(crate) struct Units<N> {
 }
 
 impl<N: Real> Units<N> {
-    /// Returns the unit of two solids with these reaches, the second at `translation`.
+    /// Returns the unit of two solids with these bounding radii, the second at `translation`.
     pub(crate) fn of<const D: usize>(reach1: N, reach2: N, translation: &Vector<N, D>) -> Self {
-        // A quarter of everything: the sum of finite lengths must not overflow.
+        // All lengths are divided by 4, because the sum of finite lengths must not overflow.
         let quarter = N::HALF * N::HALF;
         let away = unit(&(translation * quarter)).map_or(N::ZERO, |(_, length)| length);
         let size = reach1 * quarter + reach2 * quarter + away;

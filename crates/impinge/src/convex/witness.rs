@@ -1,9 +1,10 @@
-//! The points of the two cores that a normal and its height belong to.
+//! Finds the points of the two cores that belong to a normal and its height.
 //!
-//! A mix of points of the difference is the difference of the mixes of the points of the cores that
-//! they come from. These lie in the cores, which are convex. If the mix is the point
-//! `height · normal`, both lie on the supporting planes of the normal: none of the mixed points is
-//! lower than the height, so none is higher. So the error is the distance of a mix from that point.
+//! A mix (weighted mean) of points of the difference is the difference of the mixes of the core
+//! points that they come from. These lie in the cores, which are convex. If the mix is the point
+//! `height · normal`, both core points lie on the supporting planes of the normal: no mixed point
+//! is lower than the height, so none is higher either. So the error is the distance of the mix from
+//! that point.
 
 use super::Separation;
 use super::candidate::SupportCandidate;
@@ -12,12 +13,12 @@ use super::gjk::nearest_simplex;
 use super::simplex::{Simplex, Simplicial};
 use crate::math::{Point, Real, Vector, max, unit};
 
-/// Cap on the number of corners tried.
+/// Cap on the number of vertices tried.
 const ROUNDS: usize = 32;
-/// Cap on the number of searches for a pair of points.
+/// Cap on the number of searches for points.
 const SEARCHES: usize = 16;
 
-/// A point of each core: points mixed by weights.
+/// A point of each core, both mixed from core points with the same weights.
 #[derive(Clone, Copy)]
 pub(super) struct Mix<N: Real, const D: usize> {
     on1: Vector<N, D>,
@@ -30,7 +31,7 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         Self { on1, on2 }
     }
 
-    /// Mixes by the weights that the simplex has.
+    /// Mixes the vertices of a simplex with its weights.
     pub(super) fn of(simplex: &Simplex<N, D>) -> Self {
         Self::by(simplex, simplex.weights())
     }
@@ -45,7 +46,7 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         Self { on1, on2 }
     }
 
-    /// Returns the point of the hull of up to `D + 1` points nearest to `height · normal`.
+    /// Returns the mix nearest to `height · normal` over the hull of up to `D + 1` vertices.
     pub(super) fn nearest(best: &SupportCandidate<N, D>, vertices: &[Vertex<N, D>]) -> Self {
         let target = best.normal * best.height;
         let moved = |vertex: &Vertex<N, D>| moved(vertex, &target);
@@ -54,8 +55,9 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         Self::by(&simplex, &N::nearest(simplex.points()).weights)
     }
 
-    /// Returns the best mix over the facets of a simplex that contains the target, or `best`. A
-    /// simplex whose volume is mostly rounding has poor weights, but its facets come as near.
+    /// Returns the mix nearest to the target over the facets of a simplex, or `best` if that is
+    /// nearer. If the volume of a simplex is mostly rounding error, its weights are poor, but its
+    /// facets come as near.
     fn of_facets(simplex: &Simplex<N, D>, mut best: Self, target: &Vector<N, D>) -> Self {
         for dropped in 0..=D {
             let mut kept = [N::ONE; 4];
@@ -70,22 +72,22 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
         best
     }
 
-    /// Squared distance of the mix from the target.
+    /// Returns the squared distance of the mix from the target.
     fn miss(&self, target: &Vector<N, D>) -> N {
         (self.on2 - self.on1 - target).norm_squared()
     }
 
-    /// Returns whether the points lie across from each other and on the supporting planes, up to
-    /// rounding.
+    /// Returns whether the points face each other along the normal and lie on the supporting
+    /// planes, up to rounding.
     pub(super) fn meets(&self, best: &SupportCandidate<N, D>) -> bool {
         let slack = N::TWO * rounding_error();
         self.miss(&(best.normal * best.height)) <= slack * slack
     }
 }
 
-/// Returns the answer in units of the pair, with the points of `mix`. They are moved onto the
-/// supporting planes, and sideways until they lie exactly across from each other: the first by
-/// `share` of the distance, the second by the rest.
+/// Returns the separation, in units of the pair, with the points of `mix`. They are moved onto the
+/// supporting planes, and perpendicular to the normal until they face each other exactly: the first
+/// point by `share` of the offset, the second by the rest.
 pub(super) fn placed<N: Simplicial<D>, const D: usize>(
     best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,
@@ -102,11 +104,12 @@ pub(super) fn placed<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Returns the share by which the first point moves if the points are well aside of each other.
+/// Returns the fraction of the offset by which the first point moves, if the points are well aside
+/// of each other.
 ///
 /// On a curved surface a point may be moved: it leaves the surface only by the square of the
-/// distance. At an edge it may not. A supporting plane halfway between the normal and the offset
-/// decides.
+/// distance. At an edge it may not be moved. A supporting plane halfway between the normal and the
+/// offset decides.
 fn share<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -117,7 +120,7 @@ fn share<N: Simplicial<D>, const D: usize>(
     let Some((aside, _)) = unit(&(away - normal * normal.dot(&away))) else { return N::HALF };
     let Some((slant, _)) = unit(&(normal + aside)) else { return N::HALF };
     let ends = difference.lowest(&slant);
-    // How far each leaves its core if it moves all the way.
+    // Distance by which each point leaves its core if it moves by the whole offset.
     let beyond1 = slant.dot(&(mix.on2 - across - ends.on1));
     let beyond2 = slant.dot(&(ends.on2 - mix.on1 - across));
     if max(beyond1, beyond2) <= N::ZERO {
@@ -129,8 +132,8 @@ fn share<N: Simplicial<D>, const D: usize>(
     }
 }
 
-/// Returns the answer with the points of `mix`, if they fit; else with a mix of `vertices` or, if
-/// that is not enough, of points that are searched for.
+/// Returns the separation with the points of `mix` if they fit; else with a mix of `vertices` or,
+/// if that does not fit either, with points that are searched for.
 pub(super) fn finish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -143,7 +146,8 @@ pub(super) fn finish<N: Simplicial<D>, const D: usize>(
     locate(difference, best, vertices)
 }
 
-/// Returns the answer with a mix of `vertices` or, if that is not enough, of points searched for.
+/// Returns the separation with a mix of `vertices` or, if that does not fit, with points searched
+/// for.
 pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -153,12 +157,13 @@ pub(super) fn locate<N: Simplicial<D>, const D: usize>(
     if mix.meets(best) { placed(best, &mix, N::HALF) } else { search(difference, best, &mix) }
 }
 
-/// Returns the answer with points that are searched for, or those of `mix` if they fit better.
+/// Returns the separation with points that are searched for, or with those of `mix` if they fit
+/// better.
 ///
 /// The difference is moved along the normal until it is well away from the origin. Its nearest
-/// point then is a mix of points that are lowest along the normal. If the normal is not quite
-/// right, which takes a curved surface, the direction to that point is a better one: a step of the
-/// proximal point method, as in `climb`.
+/// point is then a mix of points that are lowest along the normal. If the normal is slightly wrong,
+/// which happens only on curved surfaces, the direction to that point is a better one: a step of
+/// the proximal point method, as in `climb`.
 fn search<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -182,14 +187,14 @@ fn search<N: Simplicial<D>, const D: usize>(
             break;
         }
     }
-    // Points a little aside are the smaller error if the height would lose more than rounding; in
-    // `f32` it never does.
+    // If the new height is lower by more than rounding, points slightly aside are the smaller
+    // error; in `f32` this never happens.
     let found = if found.height < best.height - N::TWO * rounding_error() { *best } else { found };
     let share = share(difference, &found, &mix);
     placed(&found, &mix, share)
 }
 
-/// Mixes the points so that their difference comes nearest to `target`.
+/// Returns the mix of the vertices that is nearest to `target`.
 fn mix<N: Simplicial<D>, const D: usize>(
     target: &Vector<N, D>,
     vertices: &[Vertex<N, D>],
@@ -210,7 +215,7 @@ fn mix<N: Simplicial<D>, const D: usize>(
         }
         simplex.push(next);
         nearest = N::nearest(simplex.points());
-        // Judged by what the weights give, as slivers give poor weights.
+        // Judged by the mix that the weights give, because slivers give poor weights.
         let mut found = Mix::by(&simplex, &nearest.weights);
         if nearest.enclosed && found.miss(target) > rounding_error::<N>() * rounding_error() {
             found = Mix::of_facets(&simplex, found, target);
@@ -223,7 +228,7 @@ fn mix<N: Simplicial<D>, const D: usize>(
     best
 }
 
-/// Returns the vertex relative to `target`.
+/// Returns a vertex whose point is relative to `target`; the core points stay.
 fn moved<N: Simplicial<D>, const D: usize>(
     vertex: &Vertex<N, D>,
     target: &Vector<N, D>,
@@ -246,7 +251,7 @@ fn nearest_to<'a, N: Simplicial<D>, const D: usize>(
     best
 }
 
-/// Returns the vertex lowest along a direction.
+/// Returns the vertex lowest along a direction; `None` without a finite height.
 fn lowest_along<'a, N: Simplicial<D>, const D: usize>(
     direction: &Vector<N, D>,
     vertices: &'a [Vertex<N, D>],

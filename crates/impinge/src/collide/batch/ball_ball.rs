@@ -1,6 +1,6 @@
 //! Ball against ball: `collide/separation/balls/ball_ball.rs` in lanes.
 //!
-//! Reads of [`Inputs`]: both `translations` and both `radii`.
+//! Fields of [`Inputs`] read: both `translations` and both `radii`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -10,7 +10,8 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Balls whose centres do not coincide. Coinciding centres have no direction: they fall back.
+/// Kernel for balls whose centres do not coincide. Coinciding centres have no direction and fall
+/// back.
 pub(super) struct BallBall;
 
 impl<N: Real, const D: usize> Form<N, D> for BallBall {

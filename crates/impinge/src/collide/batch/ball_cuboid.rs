@@ -1,7 +1,7 @@
 //! Ball against box: `collide/separation/balls/ball_cuboid.rs` in lanes.
 //!
-//! Reads of [`Inputs`]: both `translations` and the box's rotation, `radii[0]` of the ball, and the
-//! half extents in `ends[1][0]`.
+//! Fields of [`Inputs`] read: both `translations`, the box's rotation, the ball's `radii[0]`, and
+//! the half extents in `ends[1][0]`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -11,7 +11,7 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
 use crate::shape::{Cuboid, FeatureId};
 
-/// Balls with their centre outside the box.
+/// Kernel for a ball whose centre lies outside the box.
 pub(super) struct BallCuboid;
 
 impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
@@ -37,7 +37,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, 1, 0));
         let radius = inputs.radius(simd, 0);
         let center = pose12.inverse_origin(simd);
-        // Nearest point of the box to the centre. A centre inside has no offset from it, and falls
+        // Nearest point of the box to the centre. A centre inside coincides with it, so it falls
         // back.
         let clamped = filled(
             #[inline(always)]
@@ -48,7 +48,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let point1 = times(&normal, radius);
         let (reach, is_box) = length_of(simd, &half);
         let rounding_error = rounding_of::<S, N, V>(simd, radius + reach + pose12.apart());
-        // To the frame of the ball and back, with the rounding that the builder for one pair has.
+        // Through the frame of the ball and back, for the bits of the builder for one pair.
         let touched = pose12.inverse_point(&pose12.point(&clamped));
         radius.smaller(reach).store(&mut found.size);
         let is_thick = found.put_part(simd, [&touched, &half], rounding_error);
@@ -64,7 +64,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
     /// Computes the part of each box that a point lies on, as `Cuboid::part_at` does: masks of the
-    /// free axes, then of the signs. Returns the lanes that have such a part.
+    /// axes along which the part extends, then of the signs. Returns the lanes that have such a
+    /// part.
     #[inline(always)]
     fn put_part<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

@@ -1,7 +1,7 @@
 //! Ball against segment or capsule: `collide/separation/balls/ball_segment.rs` in lanes.
 //!
-//! Reads of [`Inputs`]: both `translations` and the segment's rotation, both `radii`, and the ends
-//! of the core in `ends[1]`.
+//! Fields of [`Inputs`] read: both `translations`, the segment's rotation, both `radii`, and the
+//! ends of the core in `ends[1]`.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -13,7 +13,7 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Balls with their centre off a segment that has a length.
+/// Kernel for a ball whose centre is not on the core, a segment of positive length.
 pub(super) struct BallSegment;
 
 impl<N: Real, const D: usize> Form<N, D> for BallSegment {
@@ -43,7 +43,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
         let offset = minus(&center, &near.point);
         let (direct, away, is_off) = unit(simd, &offset);
         let (axis, length, is_long) = unit(simd, &near.along);
-        // Beside the segment the offset may be mostly rounding: the normal is made perpendicular.
+        // Near the inside of the core the offset may be mostly rounding error, so the normal is
+        // made perpendicular to the core.
         let (sideways, is_beside) = made_perpendicular(simd, (&direct, is_off), &axis);
         let outward = either(near.is_inside, &sideways, &direct);
         let normal = negated(&pose12.vector(&outward));
@@ -52,7 +53,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
         let size = radius + (reach + rounding) + pose12.apart();
         radius.smaller(lit::<S, N, V>(simd, 0.5) * length + rounding).store(&mut found.size);
         let rounding_error = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
-        // A segment no longer than the noise has no ends, only its edge.
+        // A core no longer than the rounding error counts as an edge without ends.
         let (slack, is_edge) = (rounding_error * length, length.simd_le(rounding_error));
         let is_first = near.from_first.simd_le(slack) & !is_edge;
         let is_last = near.to_last.simd_le(slack) & !is_edge;
@@ -69,8 +70,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
     }
 }
 
-/// Computes `made_perpendicular` of a vector with known direction; the mask has the lanes where it
-/// is certain.
+/// Computes `made_perpendicular` of a vector with known direction; the mask has the lanes where the
+/// result is certain.
 #[inline(always)]
 fn made_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

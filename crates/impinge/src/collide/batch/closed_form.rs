@@ -25,16 +25,16 @@ use crate::math::simd::Simd;
 use crate::math::{Mapped, Point, Real, Space, Vector, Wide};
 use crate::shape::FeatureId;
 
-/// A closed form in lanes.
+/// Kernel for pairs whose separation has a closed form.
 pub(super) trait Form<N: Real, const D: usize> {
-    /// Puts a pair into a lane, as [`Batch::gather`].
+    /// Copies the inputs of a pair into a lane; returns whether the form supports the pair.
     fn gather<const L: usize>(
         inputs: &mut Inputs<N, D, L>,
         lane: usize,
         pair: &PairQuestion<'_, N, D>,
     ) -> bool;
 
-    /// Computes the contacts of all lanes.
+    /// Computes the contacts of all lanes, with [`LaneContacts::put`] or field by field.
     fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
         inputs: &Inputs<N, D, L>,
@@ -91,28 +91,29 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
 pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
     /// Unit normals from the first solid to the second, in the frame of the first.
     pub(super) normal: [[N; L]; D],
-    /// Signed distances of the pairs.
+    /// Signed distances of the pairs; negative for overlaps.
     pub(super) gap: [N; L],
     /// Size of each pair, as `collide::size` defines it.
     pub(super) size: [N; L],
-    /// First and second contact: points on the first solid, and distances. The distance of a lone
-    /// contact is `gap`.
+    /// Points of the first and second contact, on the first solid and in its frame.
     pub(super) points1: [[[N; L]; D]; 2],
+    /// Signed distances of both contacts; unused with one contact, whose distance is `gap`.
     pub(super) distances: [[N; L]; 2],
-    /// Lengths up to this are rounding errors; used for two contacts.
+    /// Lengths up to this are rounding errors; used only with two contacts.
     pub(super) tolerance: [N; L],
-    /// Masks of the parts that the points lie on, then a byte for each pair; the form defines the
-    /// bits. With two contacts, the low four are those of the first.
+    /// Masks of the parts that the points lie on, after transposition one byte per pair; the form
+    /// defines the bits. With two contacts, the low four bits belong to the first.
     pub(super) parts: [u8; 8],
-    /// Bits of the lanes beyond the prediction, with a contact, and with two contacts. Lanes with
-    /// none of these fall back.
+    /// Bits of the lanes beyond the prediction, which have no contact.
     pub(super) is_apart: u8,
+    /// Bits of the lanes with a contact. Lanes that are neither apart nor found fall back.
     pub(super) is_found: u8,
+    /// Bits of the lanes with two contacts.
     pub(super) is_two: u8,
 }
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
-    /// Contacts before the first kernel runs: no lane is found or apart.
+    /// Returns contacts without a found or apart lane.
     const fn new() -> Self {
         let row = [N::ZERO; L];
         Self {
@@ -129,8 +130,8 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Stores the distances, normals and points on the first solid, and sets the masks. `is_certain`
-    /// are the lanes where they hold.
+    /// Stores the distances, normals and points on the first solid, and sets the masks. The inputs
+    /// hold only in the lanes of `is_certain`; the others fall back.
     #[inline(always)]
     pub(super) fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -150,7 +151,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Replaces the manifold of one pair; returns `false` if it has to fall back.
+    /// Replaces the manifold of the pair in `lane`; returns `false` if it has to fall back.
     #[inline(always)]
     fn write_manifold<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =
@@ -162,7 +163,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
             return is_apart;
         }
         let (features, point1) = (F::features(self.parts[lane]), vector(&self.points1[0], lane));
-        // A single point on the same features keeps its id, and is moved in place.
+        // A lone point on unchanged features keeps its id and is updated in place.
         let is_same = |old: &RawPoint<N, D>| {
             [old.feature1, old.feature2] == features
                 && is_same_point(features, &(point1 - old.point1.coords), || self.size[lane])
@@ -185,7 +186,8 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         true
     }
 
-    /// Replaces the points of one pair by `count` contacts, keeping ids as `choose` does.
+    /// Replaces the points of the pair in `lane` by `count` contacts, keeping ids by the rules of
+    /// `manifold::choose`.
     #[inline(never)]
     fn choose<F: Form<N, D>>(&self, lane: usize, count: usize, raw: &mut RawManifold<N, D>) {
         let mut candidates = [0, 1].mapped(|which| Candidate {

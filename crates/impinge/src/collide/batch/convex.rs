@@ -7,8 +7,8 @@
 //!   out[slot]                                 `slot` is kept with each pair, so order is free
 //! ```
 //!
-//! At least half a packet goes to a kernel: segments here, faceted solids in
-//! `collide/separation/apart/`. The rest is computed pair by pair, with the same bits.
+//! A packet at least half full runs in a kernel: segments here, faceted solids in
+//! `collide/separation/apart/`. All other pairs are computed one by one, with identical bits.
 
 use super::LANES;
 use super::gather::put;
@@ -27,11 +27,11 @@ use crate::math::simd::{Level, Simd, Vectors};
 use crate::math::{Point, Real, Wide};
 use crate::shape::{Geometry, Kind, ShapeKind};
 
-/// A pair of convex solids in canonical order, and the index of its answer in the output.
+/// A pair of convex solids in canonical order, and where to write its answer.
 pub(crate) struct ConvexPair<'a, N: Real, const D: usize> {
-    /// Index of the answer in the output.
+    /// Index of the answer in the output slice.
     pub(crate) slot: usize,
-    /// The canonical order is the reverse of the given one.
+    /// Whether the canonical order is the reverse of the order given by the caller.
     pub(crate) swapped: bool,
     pub(crate) pair: Pair<'a, N, D>,
 }
@@ -43,7 +43,7 @@ impl<N: Real, const D: usize> ConvexPair<'_, N, D> {
 }
 
 /// Writes the distances of all pairs in 2D, each with the bits of a lone pair: zero or negative for
-/// overlaps, `None` beyond a `limit` of zero or more.
+/// overlaps, `None` beyond `limit`, which is zero or more.
 pub(crate) fn distances2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
     limit: N,
@@ -54,7 +54,8 @@ pub(crate) fn distances2<N: Real>(
     }
 }
 
-/// Writes the separations of all pairs in 2D, each with the bits of a lone pair.
+/// Writes the separations of all pairs in 2D, each with the bits of a lone pair: `None` beyond
+/// `limit`.
 pub(crate) fn separations2<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 2>],
     limit: N,
@@ -65,7 +66,8 @@ pub(crate) fn separations2<N: Real>(
     }
 }
 
-/// Writes distances like [`distances2`], in 3D; sorts the pairs by kinds.
+/// Writes distances of all pairs in 3D with the contract of [`distances2`]; sorts the pairs by
+/// kinds.
 pub(crate) fn distances3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,
@@ -83,7 +85,8 @@ pub(crate) fn distances3<N: Real>(
     });
 }
 
-/// Writes separations like [`separations2`], in 3D; sorts the pairs by kinds.
+/// Writes separations of all pairs in 3D with the contract of [`separations2`]; sorts the pairs by
+/// kinds.
 pub(crate) fn separations3<N: Real>(
     pairs: &mut [ConvexPair<'_, N, 3>],
     limit: N,
@@ -101,7 +104,7 @@ pub(crate) fn separations3<N: Real>(
     });
 }
 
-/// Calls `work` with up to 8 pairs of the same kinds at a time.
+/// Sorts the pairs by kinds, then calls `work` with up to 8 pairs of the same kinds at a time.
 fn each_packet<'a, N: Real>(
     pairs: &mut [ConvexPair<'a, N, 3>],
     mut work: impl FnMut(&[ConvexPair<'a, N, 3>]),
@@ -114,8 +117,9 @@ fn each_packet<'a, N: Real>(
     }
 }
 
-/// Returns the vectors for pairs of the same kinds, if both solids are of the wanted kinds and the
-/// packet is at least half full: it costs as much as three or four lone pairs.
+/// Returns the vectors to compute a packet with; `None` without vectors, if a solid is not of the
+/// wanted kinds, or if the packet is less than half full. A packet costs as much as three or four
+/// lone pairs.
 fn lanes_for<N: Real>(
     packet: &[ConvexPair<'_, N, 3>],
     is_one: fn(&Kind<'_, N, 3>) -> bool,
@@ -129,7 +133,7 @@ const fn is_segment<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
     matches!(kind, Kind::Segment(_) | Kind::Capsule(_))
 }
 
-/// Writes the answers of a packet; lanes without one are computed alone.
+/// Writes the answers of a packet. Lanes whose `found` is `None` are computed by `lone`.
 #[inline]
 fn fill<'a, N: Real, T>(
     packet: &[ConvexPair<'a, N, 3>],
@@ -148,16 +152,16 @@ struct SegmentPacket<N: Real> {
     ends: [[[Point<N, 3>; 2]; 2]; LANES],
     /// Radii around both cores of each lane.
     radii: [[N; 2]; LANES],
-    /// Nearest points of the cores, by coordinates.
+    /// Nearest points of both cores, by coordinate and lane.
     points: [[[N; LANES]; 3]; 2],
-    /// Distances of the cores, without the radii.
+    /// Distances of the cores; the radii are not subtracted.
     distances: [N; LANES],
-    /// Bit of each lane with known nearest points; other lanes are computed alone.
+    /// Bits of the lanes with known nearest points; other lanes are computed alone.
     is_known: u8,
 }
 
 impl<N: Real> SegmentPacket<N> {
-    /// Gathers a packet and searches all lanes.
+    /// Gathers the pairs and computes the nearest points of all lanes.
     fn new(vectors: Vectors, packet: &[ConvexPair<'_, N, 3>]) -> Self {
         let row = [N::ZERO; LANES];
         let mut found = Self {
@@ -201,11 +205,11 @@ impl<N: Real> SegmentPacket<N> {
                 coordinate.store(row);
             }
         }
-        // Squared distances close to underflow or overflow are computed alone.
+        // Lanes whose squared distance is close to underflow or overflow are computed alone.
         self.is_known = bits(has_scale & is_square_in_range(simd, squared));
     }
 
-    /// Applies `answer` to each lane with known nearest points.
+    /// Applies `answer` to each lane with known nearest points; `None` for the other lanes.
     #[inline]
     fn each<T: Copy>(
         &self,
@@ -218,7 +222,8 @@ impl<N: Real> SegmentPacket<N> {
         answers
     }
 
-    /// Returns the distances as `segment_segment::distance` does, without those beyond `limit`.
+    /// Returns the distances with the bits of `segment_segment::distance`; an inner `None` is
+    /// beyond `limit`, an outer one an unknown lane.
     fn distances(&self, limit: N) -> [Option<Option<N>>; LANES] {
         self.each(|packet, lane| {
             let [radius1, radius2] = packet.radii[lane];
@@ -226,7 +231,8 @@ impl<N: Real> SegmentPacket<N> {
         })
     }
 
-    /// Returns the separations as `segment_segment::separation` does.
+    /// Returns the separations with the bits of `segment_segment::separation`; an inner `None` is
+    /// beyond `limit`, an outer one an unknown lane.
     fn separations(&self, limit: N) -> [Option<Option<Separation<N, 3>>>; LANES] {
         self.each(|packet, lane| {
             let point = |[x, y, z]: &[[N; LANES]; 3]| Point::<N, 3>::new(x[lane], y[lane], z[lane]);

@@ -17,31 +17,33 @@ use crate::math::{Matrix, Real, Vector, Wide, filled};
 /// One vector per lane, stored by coordinate.
 type LaneRows<N, const D: usize, const L: usize> = [[N; L]; D];
 
-/// Inputs of `L` pairs: a row for each number, a column for each pair.
+/// Inputs of `L` pairs: one row per quantity, one column per pair.
 pub(super) struct Inputs<N: Real, const D: usize, const L: usize> {
-    /// Columns of the rotation matrices.
+    /// Columns of the rotation matrices of both poses.
     rotations: [[LaneRows<N, D, L>; D]; 2],
-    /// Translations of both poses, in world coordinates.
+    /// Translations of both poses, in the world frame.
     translations: [LaneRows<N, D, L>; 2],
-    /// Ends of a segment; for a box the first is its half extents.
+    /// Ends of the core of each solid, in its own frame; for a box the first entry has its half
+    /// extents.
     ends: [[LaneRows<N, D, L>; 2]; 2],
     /// Radii of balls or capsules; unused by boxes.
     radii: [[N; L]; 2],
-    /// Largest distance of a contact point; the request's.
+    /// Largest distance of a contact point, from each pair's request.
     prediction: [N; L],
-    /// Sine of the angle by which the solids may turn; the request's.
+    /// Sine of the angle by which the solids may turn, from each pair's request.
     sine: [N; L],
-    /// Largest number of points; the request's.
+    /// Largest number of points, from each pair's request.
     pub(super) max_points: [usize; L],
-    /// Index of the first pair, and the number of filled lanes.
+    /// Index of the first pair of the batch.
     pub(super) first: usize,
+    /// How many lanes are filled.
     pub(super) count: usize,
-    /// Bit of each lane whose pair the algorithm supports.
+    /// Bits of the lanes whose pair the algorithm supports.
     pub(super) is_usable: u8,
 }
 
 impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
-    /// Rows of zeros, without a pair.
+    /// Returns rows of zeros, without a pair.
     pub(super) const fn new() -> Self {
         let row = [N::ZERO; L];
         Self {
@@ -58,7 +60,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         }
     }
 
-    /// Gathers up to `L` pairs from index `first`. Lanes beyond them keep their old numbers.
+    /// Gathers up to `L` pairs from index `first` and begins each. Lanes beyond them keep their old
+    /// values.
     #[inline(always)]
     pub(super) fn gather<B: Batch<N, D>, P: KeptPairs<N, D>>(
         &mut self,
@@ -72,7 +75,7 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         }
     }
 
-    /// Puts a pair into a lane.
+    /// Copies the inputs of a pair into a lane; clears nothing.
     #[inline(always)]
     pub(super) fn put<B: Batch<N, D>>(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
         self.is_usable |= u8::from(B::gather(self, lane, pair)) << lane;
@@ -80,40 +83,41 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         self.max_points[lane & (L - 1)] = pair.request.max_points;
     }
 
-    /// Positions of two solids, for pairs of balls.
+    /// Copies the positions of two solids into a lane, for pairs of balls.
     #[inline(always)]
     pub(super) fn put_centers(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
         put(&mut self.translations[0], lane, &pair.poses[0].translation);
         put(&mut self.translations[1], lane, &pair.poses[1].translation);
     }
 
-    /// Position of a ball and pose of the other solid.
+    /// Copies the position of a ball, the first solid, and the pose of the second solid into a
+    /// lane.
     #[inline(always)]
     pub(super) fn put_beside_ball(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
         self.put_centers(lane, pair);
         put_all(&mut self.rotations[1], lane, &pair.poses[1].rotation);
     }
 
-    /// Poses of both solids.
+    /// Copies the poses of both solids into a lane.
     #[inline(always)]
     pub(super) fn put_poses(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
         self.put_beside_ball(lane, pair);
         put_all(&mut self.rotations[0], lane, &pair.poses[0].rotation);
     }
 
-    /// Radius of one solid.
+    /// Copies the radius of the solid `which` into a lane.
     #[inline(always)]
     pub(super) const fn put_radius(&mut self, lane: usize, which: usize, radius: N) {
         self.radii[which][lane & (L - 1)] = radius;
     }
 
-    /// Sine of the angle by which the solids may turn.
+    /// Copies the sine of the angle by which the solids may turn into a lane.
     #[inline(always)]
     pub(super) const fn put_sine(&mut self, lane: usize, sine: N) {
         self.sine[lane & (L - 1)] = sine;
     }
 
-    /// End of the core segment of a solid, or the half extents of a box.
+    /// Copies an end of a solid's core, or the half extents of a box (`number` 0), into a lane.
     #[inline(always)]
     pub(super) fn put_end(&mut self, lane: usize, solid: usize, number: usize, end: &Vector<N, D>) {
         put(&mut self.ends[solid][number], lane, end);
@@ -145,19 +149,21 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         load(simd, &self.ends[solid][number])
     }
 
-    /// Translation from the first solid to the second, in world axes: the frame of a ball.
+    /// Returns the translation from the first solid to the second, in world axes, which are also
+    /// those of a ball's frame.
     #[inline(always)]
     pub(super) fn away<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> [V; D] {
         minus(&load(simd, &self.translations[1]), &load(simd, &self.translations[0]))
     }
 
-    /// Pose of the second solid in the frame of a ball, as `Pair::new` has it.
+    /// Returns the pose of the second solid in the frame of a ball, whose rotation is ignored.
     #[inline(always)]
     pub(super) fn beside_ball<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
         LanePose { rotation: load_all(simd, &self.rotations[1]), translation: self.away(simd) }
     }
 
-    /// Pose of the second solid in the frame of the first, as `Pose::relative` computes it.
+    /// Returns the pose of the second solid in the frame of the first, with the bits of
+    /// `Pose::relative`.
     #[inline(always)]
     pub(super) fn pose12<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
         let axes = load_all::<S, N, V, D, L>(simd, &self.rotations[0]);
@@ -170,7 +176,7 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
     }
 }
 
-/// Puts a vector into a lane.
+/// Copies a vector into a lane.
 #[inline(always)]
 pub(super) fn put<N: Real, const D: usize, const L: usize>(
     rows: &mut LaneRows<N, D, L>,
@@ -182,7 +188,7 @@ pub(super) fn put<N: Real, const D: usize, const L: usize>(
     }
 }
 
-/// Puts a matrix into a lane, by columns.
+/// Copies a matrix into a lane, by columns.
 #[inline(always)]
 fn put_all<N: Real, const D: usize, const L: usize>(
     columns: &mut [LaneRows<N, D, L>; D],

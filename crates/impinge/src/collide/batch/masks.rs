@@ -1,10 +1,10 @@
-//! Bits of 8 pairs side by side.
+//! Transposition of masks: from one bit per pair to one byte per pair.
 //!
 //! ```text
 //!   row r, bit lane   --per_pair-->   byte lane, bit r
 //! ```
 
-/// Transposes 8 masks, a bit for each pair, into a byte for each pair.
+/// Transposes 8 masks, each with a bit per pair, into a byte for each pair.
 #[inline(always)]
 pub(super) const fn per_pair(rows: [u8; 8]) -> [u8; 8] {
     transposed(u64::from_le_bytes(rows)).to_le_bytes()

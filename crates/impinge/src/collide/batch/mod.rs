@@ -17,15 +17,16 @@
 //! Each lane of a vector is another pair and never depends on its neighbours, so the bits of a pair
 //! do not depend on the batch. The numbers of `L` pairs are gathered ([`gather`]), a kernel
 //! computes all that needs no branches ([`Batch`]), then manifold after manifold is replaced. `L`
-//! is 8 where the machine has vectors that pay, else one, computed by [`OneLane`]. A pair asked
-//! about alone is a batch of one lane on every machine. Degenerate pairs fall back to the builder
-//! for one pair: a centre in a box, cores that cross, sizes whose squares underflow or overflow,
-//! NaN.
+//! is 8 where the machine has vectors wide enough to pay off, else 1, computed by [`OneLane`]. A
+//! query of a single pair is a batch of one lane on every machine. Degenerate pairs fall back to
+//! the builder for one pair: a centre inside a box, cores that cross, sizes whose squares underflow
+//! or overflow, NaN.
 //!
-//! Masks are bytes: bit `lane` of each. [`masks`] transposes 8 of them into a byte for each
-//! pair. The slots of box pairs and the codes that name them are in `boxes/`.
+//! Each mask is a byte whose bit `lane` belongs to the pair in that lane. [`masks`] transposes 8
+//! masks into one byte per pair. `boxes/` defines the slots of box pairs and the codes of their
+//! contact points.
 //!
-//! The idea of lanes across pairs is that of bepuphysics (R. Nordby).
+//! The idea of one pair per lane comes from bepuphysics (R. Nordby).
 
 mod ball_ball;
 mod ball_cuboid;
@@ -62,7 +63,7 @@ use crate::math::{Mapped, Pose, Real, Space, Wide};
 use crate::shape::Geometry;
 use crate::tables::ByDimension;
 
-/// Pairs computed at once where there are vectors; the bits of a mask.
+/// Pairs in one batch where the machine has vectors; also the number of bits in a mask.
 const LANES: usize = 8;
 
 /// A pair of solids in canonical order and the request for its manifold.
@@ -86,49 +87,49 @@ impl<N: Space<D>, const D: usize> PairQuestion<'_, N, D> {
 /// Pairs of the same kinds whose manifolds the caller keeps.
 ///
 /// For each index in order, [`update`] calls `begin` while it gathers, then `raw`, then `parts` if
-/// the pair falls back, and last `end`. The pairs of the next batch begin before those of this one
-/// end.
+/// the pair falls back, and last `end`. The next batch begins before the pairs of this batch end.
 pub(crate) trait KeptPairs<N: Real, const D: usize> {
-    /// The number of pairs.
+    /// Returns how many pairs there are.
     fn len(&self) -> usize;
 
-    /// Begins the update of a pair and returns its question.
+    /// Begins the update of the pair at `index` and returns its question. Called once per pair.
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D>;
 
-    /// Returns the question again, with the manifold of the last update, which is to be replaced.
+    /// Returns the question of a begun pair again, and the manifold of its last update, to be
+    /// replaced.
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>);
 
-    /// Returns the manifold alone.
+    /// Returns the manifold of the pair's last update, to be replaced.
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D>;
 
-    /// Ends the update of a pair: its manifold is complete.
+    /// Ends the update of the pair at `index`: its manifold is complete.
     fn end(&mut self, index: usize);
 }
 
 /// Algorithm for pairs of two kinds, `L` at a time.
 trait Batch<N: Real, const D: usize> {
-    /// Results of the kernel, from which manifolds are replaced.
+    /// Results of the kernel, from which [`Self::write_manifold`] builds each manifold.
     type Found<const L: usize>;
 
-    /// Results before the first kernel runs.
+    /// Returns results to start with: no lane has a manifold.
     fn blank<const L: usize>() -> Self::Found<L>;
 
-    /// Puts the numbers of a pair into a lane; returns whether this algorithm supports the pair.
+    /// Copies the inputs of a pair into a lane; returns whether this algorithm supports the pair.
     fn gather<const L: usize>(
         inputs: &mut Inputs<N, D, L>,
         lane: usize,
         pair: &PairQuestion<'_, N, D>,
     ) -> bool;
 
-    /// Computes everything that is done for all pairs at once.
+    /// Computes, for all lanes at once, everything that needs no branches.
     fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
         inputs: &Inputs<N, D, L>,
         found: &mut Self::Found<L>,
     );
 
-    /// Replaces the manifold of one pair by at most `max_points` points; returns `false` if the
-    /// pair has to fall back.
+    /// Replaces the manifold of the pair in `lane` by at most `max_points` points; returns `false`
+    /// if the pair has to fall back.
     fn write_manifold<const L: usize>(
         found: &Self::Found<L>,
         lane: usize,
@@ -137,15 +138,14 @@ trait Batch<N: Real, const D: usize> {
     ) -> bool;
 }
 
-/// An operation that is run once the algorithm for two kinds is known; returns whether it
-/// succeeded.
+/// An operation that is generic over the algorithm for two kinds of solids.
 trait Task<N: Space<D>, const D: usize> {
-    /// Runs the operation with the algorithm `B`.
+    /// Runs the operation with the algorithm `B`; returns whether it succeeded.
     fn run<B: Batch<N, D>>(self) -> bool;
 }
 
-/// Updates pairs in 2D, of which `solids` are those of the first. Returns `false` if their kinds
-/// have no kernel.
+/// Updates pairs in 2D that all have the kinds of `solids`, the solids of the first pair. Returns
+/// `false`, with nothing changed, if these kinds have no kernel.
 pub(crate) fn update_pairs2<N: Space<2>>(
     solids: [&Solid<N, 2>; 2],
     pairs: &mut impl KeptPairs<N, 2>,
@@ -153,7 +153,8 @@ pub(crate) fn update_pairs2<N: Space<2>>(
     run2(solids, Many { level: Level::new(), pairs })
 }
 
-/// Updates pairs in 3D, like [`update_pairs2`].
+/// Updates pairs in 3D that all have the kinds of `solids`, the solids of the first pair. Returns
+/// `false`, with nothing changed, if these kinds have no kernel.
 pub(crate) fn update_pairs3<N: Space<3>>(
     solids: [&Solid<N, 3>; 2],
     pairs: &mut impl KeptPairs<N, 3>,
@@ -169,7 +170,7 @@ pub(crate) fn update_pair2<N: Space<2>>(
     run2(question.solids, One { question, raw })
 }
 
-/// Updates one pair in 3D, like [`update_pair2`].
+/// Updates one pair in 3D; returns `false` if its kinds have no kernel or the pair is unsupported.
 pub(crate) fn update_pair3<N: Space<3>>(
     question: &PairQuestion<'_, N, 3>,
     raw: &mut RawManifold<N, 3>,
@@ -177,8 +178,8 @@ pub(crate) fn update_pair3<N: Space<3>>(
     run3(question.solids, One { question, raw })
 }
 
-/// Computes the contact points of a pair in canonical order, as a batch of one; returns `false` as
-/// [`update_pair2`] does.
+/// Computes the contact points of a pair in canonical order, as a batch of one. Returns `false` if
+/// its kinds have no kernel or the pair is unsupported.
 pub(crate) fn contacts_in_lanes<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -191,7 +192,7 @@ pub(crate) fn contacts_in_lanes<N: Space<D>, const D: usize>(
     <N::Algorithms>::update_pair(&question, raw)
 }
 
-/// Runs a task with the algorithm for two solids in 2D; `false` also if there is none.
+/// Runs a task with the algorithm for two solids in 2D; `false` if there is none or the task fails.
 fn run2<N: Space<2>>([one, other]: [&Solid<N, 2>; 2], task: impl Task<N, 2>) -> bool {
     match (one, other) {
         (Solid::Cuboid(_), Solid::Cuboid(_)) => task.run::<Boxes2>(),
@@ -200,7 +201,7 @@ fn run2<N: Space<2>>([one, other]: [&Solid<N, 2>; 2], task: impl Task<N, 2>) -> 
     }
 }
 
-/// Runs a task with the algorithm for two solids in 3D; `false` also if there is none.
+/// Runs a task with the algorithm for two solids in 3D; `false` if there is none or the task fails.
 fn run3<N: Space<3>>([one, other]: [&Solid<N, 3>; 2], task: impl Task<N, 3>) -> bool {
     match (one, other) {
         (Solid::Cuboid(_), Solid::Cuboid(_)) => task.run::<Boxes3>(),
@@ -209,7 +210,8 @@ fn run3<N: Space<3>>([one, other]: [&Solid<N, 3>; 2], task: impl Task<N, 3>) -> 
     }
 }
 
-/// Runs a task with the algorithm for a ball and another solid; `false` also if there is none.
+/// Runs a task with the algorithm for a ball and another solid; `false` if there is none or the
+/// task fails.
 fn run_with_ball<N: Space<D>, const D: usize>(
     solids: [&Solid<N, D>; 2],
     task: impl Task<N, D>,
@@ -224,7 +226,7 @@ fn run_with_ball<N: Space<D>, const D: usize>(
     }
 }
 
-/// Task: updates one pair.
+/// Task that updates one pair.
 struct One<'a, 'q, N: Real, const D: usize> {
     question: &'a PairQuestion<'q, N, D>,
     raw: &'a mut RawManifold<N, D>,
@@ -241,7 +243,7 @@ impl<N: Space<D>, const D: usize> Task<N, D> for One<'_, '_, N, D> {
     }
 }
 
-/// Task: updates many pairs.
+/// Task that updates many pairs; it always succeeds.
 struct Many<'a, P> {
     level: Level,
     pairs: &'a mut P,
@@ -257,9 +259,9 @@ impl<N: Space<D>, P: KeptPairs<N, D>, const D: usize> Task<N, D> for Many<'_, P>
     }
 }
 
-/// A machine that computes `L` lanes.
+/// Instruction set that computes `L` lanes.
 trait BatchLanes<const L: usize>: Copy {
-    /// Runs [`Batch::find`]; compiled once for all keepers of pairs.
+    /// Runs [`Batch::find`]; compiled once for all implementations of [`KeptPairs`].
     fn find<B: Batch<N, D>, N: Real, const D: usize>(
         self,
         inputs: &Inputs<N, D, L>,
@@ -298,15 +300,15 @@ impl BatchLanes<1> for LonePair {
     }
 }
 
-/// Runs [`Batch`] for all pairs, `L` at a time. The numbers of the next pairs are gathered before
-/// those gathered last are used, which hides the latency of memory.
+/// Updates all pairs, `L` at a time, with the algorithm `B`. The inputs of the next batch are
+/// gathered before the kernel reads those of this batch, which hides memory latency.
 fn update<B: Batch<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize, const L: usize>(
     lanes: impl BatchLanes<L>,
     pairs: &mut P,
 ) {
     let (mut now, mut next) = (&mut Inputs::<N, D, L>::new(), &mut Inputs::new());
     let mut found = B::blank::<L>();
-    // Two buffers: one is computed while the other is already gathered.
+    // Two buffers: the kernel reads `now` while `next` is already gathered.
     now.gather::<B, P>(pairs, 0);
     while now.count > 0 {
         next.gather::<B, P>(pairs, now.first + now.count);

@@ -1,4 +1,4 @@
-//! Segments in lanes: gathering, and the ids of their parts.
+//! Segments in lanes: gathering the cores, and the features of their parts.
 
 use super::gather::Inputs;
 use super::vectors::{length_of, lit, minus, norm};
@@ -7,12 +7,14 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
 use crate::shape::FeatureId;
 
-/// Part of a segment, indexed by two bits: the point is at the first end, at the last end.
+/// Features of a segment, indexed by two bits: bit 0 if the point is at the first end, bit 1 if at
+/// the last.
 pub(super) const END_OR_SIDE: [FeatureId; 4] =
     [FeatureId::Edge(0), FeatureId::Vertex(0), FeatureId::Vertex(1), FeatureId::Edge(0)];
 
 impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
-    /// Puts two segments or capsules and their poses into a lane; `false` for other kinds.
+    /// Copies two segments or capsules and their poses into a lane; returns `false` for other
+    /// kinds.
     #[inline(always)]
     pub(super) fn put_cores(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
         self.put_poses(lane, pair);
@@ -20,7 +22,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         self.put_core(lane, 0, pair.solids[0]) && self.put_core(lane, 1, pair.solids[1])
     }
 
-    /// Puts a segment or capsule into a lane; `false` for other kinds.
+    /// Copies the core and radius of a segment or capsule into a lane; returns `false` for other
+    /// kinds.
     #[inline(always)]
     pub(super) fn put_core(&mut self, lane: usize, which: usize, solid: &Solid<N, D>) -> bool {
         let (segment, radius) = match solid {
@@ -36,8 +39,8 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
     }
 }
 
-/// Returns the larger distance of two points from the origin; the mask has the lanes where both are
-/// zero or of usual size.
+/// Returns the larger distance of two points from the origin. The mask has the lanes where each
+/// distance is zero or its square far from underflow and overflow.
 #[inline(always)]
 pub(super) fn farther<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

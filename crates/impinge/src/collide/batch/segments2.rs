@@ -10,9 +10,10 @@
 //!               *========*-------b        first
 //! ```
 //!
-//! `from` is the larger of the low places, `to` the smaller of the high ones. Each gives a contact.
-//! Reads of [`Inputs`]: both poses, both `radii`, the ends of both cores, `prediction` and `sine`.
-//! Lanes whose contacts rounding would decide, and requests for a single point, fall back.
+//! `from` is the larger of the lower coordinates, `to` the smaller of the upper ones. Each gives a
+//! contact. Fields of [`Inputs`] read: both poses, both `radii`, the ends of both cores,
+//! `prediction` and `sine`. Lanes whose contacts depend on rounding, and requests for a single
+//! point, fall back.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
@@ -24,7 +25,8 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 use crate::shape::FeatureId;
 
-/// Segments and capsules whose cores are apart and project to more than points along the normal.
+/// Kernel for segments and capsules whose cores are apart, if neither core is parallel to the
+/// normal.
 pub(super) struct Segments2;
 
 impl<N: Real> Form<N, 2> for Segments2 {
@@ -91,15 +93,15 @@ impl<N: Real> Form<N, 2> for Segments2 {
 type PlaneLanes<V> = [V; 2];
 
 /// The tangent line through the nearest point of the first solid, and the request: a
-/// [`ContactFrame`](crate::collide::manifold::frame::ContactFrame) in lanes.
+/// Unit vector from the first core to the second, in the frame of the first solid.
 struct ContactLine<V> {
-    /// Unit, from the first core to the second.
+    /// Unit vector from the first core to the second, in the frame of the first solid.
     normal: PlaneLanes<V>,
-    /// `normal` turned by a quarter, clockwise.
+    /// `normal` turned clockwise by a right angle.
     tangent: PlaneLanes<V>,
     /// Nearest point of the first solid, on its rounded surface: the origin of the tangent.
     point1: PlaneLanes<V>,
-    /// Signed distance of the solids along the normal.
+    /// Signed distance of the solids along the normal; negative for an overlap.
     distance: V,
     /// Lengths up to this are rounding errors.
     tolerance: V,
@@ -117,8 +119,9 @@ impl<V> ContactLine<V> {
         dot(&self.tangent, &minus(point, &self.point1))
     }
 
-    /// Returns the distance of a pair of points at the coordinate `flat`, and the lanes where it is
-    /// within the prediction or turning brings it within.
+    /// Returns the distance of a pair of points at the coordinate `flat`, raised to the pair's
+    /// distance. The mask has the lanes where it is within the prediction, or turning brings it
+    /// within.
     #[inline(always)]
     fn admit<S: Simd>(&self, distance: V, flat: V) -> (V, V::Mask)
     where
@@ -135,20 +138,22 @@ impl<V> ContactLine<V> {
 
 /// A segment or capsule, projected onto the tangent.
 struct LaneSide<V, M> {
-    /// This is the first solid of the pair, which lies below along the normal.
+    /// Whether this is the first solid of the pair, the lower one along the normal.
     is_first: bool,
-    /// Ends in the order of their coordinates along the tangent, and these coordinates.
+    /// Ends in the order of their coordinates along the tangent.
     ends: [PlaneLanes<V>; 2],
+    /// Coordinates of `ends` along the tangent.
     coordinates: [V; 2],
-    /// Lanes where that order is the opposite of the segment's.
+    /// Lanes where the order of `ends` is the reverse of the segment's.
     is_reversed: M,
     /// Radius around the segment.
     radius: V,
     /// Cosine of the angle between the segment and the tangent.
     cosine: V,
-    /// Depth of the end nearest to the other solid below the supporting line, and its coordinate.
+    /// Depth, below the solid's nearest point along the normal, of the core's end nearest to the
+    /// other solid, and the coordinate of that end.
     top: (V, V),
-    /// Lanes where the segment is tilted so far that it counts as its nearest end.
+    /// Lanes where the segment is tilted so far that only its nearest end is used.
     is_point: M,
     /// Lanes where the coordinates of both ends differ by more than rounding.
     is_wide: M,
@@ -180,7 +185,7 @@ impl<V, M> LaneSide<V, M> {
         let heights = [dot(&line.normal, first), dot(&line.normal, last)];
         let is_higher = heights[1].simd_gt(heights[0]);
         let is_last_near = if is_first { is_higher } else { heights[1].simd_lt(heights[0]) };
-        // An end is at the witness within twice the tolerance; of both the first counts.
+        // An end is at the witness within twice the tolerance; if both are, the first counts.
         let near = lit::<S, N, V>(simd, 2.0) * line.tolerance;
         let is_at = [flats[0].abs().simd_le(near), flats[1].abs().simd_le(near)];
         let mut side = Self {
@@ -202,7 +207,7 @@ impl<V, M> LaneSide<V, M> {
         side
     }
 
-    /// Returns the depth of a point of the core below the nearest point of the surface.
+    /// Returns the depth of a point of the core below the solid's nearest point, along the normal.
     #[inline(always)]
     fn below_witness<S: Simd>(&self, point: &PlaneLanes<V>, line: &ContactLine<V>) -> V
     where
@@ -212,7 +217,7 @@ impl<V, M> LaneSide<V, M> {
         if self.is_first { -height } else { height - line.distance }
     }
 
-    /// Returns the point of the core at a coordinate along the tangent.
+    /// Returns the point of the core at `coordinate` along the tangent, clamped to the core's ends.
     #[inline(always)]
     fn under<S: Simd, N: Real>(&self, simd: S, coordinate: V) -> PlaneLanes<V>
     where
@@ -234,7 +239,7 @@ impl<V, M> LaneSide<V, M> {
         let depth = self.below_witness(core, line);
         let away = line.flat(core) - self.top.1;
         let (away_squared, radius) = (away * away, self.radius);
-        // Up to this squared distance across the normal, the ball around the nearest end is higher.
+        // Up to this squared distance along the tangent, the ball around the nearest end is higher.
         let turns_squared = radius * radius * (one - self.cosine * self.cosine);
         let round = depth - self.top.0 + (radius * radius - away_squared).sqrt();
         let is_round = away_squared.simd_lt(turns_squared);
@@ -243,8 +248,8 @@ impl<V, M> LaneSide<V, M> {
         radius.simd_le(zero).select(zero, lift)
     }
 
-    /// Returns the lanes where the end `end`, in tangent order, is the segment's first, and its
-    /// last.
+    /// Returns the lanes where the end of this index, in tangent order, is the segment's first end,
+    /// and those where it is its last.
     #[inline(always)]
     fn end_masks<S: Simd>(&self, end: usize) -> [M; 2]
     where
@@ -255,20 +260,22 @@ impl<V, M> LaneSide<V, M> {
     }
 }
 
-/// A pair of points across from each other.
+/// A contact: two points that face each other along the normal.
 struct LaneContact<V, M> {
     /// Point on the surface of the first solid.
     point1: PlaneLanes<V>,
-    /// Signed distance along the normal, not less than the pair's.
+    /// Signed distance along the normal, at least the distance of the pair.
     distance: V,
     /// Lanes where the request admits the contact.
     is_admitted: M,
-    /// Masks: at the first and the last end of the first segment, then of the second.
+    /// Lanes where the point is at the first and the last end of the first segment, then of the
+    /// second.
     parts: [M; 4],
 }
 
 impl<V, M> LaneContact<V, M> {
-    /// Computes the contact at one end of the overlap interval; `end` is 0 for the low end.
+    /// Computes the contact at one end of the overlap interval; `end` is 0 for the lower end, 1 for
+    /// the upper.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
@@ -283,11 +290,12 @@ impl<V, M> LaneContact<V, M> {
     {
         let [first, second] = sides;
         let is_at = [first, second].map(|side| {
-            // The segment ends here, up to rounding.
+            // Lanes where this segment ends at the contact, up to the tolerance.
             (side.coordinates[end] - coordinate).abs().simd_le(line.tolerance)
         });
         let cores = [first.under(simd, coordinate), second.under(simd, coordinate)];
-        // Both points are moved halfway, so that they lie across from each other along the normal.
+        // Both points move by half their offset along the tangent, so that they face each other
+        // along the normal.
         let gap = minus(&cores[1], &cores[0]);
         let across = minus(&gap, &times(&line.normal, dot(&line.normal, &gap)));
         let half = times(&across, V::all(simd, N::HALF));
@@ -306,7 +314,7 @@ impl<V, M> LaneContact<V, M> {
         Self { point1, distance, is_admitted, parts }
     }
 
-    /// Selects `other` in the lanes of `is_other`.
+    /// Selects `other` in the lanes of `is_other`, else `self`.
     #[inline(always)]
     fn or<S: Simd>(&self, other: &Self, is_other: M) -> Self
     where
@@ -326,21 +334,21 @@ impl<V, M> LaneContact<V, M> {
     }
 }
 
-/// One contact or two.
+/// One or two contacts of each pair.
 struct SegmentContacts<V, M> {
     first: LaneContact<V, M>,
     second: LaneContact<V, M>,
     /// Lanes with a second contact; elsewhere `second` is unused.
     is_two: M,
-    /// Lanes where these are all contacts.
+    /// Lanes where these contacts are complete; the others fall back.
     is_known: M,
 }
 
 impl<V, M> SegmentContacts<V, M> {
-    /// Computes the contacts: the admitted ends of the interval, or the nearest points if there are
-    /// none.
+    /// Computes the contacts: the admitted ends of the overlap interval, or the nearest points if
+    /// neither end is admitted.
     ///
-    /// Not known are lanes that rounding would decide, and lanes that need the nearest points
+    /// Lanes that depend on rounding are not known, nor are lanes that need the nearest points
     /// besides an end.
     #[inline(always)]
     fn of<S: Simd, N: Real>(simd: S, line: &ContactLine<V>, sides: &[LaneSide<V, M>; 2]) -> Self
@@ -351,7 +359,7 @@ impl<V, M> SegmentContacts<V, M> {
         let [first, second] = sides;
         let from = first.coordinates[0].larger(second.coordinates[0]);
         let to = first.coordinates[1].smaller(second.coordinates[1]);
-        // Overlaps and gaps of a few tolerances are decided by rounding: such lanes are not known.
+        // Overlaps and gaps of up to 4 tolerances depend on rounding; such lanes are not known.
         let few = lit::<S, N, V>(simd, 4.0) * line.tolerance;
         let is_side = !first.is_point & !second.is_point;
         let is_shared = (to - from).simd_gt(few) & is_side;
@@ -362,7 +370,7 @@ impl<V, M> SegmentContacts<V, M> {
         high.is_admitted &= is_shared;
         let is_two = low.is_admitted & high.is_admitted;
         let is_any = low.is_admitted | high.is_admitted;
-        // If neither end is as near as the pair, the nearest points are needed besides: not known.
+        // If neither end is as near as the pair, the nearest points are needed as well: not known.
         let level = line.distance + line.tolerance;
         let is_level = (low.is_admitted & low.distance.simd_le(level))
             | (high.is_admitted & high.distance.simd_le(level));

@@ -1,8 +1,8 @@
 //! Segments and capsules in 3D: `collide/separation/segments/segment_segment.rs` in lanes.
 //!
-//! Reads of [`Inputs`]: both poses, both `radii`, the ends of both cores, and `sine`. Lanes whose
-//! answer that file would find by another branch fall back: a normal that is not the direction
-//! between the nearest points, nearly parallel cores, lengths outside 2⁻¹⁶ to 2¹⁶.
+//! Fields of [`Inputs`] read: both poses, both `radii`, the ends of both cores, and `sine`. Lanes
+//! for which that file takes another branch fall back: if the normal is not the direction between
+//! the nearest points, if the cores are nearly parallel, or if lengths are outside 2⁻¹⁶ to 2¹⁶.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
@@ -14,7 +14,8 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Segments and capsules whose cores are apart and cross when projected along the normal.
+/// Kernel for segments and capsules whose cores are apart and cross when projected along the
+/// normal.
 pub(super) struct Segments3;
 
 /// The ends of a segment in each lane.
@@ -53,10 +54,10 @@ impl<N: Real> Form<N, 3> for Segments3 {
         let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
         sizes[0].smaller(sizes[1]).store(&mut found.size);
         let rounding_error = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
-        // From the surface back to the core, with the rounding that the builder for one pair has.
+        // From the surface back to the core, for the bits of the builder for one pair.
         let core1 = minus(&rounded[0], &times(&normal, radii[0]));
         let core2 = plus(&rounded[1], &times(&normal, radii[1]));
-        // Nearly parallel segments may touch in two points: they fall back.
+        // Nearly parallel segments may touch in two points, so they fall back.
         let is_crossing = is_crossing(simd, [&ends1, &ends2], &normal, inputs.sine(simd));
         let has_part1 = found.put_end_or_side(0, &core1, &ends1, rounding_error);
         let has_part2 = found.put_end_or_side(2, &core2, &ends2, rounding_error);
@@ -75,7 +76,7 @@ impl<N: Real> Form<N, 3> for Segments3 {
 
 /// Two points and their squared distance.
 struct SegmentPoints<V> {
-    /// On the first and on the second segment, in the frame of the first solid.
+    /// Points on the first and on the second segment, in the frame of the first solid.
     points: SegmentEnds<V>,
     squared: V,
 }
@@ -90,7 +91,8 @@ impl<V> SegmentPoints<V> {
         Self { points, squared: dot(&between, &between) }
     }
 
-    /// Selects `other` where it is nearer and admitted.
+    /// Selects `other` in the lanes where it is nearer and in `is_admitted`; `None` admits all
+    /// lanes.
     #[inline(always)]
     fn or_nearer<S: Simd>(&self, other: &Self, is_admitted: Option<V::Mask>) -> Self
     where
@@ -109,7 +111,7 @@ impl<V> SegmentPoints<V> {
     }
 }
 
-/// Computes `nearest_of_segments`; the mask has the lanes whose lengths allow it.
+/// Computes `nearest_of_segments`; the mask has the lanes whose lengths are in range.
 #[inline(always)]
 pub(super) fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -148,8 +150,8 @@ fn power_of_two_below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (power, number.simd_ge(least) & number.simd_lt(most))
 }
 
-/// Divides a vector by the power of two below its `max_component`. Also returns the reciprocal of
-/// that power, which is exact.
+/// Divides a vector by the power of two at or below its largest component by magnitude. Also
+/// returns the reciprocal of that power, which is exact, and the lanes where it is in range.
 #[inline(always)]
 fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V; 3], V, V::Mask) {
     let largest = v[2].abs().larger(v[1].abs().larger(v[0].abs()));
@@ -158,8 +160,8 @@ fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V;
     (times(v, inverse), inverse, has_scale)
 }
 
-/// Computes `common_perpendicular`: its ends, the lanes where it meets both segments, and the lanes
-/// whose lengths allow it.
+/// Computes the ends of `common_perpendicular`. The masks have the lanes where it meets both
+/// segments, and the lanes whose lengths are in range.
 #[inline(always)]
 fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -186,7 +188,8 @@ fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (points, is_inside & squared.simd_gt(least), has_scale1 & has_scale2)
 }
 
-/// Computes `best_normal` where it is the direction between the points; also their distance.
+/// Computes `best_normal` and the distance of the points; the mask has the lanes where the normal
+/// is the direction between the points.
 #[inline(always)]
 fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -221,7 +224,7 @@ fn is_crossing<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (turn * turn).simd_gt(least * least * flat1 * flat2)
 }
 
-/// Squared length of a vector projected along a normal.
+/// Returns the squared length of a vector projected along a normal.
 #[inline(always)]
 fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
     let high = dot(normal, along);
@@ -229,8 +232,8 @@ fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
 }
 
 impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
-    /// Stores the part of a segment that a point lies on, as `part_at` does: two masks, at the
-    /// first end and at the last. Returns the lanes where it is not at both.
+    /// Stores the part of a segment that a point lies on, as `part_at` does, as two masks: at the
+    /// first end, at the last. Returns the lanes where the point is not at both ends.
     #[inline(always)]
     fn put_end_or_side<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

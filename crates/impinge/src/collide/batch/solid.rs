@@ -1,12 +1,12 @@
-//! Copies of solids that are described by a few numbers.
+//! Copies of the solids that the batch kernels support.
 //!
-//! A copy is made when a pair begins or a shape is replaced, and is kept with the pair.
+//! A copy is made when a pair begins or its shape is replaced, and is kept with the pair.
 
 use crate::math::Real;
 use crate::shape::{Ball, Capsule, Cuboid, Geometry, Kind, Segment};
 
-/// A solid with a closed form, by value. It is kept with a pair, so that its update does not read
-/// the shapes.
+/// A ball, segment, capsule or box, by value. It is kept with a pair, so that an update of the pair
+/// does not read the shapes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Solid<N: Real, const D: usize> {
     Ball(Ball<N>),
@@ -27,7 +27,7 @@ impl<N: Real, const D: usize> Solid<N, D> {
         })
     }
 
-    /// Returns whether a shape has this kind and these numbers.
+    /// Returns whether a shape has the kind and dimensions of this copy.
     #[inline]
     pub(crate) fn is(&self, geometry: Geometry<'_, N, D>) -> bool {
         match (self, geometry.0) {
@@ -44,7 +44,7 @@ impl<N: Real, const D: usize> Solid<N, D> {
         matches!(self, Self::Segment(_) | Self::Capsule(_))
     }
 
-    /// Returns the solid in the form that queries take.
+    /// Returns the solid in the form that queries take, without copying it.
     #[inline]
     pub(crate) const fn kind(&self) -> Kind<'_, N, D> {
         match self {

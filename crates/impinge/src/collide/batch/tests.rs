@@ -1,4 +1,4 @@
-//! Compares 8 pairs at a time with one by one, on every instruction set: bit for bit.
+//! Compares batches of 8 pairs with batches of one, bit for bit, on every instruction set.
 
 use super::{
     BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, Many,
@@ -11,13 +11,13 @@ use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Geometry, Segment};
 use crate::tables::ByDimension;
 
-/// A pair and its request; not all need an update.
+/// A pair and its request.
 #[derive(Clone)]
 struct Case<N: Real, const D: usize> {
     poses: [Pose<N, D>; 2],
     solids: [Solid<N, D>; 2],
     request: ManifoldRequest<N>,
-    /// The pair is to be updated.
+    /// Whether the pair is updated in this step.
     is_pending: bool,
 }
 
@@ -28,20 +28,21 @@ impl<N: Real, const D: usize> Case<N, D> {
     }
 }
 
-/// Pairs with their manifolds, those to be updated, and counts of begun, unsupported and ended
-/// ones. A pair that had points may be asked for again to match these, so its count says nothing.
+/// Pairs with their manifolds, for [`KeptPairs`], and counts of calls. A pair that had points may
+/// be asked for again to match them, so only pairs without points are counted as begun or fallen
+/// back.
 struct Kept<'a, N: Real, const D: usize> {
     cases: &'a [Case<N, D>],
     /// Indices of the cases to update.
     pending: Vec<usize>,
     /// Manifolds of all cases.
     raws: &'a mut [RawManifold<N, D>],
-    /// Pairs without points that began and that fell back, and all that ended.
+    /// How many pairs without points began, how many of these fell back, and how many pairs ended.
     counts: [usize; 3],
 }
 
 impl<N: Real, const D: usize> Kept<'_, N, D> {
-    /// Returns whether the pair had no points.
+    /// Returns whether the pair has no points.
     fn is_new(&self, index: usize) -> bool {
         self.raws[self.pending[index]].points.is_empty()
     }
@@ -73,12 +74,12 @@ impl<N: Real, const D: usize> KeptPairs<N, D> for Kept<'_, N, D> {
     }
 }
 
-/// Bits of a number; NaN, which has many, as one value.
+/// Returns the bits of a value; all NaNs give one value.
 fn bits<N: Real>(value: N) -> u64 {
     if value.partial_cmp(&value).is_some() { value.bits() } else { u64::MAX }
 }
 
-/// All numbers of a manifold.
+/// Lists all values of a manifold, as bits.
 fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
     let mut facts: Vec<u64> = Vec::new();
     for point in &raw.points {
@@ -94,14 +95,14 @@ fn facts<N: Real, const D: usize>(raw: &RawManifold<N, D>) -> Vec<u64> {
     facts
 }
 
-/// Equal number by number, so that zeros have no sign, or bit by bit, for NaN.
+/// Returns whether two manifolds are equal by value, where zeros have no sign, or by bits, for NaN.
 fn are_same<N: Real, const D: usize>(one: &RawManifold<N, D>, other: &RawManifold<N, D>) -> bool {
     one.normal == other.normal && one.points == other.points || facts(one) == facts(other)
 }
 
-/// Computes the manifold of a case as a batch of one, and a second one: by the general builder
-/// where it has the bits of the kernel, which is so for all pairs but boxes and segments in 2D;
-/// else as a batch of one from the pair in its own frame.
+/// Computes the manifold of a case twice. First as a batch of one. Then by the general builder,
+/// which has the bits of the kernels except for boxes and for segments in 2D; for these as a batch
+/// of one again, from the pair in its own frame.
 fn compute_alone<N: Space<D>, const D: usize>(
     case: &Case<N, D>,
     [lone, other]: [&mut RawManifold<N, D>; 2],
@@ -120,8 +121,8 @@ fn compute_alone<N: Space<D>, const D: usize>(
     }
 }
 
-/// Runs some steps of the same pairs, so that ids are inherited. Returns the number of points, of
-/// unsupported pairs, and of pairs.
+/// Updates the same pairs in several steps, so that points inherit ids, in batches and alone, and
+/// asserts that the bits agree. Returns how many points, unsupported pairs and pairs there were.
 fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     steps: &[Vec<Case<N, D>>],
     what: &str,
@@ -153,7 +154,7 @@ fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     sums
 }
 
-/// Updates the cases that are due; returns how many new pairs began, and how many fell back.
+/// Updates the pending cases; returns how many pairs without points began, and how many fell back.
 fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     level: Level,
     cases: &[Case<N, D>],
@@ -181,14 +182,16 @@ enum Sort {
 struct Draw<const D: usize> {
     sorts: [Sort; 2],
     radii: [f64; 2],
-    /// Ends of a segment; for a box, the magnitudes of the last are the half extents.
+    /// Ends of a segment; for a box, the magnitudes of the last end's components are the half
+    /// extents.
     ends: [[Vector<f64, D>; 2]; 2],
     positions: [Vector<f64, D>; 2],
     turns: [[f64; 3]; 2],
 }
 
 impl<const D: usize> Draw<D> {
-    /// Solids; if `snapped`, with sizes and positions on a grid and no rotation.
+    /// Draws two solids; if `snapped`, with sizes and positions on a grid of step 1/2 and no
+    /// rotation.
     fn new(random: &mut Random, sorts: [Sort; 2], snapped: bool) -> Self {
         let snap = |x: f64| if snapped { (x * 2.0).round() / 2.0 } else { x };
         let mut vector = |by: f64| Vector::<f64, D>::from_fn(|_, _| snap(random.between(-by, by)));
@@ -200,7 +203,7 @@ impl<const D: usize> Draw<D> {
         Self { sorts, radii, ends, positions: [position, position + aside], turns }
     }
 
-    /// Moves the solids a little.
+    /// Returns a copy with positions and rotation angles changed by up to `by`.
     fn shaken(&self, random: &mut Random, by: f64) -> Self {
         let mut shaken = self.clone();
         for which in 0..2 {
@@ -210,7 +213,7 @@ impl<const D: usize> Draw<D> {
         shaken
     }
 
-    /// Converts to a case with another unit of length.
+    /// Converts to a case, with lengths multiplied by `unit`.
     fn case<N: Scene<D>>(&self, unit: f64, request: ManifoldRequest<N>) -> Case<N, D> {
         let vector = |v: &Vector<f64, D>| v.map(|x| N::lit(x * unit));
         let poses = [0, 1].map(|at| N::pose(vector(&self.positions[at]), self.turns[at]));
@@ -230,7 +233,7 @@ impl<const D: usize> Draw<D> {
     }
 }
 
-/// Draws 203 pairs of a kind, in four steps of which the last is far from the others.
+/// Draws 203 pairs of the given kinds, in four steps; the last one is unrelated to the others.
 fn drawn<N: Scene<D>, const D: usize>(
     (seed, unit): (u64, f64),
     sorts: [Sort; 2],
@@ -255,7 +258,8 @@ fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N> {
     ManifoldRequest { prediction: N::lit(prediction), sine: N::lit(sine), max_points: 4 }
 }
 
-/// Sets poses that are not finite, equal or far away, solids without size, and any prediction.
+/// Spoils a case: makes a pose not finite, equal to the other or far away, a solid empty, or
+/// changes the prediction; `number` selects which.
 fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     let strange = [N::lit(f64::NAN), N::INFINITY, -N::INFINITY, N::MAX, N::ZERO, N::MIN_POSITIVE];
     let value = strange[number / 7 % strange.len()];
@@ -277,7 +281,7 @@ fn spoiled<N: Real, const D: usize>(case: &mut Case<N, D>, number: usize) {
     }
 }
 
-/// Replaces one length of a solid, by zero if it is not a valid length.
+/// Replaces one length of a solid by `length`, or by zero if that is not a valid length.
 fn with_length<N: Real, const D: usize>(solid: &Solid<N, D>, length: N) -> Solid<N, D> {
     let is_length = length.is_finite_number() && length >= N::ZERO;
     let length = if is_length { length } else { N::ZERO };
@@ -295,7 +299,7 @@ fn with_length<N: Real, const D: usize>(solid: &Solid<N, D>, length: N) -> Solid
     }
 }
 
-/// Runs all of the above for one form.
+/// Runs all comparisons for one algorithm.
 fn check<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>(sorts: [Sort; 2]) {
     for (seed, sine) in [(1, 0.0), (2, 0.0), (3, 0.01), (4, 0.3)] {
         let steps = drawn::<N, D>((seed, 1.0), sorts, &request(0.3, sine));
@@ -367,7 +371,7 @@ fn boxes<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
     check::<F, N, D>([Sort::Cuboid, Sort::Cuboid]);
 }
 
-/// Boxes with faces close together, in three steps.
+/// Draws boxes with faces close together, in three steps.
 fn faced<N: Scene<D>, const D: usize>(
     seed: u64,
     tilt: f64,

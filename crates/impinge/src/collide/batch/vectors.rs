@@ -1,4 +1,4 @@
-//! Vectors in lanes: operations of `math`, each in the order of its scalar twin.
+//! Vector operations in lanes, each in the order of operations of its scalar counterpart in `math`.
 
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
 use crate::collide::separation::is_square_in_range;
@@ -9,15 +9,15 @@ pub(super) use crate::math::lanes::{
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
-/// Returns the length up to which differences are rounding for a pair of this size: `rounding` of
-/// `frame.rs`.
+/// Returns the length up to which differences are rounding error for a pair of this size;
+/// `rounding` of `frame.rs` in lanes.
 #[inline(always)]
 pub(super) fn rounding_of<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, size: V) -> V {
     V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON) * size
 }
 
-/// Returns direction and length of a vector, as `unit` does; the mask has the lanes whose squared
-/// length is far from underflow and overflow.
+/// Returns direction and length of a vector, by the formula of `unit`. The mask has the lanes whose
+/// squared length is far from underflow and overflow; elsewhere both may be wrong.
 #[inline(always)]
 pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -28,8 +28,8 @@ pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     (over(v, length), length, is_square_in_range(simd, squared))
 }
 
-/// Returns the length of a vector; the mask has the lanes where it is zero, or its square far from
-/// underflow and overflow.
+/// Returns the length of a vector. The mask has the lanes where it is zero, or its square is far
+/// from underflow and overflow.
 #[inline(always)]
 pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

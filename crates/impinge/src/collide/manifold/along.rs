@@ -1,8 +1,8 @@
-//! Manifold of two solids along a normal that is given, not computed: contacts with a face of a
-//! surface, whose own edges do not count.
+//! Manifold of two solids along a given normal: contacts with a face of a surface, for which the
+//! edges of that face are not separate features.
 //!
 //! The supporting features along the normal are clipped as usual, but no witness has to be among
-//! the points. If the features do not overlap in projection, there is no point at all.
+//! the points. If the features do not overlap in projection, there is no point.
 
 use super::clip;
 use super::frame::{Candidates, ContactFrame};
@@ -19,10 +19,10 @@ pub(crate) struct Along<N, const D: usize>
 where
     N: Space<D>,
 {
-    /// Unit vector from the first solid to the second.
+    /// Unit vector from the first solid to the second, in the frame of the first.
     pub(crate) normal: Vector<N, D>,
-    /// No two points of the solids are nearer than this. A candidate that is nearer by more than
-    /// rounding is below the surface of the face and beside it.
+    /// Lower bound of the signed distance of the solids. A candidate that is nearer by more than
+    /// rounding lies below the face's surface and beside it, and is dropped.
     pub(crate) least: N,
     /// Lengths below this are rounding errors of the pair.
     pub(crate) tolerance: N,
@@ -30,12 +30,12 @@ where
 
 /// Request for the contacts of two solids, one of which is a face of a surface.
 pub(crate) struct OnFace<N: Real, const D: usize> {
-    /// Normal of the face: unit, from the first solid to the second.
+    /// Normal of the face: unit vector from the first solid to the second.
     pub(crate) normal: Vector<N, D>,
-    /// Points nearer than this by more than rounding are dropped; others are at least as far as
-    /// this.
+    /// Points nearer than this by more than rounding are dropped; the distances of the others are
+    /// raised to at least this.
     pub(crate) least: N,
-    /// The least distance, if it is known.
+    /// Smallest distance of the solids along the normal, if it is known.
     pub(crate) nearest: Option<N>,
     /// Points farther than this are dropped.
     pub(crate) prediction: N,
@@ -43,8 +43,8 @@ pub(crate) struct OnFace<N: Real, const D: usize> {
     pub(crate) tolerance: N,
 }
 
-/// Builds the manifold of two convex solids along a normal; empty if no points lie across from each
-/// other along it, or if one of the solids is a half-space.
+/// Builds the manifold of two convex solids along a normal. It is empty if the supporting features
+/// do not overlap in projection, or if one of the solids is a half-space.
 pub(crate) fn build_along<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     along: &Along<N, D>,
@@ -56,8 +56,8 @@ pub(crate) fn build_along<N: Space<D>, const D: usize>(
     <N::Algorithms>::on_face(pair, &on_face, out);
 }
 
-/// Builds the manifold of a pair that is at `distance` along the normal of a face of a surface, up
-/// to rounding; returns `false` if [`build_between`] has to build it.
+/// Builds the manifold of a pair whose signed distance along the normal of a face of a surface is
+/// `distance`, up to rounding; returns `false`, if [`build_between`] has to build it.
 pub(crate) fn build_on_face<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,
@@ -81,8 +81,8 @@ pub(crate) fn build_between<N: Space<D>, const D: usize>(
     <N::Algorithms>::between(pair, separation, request, out);
 }
 
-/// Computes the contacts of two solids in 2D along a normal. Returns `false` if the distance is
-/// known: then the nearest points are known, too.
+/// Computes the contacts of two solids in 2D along a normal. Returns `false` if `nearest` is known,
+/// because the nearest points then give the contacts.
 pub(crate) fn on_face2<N: Real>(
     pair: &Pair<'_, N, 2>,
     query: &OnFace<N, 2>,
@@ -99,9 +99,9 @@ pub(crate) fn on_face2<N: Real>(
     sides.along(&along, |point| out.points.push(point)).is_some()
 }
 
-/// Computes the contacts of two solids along the normal of a face of one of them. If the distance
-/// is known, a contact must have it; else this returns `false`, as for solids with known nearest
-/// points.
+/// Computes the contacts of two solids along the normal of a face of one of them. If `nearest` is
+/// known and no contact has that distance, or the nearest points of the solids are known anyway,
+/// returns `false`.
 pub(crate) fn on_face3<N: Real>(
     pair: &Pair<'_, N, 3>,
     query: &OnFace<N, 3>,
@@ -122,14 +122,14 @@ pub(crate) fn on_face3<N: Real>(
     let frame = ContactFrame::known(&planes, tangents3(&normal), tolerance, prediction);
     let (mut candidates, mut lowest) = (Candidates::new(), N::INFINITY);
     clip::candidates(pair, &frame, &mut candidates);
-    // Below the surface of the face and beside it.
+    // Candidates below the surface of the face and beside it are dropped.
     candidates.retain(|candidate| candidate.distance >= least - tolerance);
     for candidate in &mut candidates {
         candidate.distance = max(candidate.distance, least);
         lowest = min(candidate.distance, lowest);
     }
     if let Some(nearest) = nearest {
-        // Infinite if there is none; NaN is not near.
+        // `lowest` is infinite without candidates; a NaN is not near.
         let is_reached = lowest <= nearest + tolerance;
         if !is_reached {
             return false;
@@ -142,8 +142,8 @@ pub(crate) fn on_face3<N: Real>(
     true
 }
 
-/// Returns the supporting planes of both solids along a normal, as a witness: its points are the
-/// farthest of each solid and need not lie across from each other. `None` with a half-space.
+/// Returns the supporting planes of both solids along a normal, as a separation. Its points are the
+/// extreme points of each solid and need not face each other. `None` with a half-space.
 pub(in crate::collide) fn extremes<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     normal: &Vector<N, D>,

@@ -1,6 +1,6 @@
 //! Contacts of a segment of a chain and a 2D solid, without intermediate lists.
 //!
-//! The bits are those of [`build_between`](super::build_between) and
+//! The results have the bits of [`build_between`](super::build_between) and
 //! [`build_along`](super::build_along), which define them. The separations come from
 //! `collide/separation/chain/`.
 
@@ -14,19 +14,20 @@ use crate::convex::Separation;
 use crate::math::{Real, Space, max};
 use crate::shape::{FeatureId, Kind};
 
-/// A segment of a chain and a solid that is no half-space, in the order of kinds: another segment
-/// or a ball comes first.
+/// A segment of a chain and a solid other than a half-space, in the order of kinds: the solid comes
+/// first if it is a ball or a segment.
 pub(crate) struct SegmentPair<'a, N: Real> {
     /// The solids in canonical order, in the frame of the first.
     pub(crate) pair: Pair<'a, N, 2>,
     /// Lengths below this are rounding errors.
     pub(crate) tolerance: N,
-    /// Points beyond this are not asked for.
+    /// Points beyond this distance are not visited.
     pub(crate) prediction: N,
 }
 
 impl<N: Real> SegmentPair<'_, N> {
-    /// Returns the part of the chain's segment that a separation's point lies on.
+    /// Returns the feature of the chain's segment that the separation's point lies on; `None` if
+    /// the solid's supporting feature is neither a side nor a corner.
     pub(crate) fn touched(&self, found: &Separation<N, 2>) -> Option<FeatureId> {
         if let Kind::Ball(_) = self.pair.first {
             return beside_ball(&self.pair, found);
@@ -39,7 +40,8 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(own.at_witness(&frame))
     }
 
-    /// Visits the contacts of a separation; `None` for solids whose feature is no point or side.
+    /// Visits the contacts of a separation; `None` for solids whose supporting feature is neither a
+    /// corner nor a side.
     pub(crate) fn between(
         &self,
         witness: &Separation<N, 2>,
@@ -64,14 +66,15 @@ impl<N: Real> SegmentPair<'_, N> {
             let parts = [first.at_witness(&frame), second.at_witness(&frame)];
             add_witness(&frame.witness, parts, &mut candidates);
         }
-        // The smallest distance is that of the separation exactly.
+        // The smallest distance is exactly that of the separation.
         let nearest = deepest(&candidates, level);
         candidates[nearest].distance = witness.distance;
         candidates.iter().for_each(|candidate| visit(candidate.with_id(0)));
         Some(())
     }
 
-    /// Visits the contacts along a normal; `None` for solids whose feature is no point or side.
+    /// Visits the contacts along a normal; `None` for solids whose supporting feature is neither a
+    /// corner nor a side.
     pub(crate) fn along(
         &self,
         along: &Along<N, 2>,
@@ -106,7 +109,7 @@ impl<N: Real> SegmentPair<'_, N> {
                 }
             }
         }
-        // Nearer than `least` by more than rounding: beside the face and below it.
+        // Points nearer than `least` by more than rounding lie beside the face and below it.
         let kept = candidates.iter().filter(|found| found.distance >= along.least - tolerance);
         for candidate in kept {
             let point = candidate.with_id(0);

@@ -1,4 +1,4 @@
-//! Corners of the common area of two supporting features in 3D: points, segments or faces.
+//! Corners of the overlap area of two supporting features in 3D: points, segments or faces.
 //!
 //! ```text
 //!      .-----------.             corner of one ring against each side of the other, in lanes:
@@ -12,17 +12,18 @@
 //! ```
 //!
 //! Both features are [rings](super::ring) projected along the normal. Both solids are treated
-//! alike: no reference face can flip, and every point has the same ids whichever solid is first. A
-//! point within the tolerance of a side lies on it, which keeps ids stable where sides or corners
-//! coincide. A segment has one side, whose line a corner must lie on. A point, and two segments
-//! that are not parallel, meet at the nearest points alone.
+//! alike: there is no reference face that could flip, and the ids of a point do not depend on which
+//! solid is first. A point within the tolerance of a side lies on the side, which keeps ids stable
+//! where sides or corners coincide. A segment has one side, and a corner must lie on its line. A
+//! point, and two segments that are not parallel, have a contact at the nearest points only.
 //!
-//! Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clip one polygon against the sides
-//! of the other, which makes one solid the reference.
+//! The clip of Sutherland and Hodgman ("Reentrant polygon clipping", 1974) clips one polygon
+//! against the sides of the other, which makes one solid the reference; it is not used here.
 //!
 //! Every pair in 3D with flat features is clipped here, alone or as parts of a composite, along its
-//! own normal or that of a face. Only boxes, and segments and capsules, have kernels of their own
-//! (`collide/batch/`). The angle by which solids may turn is a number in the admission test.
+//! own normal or along that of a face. Only boxes, segments and capsules also have kernels of their
+//! own (`collide/batch/`). The sine of the angle by which solids may turn enters the admission
+//! test.
 
 use smallvec::SmallVec;
 
@@ -55,7 +56,7 @@ pub(super) fn build<N: Real>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// Returns the part of one solid that the nearest point lies on, among those facing the other.
+/// Returns the part of a solid's supporting feature that the nearest point lies on.
 pub(super) fn part_at_witness<N: Real>(
     kind: Kind<'_, N, 3>,
     which: Which,
@@ -69,7 +70,7 @@ pub(super) fn part_at_witness<N: Real>(
     ring_part(ring, insides.row(0), &Vector::<N, 2>::zeros(), frame.tolerance).unwrap_or(ring.id)
 }
 
-/// Adds the corners of the common area along the normal of a frame whose witness need not be the
+/// Adds the corners of the overlap area along the normal of a frame whose witness need not be the
 /// nearest points; none if the supporting features do not overlap in projection.
 pub(super) fn candidates<N: Real>(
     pair: &Pair<'_, N, 3>,
@@ -81,7 +82,7 @@ pub(super) fn candidates<N: Real>(
     clip.candidates(out);
 }
 
-/// Runs [`project_in_lanes`] with the vectors of an instruction set; the numbers do not depend on
+/// Runs [`project_in_lanes`] with the vectors of an instruction set; the results do not depend on
 /// it.
 fn project_rings<N: Real>(
     level: Level,
@@ -93,7 +94,7 @@ fn project_rings<N: Real>(
         project_in_lanes::<_, N, N::Lanes<_>>(simd, rings, frame, insides));
 }
 
-/// Projects one ring or two, and measures the corners of each against the sides of the other.
+/// Projects one ring or two, and measures the corners of each ring against the sides of the other.
 #[inline(always)]
 fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -110,23 +111,25 @@ fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     }
 }
 
-/// A point measured against up to 8 sides of a ring: signed distances, positive inside, and
-/// masks.
+/// Position of a point relative to up to 8 sides of a ring.
 #[derive(Clone, Copy)]
 struct SideRow<N: Real> {
     /// Signed distance from each side, positive inside.
     inside: [N; LANES],
-    /// Bits of the sides that it is inside of by more than the tolerance, outside of, and neither.
+    /// Bits of the sides whose line the point is inside of by more than the tolerance.
     within: u8,
+    /// Bits of the sides whose line the point is outside of by more than the tolerance.
     beyond: u8,
+    /// Bits of the sides whose line the point is within the tolerance of.
     touched: u8,
 }
 
-/// Each corner of the other ring measured against the sides of this one; last, the nearest point.
+/// Positions of the corners of the other ring, and last of the nearest point, relative to the sides
+/// of one ring.
 struct Insides<N: Real> {
-    /// Rows for each point: the number of blocks.
+    /// Number of rows for each point: one for each block of 8 sides.
     width: usize,
-    /// Point by point, block by block.
+    /// Rows, by point and then by block.
     rows: SmallVec<[SideRow<N>; 2 * LANES + 4]>,
 }
 
@@ -140,7 +143,7 @@ impl<N: Real> Insides<N> {
         &self.rows[index * self.width..][..self.width]
     }
 
-    /// Measures the corners of `other` against the sides of `own`, and last the nearest point.
+    /// Measures the corners of `other`, and last the nearest point, against the sides of `own`.
     #[inline(always)]
     fn measure<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -155,7 +158,7 @@ impl<N: Real> Insides<N> {
         for index in 0..=count {
             let flat = match other {
                 Some(other) if index < count => other.flat(index),
-                // The nearest point is the origin of the tangents.
+                // The nearest point is the origin of the tangent coordinates.
                 _ => Vector::<N, 2>::zeros(),
             };
             let [x, y] = [V::all(simd, flat.x), V::all(simd, flat.y)];
@@ -165,7 +168,7 @@ impl<N: Real> Insides<N> {
                 let inside = inward[0] * (x - from[0]) + inward[1] * (y - from[1]);
                 let within = bits(inside.simd_gt(most));
                 let beyond = bits(inside.simd_lt(least));
-                // Lanes after the last side are no sides.
+                // Lanes after the last side are unused.
                 let all = first_bits(sides - at * LANES);
                 let mut row = SideRow {
                     inside: [N::ZERO; LANES],
@@ -185,8 +188,8 @@ const fn first_bits(count: usize) -> u8 {
     if count < LANES { (1 << count) - 1 } else { u8::MAX }
 }
 
-/// Returns the smallest part of a ring that contains a point, given its rows; `None` for a point
-/// outside. A segment has no inside.
+/// Returns the smallest part of a ring that contains a point with these rows: a corner, a side or
+/// the whole; `None` for a point outside. A segment has no inside.
 fn ring_part<N: Real>(
     ring: &SupportRing<'_, N>,
     rows: &[SideRow<N>],
@@ -199,7 +202,7 @@ fn ring_part<N: Real>(
         if row.beyond != 0 || is_segment && row.within != 0 {
             return None;
         }
-        // Where two touched sides meet, both give the corner, so either will do.
+        // Where two touched sides meet, both give the corner, so either may be found last.
         let mut touched = row.touched;
         while touched != 0 {
             let side = block * LANES + touched.trailing_zeros() as usize;
@@ -210,21 +213,22 @@ fn ring_part<N: Real>(
     if is_segment { found } else { Some(found.unwrap_or(ring.id)) }
 }
 
-/// Returns the sides whose lines separate two points, neither of them on the line.
+/// Returns the sides whose lines separate two points by more than the tolerance on both sides.
 const fn parted<N: Real>(from: &SideRow<N>, to: &SideRow<N>) -> u8 {
     from.within & to.beyond | from.beyond & to.within
 }
 
-/// Returns the parameter at which a line is crossed, from the heights of both ends above it.
+/// Returns the parameter, from 0 at `from` to 1 at `to`, at which a line is crossed, given the
+/// signed heights of both ends above it.
 fn share<N: Real>(from: N, to: N) -> N {
     from / (from - to)
 }
 
-/// Two rings in one frame.
+/// Two projected rings in one frame.
 struct RingClip<'a, N: Real> {
     frame: &'a ContactFrame<N, 3>,
     rings: [SupportRing<'a, N>; 2],
-    /// For each ring the measures of the other's corners.
+    /// For each ring, the positions of the other's corners.
     insides: [Insides<N>; 2],
 }
 
@@ -239,22 +243,23 @@ impl<'a, N: Real> RingClip<'a, N> {
         Self { frame, rings, insides: [Insides::new(), Insides::new()] }
     }
 
-    /// Fills the rings with the supporting features of a pair, and measures their corners.
+    /// Fills the rings with the supporting features of a pair, and measures the corners of both.
     fn project(&mut self, pair: &Pair<'_, N, 3>) {
         self.rings[0].fill(pair.first, self.frame);
         self.rings[1].fill(pair.second, self.frame);
         project_rings(Level::new(), &mut self.rings, self.frame, &mut self.insides);
     }
 
-    /// Returns `false` for features that meet in a point, for which the nearest points suffice.
+    /// Returns whether the overlap may have a length or an area; if it is a point, the nearest
+    /// points suffice.
     fn has_area_or_length(&self) -> bool {
         let [first, second] = &self.rings;
         let are_segments = first.is_segment() && second.is_segment();
         !(first.is_point() || second.is_point() || are_segments && !self.are_parallel())
     }
 
-    /// Adds the corners of the common area that the request admits; for a point inside the other
-    /// feature, the point.
+    /// Adds the corners of the overlap area that the request admits. If one feature is a point
+    /// inside the other, adds that point.
     fn candidates(&self, out: &mut Candidates<N, 3>) {
         let [first, second] = &self.rings;
         if first.is_segment() && second.is_segment() && self.are_parallel() {
@@ -278,11 +283,11 @@ impl<'a, N: Real> RingClip<'a, N> {
         ring_part(ring, rows, &Vector::<N, 2>::zeros(), self.frame.tolerance).unwrap_or(ring.id)
     }
 
-    /// Adds the corners of either ring inside the other.
+    /// Adds the corners of each ring that lie inside the other.
     fn corners(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
-            // Nothing lies inside a point; its own corner is found when the rings are exchanged.
+            // No point lies inside a point; its own corner is found when the rings are exchanged.
             let count = if other.is_point() { 0 } else { ring.count };
             for at in 0..count {
                 let flat = ring.flat(at);
@@ -296,7 +301,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds a corner of one ring and the point of the other across from it.
+    /// Adds a corner of one ring and the point `under` of the other, which faces it along the
+    /// normal.
     fn push_corner(
         &self,
         which: usize,
@@ -312,8 +318,9 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds the crossings of sides well inside both. A side that ends on a line does not cross it:
-    /// its corner lies on the other ring or outside.
+    /// Adds the crossings of sides whose ends are farther than the tolerance from each other's
+    /// lines. If a side ends on a line, its corner lies on the other ring or outside, so there is
+    /// no crossing.
     fn crossings(&self, out: &mut Candidates<N, 3>) {
         let (one, in_other) = (&self.rings[0], &self.insides[1]);
         for side1 in 0..one.side_count() {
@@ -331,8 +338,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Adds the crossing of two sides. `side1` crosses the line of `side2` at the parameter
-    /// `share1`; it counts if `side2` crosses the line of `side1`.
+    /// Adds the crossing of two sides, if `side2` also crosses the line of `side1`. `side1` crosses
+    /// the line of `side2` at the parameter `share1`.
     fn push_crossing(&self, side1: usize, side2: usize, share1: N, out: &mut Candidates<N, 3>) {
         let ([one, other], in_one) = (&self.rings, &self.insides[0]);
         let (block1, lane1) = (side1 / LANES, side1 % LANES);
@@ -344,16 +351,17 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Returns whether turning by the predicted angle would make two segments parallel.
+    /// Returns whether two segments are parallel up to rounding, or turning by the angle of the
+    /// request would make them so.
     fn are_parallel(&self) -> bool {
         let [a, b] = [self.rings[0].side(0), self.rings[1].side(0)];
         let least = N::lit(16.0) * N::EPSILON;
         cross2(&a, &b).abs() <= max(self.frame.sine, least) * a.norm() * b.norm()
     }
 
-    /// Adds the ends of the overlap interval of two nearly parallel segments: each is an end of one
-    /// of them and the point beside it on the other, both moved halfway, where they meet after the
-    /// turn. The points are off their segments by at most half the lever arm times the sine.
+    /// Adds the ends of the overlap interval of two nearly parallel segments. Each is an end of one
+    /// segment and the point beside it on the other, both moved halfway, where they meet after the
+    /// turn. They are off their segments by at most half the lever arm times the sine.
     fn common_interval(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
@@ -368,7 +376,8 @@ impl<'a, N: Real> RingClip<'a, N> {
         }
     }
 
-    /// Returns the part of a segment beside a point; `None` beyond the ends.
+    /// Returns the part of a segment beside a point: an end within twice the tolerance or the
+    /// segment; `None` beyond the ends.
     fn beside(&self, flat: &Vector<N, 2>, segment: &SupportRing<'_, N>) -> Option<FeatureId> {
         let (side, tolerance) = (segment.side(0), N::TWO * self.frame.tolerance);
         let length = side.norm();
@@ -377,8 +386,9 @@ impl<'a, N: Real> RingClip<'a, N> {
         part_beside(along, length, tolerance, ends, segment.id)
     }
 
-    /// Adds the surface points over two points of the cores, once: corners that coincide in both
-    /// rings are found from both. Different points on round rims may share their ids.
+    /// Adds the surface points over two points of the cores, unless they are a duplicate: corners
+    /// that coincide in both rings are found from both. Different points on round rims may share
+    /// their ids.
     fn push(
         &self,
         [core1, core2]: [Point<N, 3>; 2],

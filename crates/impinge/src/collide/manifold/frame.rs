@@ -16,11 +16,11 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, SupportMap};
 
-/// Lengths up to this many epsilon of the pair's size count as rounding.
+/// Differences up to this many epsilons of the pair's size count as rounding.
 pub(in crate::collide) const ROUNDING_ERRORS: f64 = 16.0;
 
-/// Cosine of 60°: features tilted by more than that against the contact plane become their nearest
-/// point.
+/// Cosine of 60°. A feature tilted against the contact plane by a larger angle is reduced to its
+/// nearest point.
 pub(in crate::collide) const MIN_COSINE: f64 = 0.5;
 
 /// Candidates of a manifold.
@@ -34,7 +34,7 @@ pub(in crate::collide) enum Which {
 }
 
 impl Which {
-    /// Returns the direction in which this solid faces the other.
+    /// Returns the outward direction of this solid: towards the other solid, along the normal.
     #[inline(always)]
     pub(in crate::collide) fn outward<N: Real, const D: usize>(
         self,
@@ -46,7 +46,8 @@ impl Which {
         }
     }
 
-    /// Returns the depth of a point below the solid's supporting plane, which touches the witness.
+    /// Returns the depth of a point below the solid's supporting plane, which contains the witness
+    /// point of that solid.
     #[inline]
     pub(in crate::collide) fn below_witness<N: Real, const D: usize>(
         self,
@@ -61,14 +62,15 @@ impl Which {
     }
 }
 
-/// Returns the height of the surface at a radius around a flat feature, above a point of the
-/// feature, along the normal.
+/// Returns the height of a rounded surface above a point of the flat feature that it surrounds at
+/// `radius`, along the normal.
 ///
-/// `cosine` is that of the feature's tilt. `depth` and `top` are the depths of the point and of the
-/// feature's nearest corner below the supporting plane, `away_squared` their squared distance
-/// across the normal. Above the flat part the height is `radius / cosine`, above the corner that of
-/// the ball around it; nothing rises above the supporting plane. Exact for capsules, and where the
-/// surface is parallel to the feature; in between a rounded polygon may be a little lower.
+/// `cosine` is the cosine of the feature's tilt. `depth` and `top` are the depths of the point and
+/// of the feature's nearest corner below the supporting plane; `away_squared` is the squared
+/// distance of the two perpendicular to the normal. Above the flat part the height is `radius /
+/// cosine`; above the corner it is the height of the ball around the corner; nothing rises above
+/// the supporting plane. Exact for capsules, and where the surface is parallel to the feature; in
+/// between, a rounded polygon may be slightly lower.
 #[inline]
 pub(in crate::collide) fn lifted<N: Real>(
     radius: N,
@@ -87,15 +89,16 @@ pub(in crate::collide) fn lifted<N: Real>(
     max(min(lift, depth), N::ZERO)
 }
 
-/// The plane through the witness perpendicular to the normal, with the limits of the request.
+/// The plane through the witness perpendicular to the normal, with the limits of the request, in
+/// the frame of the first solid.
 ///
-/// In the frame of the first solid. `flat` coordinates are along the tangents, zero at the witness;
-/// in 2D the second is always zero.
+/// `flat` coordinates are along the tangents, zero at the witness point of the first solid; in 2D
+/// the second is always zero.
 pub(in crate::collide) struct ContactFrame<N: Real, const D: usize> {
     /// Nearest points, normal and signed distance of the pair.
     pub(in crate::collide) witness: Separation<N, D>,
     tangents: [Vector<N, D>; 2],
-    /// Lengths below this are rounding errors for the size of the pair.
+    /// Lengths below this are rounding errors.
     pub(in crate::collide) tolerance: N,
     /// Largest distance of a contact point.
     prediction: N,
@@ -112,20 +115,20 @@ pub(in crate::collide) struct Candidate<N: Real, const D: usize> {
     pub(in crate::collide) distance: N,
     /// Coordinates along the tangents of the frame.
     pub(in crate::collide) flat: Vector<N, 2>,
-    /// The part of each solid that it lies on.
+    /// Feature of each solid that the point lies on.
     pub(in crate::collide) features: [FeatureId; 2],
-    /// The id inherited from the previous manifold.
+    /// Id inherited from the previous manifold; `None` for a new point.
     pub(in crate::collide) kept: Option<Inherited>,
 }
 
 impl<N: Real, const D: usize> Candidate<N, D> {
-    /// Creates the candidate of the nearest pair of points, which lie on the given parts.
+    /// Creates the candidate of the nearest points, which lie on the given features.
     pub(in crate::collide) fn alone(witness: &Separation<N, D>, features: [FeatureId; 2]) -> Self {
         let (point1, distance) = (witness.point1, witness.distance);
         Self { point1, distance, flat: Vector::<N, 2>::zeros(), features, kept: None }
     }
 
-    /// Returns whether the previous manifold had this point, at this position.
+    /// Returns whether the previous manifold had this point at this position.
     pub(in crate::collide) fn is_old(&self) -> bool {
         self.kept.is_some_and(|kept| kept.is_old)
     }
@@ -137,8 +140,8 @@ impl<N: Real, const D: usize> Candidate<N, D> {
 }
 
 impl<N: Real, const D: usize> ContactFrame<N, D> {
-    /// Creates a frame; `tangents` complete the witness' normal to a right-handed basis, the second
-    /// is zero in 2D.
+    /// Creates a frame. `tangents` complete the witness' normal to a right-handed basis; in 2D the
+    /// second is zero.
     pub(in crate::collide) fn new(
         pair: &Pair<'_, N, D>,
         witness: &Separation<N, D>,
@@ -154,7 +157,7 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         }
     }
 
-    /// Creates a frame for a request without turning, with a known tolerance.
+    /// Creates a frame for a request that admits no turning, with a known tolerance.
     #[inline]
     pub(in crate::collide) fn known(
         witness: &Separation<N, D>,
@@ -170,7 +173,7 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         self.witness.normal
     }
 
-    /// Axes of the `flat` coordinates.
+    /// Returns the axes of the `flat` coordinates.
     #[inline(always)]
     pub(in crate::collide) const fn tangents(&self) -> &[Vector<N, D>; 2] {
         &self.tangents
@@ -183,18 +186,18 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         Vector::<N, 2>::new(self.tangents[0].dot(&arm), self.tangents[1].dot(&arm))
     }
 
-    /// Returns the height of a point along the normal, above the witness on the first solid.
+    /// Returns the height of a point along the normal, above the witness point of the first solid.
     #[inline]
     pub(in crate::collide) fn height(&self, point: &Point<N, D>) -> N {
         self.normal().dot(&(point - self.witness.point1))
     }
 
     /// Returns the distance to store for a pair of points with the tangent coordinates `flat`;
-    /// `None` if the request excludes them.
+    /// `None` if the request excludes the pair.
     ///
-    /// The witness is the nearest pair of points, so a smaller distance is a rounding error, as is
-    /// one that exceeds the prediction by no more than the tolerance. A point beyond the prediction
-    /// stays if turning about the witness brings it within.
+    /// The witness has the smallest distance, so a smaller one is a rounding error and is raised;
+    /// one that exceeds the prediction by no more than the tolerance is lowered to it. A point
+    /// beyond the prediction is admitted if turning about the witness brings it within.
     #[inline]
     pub(in crate::collide) fn admit(&self, distance: N, flat: &Vector<N, 2>) -> Option<N> {
         let distance = max(distance, self.witness.distance);
@@ -207,7 +210,7 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         (distance <= self.prediction + self.sine * flat.norm()).then_some(distance)
     }
 
-    /// Upper bound of the distances that [`Self::admit`] admits.
+    /// Returns an upper bound of the distances that [`Self::admit`] admits.
     #[inline]
     pub(in crate::collide) fn most(&self) -> N {
         if self.sine > N::ZERO { N::INFINITY } else { self.prediction + self.tolerance }
@@ -226,8 +229,8 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
         Some(Candidate { point1, distance, flat, features, kept: None })
     }
 
-    /// Adds the candidate of [`Self::candidate`] unless one with the same features has its
-    /// position: corners that coincide are found from both solids.
+    /// Adds the candidate that [`Self::candidate`] returns, unless `out` has one with the same
+    /// features at the same position: corners that coincide are found from both solids.
     #[inline]
     pub(in crate::collide) fn push_new(
         &self,
@@ -248,8 +251,8 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
     }
 }
 
-/// Returns the part of a segment at the coordinate `along` from its first end: an end within
-/// `tolerance`, the last if within that of both, or the segment; `None` beyond the ends.
+/// Returns the part of a segment at the coordinate `along`, measured from its first end: an end
+/// within `tolerance`, the last if both are, else the segment; `None` beyond the ends.
 #[inline]
 pub(in crate::collide) fn part_beside<N: Real>(
     along: N,
@@ -265,14 +268,14 @@ pub(in crate::collide) fn part_beside<N: Real>(
     Some(if along >= length - tolerance { ends[1] } else { nearest })
 }
 
-/// Returns the length below which differences are rounding for the size of a pair.
+/// Returns the length below which differences are rounding errors for a pair of this size.
 #[inline]
 pub(in crate::collide) fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let size = size(pair.first) + size(pair.second) + pair.pose12.translation.norm();
     N::lit(ROUNDING_ERRORS) * N::EPSILON * size
 }
 
-/// Reach of a solid including its radius; zero for half-spaces.
+/// Returns the bounding radius of a solid, including its rounding radius; zero for half-spaces.
 #[inline]
 fn size<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> N {
     match kind {

@@ -1,8 +1,8 @@
-//! A solid against a half-space: the corners of the solid above the boundary, which has no end.
+//! A solid against a half-space: the corners of the solid near the boundary, which is unbounded.
 //!
-//! Flat-faced solids count with every vertex, not only those of the supporting feature: if no face
-//! is parallel to the boundary, the near vertices need not belong to one face. Other solids count
-//! with the corners of the supporting feature, on the rounded surface.
+//! For flat-faced solids every vertex is a candidate, not only those of the supporting feature: if
+//! no face is parallel to the boundary, the near vertices need not belong to one face. For other
+//! solids the candidates are the corners of the supporting feature, on the rounded surface.
 
 use super::frame::{Candidate, Candidates, ContactFrame, MIN_COSINE, Which, lifted};
 use super::supporting::contact_feature;
@@ -33,14 +33,14 @@ pub(super) fn build<N: Real, const D: usize>(
     choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
-/// The half-space in the frame of the solid.
+/// The solid's side of the pair: adds its corners above the boundary as candidates.
 struct Above<'a, N: Real, const D: usize> {
     frame: &'a ContactFrame<N, D>,
 }
 
 impl<N: Real, const D: usize> Above<'_, N, D> {
-    /// Adds the corners that the request admits; returns the feature of the nearest point if there
-    /// are none.
+    /// Adds the corners that the request admits. Returns the feature of the nearest point, for the
+    /// case that there are none.
     fn corners(&self, kind: Kind<'_, N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         match kind {
             Kind::Cuboid(cuboid) => self.vertices_of_box(cuboid, out),
@@ -51,7 +51,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
             Kind::Triangle(triangle) => {
                 let corners = triangle.corners();
                 for (at, id) in (0_u32..3).enumerate() {
-                    // Corners that coincide count once.
+                    // Of corners that coincide, only the first is added.
                     if !corners[..at].contains(&corners[at]) {
                         self.push(FeatureId::Vertex(id), corners[at], out);
                     }
@@ -68,15 +68,15 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
 
     /// Adds a corner, if the request admits it.
     fn push(&self, id: FeatureId, point: Point<N, D>, out: &mut Candidates<N, D>) {
-        // The boundary is perpendicular to the normal: heights give distances.
+        // The boundary is perpendicular to the normal, so heights give distances.
         let distance = self.frame.witness.distance - self.frame.height(&point);
         if distance <= self.frame.most() {
             out.extend(self.frame.candidate(point, distance, [id, BOUNDARY]));
         }
     }
 
-    /// Adds the vertices of a box; of vertices that coincide on a flat box, the one with the lowest
-    /// index.
+    /// Adds the vertices of a box. On a flat box, whose vertices coincide, only the one with the
+    /// lowest index of each group is added.
     fn vertices_of_box(&self, cuboid: &Cuboid<N, D>, out: &mut Candidates<N, D>) {
         let half = cuboid.half_extents();
         let has = |vertex: u32, axis: usize| vertex >> axis & 1 == 1;
@@ -89,7 +89,8 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         }
     }
 
-    /// Adds the vertices of a hull: 8 at a time, those that may be near are tested again.
+    /// Adds the vertices of a hull. They are tested 8 at a time; those that may be near are tested
+    /// again one by one.
     #[inline(always)]
     fn vertices_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -99,7 +100,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
     ) {
         let frame = self.frame;
         let along: [V; D] = spread(simd, &frame.normal());
-        // Loosened by the tolerance: the distance of each near vertex is computed again.
+        // Loosened by the tolerance, because the distance of each near vertex is computed again.
         let top = frame.normal().dot(&frame.witness.point1.coords) - frame.tolerance;
         let least = V::all(simd, top + frame.witness.distance - frame.most());
         for (first, block) in (0_u32..).step_by(LANES).zip(hull.blocks()) {
@@ -108,7 +109,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
             while near != 0 {
                 let vertex = first + near.trailing_zeros();
                 near &= near - 1;
-                // Copies of the last vertex fill its block.
+                // Lanes after the last vertex hold copies of it.
                 if let Some(point) = hull.vertices().get(vertex as usize) {
                     self.push(FeatureId::Vertex(vertex), *point, out);
                 }
@@ -116,12 +117,12 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         }
     }
 
-    /// Adds the corners of the core's part that faces the half-space, on the rounded surface; none
-    /// for a point, and for a feature tilted too far.
+    /// Adds the corners of the core's supporting feature, on the rounded surface. Adds none for a
+    /// point, and for a feature tilted too far. Returns the feature of the lowest corner.
     fn feature_corners(&self, map: &dyn SupportMap<N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         let (frame, radius, mut feature) = (self.frame, map.rounding(), Feature::default());
         let extra = contact_feature(map, &frame.normal(), &mut feature);
-        // All corners of a rim have the same ids.
+        // All corners of a rim have the same id.
         let ids = feature.vertex_ids.iter().copied();
         let ids = ids.clone().take(extra.iter().count()).chain(ids);
         let corners = extra.iter().chain(&feature.vertices).zip(ids);
@@ -146,8 +147,8 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         feature.id
     }
 
-    /// Returns the cosine of the angle between the normals of boundary and face, or between a
-    /// segment and the boundary; `None` for a point, and for a segment that projects to one.
+    /// Returns the cosine of the angle between the normals of the boundary and a face, or between a
+    /// segment and the boundary; `None` for a point, and for a segment that projects to a point.
     fn cosine(&self, feature: &Feature<N, D>) -> Option<N> {
         let normal = self.frame.normal();
         match feature.vertices.as_slice() {

@@ -1,20 +1,21 @@
 //! Ids of contact points: a contact that moved keeps its id.
 //!
-//! Old points are matched to new ones in three classes, the nearest first within a class:
+//! Old points are matched to new points in three classes, and within a class by distance, nearest
+//! first:
 //!
 //! 1. points on the same pair of features, within [`SHARE`] of the pair's size;
 //! 2. points on other features within that length: features flicker where edges coincide, and a
-//!    corner that slides over the triangles of a mesh meets another triangle in each step;
+//! corner that slides over the triangles of a mesh meets another triangle in each step;
 //! 3. points on the same pair of features at any distance; a crossing of two edges only within
-//!    [`REACH`] of the size.
+//! [`REACH`] of the size.
 //!
 //! The distance of a match is the smaller of two: how far the point moved on the first solid, in
-//! that solid's frame, and on the second in its frame. It is zero on a vertex of either. If the
-//! normal turned by more than 45°, it is infinite, since a solid that fell on another side begins
-//! new contacts; except for the same features with a vertex among them, which always are one point.
-//! The kernels of `batch` keep no old pose, so they compare positions on the first solid alone. So
-//! neither a corner that slides over a floor has moved, nor a point of the floor that a solid
-//! slides over.
+//! that solid's frame, and how far it moved on the second, in the second's frame. It is zero for a
+//! point on a vertex of either. If the normal turned by more than 45°, it is infinite, because a
+//! solid that fell on another side begins new contacts. The same features with a vertex among them
+//! are exempt: they always are one point. The kernels of `batch` keep no old pose, so they compare
+//! positions on the first solid only. A corner that slides over a floor thus counts as unmoved, and
+//! so does a point of the floor that a solid slides over.
 //!
 //! ```text
 //!           ┌─────────┐            ┌─────────┐
@@ -24,9 +25,10 @@
 //! ```
 //!
 //! Each id goes to one point. Ties go to the older id, then to the candidate that comes first. The
-//! order does not depend on the order of the two solids, and scaling by a power of two changes no
-//! choice. If each pair of features has one point, as for two boxes, the same features are the same
-//! point, and positions are compared for two edges alone ([`is_same_point`]).
+//! result does not depend on the order of the two solids, and scaling by a power of two changes no
+//! choice. If each pair of features has at most one point, as for two boxes, points with the same
+//! features are the same point, and positions are compared only for crossings of two edges
+//! ([`is_same_point`]).
 
 use smallvec::SmallVec;
 
@@ -37,12 +39,13 @@ use crate::math::order::askew;
 use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
-/// A contact is the same if it moves by at most this share of the pair's size in a step: half the
-/// diagonal of the smaller box.
+/// Largest distance that a contact may move in one step and stay the same contact, as a fraction of
+/// the pair's size: half the diagonal of the smaller box.
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
-/// Crossings of the same two edges are one point if they move by at most this share of the size
-/// along each axis: edges that nearly coincide cross anywhere, at either end in turn.
+/// Largest distance, along each axis and as a fraction of the pair's size, between crossings of the
+/// same two edges that are one point. Edges that nearly coincide cross anywhere, at either end in
+/// turn.
 pub(super) const REACH: f64 = 1.0 / 2.0;
 
 /// Returns whether both features are edges.
@@ -50,8 +53,8 @@ pub(super) fn are_edges(features: [FeatureId; 2]) -> bool {
     features.iter().all(|id| matches!(id, FeatureId::Edge(_)))
 }
 
-/// Returns whether a point with these features that moved by `moved` on the first solid is the same;
-/// `size` is that of the pair.
+/// Returns whether a point with these features that moved by `moved` on the first solid is still
+/// the same; `size` computes the size of the pair.
 #[inline(always)]
 pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     features: [FeatureId; 2],
@@ -61,16 +64,18 @@ pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     !are_edges(features) || max_component(moved) <= N::lit(REACH) * size()
 }
 
-/// Reciprocal of the largest length by which a contact of a pair of this size moves in a step.
+/// Returns the reciprocal of the largest distance that a contact of a pair of this size may move in
+/// one step.
 #[inline(always)]
 pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
     N::ONE / (N::lit(SHARE) * size)
 }
 
-/// A contact point as it is matched: its position on either solid.
+/// Data by which a contact point is matched: its features, and its position on either solid.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
-    /// Parts of composites, zero for a convex solid, and the features of the parts.
+    /// Indices of the parts of composites, zero for a convex solid, and the features of these
+    /// parts.
     pub(super) ids: ([u32; 2], [FeatureId; 2]),
     /// Position of the point on each solid, in that solid's frame.
     pub(super) positions: [Point<N, D>; 2],
@@ -78,7 +83,7 @@ pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
     normal: Vector<N, D>,
 }
 
-/// Pose and normal of a pair, from which positions on both solids follow.
+/// Pose and normal of a pair, from which the positions of a point on both solids follow.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct PairPose<'a, N: Real, const D: usize> {
     /// Pose of the second solid in the frame of the first; `None` if positions on it are not
@@ -89,7 +94,8 @@ pub(in crate::collide) struct PairPose<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> PairPose<'_, N, D> {
-    /// Returns the anchors of a contact, given its point on the first solid in that solid's frame.
+    /// Returns the anchors of a contact, from its point on the first solid in the first solid's
+    /// frame.
     #[inline]
     pub(in crate::collide) fn anchors(
         &self,
@@ -108,16 +114,16 @@ impl<N: Real, const D: usize> PairPose<'_, N, D> {
 /// Anchors of the points of a manifold.
 pub(in crate::collide) type AnchorList<N, const D: usize> = SmallVec<[Anchors<N, D>; 8]>;
 
-/// The id that a new point inherits.
+/// Id that a new point inherits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::collide) struct Inherited {
     pub(in crate::collide) id: u32,
-    /// The point is where the old one was. Otherwise it moved far, and is not preferred in the
-    /// choice.
+    /// Whether the point is where the old one was. If not, it moved far and gets no preference in
+    /// the choice of points.
     pub(in crate::collide) is_old: bool,
 }
 
-/// Returns whether two points are the same contact by position.
+/// Returns whether two points are close enough to be the same contact.
 pub(in crate::collide) fn are_near<N: Real, const D: usize>(
     old: &Anchors<N, D>,
     new: &Anchors<N, D>,
@@ -127,7 +133,7 @@ pub(in crate::collide) fn are_near<N: Real, const D: usize>(
 }
 
 /// Returns the squared distance that a point moved, on the solid where it is smaller, times `scale`
-/// squared. Zero on a vertex, infinite if the normals do not agree.
+/// squared. Zero on a vertex of either solid, infinite if the normals do not agree.
 #[inline]
 pub(super) fn moved<N: Real, const D: usize>(
     old: &Anchors<N, D>,
@@ -138,7 +144,7 @@ pub(super) fn moved<N: Real, const D: usize>(
         let is_same = is_one_point(old.ids.1) && old.ids == new.ids;
         return if is_same { N::ZERO } else { N::INFINITY };
     }
-    // On the same vertex of either solid it has not moved.
+    // A point on the same vertex of either solid has not moved.
     let is_on_vertex = |solid: usize| {
         let id_of = |point: &Anchors<N, D>| (point.ids.0[solid], point.ids.1[solid]);
         matches!(id_of(old).1, FeatureId::Vertex(_)) && id_of(old) == id_of(new)
@@ -148,14 +154,15 @@ pub(super) fn moved<N: Real, const D: usize>(
     }
     let on = |solid: usize| ((new.positions[solid] - old.positions[solid]) * scale).norm_squared();
     let [on1, on2] = [on(0), on(1)];
-    // Written so that an unknown position does not count.
+    // Written so that a NaN, an unknown position on the second solid, is not chosen.
     if on2 < on1 { on2 } else { on1 }
 }
 
-/// Cosine of the largest angle between the normals of one contact: 45°.
+/// Cosine of the largest angle, 45°, between the old and new normal of one contact.
 const TURN: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// Returns whether contacts with these normals, in the frame of the first solid, may be the same.
+/// Returns whether contacts with these normals, in the frame of the first solid, may be the same
+/// contact.
 #[inline(always)]
 pub(in crate::collide) fn normals_agree<N: Real, const D: usize>(
     old: &Vector<N, D>,
@@ -164,14 +171,14 @@ pub(in crate::collide) fn normals_agree<N: Real, const D: usize>(
     old.dot(new) >= N::lit(TURN)
 }
 
-/// Returns whether a pair of features has one point: if a vertex is among them. Edges may be round
-/// rims, with many points.
+/// Returns whether a pair of features has only one point: whether a vertex is among them. Edges may
+/// be round rims, with many points.
 pub(in crate::collide) fn is_one_point(features: [FeatureId; 2]) -> bool {
     features.iter().any(|id| matches!(id, FeatureId::Vertex(_)))
 }
 
-/// Gives candidates the ids of old points with the same features, where these have one old and one
-/// new point.
+/// Gives candidates the ids of old points with the same features, if exactly one old point and one
+/// candidate have these features.
 pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     candidates: &mut [Candidate<N, D>],
@@ -189,8 +196,9 @@ pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     }
 }
 
-/// Gives the candidates `some` without an id those ids that none of them has, by [`each_match`];
-/// `pose` is the new pose, `size` that of the pair.
+/// Matches the candidates `some` that have no id with the old points whose ids no candidate has, by
+/// [`each_match`], and passes on the ids. `pose` is the new pose; `size` computes the size of the
+/// pair.
 pub(in crate::collide) fn inherit_by_position<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     pose: &PairPose<'_, N, D>,
@@ -219,7 +227,7 @@ pub(in crate::collide) fn inherit_by_position<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> RawManifold<N, D> {
-    /// Returns the anchors of one of the points.
+    /// Returns the anchors of one of the manifold's points.
     #[inline]
     pub(in crate::collide) fn anchors(&self, point: &RawPoint<N, D>) -> Anchors<N, D> {
         let pose = PairPose { pose12: self.pose12.as_ref(), normal: &self.normal };
@@ -228,9 +236,10 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
     }
 }
 
-/// Moves the points of a manifold to the candidates if these have the same features in the same
-/// order, each pair once, within reach; returns whether it did. The nearest takes `distance`, the
-/// separation's. `size` is that of the pair.
+/// Moves the points of a manifold to the candidates, if these have the same features in the same
+/// order, each pair of features occurs once, and no point jumped. Returns whether it did; otherwise
+/// nothing changes. The nearest point gets `distance`, the one of the separation. `size` computes
+/// the size of the pair.
 pub(in crate::collide) fn renew<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
     distance: N,
@@ -245,7 +254,7 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     if old.len() != candidates.len() || !old.iter().zip(candidates).all(is_same) {
         return false;
     }
-    // Features with several points, as on round rims, are matched by position instead.
+    // Points that share their features, as on round rims, are matched by position instead.
     let is_twin = |(at, new): (usize, &Candidate<N, D>)| {
         candidates[..at].iter().any(|other| other.features == new.features)
     };
@@ -265,8 +274,8 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     true
 }
 
-/// Sorts new points into the order of their ids: returns their coordinate along an [`askew`]
-/// direction and their number, given their positions on the first solid.
+/// Returns new points in the order in which they get ids: their coordinates along an [`askew`]
+/// direction, ascending, and their indices. Input: their indices and positions on the first solid.
 ///
 /// The direction is fixed in the frame of the first solid. Of the four corners of a rectangle, the
 /// last is opposite to the first. In a solver that visits contacts in this order, as most do, a
@@ -275,7 +284,7 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
 pub(in crate::collide) fn in_order<N: Real, const D: usize>(
     points: impl Iterator<Item = (usize, Point<N, D>)>,
 ) -> SmallVec<[(N, usize); 8]> {
-    // Nearly always there are four at most, and mostly none.
+    // There are nearly always at most four, and mostly none.
     let mut order = SmallVec::<[(N, usize); 8]>::new();
     for (number, point) in points {
         let coordinate = askew(&point.coords);
@@ -289,7 +298,8 @@ pub(in crate::collide) fn in_order<N: Real, const D: usize>(
     order
 }
 
-/// Replaces the points of a manifold, in the order of their ids; those without an id get the next.
+/// Replaces the points of a manifold by the `chosen` candidates, in the order of their ids; those
+/// without an id get new ones.
 pub(in crate::collide) fn replace_points<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     chosen: &[usize],

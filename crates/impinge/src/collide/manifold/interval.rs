@@ -1,9 +1,9 @@
 //! Two flat-sided 2D solids: the overlap interval of their supporting sides.
 //!
-//! This is the one path to the contacts of segments, capsules, triangles, boxes, polygons, rounded
-//! ones, and support maps whose feature is a side or a corner. Boxes, and segments and capsules,
-//! have kernels besides (`collide/batch/`). A supporting feature is a side or a corner, with a
-//! radius around it. A position along the tangent is one number:
+//! This computes the contacts of segments, capsules, triangles, boxes, polygons, rounded solids,
+//! and support maps whose supporting feature is a side or a corner, with a radius around it. Boxes,
+//! segments and capsules also have kernels of their own (`collide/batch/`). A position along the
+//! tangent is one coordinate:
 //!
 //! ```text
 //!          from ─────────────── to          the second solid's side
@@ -13,16 +13,16 @@
 //!           └─── overlap ──┘  ───────────→  the line of contact
 //! ```
 //!
-//! The contacts are the ends of the overlap that the request admits, with the angle as a number in
-//! that test ([`ContactFrame::admit`]), and the witness if none of them is as near.
+//! The contacts are the ends of the overlap interval that the request admits, including by rotation
+//! ([`ContactFrame::admit`]), and the witness if neither end is as near.
 
 use super::frame::{Candidates, ContactFrame, MIN_COSINE, Which, lifted, part_beside};
 use super::{Pair, RawManifold, add_witness, choose_in_frame};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, SideOrVertex, SupportMap};
 
-/// Builds the manifold of two solids within the prediction, neither of them a ball or a half-space;
-/// returns `false` if a supporting feature is neither a side nor a corner.
+/// Builds the manifold of two solids within the prediction, neither of them a ball or a half-space.
+/// Returns `false` if a supporting feature is neither a side nor a corner.
 pub(super) fn build<N: Real>(
     pair: &Pair<'_, N, 2>,
     frame: &ContactFrame<N, 2>,
@@ -50,7 +50,7 @@ pub(super) fn build<N: Real>(
 pub(super) struct Corner<N: Real, const D: usize> {
     /// Position in the frame of the first solid.
     pub(super) point: Point<N, D>,
-    /// Coordinates along the tangents; in 2D the second is zero.
+    /// Coordinates along the tangents; the second is zero in 2D.
     pub(super) flat: Vector<N, 2>,
     pub(super) id: FeatureId,
 }
@@ -59,25 +59,26 @@ pub(super) struct Corner<N: Real, const D: usize> {
 pub(super) struct FeatureInterval<N: Real> {
     which: Which,
     id: FeatureId,
-    /// Ends of the side; for a point the first counts.
+    /// Ends of the side; for a corner only the first is used.
     pub(super) corners: [Corner<N, 2>; 2],
-    /// The feature is a side; otherwise it is the point of the first corner.
+    /// Whether the feature is a side; otherwise it is the corner `corners[0]`.
     pub(super) is_side: bool,
     /// Radius around the feature.
     rounding: N,
     /// Cosine of the angle between the side and the tangent.
     cosine: N,
-    /// Signed length from the first corner to the second along the tangent, and its magnitude.
+    /// Signed length from the first corner to the second along the tangent.
     along: N,
+    /// Magnitude of `along`.
     length: N,
-    /// For a solid with a radius: depth of the corner nearest to the other solid below the
-    /// supporting line, and its tangent coordinates.
+    /// Only for a solid with a radius: depth, below the supporting line, of the corner nearest to
+    /// the other solid, and the tangent coordinates of that corner.
     top: (N, Vector<N, 2>),
 }
 
 impl<N: Real> FeatureInterval<N> {
-    /// Returns the supporting feature of a solid at `pose` in the frame of the first; `None` if it
-    /// is neither a side nor a corner.
+    /// Returns the supporting feature of a solid, with `pose` in the frame of the first solid;
+    /// `None` if it is neither a side nor a corner.
     #[inline(always)]
     pub(super) fn of(
         which: Which,
@@ -91,13 +92,13 @@ impl<N: Real> FeatureInterval<N> {
         Some(Self::placed(which, &supporting, rounding(kind), pose, frame))
     }
 
-    /// Feature of a segment that is the first solid.
+    /// Returns the supporting feature of a segment that is the first solid.
     #[inline]
     pub(super) fn of_segment(segment: &Segment<N, 2>, frame: &ContactFrame<N, 2>) -> Self {
         Self::placed(Which::First, &SideOrVertex::of_segment(segment), N::ZERO, None, frame)
     }
 
-    /// Transforms and simplifies a feature.
+    /// Transforms a feature into the frame of the first solid and simplifies it.
     #[inline(always)]
     fn placed(
         which: Which,
@@ -128,12 +129,12 @@ impl<N: Real> FeatureInterval<N> {
         interval
     }
 
-    /// Reduces a side without length to its first corner, with the id of the side; and one that is
-    /// tilted too far, or lies along the normal, to its nearest corner.
+    /// Reduces a side to a corner if needed: a side without length to its first corner, with the
+    /// side's id; one that is tilted too far, or lies along the normal, to its nearest corner.
     #[inline(always)]
     fn simplify(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
-        // Long in projection. A side along the normal is not, but it has a length.
+        // Long in projection. A side along the normal is short in projection, but it has a length.
         let is_long = max_component(&(from.flat - to.flat)) > tolerance;
         self.is_side &= is_long || max_component(&(from.point - to.point)) > tolerance;
         if !self.is_side {
@@ -150,7 +151,7 @@ impl<N: Real> FeatureInterval<N> {
         }
     }
 
-    /// Finds the corner nearest to the other solid.
+    /// Finds the corner nearest to the other solid, and sets `top`.
     fn find_top(&mut self, frame: &ContactFrame<N, 2>) {
         let [first, second] = &self.corners;
         let depth = self.which.below_witness(&first.point, frame);
@@ -163,7 +164,7 @@ impl<N: Real> FeatureInterval<N> {
         }
     }
 
-    /// Returns the part that the witness lies on.
+    /// Returns the id of the part that the witness lies on: an end or the side.
     pub(super) fn at_witness(&self, frame: &ContactFrame<N, 2>) -> FeatureId {
         let near = |corner: &Corner<N, 2>| corner.flat.norm() <= N::TWO * frame.tolerance;
         match &self.corners {
@@ -173,7 +174,7 @@ impl<N: Real> FeatureInterval<N> {
         }
     }
 
-    /// Returns the point of the core at a tangent coordinate.
+    /// Returns the point of the side at a tangent coordinate, clamped to its ends.
     #[inline(always)]
     pub(super) fn under(&self, coordinate: N) -> Point<N, 2> {
         let [from, to] = &self.corners;
@@ -182,8 +183,8 @@ impl<N: Real> FeatureInterval<N> {
         from.point + (to.point - from.point) * min(max(share, N::ZERO), N::ONE)
     }
 
-    /// Returns the part beside a tangent coordinate, ends by their distance along the side; `None`
-    /// beyond the ends.
+    /// Returns the part at a tangent coordinate: an end within twice the tolerance, measured along
+    /// the side, or the side; `None` beyond the ends.
     #[inline(always)]
     fn beside(&self, coordinate: N, tolerance: N) -> Option<FeatureId> {
         let along = (coordinate - self.corners[0].flat.x) * self.along / self.length;
@@ -192,8 +193,8 @@ impl<N: Real> FeatureInterval<N> {
         part_beside(along, self.length, tolerance, [from.id, to.id], self.id)
     }
 
-    /// Returns the part that contains a tangent coordinate: an end or the side; `None` beyond the
-    /// ends.
+    /// Returns the part that contains a tangent coordinate: an end within twice the tolerance,
+    /// measured along the tangent, or the side; `None` beyond the ends.
     pub(super) fn locate(&self, coordinate: N, tolerance: N) -> Option<FeatureId> {
         let [from, to] = &self.corners;
         let near = |corner: &Corner<N, 2>| (corner.flat.x - coordinate).abs() <= N::TWO * tolerance;
@@ -216,7 +217,7 @@ impl<N: Real> FeatureInterval<N> {
     }
 }
 
-/// Computes [`Pose::point`], whose products of matrices are not inlined.
+/// Computes [`Pose::point`] written out, because products of small matrices are not inlined.
 #[inline(always)]
 fn placed<N: Real>(pose: &Pose<N, 2>, local: &Point<N, 2>) -> Point<N, 2> {
     let (turn, shift) = (&pose.rotation, &pose.translation);
@@ -235,7 +236,7 @@ fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
     }
 }
 
-/// Two sides in one frame.
+/// Two supporting features in one frame.
 pub(super) struct Shared<'a, N: Real> {
     pub(super) frame: &'a ContactFrame<N, 2>,
     pub(super) first: &'a FeatureInterval<N>,
@@ -243,8 +244,8 @@ pub(super) struct Shared<'a, N: Real> {
 }
 
 impl<N: Real> Shared<'_, N> {
-    /// Adds the ends of the overlap interval: each is an end of one side and the point beside it on
-    /// the other.
+    /// Adds the ends of the overlap interval. Each is an end of one side, paired with the point at
+    /// its coordinate on the other side.
     pub(super) fn candidates(&self, out: &mut Candidates<N, 2>) {
         for corner in &self.first.corners {
             if let Some(on) = self.second.beside(corner.flat.x, self.frame.tolerance) {
@@ -260,7 +261,8 @@ impl<N: Real> Shared<'_, N> {
         }
     }
 
-    /// Adds a pair of points, once; each is moved by half their offset along the tangent.
+    /// Adds a pair of points unless it is a duplicate. Each point first moves by half their offset
+    /// along the tangent.
     fn push(
         &self,
         core1: &Point<N, 2>,
@@ -273,7 +275,7 @@ impl<N: Real> Shared<'_, N> {
         self.push_pair(&(core1 + half), &(core2 - half), features, out);
     }
 
-    /// Adds a pair of points across from each other, once.
+    /// Adds a pair of points that face each other along the normal, unless it is a duplicate.
     pub(super) fn push_pair(
         &self,
         core1: &Point<N, 2>,

@@ -1,4 +1,4 @@
-//! Matches new contact points to old ones: a greedy match by the classes and distances of
+//! Matches new contact points to old ones: greedily, by the classes and distances of
 //! [`ids`](super::ids).
 //!
 //! ```text
@@ -6,9 +6,10 @@
 //!         class   bits of `moved` as an `f64`, less the last two    smallest keys match first
 //! ```
 //!
-//! Few points are bits of a `u32`, and all pairs are compared. For many, those that can be near on
-//! either solid are found in lists sorted by the first coordinate. The kernels of `batch` know
-//! positions on the first solid, and for the second which vertex a point is on.
+//! A few points are bits of a `u32`, and all pairs are compared. Of many points, the pairs that may
+//! be near on either solid are found in lists sorted by the first coordinate. The kernels of
+//! `batch` give only positions on the first solid, and the vertices that points lie on for the
+//! second.
 
 use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
 use crate::math::ones::Ones;
@@ -16,24 +17,28 @@ use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Real};
 use crate::shape::FeatureId;
 
-/// The classes, in the highest bits of a key, and their position.
+/// Class of a pair: same features and near.
 const SAME: u64 = 0;
+/// Class of a pair: other features, but near.
 const NEAR: u64 = 1;
+/// Class of a pair: same features, but far.
 const FAR: u64 = 2;
+/// Position of the class in a key.
 const CLASS_AT: u32 = 62;
 
-/// Largest squared distance of a crossing of two edges in the last class, in units of the near
+/// Largest squared distance of a crossing of two edges in the class `FAR`, in units of the near
 /// length.
 const FARTHEST: f64 = (REACH / SHARE) * (REACH / SHARE);
 
 /// Key of pairs that do not match.
 const NEVER: u64 = u64::MAX;
 
-/// Up to this many old and new points, all pairs are compared.
+/// Up to this number of old and of new points, all pairs are compared.
 const FEW: usize = u32::BITS as usize;
 
-/// Visits each match: index of the old point, of the new point, and whether that is near the old
-/// one. `size` is that of the pair ([`smaller_size`](crate::collide::size::smaller_size)).
+/// Calls `visit` for each match with the index of the old point, that of the new point, and whether
+/// the new point is near the old one. `size` is the size of the pair
+/// ([`smaller_size`](crate::collide::size::smaller_size)).
 ///
 /// Cost: O(n log n) for n points that lie apart.
 pub(in crate::collide) fn each_match<N: Real, const D: usize>(
@@ -49,7 +54,7 @@ pub(in crate::collide) fn each_match<N: Real, const D: usize>(
     }
 }
 
-/// Runs [`each_match`] for points that are bits of a word.
+/// Runs [`each_match`] for at most [`FEW`] old and new points, as bits of a word.
 fn match_few<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
     new: &[Anchors<N, D>],
@@ -63,14 +68,14 @@ fn match_few<N: Real, const D: usize>(
     });
 }
 
-/// Mask of `count` points.
+/// Returns the mask of the first `count` points.
 #[inline(always)]
 fn all(count: usize) -> u32 {
     u32::MAX.unbounded_shr(u32::try_from(FEW - count).unwrap_or(0))
 }
 
-/// Returns the smallest key of the points in a mask and the first that has it; `never` if none is
-/// less.
+/// Returns the smallest key of the points in a mask, and the first point that has it; `never` and 0
+/// if no key is smaller than `never`.
 #[inline(always)]
 fn least<K: PartialOrd>(among: u32, never: K, key: impl Fn(usize) -> K) -> (K, usize) {
     let mut least = (never, 0);
@@ -83,11 +88,11 @@ fn least<K: PartialOrd>(among: u32, never: K, key: impl Fn(usize) -> K) -> (K, u
     least
 }
 
-/// Visits pairs of old and new points, given by masks: the smallest key first, each point once.
-/// Ties go to the old point that comes first, then to the new one. Keys not below `never` make no
-/// pair.
+/// Visits pairs of old and new points, given by masks, in the order of their keys, smallest first;
+/// each point occurs once. Ties go to the old point that comes first, then to the new one. Keys not
+/// below `never` make no pair.
 ///
-/// `nearest` returns the [`least`] key of an old point among some new ones.
+/// `nearest` returns the [`least`] key of an old point among the new points in a mask.
 #[inline(always)]
 fn nearest_first<K: PartialOrd + Copy>(
     [mut old, mut new]: [u32; 2],
@@ -101,13 +106,13 @@ fn nearest_first<K: PartialOrd + Copy>(
         for at in Ones::<FEW>(pending) {
             (keys[at], others[at]) = nearest(at, new);
             let has_one = keys[at] < never;
-            // A point without a match now has none later.
+            // A point without a match now has none later either.
             old &= !(u32::from(!has_one) << at);
         }
-        // The new points that are the nearest of some old one.
+        // New points that are the nearest of some old one.
         let taken = Ones::<FEW>(old).fold(0_u32, |bits, at| bits | 1 << others[at]);
         if taken.count_ones() == old.count_ones() {
-            // In most cases each has a match of its own.
+            // In most cases each old point has a nearest point of its own.
             return Ones::<FEW>(old).for_each(|at| visit(at, others[at], keys[at]));
         }
         let (key, first) = least(old, never, |at| keys[at]);
@@ -118,7 +123,7 @@ fn nearest_first<K: PartialOrd + Copy>(
     }
 }
 
-/// Runs [`each_match`] by the sorted keys of all possible pairs.
+/// Runs [`each_match`] for any number of points, by the sorted keys of all possible pairs.
 fn match_many<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
     new: &[Anchors<N, D>],
@@ -145,12 +150,12 @@ fn match_many<N: Real, const D: usize>(
     }
 }
 
-/// Visits matches by position alone, where no new point has the features of an old one; old and new
-/// points are masks.
+/// Visits matches by position alone. Precondition: no new point has the features of an old one. Old
+/// and new points are masks.
 ///
 /// `moved` returns the squared distance of an old and a new point in units of the near length.
-/// `same_vertex` returns the new points on the same vertex of the second solid as an old one, where
-/// they have not moved.
+/// `same_vertex` returns, of a mask of new points, those on the same vertex of the second solid as
+/// an old point; these have not moved.
 #[inline(always)]
 pub(in crate::collide) fn each_near<N: Real>(
     [old, new]: [u32; 2],
@@ -166,16 +171,16 @@ pub(in crate::collide) fn each_near<N: Real>(
     nearest_first([old, new], never, nearest, |at, new, _| visit(at, new));
 }
 
-/// Returns whether a key is in one of the first two classes.
+/// Returns whether a key is in one of the two near classes.
 const fn is_near(key: u64) -> bool {
     key >> CLASS_AT < FAR
 }
 
-/// Returns the key of a pair; [`NEVER`] if it is no match. `scale` is the reciprocal of the near
-/// length.
+/// Returns the key of a pair; [`NEVER`] if the two do not match. `scale` is the reciprocal of the
+/// near length.
 #[inline]
 fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> u64 {
-    // The first coordinates exclude most pairs. Written so that NaN is far.
+    // The first coordinates exclude most pairs. Written so that NaN counts as far.
     let is_beside = |solid: usize| {
         ((new.positions[solid][0] - old.positions[solid][0]) * scale).abs() <= N::ONE
     };
@@ -193,8 +198,8 @@ fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, sca
     key(class, moved)
 }
 
-/// Visits the pairs of many points that [`key_of`] may accept: those with the same names, and those
-/// within `length` along the first axis on either solid.
+/// Visits the pairs of many points that [`key_of`] may accept: pairs with the same features, and
+/// pairs within `length` along the first axis on either solid.
 fn each_possible<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
     new: &[Anchors<N, D>],
@@ -214,13 +219,13 @@ fn each_possible<N: Real, const D: usize>(
     }
 }
 
-/// Returns the sort key of a pair: its class, then `moved` (not negative) without its last two
-/// bits.
+/// Returns the sort key of a pair: its class, then the bits of `moved`, which must not be negative,
+/// without the last two.
 fn key<N: Real>(class: u64, moved: N) -> u64 {
     class << CLASS_AT | moved.as_f64().to_bits() >> 2
 }
 
-/// Returns the keys and indices of some points in the order of the keys.
+/// Returns the keys and indices of some points, sorted by key.
 fn sorted<N: Real, const D: usize>(
     points: &[Anchors<N, D>],
     key: impl Fn(&Anchors<N, D>) -> u64,
@@ -237,7 +242,7 @@ fn between(keys: &[(u64, u32)], [low, high]: [u64; 2]) -> impl Iterator<Item = u
 }
 
 impl<N: Real, const D: usize> Anchors<N, D> {
-    /// Returns a hash of the names.
+    /// Returns a hash of the parts and features of a point.
     fn ids_key(&self) -> u64 {
         let ([part1, part2], features) = self.ids;
         let [feature1, feature2] = features.mapped(|id| match id {

@@ -1,4 +1,4 @@
-//! Builds the manifold of a pair from its separation: points that span the area of contact.
+//! Builds the manifold of a pair from its separation: points that span the contact area.
 //!
 //! ```text
 //!   separation   `frame`           supporting features           candidates      points and ids
@@ -9,12 +9,12 @@
 //!
 //! The separation provides the normal and the witness, its nearest pair of points. The supporting
 //! features of both solids, projected along the normal, are points, segments and convex polygons
-//! ([`ring`]), and the corners of their intersection ([`clip`]) are the candidates. In 2D the
-//! intersection is an interval ([`interval`]); over a [`half_space`] every corner counts. [`reduce`]
-//! chooses a few candidates and [`ids`] numbers them.
+//! ([`ring`]); the corners of their intersection ([`clip`]) are the candidates. In 2D the
+//! intersection is an interval ([`interval`]); over a [`half_space`] every corner is a candidate.
+//! [`reduce`] chooses a few candidates, and [`ids`] gives them ids.
 //!
-//! The witness is always represented, so the smallest distance of a manifold is exactly that of the
-//! separation. With a ball it is the only point.
+//! The witness is always represented, so the smallest distance of a manifold is exactly the
+//! distance of the separation. If a solid is a ball, the witness is the only point.
 
 mod along;
 mod chain;
@@ -52,9 +52,9 @@ use crate::tables::ByDimension;
 
 /// Builds the manifold of two solids in 2D: at most two points.
 ///
-/// `out` holds the previous manifold of the pair, from whose points ids are inherited. Afterwards
-/// it is empty if and only if the solids are farther apart than the prediction or overlap without
-/// bound. A separation that is NaN gives an empty manifold.
+/// `out` holds the previous manifold of the pair, whose points pass on their ids. On return it is
+/// empty if and only if the solids are farther apart than the prediction, the separation is NaN, or
+/// the overlap is infinitely deep.
 pub(crate) fn build2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -64,7 +64,8 @@ pub(crate) fn build2<N: Real>(
     build_2d(pair, separation, request, request.max_points.min(2), out);
 }
 
-/// Builds the manifold like [`build2`], with up to `request.max_points` points.
+/// Builds the manifold of two solids in 2D with up to `request.max_points` points; `out` is used as
+/// by [`build2`].
 pub(crate) fn between2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -87,14 +88,14 @@ fn build_2d<N: Real>(
     }
     let frame = ContactFrame::new(pair, separation, request, tangents2(&separation.normal));
     if !interval::build(pair, &frame, limit, out) {
-        // A user's solid whose supporting feature is neither a point nor a side.
+        // A user-defined solid whose supporting feature is neither a corner nor a side.
         build_witness_manifold(pair, separation, out);
     }
 }
 
 /// Builds the manifold of two solids in 3D: at most `request.max_points` points.
 ///
-/// `out` is used as by [`build2`].
+/// `out` holds the previous manifold and receives the new one, with the contract of [`build2`].
 pub(crate) fn build3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
@@ -107,8 +108,8 @@ pub(crate) fn build3<N: Real>(
     }
 }
 
-/// Builds the manifold if the pair is too far apart, the first solid is a ball, or the second a
-/// half-space; returns `false` for other pairs.
+/// Builds the manifold if the pair is beyond the prediction, the first solid is a ball, or the
+/// second a half-space; returns `false`, with nothing changed, for other pairs.
 fn build_one_sided<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -117,7 +118,7 @@ fn build_one_sided<N: Space<D>, const D: usize>(
     out: &mut RawManifold<N, D>,
 ) -> bool {
     let distance = separation.distance;
-    // Written so that NaN is too far.
+    // Written so that NaN counts as beyond the prediction.
     let is_near = distance <= request.prediction && distance.is_finite_number();
     if !is_near {
         out.points.clear();
@@ -137,7 +138,7 @@ fn build_one_sided<N: Space<D>, const D: usize>(
     true
 }
 
-/// Builds the manifold of the nearest points alone.
+/// Builds the manifold that consists of the nearest points only.
 fn build_witness_manifold<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -161,7 +162,7 @@ pub(crate) fn tangents3<N: Real>(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
     [u, v]
 }
 
-/// Returns the tangent in 2D, and zero for the second tangent, which does not exist.
+/// Returns the tangent in 2D, and zero as the second tangent.
 #[inline]
 pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
@@ -191,24 +192,24 @@ pub(crate) fn contacts_of_separation2<N: Real>(
     }
 }
 
-/// An old point may stand for the deepest one while its depth is within this share of the pair's
-/// size (half the diagonal of the smaller box). So a solid that vibrates at rest keeps its points
-/// though the deepest corner changes in each step. The points then have the depth of the pair, and
-/// are that close to the surfaces.
+/// An old point may stand for the deepest one if its distance exceeds the smallest by at most this
+/// fraction of the pair's size (half the diagonal of the smaller box). So a solid that vibrates at
+/// rest keeps its points although the deepest corner changes in each step. Such a point gets the
+/// distance of the pair; it is off the surfaces by at most that length.
 const SLACK: f64 = 1.0 / 512.0;
 
-/// Up to this many candidates are all kept, if as many are asked for. Among more some may coincide
-/// up to rounding, as where corners of equal boxes meet.
+/// Up to this many candidates are all kept, if the limit allows. Among more, some may coincide up
+/// to rounding, as where corners of equal boxes meet.
 pub(in crate::collide) const ALL: usize = 4;
 
-/// Parameters of the choice of points.
+/// Inputs for the choice of points.
 pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     /// Current poses of the solids, and the normal from the first to the second.
     pub(in crate::collide) pose: PairPose<'a, N, D>,
-    /// Computes the size of the pair (`collide/size.rs`); called if the points are not the old
-    /// ones.
+    /// Computes the size of the pair (`collide/size.rs`); called only if some point is not an old
+    /// one.
     pub(in crate::collide) size: &'a dyn Fn() -> N,
-    /// Signed distance of the pair, which one of the deepest points takes.
+    /// Signed distance of the pair, which one of the deepest points gets.
     pub(in crate::collide) distance: N,
     /// Lengths below this are rounding errors.
     pub(in crate::collide) tolerance: N,
@@ -216,13 +217,14 @@ pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     pub(in crate::collide) limit: usize,
 }
 
-/// Returns the distance up to which an old point may stand for the deepest one, given the distance
-/// and the size of the pair.
+/// Returns the distance up to which an old point may stand for the deepest one; `distance` and
+/// `size` are those of the pair.
 pub(in crate::collide) fn slack_level<N: Real>(distance: N, size: N, tolerance: N) -> N {
     distance + max(size * N::lit(SLACK), tolerance)
 }
 
-/// Replaces the manifold of a pair by at most `limit` candidates that were computed in `frame`.
+/// Replaces the manifold of a pair by at most `limit` of the candidates, which were computed in
+/// `frame`.
 fn choose_in_frame<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     frame: &ContactFrame<N, D>,
@@ -242,8 +244,8 @@ fn choose_in_frame<N: Real, const D: usize>(
     out.pose12 = Some(*pose12).filter(|_| keeps_pose(pair));
 }
 
-/// Returns whether positions on the second solid are compared: not if the kernels of `batch` may
-/// serve the pair, which keep no pose.
+/// Returns whether the manifold keeps the pose, so that positions on the second solid are compared.
+/// The kernels of `batch` keep no pose, so `false` for pairs that they may serve.
 fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     let has_lanes = |kind: &Kind<'_, N, D>| {
         matches!(kind, Kind::Ball(_) | Kind::Cuboid(_) | Kind::Segment(_) | Kind::Capsule(_))
@@ -252,7 +254,8 @@ fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
 }
 
 /// Replaces the points of a manifold and its normal by at most `limit` candidates, and at least
-/// one. One of the deepest takes the distance of the pair, which it has up to rounding or `SLACK`.
+/// one. One of the deepest gets the distance of the pair, from which its own differs by rounding or
+/// up to `SLACK`.
 pub(in crate::collide) fn choose<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     choice: &PointChoice<'_, N, D>,
@@ -271,7 +274,7 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
         let levels = [distance + tolerance, slack_level(distance, size, tolerance)];
         let chosen = chosen(candidates, levels, tolerance, limit);
         if is_over {
-            // Ids of candidates that are not chosen go to chosen ones near them.
+            // Ids of candidates that are not chosen pass to chosen ones near them.
             ids::inherit_by_position(out, &choice.pose, choice.size, candidates, &chosen);
         }
         let deepest = deepest_of(chosen.len(), levels[0], |at| {
@@ -284,8 +287,8 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
     out.normal = *choice.pose.normal;
 }
 
-/// Returns the indices of at most `limit` candidates, one of the deepest among them: those up to
-/// the first level, or an old one up to the second.
+/// Returns the indices of at most `limit` candidates. At least one of them is deepest: it has a
+/// distance up to `levels[0]`, or is an old point with a distance up to `levels[1]`.
 #[inline]
 fn chosen<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
@@ -301,7 +304,7 @@ fn chosen<N: Real, const D: usize>(
 }
 
 /// Adds the nearest points. They replace the candidate with the same features if there is exactly
-/// one; round rims and pairs of faces may have more.
+/// one; round rims and pairs of faces may have several.
 fn add_witness<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     features: [FeatureId; 2],
@@ -315,7 +318,7 @@ fn add_witness<N: Real, const D: usize>(
     out.push(Candidate::alone(witness, features));
 }
 
-/// Returns the index of the candidate that stands for the witness; see [`deepest_of`].
+/// Returns the index of the candidate that gets the distance of the pair; see [`deepest_of`].
 fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
     deepest_of(candidates.len(), limit, |index| {
         let candidate = &candidates[index];
@@ -323,9 +326,9 @@ fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) ->
     })
 }
 
-/// Returns the index of the candidate that stands for the witness: one that continues an old point
-/// if its distance is at most `limit`, else the deepest. `what` returns for each candidate whether
-/// it continues one, and its distance.
+/// Returns the index of the candidate that gets the distance of the pair: one that continues an old
+/// point and has a distance of at most `limit`, else the deepest. `what` returns, for each
+/// candidate, whether it continues an old point, and its distance.
 #[inline]
 pub(in crate::collide) fn deepest_of<N: Real>(
     count: usize,

@@ -1,4 +1,4 @@
-//! Chooses contact points: the candidates that span the most area, projected along the normal.
+//! Chooses contact points: the candidates that span the largest area, projected along the normal.
 //!
 //! ```text
 //!        .-- left --.        `start`: a deepest candidate, `end`: any other; area of both
@@ -6,17 +6,16 @@
 //!        '- right --'
 //! ```
 //!
-//! The best four of a few candidates come from all such diagonals, so no order of the candidates is
-//! needed. More points than four, and four of many, are corners of the convex hull (A. M. Andrew,
+//! The best four of a few candidates come from trying all such diagonals. If more than four points
+//! are wanted, or there are many candidates, they are corners of the convex hull (A. M. Andrew,
 //! "Another efficient algorithm for convex hulls in two dimensions", 1979), found by dynamic
-//! programming along it (J. E. Boyce, D. P. Dobkin, R. L. Drysdale and L. J. Guibas, "Finding
-//! extremal polygons", 1985). Both are exact up to [`FEW`] candidates; a longer hull keeps the
-//! corners that add most.
+//! programming (J. E. Boyce, D. P. Dobkin, R. L. Drysdale and L. J. Guibas, "Finding extremal
+//! polygons", 1985). Both are exact up to [`FEW`] candidates; a longer hull first loses the corners
+//! that add least.
 //!
-//! Old points, those of the previous manifold, are kept while they span [`ENOUGH`] of the best
-//! choice and include a deepest one; otherwise each counts slightly more than a new one. So solids
-//! at rest keep their points, also where many choices are equal, as among the 8 corners of two
-//! squares at 45°.
+//! Old points, those of the previous manifold, are all kept if they span [`ENOUGH`] of the best
+//! choice and include a deepest one; otherwise each weighs slightly more than a new one. So solids
+//! at rest keep their points even where many choices are equal.
 
 use core::cmp::Ordering;
 
@@ -24,20 +23,19 @@ use smallvec::SmallVec;
 
 use crate::math::{Mapped, Real, Vector, cross2, max, max_component, min};
 
-/// Up to this many candidates, the best choice is exact.
+/// Up to this number of candidates, the choice is exact.
 const FEW: usize = 16;
 
-/// Weight of a new point, where an old one has 1: three old points lose at most 5 % of the best
-/// area.
+/// Weight of a new point; an old one has 1. Keeping three old points costs at most 5 % of the area.
 const NEW: f64 = 63.0 / 64.0;
 
-/// Bonus of an old point in choices of more than four, as a share of the hull's area.
+/// Bonus of an old point if more than four points are chosen, as a fraction of the hull's area.
 const KEPT: f64 = 1.0 / 256.0;
 
-/// Share of the best area, or of the best length of points in a row, that old points have to span.
+/// Fraction of the best area, or length of points in a row, that old points must span to be kept.
 const ENOUGH: f64 = 0.9;
 
-/// Points in a strip narrower than this share of its length are a row: its ends bound it, and
+/// Points in a strip whose width is below this fraction of its length are a row. Its ends bound it;
 /// points between them come and go by rounding.
 const THIN: f64 = 1.0 / 4096.0;
 
@@ -47,21 +45,21 @@ pub(in crate::collide) struct Projected<N: Real> {
     pub(in crate::collide) at: Vector<N, 2>,
     /// Index of the candidate.
     pub(in crate::collide) index: usize,
-    /// As deep as the manifold, up to rounding or the slack of an old point.
+    /// Whether it is as deep as the manifold, up to rounding or the slack of an old point.
     pub(in crate::collide) is_deepest: bool,
-    /// The previous manifold had it.
+    /// Whether the previous manifold had the candidate.
     pub(in crate::collide) is_kept: bool,
 }
 
-/// All candidates of a manifold, at least one.
+/// Projected candidates of a manifold, at least one.
 pub(in crate::collide) type Projections<N> = SmallVec<[Projected<N>; FEW]>;
 
-/// Indices of some candidates.
+/// Indices of chosen candidates.
 pub(in crate::collide) type Indices = SmallVec<[usize; 8]>;
 
 /// Projects the candidates, given as coordinates, distance, and whether the previous manifold had
-/// them. As deep as the manifold are those with a distance up to `level`, or the least; if none of
-/// these is old, also old ones up to `slack`.
+/// them. A candidate is deepest if its distance is at most `level` or is the smallest. If no old
+/// candidate is among these, old candidates with a distance up to `slack` also are.
 #[inline]
 pub(in crate::collide) fn projected<N: Real>(
     candidates: impl Iterator<Item = (Vector<N, 2>, N, bool)> + Clone,
@@ -69,7 +67,7 @@ pub(in crate::collide) fn projected<N: Real>(
 ) -> Projections<N> {
     let lowest = candidates.clone().fold(N::INFINITY, |low, (_, distance, _)| min(distance, low));
     let level = max(level, lowest);
-    // If an old point is the deepest, no other has to stand for it.
+    // If an old point is deepest, no other old point has to stand for it.
     let has_old = candidates.clone().any(|(_, distance, is_kept)| is_kept && distance <= level);
     let slack = if has_old { level } else { slack };
     let mut points = Projections::new();
@@ -80,10 +78,10 @@ pub(in crate::collide) fn projected<N: Real>(
     points
 }
 
-/// Returns the indices, ascending, of at most `limit` candidates that span the most, one of the
-/// deepest among them.
+/// Returns the indices, ascending, of at most `limit` candidates that span the largest area, at
+/// least one of them deepest.
 ///
-/// Lengths below `tolerance` count as rounding. Scaling by a power of two changes nothing.
+/// Lengths below `tolerance` are rounding errors. Scaling by a power of two changes no choice.
 #[inline]
 pub(in crate::collide) fn chosen<N: Real>(
     points: &mut Projections<N>,
@@ -98,7 +96,8 @@ pub(in crate::collide) fn chosen<N: Real>(
     old_or(best, points, limit, tolerance)
 }
 
-/// Returns the old points, if they are few enough and as good as the best choice.
+/// Returns the old points if they are at most `limit`, include a deepest one, and span enough of
+/// what `best` spans; else `best`.
 fn old_or<N: Real>(best: Indices, points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let old: Projections<N> = points.iter().filter(|point| point.is_kept).copied().collect();
     if old.len() > limit || !old.iter().any(|point| point.is_deepest) {
@@ -119,7 +118,7 @@ fn old_or<N: Real>(best: Indices, points: &[Projected<N>], limit: usize, toleran
     if is_enough { sorted(old.iter().map(|point| point.index).collect()) } else { best }
 }
 
-/// Returns twice the area of the convex hull of few points, and their largest distance.
+/// Returns twice the area of the convex hull of a few points, and the largest distance in it.
 fn span<N: Real>(points: &Projections<N>) -> [N; 2] {
     let ring = hull(&mut points.clone(), N::ZERO);
     let (mut area, mut longest) = (N::ZERO, N::ZERO);
@@ -131,8 +130,8 @@ fn span<N: Real>(points: &Projections<N>) -> [N; 2] {
     [area, longest]
 }
 
-/// Computes [`chosen`] from the corners of the convex hull alone, also if they are no more than the
-/// limit. Cost: O(n log n) for n candidates.
+/// Computes [`chosen`] from the corners of the convex hull alone, even if the candidates are no
+/// more than `limit`. Cost: O(n log n) for n candidates.
 #[inline(never)]
 pub(in crate::collide) fn spanning<N: Real>(
     points: &mut Projections<N>,
@@ -157,7 +156,7 @@ fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: 
     }
     ring.extend(inner);
     if ring.is_empty() {
-        // Areas that are NaN.
+        // Areas are NaN.
         ring.push(points[a_deepest(points)]);
     }
     if ring.len() > limit {
@@ -166,7 +165,7 @@ fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: 
     sorted(ring.iter().map(|corner| corner.index).collect())
 }
 
-/// Total order of numbers; most take one comparison.
+/// Compares two numbers in a total order; most calls take one comparison.
 #[inline]
 pub(in crate::collide) fn ordering<N: Real>(a: N, b: N) -> Ordering {
     if a < b {
@@ -183,15 +182,15 @@ fn sorted(mut indices: Indices) -> Indices {
     indices
 }
 
-/// Returns the index of a deepest candidate, of an old one if there is one.
+/// Returns the position of a deepest candidate, of an old one if there is one; else 0.
 pub(in crate::collide) fn a_deepest<N: Real>(points: &[Projected<N>]) -> usize {
     let is_old = |point: &Projected<N>| point.is_deepest && point.is_kept;
     let old = points.iter().position(is_old);
     old.or_else(|| points.iter().position(|point| point.is_deepest)).unwrap_or(0)
 }
 
-/// Scales the largest coordinate to about 1, so that areas neither overflow nor underflow; returns
-/// the factor, a power of two.
+/// Scales all coordinates by a power of two so that the largest is about 1 and areas neither
+/// overflow nor underflow; returns the factor.
 fn rescale<N: Real>(points: &mut [Projected<N>]) -> N {
     let extent = points.iter().fold(N::ZERO, |extent, point| max(extent, max_component(&point.at)));
     let scale = N::ONE / extent.power_of_two_below();
@@ -201,7 +200,7 @@ fn rescale<N: Real>(points: &mut [Projected<N>]) -> N {
     scale
 }
 
-/// Returns at most four of few points, and no more than `limit`: those that span the most.
+/// Returns the indices of at most four of a few points, at most `limit`, with the largest area.
 fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let best = if limit > 2 { best_diagonal(points, limit > 3, tolerance) } else { None };
     let mut chosen = best.unwrap_or_else(|| farthest(points, limit, tolerance));
@@ -211,7 +210,8 @@ fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> In
     chosen
 }
 
-/// Returns a deepest point, the one farthest from it, and the other end if all lie in a row.
+/// Returns the positions of a deepest point, of the farthest from it and, in a row, of its other
+/// end.
 fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let mut chosen = Indices::from_slice(&[a_deepest(points)]);
     let mut most = tolerance;
@@ -232,7 +232,7 @@ fn farthest<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Ind
     chosen
 }
 
-/// Returns the point farthest from another, and their weighted distance.
+/// Returns the position of the point farthest from the one at `from`, and their weighted distance.
 fn farthest_from<N: Real>(points: &[Projected<N>], from: usize) -> (usize, N) {
     let (mut best, mut most) = (from, N::ZERO);
     for (to, point) in points.iter().enumerate() {
@@ -244,13 +244,13 @@ fn farthest_from<N: Real>(points: &[Projected<N>], from: usize) -> (usize, N) {
     (best, most)
 }
 
-/// Returns the weight of a point.
+/// Returns the weight of a point in areas and distances.
 #[inline]
 fn weight<N: Real>(point: &Projected<N>) -> N {
     if point.is_kept { N::ONE } else { N::lit(NEW) }
 }
 
-/// Coordinates and weights of few points, side by side for vectors.
+/// Coordinates and weights of a few points, in rows for vectors.
 struct CoordinateRows<N: Real> {
     x: [[N; LANES]; FEW / LANES],
     y: [[N; LANES]; FEW / LANES],
@@ -259,7 +259,7 @@ struct CoordinateRows<N: Real> {
     len: usize,
 }
 
-/// Numbers in one row.
+/// Points in one row.
 const LANES: usize = 4;
 
 impl<N: Real> CoordinateRows<N> {
@@ -275,8 +275,7 @@ impl<N: Real> CoordinateRows<N> {
         rows
     }
 
-    /// Returns twice the areas that a diagonal spans with the farthest points on its left and
-    /// right.
+    /// Returns twice the weighted areas of a diagonal with the farthest points on its two sides.
     #[inline]
     fn sides(&self, start: &Projected<N>, end: &Projected<N>) -> [N; 2] {
         let edge = end.at - start.at;
@@ -295,8 +294,8 @@ impl<N: Real> CoordinateRows<N> {
     }
 }
 
-/// Returns the ends of the best diagonal and the farthest points on both sides, or on one side
-/// unless `is_four`; `None` if all points lie in a row.
+/// Returns the positions of the ends of the best diagonal and of the farthest points on both sides,
+/// or on one side unless `is_four`; `None` if all points lie in a row.
 fn best_diagonal<N: Real>(points: &[Projected<N>], is_four: bool, tolerance: N) -> Option<Indices> {
     let (mut ends, mut most) = ([0; 2], N::ZERO);
     let rows = CoordinateRows::of(points);
@@ -317,7 +316,8 @@ fn best_diagonal<N: Real>(points: &[Projected<N>], is_four: bool, tolerance: N) 
     with_sides(points, ends, is_four, tolerance)
 }
 
-/// Returns the ends of a diagonal and the points farthest from it.
+/// Returns the ends of a diagonal and the points farthest from it on both sides, or on one side
+/// unless `is_four`; `None` if these are within the tolerance.
 fn with_sides<N: Real>(
     points: &[Projected<N>],
     ends: [usize; 2],
@@ -346,7 +346,7 @@ fn with_sides<N: Real>(
     (corners.len() > 2).then_some(corners)
 }
 
-/// Returns the corners of the convex hull, counter-clockwise.
+/// Sorts the points; returns the corners of their convex hull, counter-clockwise.
 fn hull<N: Real>(points: &mut [Projected<N>], tolerance: N) -> Projections<N> {
     points.sort_by(|a, b| ordering(a.at.x, b.at.x).then_with(|| ordering(a.at.y, b.at.y)));
     let mut ring = Projections::new();
@@ -361,7 +361,7 @@ fn hull<N: Real>(points: &mut [Projected<N>], tolerance: N) -> Projections<N> {
     ring
 }
 
-/// Appends one side of the hull, from the first point to the last: every corner turns left.
+/// Appends the corners of one half of the hull; every corner turns left.
 fn chain<'p, N: Real>(points: impl Iterator<Item = &'p Projected<N>>, ring: &mut Projections<N>) {
     let start = ring.len();
     for next in points {
@@ -375,14 +375,13 @@ fn chain<'p, N: Real>(points: impl Iterator<Item = &'p Projected<N>>, ring: &mut
     }
 }
 
-/// Twice the area of a triangle, positive if it is counter-clockwise.
+/// Returns twice the area of a triangle, positive if it is counter-clockwise.
 #[inline]
 fn twice_area<N: Real>(a: &Projected<N>, b: &Projected<N>, c: &Projected<N>) -> N {
     cross2(&(b.at - a.at), &(c.at - a.at))
 }
 
-/// Removes corners that lie, up to rounding, between their neighbours: deepest ones last, and old
-/// ones before them.
+/// Removes corners that lie between their neighbours, up to rounding; deepest and old ones last.
 fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     for rank in 0..4 {
         let mut at = 0;
@@ -399,8 +398,8 @@ fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     }
 }
 
-/// Returns whether a point lies between two others. An end of points in a row may have the same
-/// inner point on both sides, which both chains contain; `length` is zero then, and the end stays.
+/// Returns whether a point lies between two others, up to rounding. An end of a row may have the
+/// same neighbour on both sides; `length` is zero then, and the end stays.
 fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: N) -> bool {
     let (edge, arm) = (ends[1].at - ends[0].at, own.at - ends[0].at);
     let (length, along) = (edge.norm(), edge.dot(&arm));
@@ -409,8 +408,7 @@ fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: 
     is_in_row && along >= -slack && along <= length * length + slack
 }
 
-/// Reduces a hull to at most `count` corners: old ones, a deepest one if there is one, and
-/// repeatedly the one that adds most.
+/// Reduces a hull to at most `count` corners: old ones, a deepest one, and the ones that add most.
 fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     if ring.len() <= count {
         return;
@@ -426,7 +424,8 @@ fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     *ring = indices.iter().map(|&index| ring[index]).collect();
 }
 
-/// Returns the corner that adds most to `indices`, of which the first is 0, and its position there.
+/// Returns the corner that adds the most area to `indices`, and its position there; `indices[0]`
+/// must be 0. `None` if no corner adds area.
 fn best_addition<N: Real>(ring: &[Projected<N>], indices: &[usize]) -> Option<(usize, usize)> {
     let (mut best, mut most) = (None, N::ZERO);
     for (at, &from) in indices.iter().enumerate() {
@@ -445,7 +444,7 @@ fn best_addition<N: Real>(ring: &[Projected<N>], indices: &[usize]) -> Option<(u
     best
 }
 
-/// Returns the polygon of `count` corners that spans the most, with a deepest one if there is any.
+/// Returns the polygon of `count` corners with the largest area, with a deepest one if possible.
 fn largest_polygon<N: Real>(mut ring: Projections<N>, count: usize) -> Projections<N> {
     let has_deepest = ring.iter().any(|corner| corner.is_deepest);
     let is_first = |corner: &Projected<N>| corner.is_deepest || !has_deepest;
@@ -460,14 +459,15 @@ fn largest_polygon<N: Real>(mut ring: Projections<N>, count: usize) -> Projectio
         if span > most {
             (best, most) = (polygon, span);
         }
-        // All polygons with this corner are known.
+        // All polygons with this corner have been tried.
         ring.remove(0);
     }
     best
 }
 
-/// Returns the largest polygon of `count` corners that has the first one, and twice its area: the
-/// best ways to each corner over `number` others give those over one more.
+/// Returns twice the largest area, with bonuses, of a polygon of `count` corners that contains the
+/// first one, and that polygon. Dynamic programming: the best paths to each corner over `number`
+/// others give the best ones over `number + 1`.
 fn largest_with_first<N: Real>(
     ring: &[Projected<N>],
     count: usize,

@@ -8,12 +8,13 @@
 //!     corner 3 <---side 2--- corner 2
 //! ```
 //!
-//! A point has one corner, a segment two and one side, a face three or more and as many sides. Most
-//! rings need one block of [`LANES`] corners; a tilted round cap needs two. [`LANES`] is the
-//! capacity of `FaceRing`, which `supporting` fills; `clip` measures corners against whole blocks
-//! of sides. Ids are those of [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature).
-//! Corners that coincide in projection are merged. A face without area becomes a segment, and a
-//! feature that is tilted by more than 60° its nearest corner.
+//! A point has one corner, a segment two corners and one side, a face three or more corners and as
+//! many sides. Most rings need one block of [`LANES`] corners; a tilted round cap needs two.
+//! [`LANES`] is the capacity of `FaceRing`, which `supporting` fills; `clip` measures corners
+//! against whole blocks of sides. Ids are those of
+//! [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature). Corners that coincide in
+//! projection are merged. A face without area becomes a segment, and a feature that is tilted by
+//! more than 60° becomes its nearest corner.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -24,33 +25,34 @@ use crate::math::simd::Simd;
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max, max_component, min};
 use crate::shape::{FaceRing, FeatureId, Kind, Segment};
 
-/// Corners in one block.
+/// Number of corners in one block.
 pub(super) const LANES: usize = FaceRing::<f32>::MAX;
 
 /// A corner, and the side from it to the next.
 #[derive(Clone, Copy)]
 pub(super) struct RingCorner<N: Real> {
     pub(super) point: Point<N, 3>,
-    /// Coordinates in the tangents of the frame.
+    /// Coordinates along the tangents of the frame.
     pub(super) flat: Vector<N, 2>,
     pub(super) id: FeatureId,
     /// Id of the side from this corner to the next.
     pub(super) side: FeatureId,
 }
 
-/// Up to 8 corners by coordinate; lanes after the last corner are unspecified.
+/// Up to 8 corners, by coordinate; lanes after the last corner are unspecified.
 pub(super) struct RingBlock<N: Real> {
-    /// Corners in the frame of the first solid, and their coordinates in the tangents.
+    /// Corners in the frame of the first solid.
     points: [[N; LANES]; 3],
+    /// Coordinates of the corners along the tangents.
     pub(super) flats: [[N; LANES]; 2],
-    /// Inward unit normals of the sides in the tangents.
+    /// Inward unit normals of the sides, in tangent coordinates.
     pub(super) inward: [[N; LANES]; 2],
 }
 
 /// A supporting feature with the radius around it.
 pub(super) struct SupportRing<'a, N: Real> {
     which: Which,
-    /// Pose of the solid in the frame of the first one; `None` for the first itself.
+    /// Pose of the solid in the frame of the first solid; `None` for the first solid.
     pose: Option<&'a Pose<N, 3>>,
     /// Id of the feature.
     pub(super) id: FeatureId,
@@ -58,19 +60,19 @@ pub(super) struct SupportRing<'a, N: Real> {
     pub(super) count: usize,
     /// Corners as `supporting` filled them, in the frame of the solid, with their ids.
     faces: FaceBlocks<N>,
-    /// Corners in the frame of the first solid, filled by [`SupportRing::project`].
+    /// Corners in the frame of the first solid, set by [`SupportRing::project`].
     pub(super) blocks: SmallVec<[RingBlock<N>; 2]>,
     /// Outward normal of a face in the frame of the first solid; unspecified for other features.
     normal: Vector<N, 3>,
-    /// Sense of rotation in the tangents: 1 for counter-clockwise, -1 for clockwise.
+    /// Sense of rotation in tangent coordinates: 1 for counter-clockwise, -1 for clockwise.
     turn: N,
     /// Radius around the feature.
     radius: N,
-    /// Cosine of the angle between the normals of frame and face, or between a segment and the
+    /// Cosine of the angle between the frame's normal and the face's, or between a segment and the
     /// contact plane.
     cosine: N,
-    /// For a solid with a radius: depth of the corner nearest to the other solid below the
-    /// supporting plane, and its coordinates in the tangents.
+    /// Only for a solid with a radius: depth, below the supporting plane, of the corner nearest to
+    /// the other solid, and the tangent coordinates of that corner.
     top: (N, Vector<N, 2>),
 }
 
@@ -93,8 +95,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
     }
 
-    /// Fills a blank ring with the supporting feature; the caller then [projects](Self::project)
-    /// it. A ring has some hundred bytes, so it is filled in place.
+    /// Fills a blank ring with the supporting feature of a solid; the caller then
+    /// [projects](Self::project) it. The ring is filled in place because it has some hundred bytes.
     pub(super) fn fill(&mut self, kind: Kind<'_, N, 3>, frame: &ContactFrame<N, 3>) {
         let outward = self.which.outward(frame);
         let direction = self.pose.map_or(outward, |pose| pose.inverse_vector(&outward));
@@ -115,13 +117,13 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.count == 2
     }
 
-    /// Number of sides: none for a point, one for a segment, else one for each corner.
+    /// Returns the number of sides: none for a point, one for a segment, else one for each corner.
     #[inline]
     pub(super) const fn side_count(&self) -> usize {
         if self.count < 3 { self.count - 1 } else { self.count }
     }
 
-    /// Index of the next corner.
+    /// Returns the index of the corner after `at`, cyclically.
     #[inline]
     pub(super) const fn next(&self, at: usize) -> usize {
         if at + 1 < self.count { at + 1 } else { 0 }
@@ -146,13 +148,13 @@ impl<'a, N: Real> SupportRing<'a, N> {
         RingCorner { point: self.point(at), flat: self.flat(at), id, side }
     }
 
-    /// Id of the side from a corner to the next.
+    /// Returns the id of the side from a corner to the next.
     #[inline]
     pub(super) fn side_id(&self, at: usize) -> FeatureId {
         if self.is_segment() { self.id } else { self.faces[at / LANES].sides[at % LANES] }
     }
 
-    /// Vector from a corner to the next, in the tangents.
+    /// Returns the vector from a corner to the next, in tangent coordinates.
     #[inline]
     pub(super) fn side(&self, at: usize) -> Vector<N, 2> {
         self.flat(self.next(at)) - self.flat(at)
@@ -165,8 +167,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         from + (to - from) * share
     }
 
-    /// Returns the point of a segment or face with the tangent coordinates `flat`, those of
-    /// `point`.
+    /// Returns the point of a segment or face that projects to the same tangent coordinates `flat`
+    /// as `point`.
     pub(super) fn under(
         &self,
         point: &Point<N, 3>,
@@ -182,8 +184,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         point + frame.normal() * along
     }
 
-    /// Returns the part of a side that contains a point of its line: one of its corners or the
-    /// side; `None` beyond them.
+    /// Returns the part of a side that contains a point on its line: one of its corners or the
+    /// side; `None` if the point is beyond both corners.
     pub(super) fn on_side(
         &self,
         at: usize,
@@ -204,7 +206,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         (share >= N::ZERO && share <= side.norm_squared()).then(|| self.side_id(at))
     }
 
-    /// Returns the height of the rounded surface above a point of the core.
+    /// Returns the height of the rounded surface above a point of the core, along the normal.
     #[inline]
     pub(super) fn lift(&self, core: &Point<N, 3>, frame: &ContactFrame<N, 3>) -> N {
         if self.radius <= N::ZERO {
@@ -265,10 +267,10 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
     }
 
-    /// Simplifies a feature that has no extent in projection.
+    /// Simplifies a feature that has no extent in projection, or is tilted too far.
     fn simplify(&mut self, frame: &ContactFrame<N, 3>) {
         let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
-        // Corners that coincide have no extent: merged, they may have one.
+        // Corners that coincide hide an extent: once merged, the face may have one.
         let mut extent = if self.is_point() { None } else { self.extent(tolerance) };
         if extent.is_none() && self.is_segment() {
             self.end_on(&outward, tolerance);
@@ -299,7 +301,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         }
     }
 
-    /// Returns twice the signed area and the index of the longest side; `None` if corners coincide.
+    /// Returns twice the signed area and the index of the longest side; `None` if adjacent corners
+    /// coincide.
     fn extent(&self, tolerance: N) -> Option<(N, usize)> {
         let (mut area, mut longest, mut most) = (N::ZERO, 0, N::ZERO);
         let origin = self.flat(0);
@@ -307,7 +310,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         for at in 0..self.count {
             let to = self.flat(self.next(at));
             let side = to - from;
-            // Written so that NaN coincides.
+            // Written so that NaN counts as coinciding.
             let is_long = max_component(&side) > tolerance;
             if !is_long {
                 return None;
@@ -322,8 +325,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
         Some((area, longest))
     }
 
-    /// Merges each corner with those after it that coincide; the side of the last of these leads
-    /// on.
+    /// Merges each corner with the following ones that coincide with it; the merged corner gets the
+    /// side of the last of them.
     fn merge_coincident(&mut self, tolerance: N) {
         let is_apart =
             |a: &RingCorner<N>, b: &RingCorner<N>| max_component(&(a.flat - b.flat)) > tolerance;
@@ -342,16 +345,17 @@ impl<'a, N: Real> SupportRing<'a, N> {
     }
 
     /// Reduces a segment that projects to a point to its end nearest to the other solid. A segment
-    /// without length has no ends and keeps its id.
+    /// without length keeps its own id instead of the end's.
     fn end_on(&mut self, outward: &Vector<N, 3>, tolerance: N) {
         let (id, edge) = (self.id, self.point(1) - self.point(0));
         self.keep_farthest(outward);
-        // Written so that NaN has no ends.
+        // Written so that a NaN length counts as no length.
         let has_ends = edge.norm() > N::TWO * tolerance;
         self.id = if has_ends { self.id } else { id };
     }
 
-    /// Reduces a face without width to its two ends, with the id of its longest side.
+    /// Reduces a face without width to the two ends of its projection, with the id of its longest
+    /// side.
     fn flatten(&mut self, longest: usize) {
         let (along, from) = (self.side(longest), self.flat(longest));
         let (mut low, mut high) = (0, 0);
@@ -387,7 +391,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         self.count = corners.len();
     }
 
-    /// Finds the corner nearest to the other solid, the first of equals.
+    /// Finds the corner nearest to the other solid, the first of equals, and sets `top`.
     fn find_top(&mut self, frame: &ContactFrame<N, 3>) {
         let below = |at: usize| self.which.below_witness(&self.point(at), frame);
         let (mut best, mut least) = (0, below(0));
@@ -399,7 +403,8 @@ impl<'a, N: Real> SupportRing<'a, N> {
     }
 }
 
-/// Returns the end that a point of a segment lies at, or the segment; `None` if it is at both ends.
+/// Returns the end of a segment that a point lies at, else the segment; `None` if the point is at
+/// both ends.
 pub(super) fn part_of<N: Real, const D: usize>(
     segment: &Segment<N, D>,
     point: &Point<N, D>,

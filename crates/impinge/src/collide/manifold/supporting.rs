@@ -1,7 +1,7 @@
 //! Supporting features of the kinds in 3D as rings of corners, in the frames of their solids.
 //!
-//! They equal those of [`SupportMap::core_feature`], which serves all other kinds. A ring is one
-//! `FaceRing` for up to 8 corners; a round cap may fill two.
+//! The features equal those of [`SupportMap::core_feature`], which serves all other kinds. A ring
+//! is one `FaceRing` for up to 8 corners; a round cap may fill two.
 
 use smallvec::SmallVec;
 
@@ -14,10 +14,11 @@ use crate::shape::{
     SupportMap, Triangle,
 };
 
-/// Corners of a feature, 8 per ring; id and normal of the feature are those of the first ring.
+/// Corners of a feature, 8 per ring; the first ring holds the id and normal of the feature.
 pub(super) type FaceBlocks<N> = SmallVec<[FaceRing<N>; 2]>;
 
-/// Fills a blank ring with the supporting feature of a solid's core, and returns the radius.
+/// Fills a blank ring with the supporting feature of a solid's core; returns the radius around the
+/// core.
 pub(super) fn supporting_feature<N: Real>(
     kind: Kind<'_, N, 3>,
     direction: &Vector<N, 3>,
@@ -48,7 +49,7 @@ fn fill_point<N: Real>(id: FeatureId, point: &Point<N, 3>, face: &mut FaceRing<N
     true
 }
 
-/// Fills a blank ring with a segment; `id` is that of the segment, and of its side.
+/// Fills a blank ring with a segment; `id` becomes the id of the segment and of its side.
 fn fill_ends<N: Real>(
     id: FeatureId,
     ends: [(FeatureId, Point<N, 3>); 2],
@@ -66,8 +67,8 @@ fn fill_segment<N: Real>(segment: &Segment<N, 3>, face: &mut FaceRing<N>) -> boo
     fill_ends(FeatureId::Edge(0), ends, face)
 }
 
-/// Returns the part of a box or hull that faces a direction; `None` for a flat box, some of whose
-/// parts coincide, and for other kinds.
+/// Returns the part of a box or hull that faces a direction. `None` for other kinds, and for a flat
+/// box, some of whose parts coincide.
 pub(super) fn supporting_part<N: Real>(
     kind: Kind<'_, N, 3>,
     direction: &Vector<N, 3>,
@@ -82,7 +83,7 @@ pub(super) fn supporting_part<N: Real>(
     }
 }
 
-/// Fills a blank ring with a part of a box or hull; `false` for a face with more than 8
+/// Fills a blank ring with a part of a box or hull; returns `false` for a face with more than 8
 /// corners.
 pub(super) fn fill_part<N: Real>(
     kind: Kind<'_, N, 3>,
@@ -102,7 +103,8 @@ pub(super) fn fill_part<N: Real>(
     }
 }
 
-/// Fills a ring with the part of a triangle; `false` for thin triangles and close cases.
+/// Fills a ring with the part of a triangle that faces a direction; returns `false` for thin
+/// triangles and close cases.
 fn fill_triangle<N: Real>(
     triangle: &Triangle<N, 3>,
     direction: &Vector<N, 3>,
@@ -119,7 +121,7 @@ fn fill_triangle<N: Real>(
     true
 }
 
-/// Fills a ring with a point or line of a round solid; `false` for a cap.
+/// Fills a ring with a point or line of a round solid; returns `false` for a cap.
 fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bool {
     match part {
         Some(RoundPart::Point(id, point)) => fill_point(id, &point, face),
@@ -128,14 +130,14 @@ fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bo
     }
 }
 
-/// Fills `out` with the part of a core that faces a direction, in the form used for contacts;
-/// returns one more corner if there is one, which precedes the first.
+/// Fills `out` with the part of a core that faces a direction, in the form used for contacts. May
+/// return one more corner, to be placed before the first.
 ///
-/// The corners of a round cap are fixed on the solid: those for its own normal. So a solid that
-/// vibrates on its cap touches with the same points at any tilt. If the lowest point of the rim
-/// lies between two of them, it is returned as the additional corner. If the tilt is so large that
-/// no old corner may stand for the lowest point (`SLACK`), the corners are placed around that
-/// point: the cap rolls on its rim.
+/// The corners of a round cap are fixed on the solid: they are the corners for the cap's own
+/// normal. So a solid that vibrates on its cap touches with the same points at any tilt. If the
+/// lowest point of the rim lies between two of these corners, it is returned as the additional
+/// corner. If the tilt is so large that no old corner may stand for the lowest point (`SLACK`), the
+/// corners are placed around the lowest point: the cap rolls on its rim.
 pub(super) fn contact_feature<N: Real, const D: usize>(
     map: &dyn SupportMap<N, D>,
     direction: &Vector<N, D>,
@@ -148,7 +150,7 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     let lowest = map.core_support(direction);
     let height = |point: &Point<N, D>| point.coords.dot(direction);
     let top = out.vertices.iter().map(height).fold(-N::INFINITY, max);
-    // How far the lowest point of the rim is below the lowest corner.
+    // Height of the rim's lowest point along the direction, above the lowest of the corners.
     let (lower, reach) = (height(&lowest) - top, map.reach());
     if lower > N::lit(SLACK) * reach {
         map.core_feature(direction, out);
@@ -161,7 +163,7 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     })
 }
 
-/// Rotates the corners so that the first is the one after a point on the rim.
+/// Rotates the list of corners so that it begins with the corner after a point on the rim.
 fn start_after<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N, D>) {
     let count = out.vertices.len();
     let distance = |at: usize| (out.vertices[at] - point).norm();
@@ -171,8 +173,8 @@ fn start_after<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N
     out.vertices.rotate_left((before + 1) % count);
 }
 
-/// Fills the rings with any feature. A feature without corners, as users' solids may have, becomes
-/// the support point.
+/// Fills the rings with the supporting feature of any solid. A feature without corners, as
+/// user-defined solids may have, becomes the support point.
 fn fill_feature<N: Real>(
     map: &dyn SupportMap<N, 3>,
     direction: &Vector<N, 3>,

@@ -1,4 +1,4 @@
-//! Features that the nearest points of two convex solids lie on.
+//! Finds the features that the nearest points of two convex solids lie on.
 
 use super::frame::{ContactFrame, Which, rounding};
 use super::interval::FeatureInterval;
@@ -24,7 +24,8 @@ pub(crate) fn features3<N: Real>(
     features(pair, separation, supporting_part3)
 }
 
-/// Returns the feature of one solid in 2D, the second if `is_second`: one of [`features2`].
+/// Returns the feature of one solid in 2D that its point of the separation lies on; of the second
+/// solid if `is_second`. It equals that entry of [`features2`].
 pub(crate) fn feature2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -34,7 +35,8 @@ pub(crate) fn feature2<N: Real>(
     feature(pair, separation, tolerance, supporting_part2, is_second)
 }
 
-/// Returns the feature of one solid in 3D, the second if `is_second`: one of [`features3`].
+/// Returns the feature of one solid in 3D that its point of the separation lies on; of the second
+/// solid if `is_second`. It equals that entry of [`features3`].
 pub(crate) fn feature3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
@@ -44,12 +46,12 @@ pub(crate) fn feature3<N: Real>(
     feature(pair, separation, tolerance, supporting_part3, is_second)
 }
 
-/// Computes the smallest part of one solid's supporting feature that contains the point of a
-/// separation; of the second solid if the flag is set.
+/// Function that returns the smallest part of one solid's supporting feature that contains the
+/// solid's point of the separation; of the second solid if the flag is set.
 type SupportingPartFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
 
-/// Creates a frame that is used for its witness only.
+/// Creates a frame of which only the witness is used.
 fn frame<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -59,7 +61,8 @@ fn frame<N: Real, const D: usize>(
     ContactFrame::new(pair, separation, &request, tangents)
 }
 
-/// Returns both features: by position where that decides, else by the supporting feature.
+/// Returns both features: by the position of the point if it decides, else by the supporting
+/// feature.
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -82,8 +85,8 @@ fn features<N: Real, const D: usize>(
 }
 
 /// Returns the part of a solid that contains a surface point with the outward normal `outward`,
-/// from the point alone, without the supporting feature. Serves flat-faced solids, segments,
-/// capsules and rounded ones; `None` for other kinds, and in close cases.
+/// from the position alone, without the supporting feature. It supports flat-faced solids,
+/// segments, capsules and rounded solids; `None` for other kinds, and in close cases.
 fn by_position<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
     point: &Point<N, D>,
@@ -108,7 +111,7 @@ fn by_position<N: Real, const D: usize>(
     }
 }
 
-/// Returns one feature: for balls and triangles by position, else by the supporting feature.
+/// Returns one feature: for balls and triangles by position, for others by the supporting feature.
 fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -125,8 +128,9 @@ fn feature<N: Real, const D: usize>(
     seam.unwrap_or_else(|| supporting_part(pair, separation, is_second))
 }
 
-/// Returns the side or corner of a triangle touched by a flat-faced solid or the core of a capsule.
-/// Their nearest points are exact, so the position decides.
+/// Returns the side or corner of a triangle that a flat-faced solid or the core of a capsule
+/// touches. Their nearest points are exact, so the position decides. `None` for other pairs and if
+/// the point is inside the triangle.
 fn on_seam<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -147,8 +151,8 @@ fn on_seam<N: Real, const D: usize>(
     part.filter(|part| !matches!(part, FeatureId::Face(_)))
 }
 
-/// Returns the part that a ball, the first solid, touches, if the other's kind gives it at once;
-/// `None` for other pairs.
+/// Returns the features of a pair whose first solid is a ball, if the kind of the second gives its
+/// feature directly; `None` for other pairs.
 fn of_ball<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -159,8 +163,9 @@ fn of_ball<N: Real, const D: usize>(
     }
 }
 
-/// Returns the part of the second solid that a ball, the first, touches, if its kind gives it at
-/// once. It is the part that the supporting feature gives, except within rounding of another part.
+/// Returns the feature of the second solid that a ball, the first, touches, if the second's kind
+/// gives it directly; else `None`. It equals the part that the supporting feature gives, except
+/// within rounding of another part.
 #[inline]
 pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -177,7 +182,7 @@ pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     }
 }
 
-/// Returns one of two solids, and its pose in the frame of the first.
+/// Returns one of the two solids, and its pose in the frame of the first; `None` for the identity.
 fn solid<'a, N: Real, const D: usize>(
     pair: &'a Pair<'_, N, D>,
     is_second: bool,

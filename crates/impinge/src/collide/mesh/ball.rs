@@ -1,5 +1,5 @@
-//! Contacts of a ball and a surface of triangles in 3D. The results are bit for bit those of the
-//! generic path, which defines them. Quantities that all triangles share are computed once, and
+//! Contacts of a ball and a surface of triangles in 3D, bit for bit equal to those of the generic
+//! path, which defines the results. Quantities that all triangles share are computed once, and
 //! triangles that others hide are skipped.
 
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
@@ -24,13 +24,14 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, min};
 use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, SurfaceAccess, Triangle};
 
-/// Rounding error of lengths, in units of epsilon times all sizes.
+/// Rounding error of lengths, in units of epsilon times the sum of all sizes.
 const ROUNDING: f64 = 16.0;
-/// Parts to cache in the large room: a part outside the ball's box costs only a test of boxes.
+/// Parts that the cache may hold with its large margin: a part outside the ball's box costs only a
+/// test of boxes.
 const MAX_ROOMY: usize = 5 * LANES;
 
-/// Updates the contacts of a ball and a surface. Returns false, with nothing changed but the cache
-/// of parts, if the pair needs the generic path, as every other solid does.
+/// Updates the contacts of a ball and a surface. Returns `false`, with nothing changed but the part
+/// cache, if the pair needs the generic path: always for solids other than balls.
 pub(crate) fn update_on_surface<N: Real>(
     contacts: &mut CompositeContacts<N, 3>,
     between: &Between<'_, N, 3>,
@@ -56,15 +57,16 @@ pub(crate) fn update_on_surface<N: Real>(
 /// A ball and the surface that it may touch.
 struct Rolling<'b, 'a, N: Real> {
     between: &'b Between<'a, N, 3>,
-    /// The request for one triangle.
+    /// Request for each triangle.
     request: ManifoldRequest<N>,
     ball: &'a Ball<N>,
     parts: &'a dyn CompositeShape<N, 3>,
     surface: SurfaceAccess<'a, N, 3>,
-    /// The rotation from the frame of the surface to that of the ball, without a translation.
+    /// Rotation from the frame of the surface to the frame of the ball; its translation is zero.
     turn: Pose<N, 3>,
-    /// The centre of the ball and its reference point, in the frame of the surface.
+    /// Centre of the ball, in the frame of the surface.
     center: Point<N, 3>,
+    /// Reference point of the ball, which decides sides, in the frame of the surface.
     from: Point<N, 3>,
 }
 
@@ -73,12 +75,12 @@ struct CenteredTriangle<N: Real> {
     part: u32,
     /// Relative to the centre of the ball.
     triangle: Triangle<N, 3>,
-    /// Bound of the rounding errors of lengths.
+    /// Bound of the rounding errors of lengths of the triangle and the ball.
     tolerance: N,
 }
 
 impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
-    /// `None` for other solids, and for composites without a surface.
+    /// Returns `None` for solids other than balls, and for composites without a surface.
     fn new(between: &'b Between<'a, N, 3>, request: &ManifoldRequest<N>) -> Option<Self> {
         let Kind::Ball(ball) = between.pair.first else { return None };
         let [_, parts] = between.composites();
@@ -90,8 +92,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(Self { between, request, ball, parts, surface, turn, center, from: center })
     }
 
-    /// Returns a box around everything within reach of the ball, with all its parts in the cache;
-    /// `None` if the cache cannot hold them by corners, or if they are not triangles.
+    /// Returns the box around everything within the prediction of the ball, once the cache holds
+    /// all its parts; `None` if the box is unbounded or a cached part is not a triangle with
+    /// corners.
     fn box_within(&self, around: &mut PartCache<N, 3>) -> Option<Aabb<N, 3>> {
         let half_extents = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
         let aabb = enclosing(&Aabb::around(self.center, half_extents), &self.between.pose21);
@@ -99,8 +102,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         (is_kept && around.has_triangles_alone()).then_some(aabb)
     }
 
-    /// Finds the contacts of the triangles that are not hidden. Returns the rounding error of the
-    /// hidden ones, or `None` if the generic path must consider these.
+    /// Finds the contacts of the triangles that are not hidden, and updates the reference point
+    /// `from`. Returns the rounding error of the hidden triangles, or `None` if the generic path
+    /// has to consider these.
     fn find(
         &mut self,
         contacts: &mut CompositeContacts<N, 3>,
@@ -117,7 +121,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             within,
         };
         let candidates = candidate_triangles(&question, self.surface.has_regular_seams());
-        // Everything outside the box is beyond reach.
+        // Everything outside the box is beyond the prediction.
         let max_distance = self.ball.radius() + self.request.prediction;
         let clearance = min(max_distance, candidates.from_middle);
         let travelled = Travelled { old: contacts.reference, clearance };
@@ -135,8 +139,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         self.rounding_of_hidden(&candidates, around, part_contacts)
     }
 
-    /// Returns the largest rounding error of the hidden triangles, or zero if it does not matter.
-    /// `None` if one of them may be the nearest of all that can be touched.
+    /// Returns the largest rounding error of the hidden triangles, or zero if no contact depends on
+    /// it. `None` if a hidden triangle may be nearer than all contacts.
     fn rounding_of_hidden(
         &self,
         candidates: &CandidateTriangles<N>,
@@ -181,7 +185,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         Some(CenteredTriangle { part: around.parts()[index], triangle, tolerance })
     }
 
-    /// Appends the contact of a triangle, if there is one.
+    /// Appends the contact of a triangle, if there is one, to `part_contacts`.
     fn add(
         &self,
         centered: &CenteredTriangle<N>,
@@ -207,8 +211,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         part_contacts.extend(found);
     }
 
-    /// Computes the contact of a triangle without the generic path: `Some(None)` if there is no
-    /// contact, `None` if the case is not certain.
+    /// Computes the contact of a triangle without the generic path. `Some(None)` if there is no
+    /// contact, `None` if rounding decides and the generic path has to.
     #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
     fn certain_contact(
         &self,
@@ -268,8 +272,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 }
 
-/// Visits the indices of some triangles in order; `bits` selects those of a packet from its masks.
-/// Stops with `None` if `visit` returns it.
+/// Visits the indices of some triangles in ascending order. `bits` selects the triangles of a
+/// packet from its masks, near and hidden. Stops and returns `None` if `visit` returns it.
 fn each_lane<N>(
     candidates: &CandidateTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,

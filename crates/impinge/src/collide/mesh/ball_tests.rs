@@ -1,5 +1,5 @@
-//! Contacts of balls, boxes and hulls on surfaces over several updates: balls compared with the
-//! generic path, which defines the results, and all compared with the contact of a query.
+//! Tests contacts of balls, boxes and hulls on surfaces over several updates: balls against the
+//! generic path, which defines the results, and all against the contact of a query.
 
 use super::CompositeContacts;
 use super::ball::update_on_surface;
@@ -11,14 +11,14 @@ use crate::collide::separation::hulls::tests::Random;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::shape::{Ball, ConvexHull, Cuboid, HeightField, Shape, TriMesh};
 
-/// Updates of each solid.
+/// Number of updates of each solid.
 const STEPS: usize = 6;
-/// Solids that move.
+/// Number of moving solids.
 const ROUNDS: usize = 400;
-/// Points along each side of a terrain.
+/// Number of vertices along each side of a terrain.
 const POINTS: u32 = 9;
 
-/// Heights over a grid: rough, gentle, or flat with steps.
+/// Returns heights over a grid: rough (0), gentle (1), or flat with steps.
 fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     let mut next = |_| {
         let change = random.vector::<N>().x;
@@ -32,8 +32,8 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..POINTS * POINTS).map(&mut next).collect()
 }
 
-/// A mesh over a grid. Corners are shared or not, some triangles are left out or have no area, and
-/// some vertices are moved, also to the position of others.
+/// Returns a mesh over a grid. Corners are shared or not, some triangles are left out or have no
+/// area, and some vertices are moved, also to the position of others.
 fn mesh_of<N: Space<3>>(random: &mut Random, heights: &[N]) -> TriMesh<N, 3> {
     let vertex_at = |at: u32| {
         let [x, z] = [at % POINTS, at / POINTS].map(|n| N::lit(f64::from(n) * 0.5 - 2.0));
@@ -65,7 +65,7 @@ fn mesh_of<N: Space<3>>(random: &mut Random, heights: &[N]) -> TriMesh<N, 3> {
     if random.pick(6) == 0 { mesh.with_internal_edges_kept() } else { mesh }
 }
 
-/// A terrain around the origin, with one side or two.
+/// Returns a terrain around the origin, a mesh or a height field, with one side or two.
 fn ground_of<N: Space<3>>(random: &mut Random, round: usize) -> Box<dyn Shape<N, 3>> {
     let heights = heights::<N>(random, round % 3);
     let is_one_sided = random.pick(3) == 0;
@@ -82,7 +82,7 @@ fn ground_of<N: Space<3>>(random: &mut Random, round: usize) -> Box<dyn Shape<N,
     Box::new(if is_one_sided { field.one_sided() } else { field })
 }
 
-/// A solid, and the height of its centre above the terrain that it lies on.
+/// A solid, and the height of its centre when it lies on flat terrain.
 type Solid<N> = (Box<dyn Shape<N, 3>>, N);
 
 fn ball_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
@@ -90,7 +90,7 @@ fn ball_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
     (Box::new(ball), ball.radius())
 }
 
-/// A box, perhaps flat, or a hull of the corners of one and further points.
+/// Returns a box, perhaps flat, or a hull of a box's corners and further points.
 fn flat_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
     let mut half = random.vector::<N>().map(|more| N::ONE + more * N::lit(0.1));
     half.iter_mut().for_each(|half| {
@@ -114,8 +114,8 @@ fn flat_of<N: Space<3>>(random: &mut Random) -> Solid<N> {
     (Box::new(ConvexHull::from_points(&corners)), height)
 }
 
-/// Compares both paths for one moving solid. Returns the number of updates by the quick path, and
-/// of contact points.
+/// Moves one solid and asserts that both paths agree. Returns the number of updates by the quick
+/// path, and of contact points.
 fn follow<N: Space<3>>(
     (solid, height): Solid<N>,
     random: &mut Random,
@@ -128,7 +128,7 @@ fn follow<N: Space<3>>(
     position.y =
         height * N::lit([1.0, 0.9, -1.0][random.pick(3)]) + random.vector::<N>().y * N::lit(0.2);
     if random.pick(4) == 0 {
-        // Over a corner or an edge of the grid.
+        // Over a vertex or an edge of the grid.
         position.x = N::HALF;
     }
     let mut tilt = [Pose::identity(), random.turn::<N>()][random.pick(2)];

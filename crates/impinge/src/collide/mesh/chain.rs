@@ -1,6 +1,6 @@
-//! Contacts of a convex solid and a chain of segments in 2D. The results are bit for bit those of
-//! the generic path, which defines them. Quantities that all segments share are computed once, and
-//! segments beyond the prediction are skipped.
+//! Contacts of a convex solid and a chain of segments in 2D, bit for bit equal to those of the
+//! generic path, which defines the results. Quantities that all segments share are computed once,
+//! and segments beyond the prediction are skipped.
 
 use super::cull::relative_slack;
 use super::gather::{depth_in, search_box};
@@ -27,14 +27,14 @@ use crate::shape::{
     SupportMap, Surface, SurfaceAccess,
 };
 
-/// Rounding error of lengths, in units of epsilon times all sizes.
+/// Rounding error of lengths, in units of epsilon times the sum of all sizes.
 const ROUNDING: f64 = 16.0;
-/// Packets that are searched for the segments at a point; with more, the surface of the chain is
-/// called instead.
+/// Number of packets that are searched for the segments at a point; with more packets, the surface
+/// of the chain is called instead.
 const MAX_SEARCHED: usize = 8;
 
-/// Updates the contacts of a convex solid and a chain. Returns false, with nothing changed but the
-/// cache of parts, if the pair needs the generic path.
+/// Updates the contacts of a convex solid and a chain. Returns `false`, with nothing changed but
+/// the part cache, if the pair needs the generic path.
 pub(crate) fn update_chain<N: Real>(
     contacts: &mut CompositeContacts<N, 2>,
     between: &Between<'_, N, 2>,
@@ -63,31 +63,32 @@ pub(crate) fn update_chain<N: Real>(
 /// A convex solid and the chain that it may touch.
 struct Chain<'b, 'a, N: Real> {
     between: &'b Between<'a, N, 2>,
-    /// The request for one segment.
+    /// Request for each segment.
     request: ManifoldRequest<N>,
     solid: Kind<'a, N, 2>,
     parts: &'a dyn CompositeShape<N, 2>,
     surface: SurfaceAccess<'a, N, 2>,
-    /// `None` if only the surface itself can decide.
+    /// How sides of the chain decide contacts; `None` if only the surface itself can decide.
     sidedness: Option<Sidedness>,
-    /// The rotation from the frame of the chain to that of the solid, without a translation.
+    /// Rotation from the frame of the chain to the frame of the solid; its translation is zero.
     turn: Pose<N, 2>,
-    /// The pose of the second in the frame of the first, of a segment and the solid in the order of
-    /// kinds.
+    /// Relative pose of a segment and the solid, in the order of kinds: of the second in the frame
+    /// of the first.
     pose12: Pose<N, 2>,
-    /// Whether the solid comes before a segment in the order of kinds: balls do, and so do
-    /// segments, as the part of the first shape.
+    /// Whether the solid comes before a segment of the chain in the order of kinds. True for balls,
+    /// and for segments, because the solid is the first shape.
     comes_first: bool,
-    /// The origin of the solid in the frame of the chain; segments are translated to it.
+    /// Origin of the solid in the frame of the chain. Segments are computed relative to it.
     origin: Point<N, 2>,
-    /// The centre of the solid and its reference point, in the frame of the chain.
+    /// Centre of the solid, in the frame of the chain.
     center: Point<N, 2>,
+    /// Reference point of the solid, which decides sides, in the frame of the chain.
     from: Point<N, 2>,
     /// Bounding radius of the solid around its origin.
     size: N,
 }
 
-/// The cached segments: all that overlap the box `within`.
+/// Cached segments: all segments that overlap the box `within`.
 struct KeptLinks<'t, N: Real> {
     tiles: &'t [PartPacket<N, 2>],
     parts: &'t [u32],
@@ -95,7 +96,7 @@ struct KeptLinks<'t, N: Real> {
 }
 
 impl<N: Real> KeptLinks<'_, N> {
-    /// The ends of the segment at an index in `parts`.
+    /// Returns the ends of the segment at `index` in `parts`, in the frame of the chain.
     fn ends(&self, index: usize) -> [Point<N, 2>; 2] {
         let [a, b, _] = self.tiles[index / LANES].corners(index % LANES);
         [a, b]
@@ -119,7 +120,7 @@ impl<N: Real> KnownSegments<N> for KeptLinks<'_, N> {
             while ending != 0 {
                 let index = block * LANES + ending.trailing_zeros() as usize;
                 ending &= ending - 1;
-                // Lanes after the last part are copies of it.
+                // Lanes after the last part hold copies of it.
                 if let Some(&part) = self.parts.get(index) {
                     visit(part, self.ends(index));
                 }
@@ -128,23 +129,23 @@ impl<N: Real> KnownSegments<N> for KeptLinks<'_, N> {
     }
 }
 
-/// A segment of the chain within reach of the solid.
+/// A segment of the chain within the prediction of the solid.
 struct ChainLink<'c, 'b, 'a, N: Real> {
     chain: &'c Chain<'b, 'a, N>,
-    /// 0 for the solid, and the index of the segment.
+    /// Part indices of the solid, always 0, and of the segment.
     parts: [u32; 2],
-    /// Relative to the origin of the solid.
+    /// The segment relative to the origin of the solid.
     segment: Segment<N, 2>,
     /// The segment as a surface.
     known: KnownSegment<'c, N>,
-    /// The separation of the pair, in the order of kinds.
+    /// Separation of the segment and the solid, in the order of kinds.
     found: Separation<N, 2>,
-    /// Bound of the rounding errors of lengths.
+    /// Bound of the rounding errors of lengths of the segment and the solid.
     tolerance: N,
 }
 
 impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
-    /// `None` for solids that have no kernel here, and for composites without a surface.
+    /// Returns `None` for solids without a kernel here, and for composites without a surface.
     fn new(between: &'b Between<'a, N, 2>, request: &ManifoldRequest<N>) -> Option<Self> {
         let solid = between.pair.first;
         let comes_first = matches!(solid, Kind::Ball(_) | Kind::Segment(_));
@@ -178,8 +179,9 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         })
     }
 
-    /// Returns a box around everything within reach of the solid, with all its parts in the cache;
-    /// `None` if the cache cannot hold them by corners, or if they are not segments.
+    /// Returns the box around everything within the prediction of the solid, once the cache holds
+    /// all its parts; `None` if the box is unbounded or a cached part is not a segment with
+    /// corners.
     fn box_within(&self, around: &mut PartCache<N, 2>) -> Option<Aabb<N, 2>> {
         let max_distance = self.size + self.request.prediction;
         let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(max_distance));
@@ -193,7 +195,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         (around.covers(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
     }
 
-    /// Finds the contacts of the segments within reach; `None` if the generic path must do it.
+    /// Finds the contacts of the segments within the prediction; `None` if the generic path must do
+    /// it.
     fn find(
         &mut self,
         contacts: &mut CompositeContacts<N, 2>,
@@ -226,8 +229,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         Some(())
     }
 
-    /// Returns a cached segment within reach; `None` if it cannot be touched or its distance is not
-    /// finite.
+    /// Returns a cached segment within the prediction; `None` if it cannot be touched from the
+    /// reference point or its distance is not finite.
     fn link<'c>(
         &'c self,
         kept: &'c KeptLinks<'_, N>,
@@ -249,18 +252,20 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         Some(ChainLink { chain: self, parts, segment, known, found: *found, tolerance })
     }
 
-    /// Converts a direction from the first of a pair to the second into one from the solid to the
-    /// chain, in the frame of the solid.
+    /// Converts a direction from the first of a pair to the second, in the frame of the first, into
+    /// the direction from the solid to the chain, in the frame of the solid.
     fn outward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.vector(normal) }
     }
 
-    /// The inverse of [`Self::outward`].
+    /// Converts a direction from the solid to the chain, in the frame of the solid, into the
+    /// direction from the first of a pair to the second, in the frame of the first.
     fn inward(&self, normal: &Vector<N, 2>) -> Vector<N, 2> {
         if self.comes_first { *normal } else { -self.turn.inverse_vector(normal) }
     }
 
-    /// Converts a point of a pair's manifold with this normal into the frame of the solid.
+    /// Converts a point of a pair's manifold with this `normal` into the frame of the solid, with
+    /// the solid as the first.
     fn placed(&self, point: RawPoint<N, 2>, normal: &Vector<N, 2>) -> RawPoint<N, 2> {
         if self.comes_first {
             return point;
@@ -272,7 +277,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
 }
 
 impl<N: Real> ChainLink<'_, '_, '_, N> {
-    /// Appends the contact of the segment, if there is one; `None` if the generic path must do it.
+    /// Appends the contact of the segment, if there is one; `None` if the generic path must compute
+    /// it.
     fn find(
         &self,
         part_contacts: &mut PartContacts<N, 2>,
@@ -298,7 +304,7 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         };
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
         let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));
-        // Contacts along the face may be missing, or be apart where the parts overlap.
+        // Points along the face's normal may be missing, or be apart although the parts overlap.
         let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
         if !points[start..].iter().any(|point| point.distance <= highest) {
             points.truncate(start);
@@ -330,7 +336,7 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         filter_normal(Some(SurfaceAccess::of_own(&self.known)), &case)
     }
 
-    /// The segment and the solid, in the order of kinds.
+    /// Returns the segment and the solid, in the order of kinds.
     fn pair(&self) -> SegmentPair<'_, N> {
         let Chain { solid, pose12, comes_first, request, .. } = *self.chain;
         let segment = Kind::Segment(&self.segment);
@@ -339,8 +345,8 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         SegmentPair { pair, tolerance: self.tolerance, prediction: request.prediction }
     }
 
-    /// Appends the contacts at the nearest points for a normal in the frame of the solid. Returns
-    /// the normal with the rounding that pieces have.
+    /// Appends the contact points at the nearest points, for a normal in the frame of the solid.
+    /// Returns the normal, rounded as in a piece of the generic path.
     fn between(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let witness = Separation { normal: inward, ..self.found };
@@ -348,8 +354,8 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         Some(self.chain.outward(&inward))
     }
 
-    /// Appends the contacts along a normal in the frame of the solid. Returns the normal with the
-    /// rounding that pieces have.
+    /// Appends the contact points along a normal in the frame of the solid. Returns the normal,
+    /// rounded as in a piece of the generic path.
     fn along(&self, normal: &Vector<N, 2>, points: &mut ChainPoints<N>) -> Option<Vector<N, 2>> {
         let inward = self.chain.inward(normal);
         let distance = self.found.distance;
@@ -360,5 +366,5 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
     }
 }
 
-/// The contact points of all pieces.
+/// Contact points of all pieces, in the frame of the solid.
 type ChainPoints<N> = crate::collide::RawPoints<N, 2>;

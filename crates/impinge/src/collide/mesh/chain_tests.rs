@@ -1,5 +1,5 @@
-//! Contacts of chains compared with the generic path, which defines them: the same bits in each
-//! update.
+//! Compares contacts of chains with the generic path, which defines them: each update must have the
+//! same bits.
 
 use super::chain::update_chain;
 use super::{
@@ -17,10 +17,10 @@ use crate::shape::{
     Ball, Capsule, ConvexPolygon, Cuboid, HeightField, Polyline, Segment, Shape, Triangle,
 };
 
-/// Updates of each solid.
+/// Number of updates of each solid.
 const STEPS: usize = 6;
 
-/// Heights along a line: rough, gentle, or flat with steps.
+/// Returns heights along a line: rough (0), gentle (1), or flat with steps.
 fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     let mut height = N::ZERO;
     let mut next = |_| {
@@ -37,7 +37,7 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
     (0..13).map(&mut next).collect()
 }
 
-/// A terrain around the origin, mirrored or not, with one side or two.
+/// Returns a terrain around the origin, mirrored or not, with one side or two.
 fn ground_of<N: Space<2>>(random: &mut Random, round: usize) -> Box<dyn Shape<N, 2>> {
     let heights = heights::<N>(random, round % 3);
     let is_one_sided = random.pick(3) == 0;
@@ -88,7 +88,7 @@ fn pose_of<N: Real>(position: Vector<N, 2>, angle: N) -> Pose<N, 2> {
     Pose { rotation: Matrix::<N, 2>::new(cosine, -sine, sine, cosine), translation: position }
 }
 
-/// Both paths must agree in all bits, ids included.
+/// Asserts that both paths agree in all bits, ids included.
 pub(super) fn assert_same<N: Real, const D: usize>(
     quick: &CompositeContacts<N, D>,
     slow: &CompositeContacts<N, D>,
@@ -105,8 +105,8 @@ pub(super) fn assert_same<N: Real, const D: usize>(
     }
 }
 
-/// The contact within a limit must not depend on whether the nearest part was searched first, nor
-/// on the path.
+/// Asserts that the contact within a limit depends neither on whether the nearest part was searched
+/// first, nor on the path.
 pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     [placed1, placed2]: [&Placed<'_, N, D>; 2],
     limit: N,
@@ -124,14 +124,15 @@ pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
     let distance = |found: Option<Separation<N, D>>| found.map(|found| found.distance);
     assert_eq!(distance(at_once), distance(general), "{}", what());
     match [at_once, expected].map(distance) {
-        // The contact of a query has the distance of the solids if it differs by rounding alone.
+        // The contact of a query gets the distance of the solids if the two differ only by
+        // rounding.
         [Some(a), Some(b)] => assert!((a - b).abs() <= rounding(&between), "{a}, {b}: {}", what()),
         [a, b] => assert_eq!(a, b, "{}", what()),
     }
 }
 
-/// Compares both paths for one moving solid. Returns the number of updates by the quick path, and
-/// of contact points.
+/// Moves one solid and asserts that both paths agree. Returns the number of updates by the quick
+/// path, and of contact points.
 fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (solid, terrain) = (solid_of::<N>(random), ground_of::<N>(random, round));
     let far = N::lit([0.0, 40.0][random.pick(2)]);

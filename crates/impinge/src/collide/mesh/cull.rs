@@ -1,9 +1,9 @@
 //! Lower bounds of the distances from a convex solid to 8 parts of a surface at a time.
 //!
-//! Most parts with boxes near the solid are not near themselves. A plane across the shortest way
-//! from the part to the solid's centre rejects them for a few products. Every plane gives a lower
-//! bound of the distance, so only rounding needs care. The core of the solid enters by its extents
-//! along its own axes, as a box would.
+//! Most parts whose boxes are near the solid are themselves farther than the limit. A plane
+//! perpendicular to the shortest segment from the part to the solid's centre rejects such parts for
+//! a few products. Any plane gives a valid lower bound of the distance, so only rounding needs
+//! care. The core of the solid enters as a box, by its extents along its own axes.
 //!
 //! ```text
 //!   part                          solid
@@ -24,53 +24,56 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Point, Real, Space, Vector, Wide, filled, max, max_component, min};
 use crate::shape::{Geometry, Kind};
 
-/// Slack of bounds, relative to all lengths: 128 rounding units, and at least `CURVED`, the
-/// tolerance of the search for the distance of curved solids.
+/// Slack of the bounds, relative to the sum of all lengths: 128 rounding units, and at least
+/// `CURVED`, the tolerance of the distance search of curved solids.
 const ROUNDING: f64 = 128.0;
 const CURVED: f64 = 1.0e-10;
 
-/// The slack of bounds, relative to all lengths.
+/// Returns the slack of the bounds, relative to the sum of all lengths.
 #[inline]
 pub(super) fn relative_slack<N: Real>() -> N {
     max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED))
 }
 
-/// Shorter lengths have lost digits to underflow.
+/// Returns the length below which underflow has cost digits.
 #[inline]
 fn least_length<N: Real>() -> N {
     N::MIN_POSITIVE / N::EPSILON
 }
 
-/// A convex solid in the frame of a composite.
+/// A convex solid in the frame of a composite, and the limit of the search.
 pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
-    /// The centre of the solid.
+    /// Centre of the solid, in the frame of the composite.
     pub(super) center: Vector<N, D>,
-    /// The axes of the solid, as columns.
+    /// Axes of the solid, as columns, in the frame of the composite.
     pub(super) turn: Matrix<N, D>,
-    /// Half the extents of its core along these axes.
+    /// Half extents of the solid's core along these axes.
     pub(super) half: Vector<N, D>,
-    /// The radius around the core.
+    /// Radius around the core.
     pub(super) rounding: N,
-    /// Parts beyond this distance, or outside the box from `low` to `high`, are rejected.
+    /// Parts beyond this distance from the solid are rejected.
     pub(super) max_distance: N,
+    /// Parts whose boxes do not overlap the box from `low` to `high` are rejected.
     pub(super) low: Vector<N, D>,
     pub(super) high: Vector<N, D>,
-    /// Sum of the solid's bounding radius, its translation and `reach`, for rounding errors.
+    /// Sum of the solid's bounding radius, `max_distance` and the largest component of its
+    /// translation; scales rounding errors.
     pub(super) size: N,
 }
 
-/// Lower bounds for 8 parts.
+/// Results for 8 parts.
 pub(super) struct LowerBounds<N> {
-    /// A bit for each part that may be within reach.
+    /// Bits of the parts that may be within `max_distance`.
     pub(super) mask: u8,
-    /// Lower bound of the distance from the solid's centre to the parts in the box; zero if
-    /// unknown.
+    /// Lower bound of the distance from the solid's centre to those of the 8 parts that overlap the
+    /// box; zero if unknown.
     pub(super) from_middle: N,
 }
 
 impl<N: Space<D>, const D: usize> LowerBoundQuery<N, D> {
-    /// Takes a convex first shape, and parts of the second in a box. The extents of the solid are
-    /// cached in `around`. `None` for two composites and for half-spaces.
+    /// Makes the query for a convex first shape, and the parts of the second in the box `within`.
+    /// The extents of the solid are cached in `around`. `None` if the first shape has no support
+    /// map: composites and half-spaces.
     pub(super) fn new(
         between: &Between<'_, N, D>,
         max_distance: N,
@@ -92,7 +95,7 @@ impl<N: Space<D>, const D: usize> LowerBoundQuery<N, D> {
         })
     }
 
-    /// The centre of the solid.
+    /// Returns the centre of the solid, in the frame of the composite.
     pub(super) fn middle(&self) -> Point<N, D> {
         Point::from(self.center)
     }
@@ -103,7 +106,7 @@ impl<N: Space<D>, const D: usize> LowerBoundQuery<N, D> {
     }
 }
 
-/// [`bounds`] of all lanes. The result does not depend on the SIMD level.
+/// Computes [`bounds`] of all 8 lanes. The result does not depend on the SIMD level.
 fn at<N: Real, const D: usize>(
     level: Level,
     tiles: &PartPacket<N, D>,
@@ -118,8 +121,8 @@ fn at<N: Real, const D: usize>(
     all
 }
 
-/// The bounds for the lanes of `V`: a mask of those that may be near, and the least distance from
-/// the centre to those in the box.
+/// Computes the bounds for the lanes of `V`: the mask of the parts that may be within the limit,
+/// and the smallest distance bound from the centre to the parts in the box.
 #[inline(always)]
 fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -141,7 +144,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         dot(&arms[0], &arms[0]).larger(dot(&arms[1], &arms[1])).larger(dot(&arms[2], &arms[2]));
     let slack = V::all(simd, relative_slack()) * (farthest.sqrt() + V::all(simd, query.size));
     let (length, tiny) = (norm(&toward), V::all(simd, least_length()));
-    // NaN gives no bound.
+    // Lanes with NaN have no bound.
     let is_bound = length.simd_gt(slack)
         & heights[0].simd_gt(tiny)
         & heights[1].simd_gt(tiny)
@@ -157,7 +160,7 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     LowerBounds { mask, from_middle: known.into_iter().fold(N::INFINITY, |least, x| min(x, least)) }
 }
 
-/// The parts whose boxes overlap the box of the query.
+/// Returns the lanes whose parts have a box that overlaps the box of the query.
 #[inline(always)]
 fn is_in<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -177,8 +180,8 @@ fn is_in<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
 }
 
 /// Returns the vector from the nearest point of each part to a point, given the vectors from the
-/// corners to it. Over the inside of a triangle it follows from the barycentric coordinates, else
-/// from the nearest side.
+/// part's corners to that point. If the point projects inside a triangle, the vector follows from
+/// the barycentric coordinates, else from the nearest side.
 #[inline(always)]
 fn toward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -201,8 +204,8 @@ fn toward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     either(is_over, &over, &shorter(&shorter(&first, &second), &third))
 }
 
-/// Returns the vector from the nearest point of a segment to a point, given the vectors from its
-/// ends to it.
+/// Returns the vector from the nearest point of a segment to a point, given the vectors from the
+/// segment's ends to that point.
 #[inline(always)]
 fn from_side<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -225,7 +228,7 @@ fn shorter<S: Simd, V: Wide<S>, const D: usize>(first: &[V; D], second: &[V; D])
     either(dot(second, second).simd_lt(dot(first, first)), second, first)
 }
 
-/// The extent of the core along vectors, times their lengths.
+/// Returns the extent of the core along the vectors `toward`, multiplied by their lengths.
 #[inline(always)]
 fn extent<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

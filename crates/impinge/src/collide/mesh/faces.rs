@@ -6,7 +6,7 @@
 //!                      8 lanes             cached `FaceSeams`     8 lanes
 //! ```
 //!
-//! A triangle whose gap is not plain, or that a kernel leaves undecided, falls back to
+//! A triangle whose gap rounding may decide, or that a kernel leaves undecided, falls back to
 //! [`part_contact`], the path of any two parts.
 
 use smallvec::SmallVec;
@@ -28,8 +28,8 @@ use crate::shape::{FaceSeams, FeatureId, Geometry, Kind, SurfaceAccess};
 use core::cell::Cell;
 
 /// Appends the contacts of a box or a hull with the nearby triangles of a surface. Returns `false`
-/// for other solids and composites. `prediction` is that of the whole shapes; the request for parts
-/// in `query` may have a larger one.
+/// for other solids and composites. `prediction` is the one of the whole shapes; the request for
+/// parts in `query` may have a larger one.
 pub(crate) fn face_contacts<N: Real>(
     query: &Query<'_, N, 3>,
     scene: &Scene<'_, N, 3>,
@@ -71,14 +71,15 @@ struct FaceConfiguration<'a, N: Real> {
     surface: SurfaceAccess<'a, N, 3>,
     around: &'a PartCache<N, 3>,
     solid: Kind<'a, N, 3>,
-    /// The rotation from the frame of the solid to that of the surface, whose columns are the axes
-    /// of the solid, and the origin of the solid in the frame of the surface.
+    /// Rotation from the frame of the solid to that of the surface; its columns are the solid's
+    /// axes.
     turn: Matrix<N, 3>,
+    /// Origin of the solid in the frame of the surface.
     origin: Vector<N, 3>,
-    /// The reference point of the solid, which decides sides, in the frame of the surface.
+    /// Reference point of the solid, which decides sides, in the frame of the surface.
     from: Point<N, 3>,
     reach: N,
-    /// The index in the cache of each near triangle, in the order in which `gaps3` counts them.
+    /// Index in the cache of each near triangle, by its index in the results of `gaps3`.
     cache_indices: SmallVec<[usize; 24]>,
 }
 
@@ -93,24 +94,25 @@ struct KeptTriangle<'a, N: Real> {
 
 /// A contact that the surface admits, in the frame of the surface.
 struct FaceContact<N: Real> {
-    /// Unit, from the triangle to the solid.
+    /// Unit normal from the triangle to the solid.
     normal: Vector<N, 3>,
     status: PartStatus,
-    /// The normal of the face in contact; `None` for a side or corner, and for a dropped contact.
+    /// Normal of the face in contact; `None` for a contact with a side or corner, and for a dropped
+    /// one.
     face: Option<Vector<N, 3>>,
 }
 
-/// The result of the normal filter for one triangle.
+/// Result of the normal filter for one triangle.
 enum SurfaceAnswer<N: Real> {
     Nothing,
     Contact(FaceContact<N>),
-    /// The filter needs the touched feature, which the gap does not name.
+    /// The filter needs the touched feature, which the gap does not give.
     Unclear,
 }
 
 impl<'a, N: Real> FaceConfiguration<'a, N> {
-    /// `None` unless a box or hull meets a surface whose cached parts are all triangles. Also
-    /// `None` for bodies: a solid inside them has contacts too.
+    /// Returns `None` unless the solid is a box or hull and all cached parts of the surface are
+    /// triangles. Also `None` for bodies, because a solid inside a body has contacts too.
     fn new(
         query: &'a Query<'a, N, 3>,
         scene: &'a Scene<'a, N, 3>,
@@ -142,7 +144,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         })
     }
 
-    /// Returns a cached triangle; `None` if its seams are unknown.
+    /// Returns a cached triangle; `None` if the cache does not hold its seams.
     fn triangle(&self, cache_index: usize) -> Option<KeptTriangle<'a, N>> {
         let seams = self.around.seams(cache_index)?;
         let corners = self.around.tiles()[cache_index / LANES].corners(cache_index % LANES);
@@ -153,7 +155,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         Some(KeptTriangle { part: self.around.parts()[cache_index], corners, seams, tolerance })
     }
 
-    /// Filters the normal of a gap by the surface.
+    /// Filters the normal of a triangle's gap by the surface.
     fn answer(&self, triangle: &KeptTriangle<'_, N>, gap: &TriangleGap<N>) -> SurfaceAnswer<N> {
         let known = triangle.seams.in_surface(self.surface, &triangle.corners[0]);
         let surface = Some(SurfaceAccess::of_own(&known));
@@ -187,7 +189,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         SurfaceAnswer::Contact(FaceContact { normal, status, face })
     }
 
-    /// Returns the input of the clip for a contact. `None` for a flat box, and for an `Own` contact
+    /// Returns the clip request of a contact. `None` for a flat box, and for an `Own` contact
     /// beyond the prediction of the parts: both fall back to the generic path.
     fn clip_request(
         &self,
@@ -199,20 +201,21 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         if is_own && distance > self.query.request.prediction {
             return None;
         }
-        // If the parts overlap by no more than rounding, no point is deeper than that.
+        // If the parts overlap by no more than rounding, no point gets a larger depth than the
+        // parts.
         let least = if !is_own && distance > -tolerance { distance } else { -N::INFINITY };
         let normal = self.query.between.pair.pose12.vector(&contact.normal);
         ClipRequest::new(self.solid, normal, is_own.then_some(distance), least)
     }
 }
 
-/// Whether the faces of a solid are clipped in lanes.
+/// Returns whether the faces of the solid are clipped in lanes.
 pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) -> bool {
     matches!(solid, Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// Triangles waiting for the clip, up to 8, each with the index of its contact and its index in
-/// the cache.
+/// Up to 8 triangles waiting for the clip. `contacts` holds, for each, the index of its contact and
+/// its index in the cache.
 struct PendingClips<N: Real> {
     triangles: PartPacket<N, 3>,
     requests: SmallVec<[ClipRequest<N>; LANES]>,
@@ -234,13 +237,13 @@ struct FaceContacts<'s, 'a, N: Real> {
     slot: Option<PlacedPair<'a, N, 3>>,
     pending: PendingClips<N>,
     clip: FaceClip<N>,
-    /// Number of contacts that the generic path did not confirm; their distance is infinite.
+    /// Contacts that the generic path did not confirm; their distance is set to infinity.
     missing: usize,
 }
 
 impl<N: Real> FaceContacts<'_, '_, N> {
-    /// Adds the contact of a triangle, if it has one. Without a gap it falls back to the generic
-    /// path.
+    /// Appends the contact of a triangle, if it has one. If `gap` is `None` or undecided, the
+    /// generic path computes it.
     fn add(&mut self, cache_index: usize, gap: Option<&TriangleGap<N>>) {
         if gap.is_none_or(|gap| self.add_certain(cache_index, gap).is_none()) {
             let found = self.in_general(cache_index);
@@ -251,7 +254,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         }
     }
 
-    /// Adds the contact of a triangle with a plain gap, if it has one. `None` if the generic path
+    /// Appends the contact of a triangle from its gap, if it has one. `None` if the generic path
     /// has to decide.
     fn add_certain(&mut self, cache_index: usize, gap: &TriangleGap<N>) -> Option<()> {
         let triangle = self.configuration.triangle(cache_index)?;
@@ -282,15 +285,14 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         Some(())
     }
 
-    /// Clears `are_fronts` if a face in contact is not a front.
+    /// Clears `are_fronts` if the face in contact is not a front: see [`part_contact::Arena`].
     fn note_face(&mut self, cache_index: usize, face: Option<&Vector<N, 3>>) {
         let seams = self.configuration.around.seams(cache_index);
         let is_front = |face| seams.is_some_and(|seams: &FaceSeams<N>| seams.is_front(face));
         self.arena.are_fronts &= face.is_none_or(is_front);
     }
 
-    /// Clips the waiting triangles. Those that the lanes leave undecided are computed by the
-    /// generic path.
+    /// Clips the waiting triangles. The generic path computes those that the lanes leave undecided.
     fn clip(&mut self) {
         let (PendingClips { triangles, requests, contacts }, configuration) =
             (core::mem::take(&mut self.pending), self.configuration);
@@ -320,7 +322,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
                 None => left |= 1 << lane,
             }
         });
-        // Contacts keep their positions, which are sorted by part.
+        // Contacts are replaced in place, so they stay sorted by part.
         for lane in Ones::<LANES>(left.into()) {
             let (contact, cache_index) = &contacts[lane];
             match self.in_general(*cache_index) {

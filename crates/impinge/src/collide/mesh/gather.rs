@@ -1,4 +1,4 @@
-//! Finds the pairs of parts that may touch.
+//! Finds the pairs of parts that may be within the prediction.
 
 use smallvec::SmallVec;
 
@@ -17,14 +17,15 @@ use crate::shape::{CompositeShape, Part};
 /// Pairs of part indices; 0 stands for a convex shape.
 pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
 
-/// For each tile a byte with a bit for each of its 8 parts.
+/// A mask per packet of the cache, with a bit for each of its 8 parts.
 pub(super) type CandidateMasks = SmallVec<[u8; 8]>;
 
 /// The pairs of parts that may be within a distance.
 pub(crate) struct CulledParts<N: Real> {
-    /// Sorted.
+    /// Pairs in ascending order.
     pub(super) parts: PartPairs,
-    /// The parts of the second shape in `parts`, as bits of the cached tiles; empty without tiles.
+    /// The second parts of `parts`, as bits of the cached packets; empty if the cache holds no
+    /// corners.
     pub(super) masks: CandidateMasks,
     /// Lower bound of the distance from the centre of a convex first shape to the second shape;
     /// zero if unknown.
@@ -34,7 +35,7 @@ pub(crate) struct CulledParts<N: Real> {
 /// Finds the parts of a convex solid and a composite, or of two composites, that may be within
 /// `max_distance`. Parts that a separating plane proves to be farther are culled.
 ///
-/// `around` must belong to the same composite. It is refilled if its box is too small.
+/// `around` must be the cache of the second shape. It is refilled if its box is too small.
 pub(super) fn culled<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     is_self: bool,
@@ -69,7 +70,7 @@ fn cull_kept<N: Space<D>, const D: usize>(
     for (kept, tiles) in around.parts().chunks(LANES).zip(around.tiles()) {
         let bounds = query.bounds(tiles);
         clearance = min(clearance, bounds.from_middle);
-        // The lanes beyond the last part hold copies of it.
+        // Lanes beyond the last part hold copies of it.
         let bits = bounds.mask & (u8::MAX >> (LANES - kept.len()));
         masks.push(bits);
         parts.extend(Ones::<LANES>(bits.into()).map(|lane| [0, kept[lane]]));
@@ -84,8 +85,8 @@ fn cull_kept<N: Space<D>, const D: usize>(
     CulledParts { parts, masks, clearance }
 }
 
-/// Returns a box in the frame of the second shape that encloses all points within `max_distance` of the
-/// first.
+/// Returns a box, in the frame of the second shape, that encloses all points within `max_distance`
+/// of the first.
 pub(super) fn search_box<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     max_distance: N,
@@ -94,7 +95,7 @@ pub(super) fn search_box<N: Space<D>, const D: usize>(
     enclosing(&aabb, &between.pose21)
 }
 
-/// The distance of a point from the boundary of a box that holds it; negative outside.
+/// Returns the distance of a point inside a box from the box's boundary; negative if it is outside.
 pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point<N, D>) -> N {
     let mut least = N::INFINITY;
     for axis in 0..D {
@@ -104,10 +105,11 @@ pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point
     least
 }
 
-/// Returns the pairs of parts whose boxes are within `max_distance` of each other, sorted; 0 stands for a
-/// convex shape.
+/// Returns the pairs of parts whose boxes are within `max_distance` of each other, in ascending
+/// order; index 0 stands for a convex shape.
 ///
-/// For a shape with itself: the pairs of parts that are not adjacent, each once.
+/// For a shape with itself (`is_self`), returns the pairs of parts that are not adjacent, each
+/// once.
 pub(super) fn candidates<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     is_self: bool,
@@ -121,7 +123,8 @@ pub(super) fn candidates<N: Space<D>, const D: usize>(
             let aabb = search_box(between, max_distance);
             parts2.search().overlapping(&aabb, &mut |part2| found.push([0, part2]));
         }
-        // In the order of kinds, composites come last.
+        // In the order of kinds a composite comes second, so the first shape is not a lone
+        // composite.
         [_, None] => {}
     }
     found.sort_unstable();
@@ -141,9 +144,9 @@ impl<N: Real, const D: usize> TouchingVisitor<N, D> for FoundPairs<'_, N> {
     }
 }
 
-/// Finds the parts of two composites that may be within `max_distance`: by their trees, which test the
-/// parts too. Without trees, each part of the composite with fewer parts that is near the other
-/// composite is looked up there.
+/// Finds the parts of two composites that may be within `max_distance`, by descending both trees,
+/// which also test the parts. Without trees, each part of the composite with fewer parts that is
+/// near the other composite is searched in the other.
 fn of_two<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     parts1: &dyn CompositeShape<N, D>,
@@ -172,7 +175,8 @@ fn of_two<N: Space<D>, const D: usize>(
     });
 }
 
-/// Finds the pairs of parts of one composite, the smaller index first.
+/// Finds the pairs of parts of one composite that are within `max_distance` and not adjacent, the
+/// smaller index first.
 fn of_one<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     max_distance: N,
@@ -188,7 +192,7 @@ fn of_one<N: Space<D>, const D: usize>(
     }
 }
 
-/// The box of a part, loosened by `max_distance`, in the frame that `pose` maps to.
+/// Returns the box of a part, loosened by `max_distance`, in the frame that `pose` maps to.
 fn box_of_part<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     index: u32,

@@ -1,4 +1,4 @@
-//! Faces hidden from the solid, because it is on the back of their neighbours.
+//! Drops contacts with faces that lie behind a neighbouring face, as seen from the solid.
 //!
 //! Each face of a two-sided surface is touched from the side that the centre of the solid is on.
 //! Near an edge that is wrong for one of two faces:
@@ -23,12 +23,12 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Point, Real, Space, Vector, max, min};
 
-/// Faces do not hide each other if the cosine of their normals is larger.
+/// Faces whose normals have a larger cosine do not hide each other.
 const ALIKE: f64 = 0.99;
 /// Rounding error of heights, in units of epsilon times the lengths of both parts.
 const ROUNDING: f64 = 16.0;
-/// Faces around a corner that can hide others: those nearest to the solid. Surfaces have six around
-/// most corners, but a fan of triangles has all around one.
+/// Faces around a corner that can hide others: the nearest ones. Around most corners of surfaces
+/// there are six faces, but around the centre of a fan there are all.
 const MAX_HIDING: usize = 16;
 
 /// The side of a plane that a face lies on.
@@ -41,21 +41,22 @@ enum PlaneSide {
 
 /// A face in contact.
 struct TouchedFace<N: Real, const D: usize> {
-    /// Its index among the contacts.
+    /// Index of the face's contact.
     contact: usize,
-    /// The distance of its part from the solid.
+    /// Signed distance of the face's part from the solid.
     distance: N,
-    /// Unit, on the touched side.
+    /// Unit normal on the touched side.
     normal: Vector<N, D>,
-    /// A segment has its second end twice.
+    /// Corners in the frame of the composite; for a segment the second end occurs twice.
     corners: [Point<N, D>; 3],
 }
 
-/// The faces, and the pairs of corner id and face index, sorted.
+/// The faces, and the pairs of a corner id and the index of a face at that corner, in ascending
+/// order.
 type TouchedFaces<N, const D: usize> =
     (SmallVec<[TouchedFace<N, D>; 8]>, SmallVec<[(u64, u32); 24]>);
 
-/// Drops the contacts of a convex solid with faces that are hidden by faces with a common corner.
+/// Drops the contacts of a convex solid with faces that a face with a common corner hides.
 ///
 /// Cost: O(n log n) in the number of faces in contact.
 pub(super) fn drop_hidden<N: Space<D>, const D: usize>(
@@ -102,7 +103,7 @@ fn faces_of<N: Space<D>, const D: usize>(
         let (Some(normal), Some(part)) = (*face, scene.second_part(piece.parts[1])) else {
             continue;
         };
-        // Parts without corners, which a user's surface may have, hide nothing.
+        // Parts without corners, as user-defined surfaces may have, hide nothing.
         let Some((corners, _)) = corners_of(&part) else { continue };
         let corners = corners.mapped(|corner| part.pose.point(&corner));
         scene.each_corner(piece.parts[1], |corner| shared.push((corner, next_face)));
@@ -113,13 +114,13 @@ fn faces_of<N: Space<D>, const D: usize>(
     (faces, shared)
 }
 
-/// Whether faces with these normals cannot hide each other.
+/// Returns whether faces with these normals are too similar to hide each other.
 pub(super) fn are_alike<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N, D>) -> bool {
     a.dot(b) > N::lit(ALIKE)
 }
 
-/// Returns the contact that is hidden: its face is behind the other, but the other is not behind
-/// it.
+/// Returns the index of the contact that is hidden: its face is behind the plane of the other, and
+/// the other is not behind its plane. `None` if neither hides the other.
 fn hidden_of<N: Real, const D: usize>(
     a: &TouchedFace<N, D>,
     b: &TouchedFace<N, D>,
@@ -136,7 +137,7 @@ fn hidden_of<N: Real, const D: usize>(
     (front.distance <= max(back.distance, N::ZERO)).then_some(back.contact)
 }
 
-/// Returns the side of the plane of one face that the other lies on, within rounding error.
+/// Returns the side of the plane of `plane` that the face `part` lies on, up to rounding error.
 fn side_of<N: Real, const D: usize>(
     part: &TouchedFace<N, D>,
     plane: &TouchedFace<N, D>,

@@ -1,5 +1,5 @@
-//! Contacts of pieces that lie wholly inside a body: they lead out through the nearest part of its
-//! boundary.
+//! Contacts of pieces that lie wholly inside a body. They push the piece out through the nearest
+//! part of the body's boundary.
 
 use super::part_contact::{Arena, contact_of_solids};
 use super::scene::Scene;
@@ -9,10 +9,10 @@ use crate::math::{Space, Unit};
 use crate::shape::Plane;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// Returns the pieces that are inside of bodies, and removes the contacts of their parts with
-    /// the boundary: from inside, the boundary is no surface to touch.
+    /// Returns the pieces that are inside of bodies, and removes from `contacts` those of their
+    /// parts with the boundary: from inside, the boundary is not a surface to touch.
     ///
-    /// A piece with a part that overlaps the boundary is not inside: its contacts lead out.
+    /// A piece with a part that overlaps the boundary is not inside: its own contacts push it out.
     pub(super) fn take_inside(&self, contacts: &mut PartContacts<N, D>) -> InsidePieces<N, D> {
         if self.is_self || !self.between.has_bodies() {
             return InsidePieces::new();
@@ -30,8 +30,8 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         pieces
     }
 
-    /// Adds the contacts of a piece that is inside: those of its parts with the half-space below
-    /// the exit plane.
+    /// Appends the contacts of a piece that is inside: the contacts of its parts with the
+    /// half-space below the exit plane. Appends nothing if there is no exit.
     pub(super) fn add_inside(
         &self,
         scene: &Scene<'_, N, D>,

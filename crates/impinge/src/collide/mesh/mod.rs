@@ -1,22 +1,22 @@
-//! Contacts of composites: those of their parts that the whole shape admits.
+//! Contacts of composites: the contacts of their parts that are also contacts of the whole shapes.
 //!
-//! 1. [`gather`] finds the parts within the prediction: those in [`part_cache`], while its box
-//!    suffices, without those that a lower bound culls ([`cull`]).
+//! 1. [`gather`] finds the parts within the prediction: the parts in [`part_cache`], as long as the
+//! cached box suffices, without the parts that a lower bound culls ([`cull`]).
 //! 2. [`part_contact`] computes the contact of each pair of parts. [`normal_filter`] rejects
-//!    normals that a surface does not admit: at such a seam only contacts with the face count.
-//! 3. [`hidden`] drops contacts with faces that a neighbour hides, [`resolve`] those that another
-//!    contact explains. Solids that overlap always keep a contact.
+//! normals that a surface does not admit: at such a seam only contacts with the face count.
+//! 3. [`hidden`] drops contacts with faces that a neighbour hides; [`resolve`] drops contacts that
+//! another contact explains. Solids that overlap always keep a contact.
 //! 4. [`inside`] adds the contacts of pieces that lie wholly inside a body and touch no part.
-//! 5. [`patch`] merges the rest into flat patches.
+//! 5. [`patch`] merges the remaining contacts into flat patches.
 //!
-//! Boxes and hulls take step 2 in [`faces`], 8 triangles of a surface at a time. [`chain`] does
-//! all steps for a chain in 2D, [`ball`] for a ball in 3D.
+//! For boxes and hulls, [`faces`] does step 2 for 8 triangles of a surface at a time. [`chain`]
+//! does all steps for a chain in 2D, [`ball`] for a ball in 3D.
 //!
-//! The classes of normals at a seam are those of Catto's chain shapes (Box2D, 2023), whose edges
-//! know their neighbours.
+//! The classes of normals at a seam follow Catto's chain shapes (Box2D, 2023), whose edges store
+//! their neighbours.
 //!
 //! A query for the contact with a composite returns the deepest of the contacts that a world would
-//! have; with a half-space, that of the nearest part.
+//! have; for a half-space and a composite, the contact of the nearest part.
 
 mod ball;
 #[cfg(test)]
@@ -75,23 +75,24 @@ use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
 /// Points kept per pair of parts before merging; enough for two facets of common solids.
 const PART_POINTS: usize = 16;
 
-/// Parts up to this fraction farther than the nearest are searched too.
+/// Parts farther than the nearest by up to this fraction of its distance are searched too.
 const NEARLY: f64 = 1.0 / 64.0;
 
-/// A limit up to this fraction of a solid's size is small.
+/// A limit of up to this fraction of a solid's bounding radius counts as small.
 const SMALL: f64 = 1.0 / 4.0;
 
-/// Contacts of two shapes, at least one of them a composite, cached between updates; in the frame
-/// of the first.
+/// Contacts of two shapes, at least one of them a composite, cached between updates. All are in the
+/// frame of the first shape.
 #[derive(Clone, Debug)]
 pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     patches: Vec<Patch<N, D>>,
     ids: PairIds,
-    /// The centre of the first shape, in the frame of the second, when it was last on the side of
-    /// the surface that it came from. A solid that was pushed halfway through a two-sided surface,
-    /// or jumped there, still counts as being on its old side.
+    /// Centre of the first shape, in the frame of the second, at the last update in which it had
+    /// not crossed the surface. It decides sides: a solid that was pushed halfway through a
+    /// two-sided surface, or jumped across it, still counts as being on its old side. `None` if
+    /// there is no such update, or the first shape is not convex.
     reference: Reference<N, D>,
-    /// The pose of the second shape in the frame of the first at the last update.
+    /// Pose of the second shape in the frame of the first at the last update.
     pose12: Pose<N, D>,
     around: PartCache<N, D>,
 }
@@ -114,7 +115,8 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
         self.around = PartCache::default();
     }
 
-    /// Touches the cache lines that the next update reads first; the returned value is meaningless.
+    /// Reads the cache lines that the next update needs first, so that they are loaded early; the
+    /// returned value is meaningless.
     #[inline]
     pub(crate) fn prefetch(&self) -> N {
         let patch = self.patches.first();
@@ -123,18 +125,18 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
         max(max(normal, point.map_or(N::ZERO, |point| point.raw.distance)), self.around.prefetch())
     }
 
-    /// The manifolds, sorted by their first parts.
+    /// Returns the manifolds, sorted by their first parts.
     pub(crate) fn patches(&self) -> &[Patch<N, D>] {
         &self.patches
     }
 
-    /// The number of contact points.
+    /// Returns the number of contact points in all manifolds.
     pub(crate) fn len(&self) -> usize {
         self.patches.iter().map(|patch| patch.points.len()).sum()
     }
 
-    /// Calls `each` with the normal, the distance and the first point of each contact; the distance
-    /// may be changed.
+    /// Calls `each` with the normal, the distance and the first point of each contact point. `each`
+    /// may change the distance.
     pub(crate) fn each_point(&mut self, mut each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
         for Patch { normal, points } in &mut self.patches {
             points.iter_mut().for_each(|point| {
@@ -160,23 +162,24 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// Computes the contacts for new poses, of two shapes or of one with itself; points that moved
-    /// keep their ids. If a shape has changed, [`Self::forget_shapes`] must be called before.
+    /// Computes the contacts for new poses, of two shapes or, if `is_self`, of one with itself;
+    /// points that moved keep their ids. If a shape has changed, [`Self::forget_shapes`] must be
+    /// called first.
     pub(crate) fn update(
         &mut self,
         between: &Between<'_, N, D>,
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
-        // A solid inside a body touches no part, and one beside a ghost alone touches the neighbour:
-        // only the generic path handles them.
+        // Only the generic path handles bodies and ghosts: a solid inside a body touches no part,
+        // and one that only a ghost touches gets the contact of the ghost's neighbour.
         let has_rules = between.has_bodies() || between.has_ghosts();
         if has_rules || !<N::Algorithms>::update_quickly(self, between, request) {
             self.update_in_general(between, is_self, request);
         }
     }
 
-    /// [`Self::update`] by the generic path.
+    /// Computes the contacts by the generic path.
     fn update_in_general(
         &mut self,
         between: &Between<'_, N, D>,
@@ -187,7 +190,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let around = &mut self.around;
         let culled = gather::culled(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
-        // A body has its own inside: no side is remembered.
+        // A body has its own inside, so no reference point is kept for it.
         let old = self.reference.filter(|_| !between.has_bodies());
         let travelled = Travelled { old, clearance: culled.clearance };
         let reference = center.map(|center| advanced(between, &travelled, center));
@@ -198,7 +201,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         self.conclude(&between.pair, request, [reference, center], &contacts, &arena);
     }
 
-    /// Merges the contacts into patches, and keeps the reference point for the next update:
+    /// Merges the contacts into patches, and stores the reference point for the next update:
     /// `reference` while the shapes overlap, else `center`.
     fn conclude(
         &mut self,
@@ -217,7 +220,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
             pieces.push(found.piece.clone());
         }
         if !pieces.is_empty() && self.patches.capacity() == 0 {
-            // Most pairs never have more than one; an exact capacity keeps memory compact.
+            // Most pairs never have more than one patch; an exact capacity saves memory.
             self.patches.reserve_exact(1);
         }
         let (pieces, points) = (pieces.as_slice(), arena.points.as_slice());
@@ -228,8 +231,9 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     }
 }
 
-/// Whether [`Query::resolve_contacts`] would change nothing: all contacts are [`PartStatus::Own`], their
-/// faces have about one normal, and the lowest point is as near as the nearest part.
+/// Returns whether [`Query::resolve_contacts`] would change nothing: all contacts are
+/// [`PartStatus::Own`], their faces have about one normal, and the lowest point is as near as the
+/// nearest part.
 fn is_resolved<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
     let mut face: Option<Vector<N, D>> = None;
@@ -247,13 +251,13 @@ fn is_resolved<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool 
     contacts.is_empty() || lowest <= max(distance, N::ZERO)
 }
 
-/// The centre of a convex first shape, in the frame of the second.
+/// Returns the centre of a convex first shape, in the frame of the second; `None` without a centre.
 fn middle_of_first<N: Real, const D: usize>(between: &Between<'_, N, D>) -> Option<Point<N, D>> {
     let map = Geometry(between.pair.first).as_support_map()?;
     Some(between.pose21.point(&map.center()))
 }
 
-/// The reference point of the last update, and the free space around the new centre.
+/// Reference point of the last update, and the free space around the new centre.
 struct Travelled<N: Real, const D: usize> {
     old: Reference<N, D>,
     /// Lower bound of the distance from the centre of the first shape to the second; zero if
@@ -276,7 +280,7 @@ fn advanced<N: Space<D>, const D: usize>(
     let (Some(old), Some(composite), Some(map)) = (old, composite, map) else { return center };
     let shift = center - old;
     let length = shift.norm();
-    // Half of the clearance leaves room for rounding.
+    // Half the clearance leaves a margin for rounding.
     let is_free = length < clearance * N::HALF;
     if is_free || shift == Vector::<N, D>::zeros() || length > N::TWO * size(map) {
         return center;
@@ -285,10 +289,10 @@ fn advanced<N: Space<D>, const D: usize>(
     if is_hit { old } else { center }
 }
 
-/// The input for the contacts of a pair.
+/// The inputs for the contacts of a pair.
 pub(crate) struct Query<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
-    /// Whether the two are one shape.
+    /// Whether the pair is one shape with itself.
     is_self: bool,
     /// The cached parts of the second shape.
     around: &'a PartCache<N, D>,
@@ -299,14 +303,14 @@ pub(crate) struct Query<'a, N: Real, const D: usize> {
 
 pub(crate) type PartContacts<N, const D: usize> = SmallVec<[PartContact<N, D>; 8]>;
 
-/// Above this number of pairs of parts, memory is reserved for a contact each, with
-/// `POINTS_AT_A_PART` points.
+/// Above this number of pairs of parts, memory is reserved for one contact with `POINTS_AT_A_PART`
+/// points per pair.
 const MANY_PARTS: usize = 32;
 const POINTS_AT_A_PART: usize = 4;
 
 impl<N: Space<D>, const D: usize> Query<'_, N, D> {
-    /// Computes the contacts of nearby pairs of parts, and decides which hold. `prediction` is that
-    /// of the whole shapes; that of the parts in `request` may be larger.
+    /// Computes the contacts of nearby pairs of parts, and decides which of them hold. `prediction`
+    /// is the one of the whole shapes; `self.request` may have a larger one for the parts.
     fn part_contacts(
         &self,
         prediction: N,
@@ -334,7 +338,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         contacts
     }
 
-    /// Decides which contacts hold, and computes the points that are still missing.
+    /// Decides which contacts hold, and computes the points of those that still lack them.
     fn resolve_contacts(
         &self,
         scene: &Scene<'_, N, D>,
@@ -351,8 +355,8 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
 }
 
 /// Returns the request for each pair of parts. Its prediction is larger by the distance that
-/// turning can bring points nearer. Their centre of rotation, the nearest point, may lie on another
-/// part, so [`merge`] drops the points that stay beyond.
+/// turning can bring points nearer. The nearest point, about which the shape turns, may lie on
+/// another part, so [`merge`] drops points that even turning does not bring within the prediction.
 fn of_parts<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -363,7 +367,7 @@ fn of_parts<N: Space<D>, const D: usize>(
     ManifoldRequest { prediction: prediction + margin, sine: N::ZERO, max_points: PART_POINTS }
 }
 
-/// The bounding radius of a solid around its origin.
+/// Returns the bounding radius of a solid around its origin.
 fn size<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> N {
     map.reach() + map.rounding()
 }
@@ -383,7 +387,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     let in_world = |found| placed(&found, ordered.first, ordered.swapped);
     if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_path(&between)
     {
-        // Points that differ by rounding alone are all considered, whatever the limit is.
+        // Points whose distances differ only by rounding are all considered, whatever `limit` is.
         let rounding = rounding(&between);
         let mut found = deepest_within(&between, max(limit, rounding))?;
         let is_close = found.distance > N::ZERO && found.distance <= rounding;
@@ -404,14 +408,14 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     deepest(&between, nearest.distance, limit).map(in_world)
 }
 
-/// Whether `limit` is small relative to a convex first shape. Then visiting all parts within it
-/// costs less than searching for the nearest part first.
+/// Returns whether `limit` is small relative to a convex first shape. Then visiting all parts
+/// within it costs less than searching for the nearest part first.
 fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, limit: N) -> bool {
     let map = Geometry(between.pair.first).as_support_map();
     limit >= N::ZERO && map.is_some_and(|map| limit <= size(map) * N::lit(SMALL))
 }
 
-/// Whether the pair mostly has a kernel of its own: balls on surfaces, and chains.
+/// Returns whether most pairs like this one take a specialised path: balls on surfaces, and chains.
 fn has_own_path<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
     let [None, Some(parts)] = between.composites() else { return false };
     if parts.has_bodies() || parts.has_ghosts() {
@@ -422,18 +426,19 @@ fn has_own_path<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> boo
 }
 
 /// Returns the deepest contact of shapes whose distance is known. If they are apart, only parts
-/// about as near as the nearest are searched, unless none of these can be touched.
+/// about as near as the nearest are searched, unless the surface admits a contact with none of
+/// them.
 ///
-/// A contact whose distance differs from `distance` by rounding alone gets that distance: it exists
-/// where the shapes touch, and is no overlap where they are apart. Pairs with [`has_own_path`] that
-/// are apart keep the distance of the contact.
+/// A contact whose distance differs from `distance` only by rounding gets that distance: shapes
+/// that touch have a contact, and shapes that are apart do not overlap. For pairs with
+/// [`has_own_path`] that are apart, the distance of the contact is kept.
 fn deepest<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     distance: N,
     limit: N,
 ) -> Option<Separation<N, D>> {
     let (near, rounding) = (max(distance, N::ZERO), rounding(between));
-    // Along the normal of its face, a part may be a little farther than its distance.
+    // Along the normal of its face, a part may be slightly farther than its distance.
     let max_distance = near + near * N::lit(NEARLY) + rounding;
     let mut found = deepest_within(between, max_distance)
         .or_else(|| deepest_within(between, max(limit, N::ZERO)))?;
@@ -447,16 +452,16 @@ fn deepest<N: Space<D>, const D: usize>(
     (found.distance <= limit).then_some(found)
 }
 
-/// Returns the contact with distance zero, for shapes that touch and are apart by rounding alone.
+/// Returns the contact with distance zero, for shapes whose positive distance is rounding error.
 fn touching<N: Real, const D: usize>(found: &Separation<N, D>) -> Separation<N, D> {
     Separation { distance: N::ZERO, point2: found.point1, ..*found }
 }
 
-/// Bound of the rounding errors of lengths in the pair.
+/// Returns a bound of the rounding errors of lengths in the pair.
 fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
     let size = |kind: Kind<'_, N, D>| {
         let aabb = aabb_of(kind, &Pose::identity());
-        // Points far from the origin have large coordinates too.
+        // Points far from the origin also have large coordinates.
         let far = || aabb.half_extents().norm() + aabb.center().coords.norm();
         if aabb.is_bounded() { far() } else { N::ZERO }
     };

@@ -1,41 +1,45 @@
-//! Decides whether a contact with one part of a surface is a contact of the whole.
+//! Decides whether the normal of a contact with one part of a surface is a normal of the whole
+//! surface.
 
 use crate::math::{Point, Real, Space, Vector, unit};
 use crate::shape::{FeatureId, SurfaceAccess};
 
-/// A normal within this many rounding units of the face's own counts as that.
+/// Number of rounding units within which a normal counts as the face's own.
 const ROUNDING: f64 = 4096.0;
-/// On a face the only normal is its own: a normal that differs by less counts as that.
+/// A contact on the inside of a face has the face's normal; a normal that differs by less than this
+/// counts as the face's normal.
 const ON_FACE: f64 = 1.0 / 64.0;
-/// A normal with a smaller component along the face's own belongs to the other side of the face.
+/// A normal whose component along the face's normal is below this belongs to the back of the face.
 pub(super) const BEHIND: f64 = -0.5;
 
-/// To find a ridge, the normal of the face is tilted by this share towards another: by more than
-/// the limit of flatness.
+/// To detect a ridge, the normal of the face is tilted by this fraction towards the contact's
+/// normal: by more than the limit of flatness.
 const A_LITTLE: f64 = 1.0 / 32.0;
 
-/// The result of the filter for one contact. Normals are away from the part, in the frame of the
+/// Result of the filter for one contact. Normals point away from the part, in the frame of the
 /// composite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FilteredNormal<N: Real, const D: usize> {
     /// The part cannot be touched from the position of the other solid.
     Nothing,
-    /// The surface admits the normal at the feature.
+    /// The surface admits the contact's normal at the feature.
     Admitted,
-    /// The normal is that of the face, within rounding.
-    Face(Vector<N, D>),
-    /// The seam does not admit the normal. A contact with the face itself has the normal given
+    /// The contact's normal is the face's normal, up to rounding; the face's exact normal is given
     /// here.
+    Face(Vector<N, D>),
+    /// The seam does not admit the contact's normal. A contact with the face itself has the normal
+    /// given here.
     Snapped(Vector<N, D>),
-    /// The normal lies beyond those of a ridge, on whose other side another part has a face. The
-    /// contact with this part's face counts only if no other contact explains the overlap.
+    /// The contact's normal lies beyond all normals of a ridge, on whose other side another part
+    /// has a face. The contact with this part's face, whose normal is given here, holds only if no
+    /// other contact explains the overlap.
     Beyond(Vector<N, D>),
-    /// The seam does not admit the normal, and the part has no face.
+    /// The seam does not admit the contact's normal, and the part has no face.
     Refused,
 }
 
 impl<N: Real, const D: usize> FilteredNormal<N, D> {
-    /// The normal of the face that the contact is with.
+    /// Returns the normal of the face in contact; `None` if there is none.
     pub(super) const fn face(&self) -> Option<Vector<N, D>> {
         match self {
             Self::Face(face) | Self::Snapped(face) | Self::Beyond(face) => Some(*face),
@@ -44,21 +48,22 @@ impl<N: Real, const D: usize> FilteredNormal<N, D> {
     }
 }
 
-/// The contact of a part with the other solid, in the frame of the composite.
+/// A contact of a part with the other solid, in the frame of the composite.
 pub(super) struct Case<'a, N: Real, const D: usize> {
     pub(super) part: u32,
-    /// The feature of the part at the contact; most cases are decided without it.
+    /// Computes the feature of the part at the contact; most cases are decided without it.
     pub(super) feature: &'a dyn Fn() -> FeatureId,
-    /// Whether the other solid is beside the part, so that `Snapped` and `Beyond` have the same
-    /// effect and need no distinction.
+    /// Whether the other solid has no point over the part's face, so that `Snapped` and `Beyond`
+    /// have the same effect.
     pub(super) is_beside: bool,
-    /// Unit, away from the part.
+    /// Unit normal of the contact, away from the part.
     pub(super) outward: Vector<N, D>,
-    /// From the part to the reference point of the other solid.
+    /// Vector from the centre of the part to the reference point of the other solid.
     pub(super) toward: Vector<N, D>,
 }
 
-/// Whether a solid whose reference point is `center` can touch the part; true without a surface.
+/// Returns whether a solid with the reference point `center` can touch the part; true without a
+/// surface.
 pub(super) fn faces<N: Space<D>, const D: usize>(
     surface: Option<SurfaceAccess<'_, N, D>>,
     part: u32,
@@ -67,8 +72,8 @@ pub(super) fn faces<N: Space<D>, const D: usize>(
     surface.is_none_or(|surface| surface.faces(part, center))
 }
 
-/// Filters the normal of a contact by the surface of a shape; without a surface every normal is
-/// admitted.
+/// Filters the normal of a contact by the surface of the part's shape; without a surface every
+/// normal is admitted.
 pub(super) fn filter_normal<N: Space<D>, const D: usize>(
     surface: Option<SurfaceAccess<'_, N, D>>,
     case: &Case<'_, N, D>,
@@ -105,9 +110,9 @@ pub(super) fn filter_normal<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the normal of the face tilted slightly towards the normal of the contact. If the seam
-/// admits it but not the contact's, the part ends at a ridge, and the contact's normal lies beyond
-/// all that the ridge has.
+/// Returns the normal of the face, tilted slightly towards the normal of the contact; `None` if its
+/// length vanishes. If the seam admits the tilted normal but not the contact's, the part ends at a
+/// ridge, and the contact's normal lies beyond all normals of the ridge.
 fn tilted<N: Space<D>, const D: usize>(
     case: &Case<'_, N, D>,
     face: &Vector<N, D>,
@@ -116,7 +121,7 @@ fn tilted<N: Space<D>, const D: usize>(
     unit(&tilted).map(|(tilted, _)| tilted)
 }
 
-/// Whether a feature is a flat face; a segment of a surface in 2D is an edge instead.
+/// Returns whether a feature is a flat face. A segment of a surface in 2D is an edge, so it is not.
 fn is_face(feature: FeatureId) -> bool {
     matches!(feature, FeatureId::Face(_))
 }

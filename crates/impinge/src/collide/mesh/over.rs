@@ -1,24 +1,28 @@
 //! The feature of a triangle that a ball touches, if rounding cannot change it.
 //!
 //! In general the feature of a contact follows from the supporting features of a manifold. For a
-//! ball over a triangle that is not thin the region of its centre decides: over the inside, beside
-//! one side or beside one corner, by far more than rounding error.
+//! ball near a triangle that is not thin, the Voronoi region that contains the ball's centre
+//! decides: that of the face, of a side or of a corner. The feature counts as certain only if the
+//! centre is farther from the region's border than rounding error.
 
 use crate::math::{Mapped, Point, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Triangle};
 
-/// Distance from the border of a region, in tolerances, from which the region is certain.
+/// Distance from the border of a Voronoi region, in units of the rounding tolerance, beyond which
+/// the region is certain.
 const CERTAIN: f64 = 64.0;
-/// The least ratio of a triangle's height to its longest side.
+/// Smallest ratio of a triangle's height to its longest side; thinner triangles have no certain
+/// feature.
 const MIN_HEIGHT: f64 = 1.0 / 32.0;
 
-/// In 2D triangles are filled and have no such regions.
+/// Returns `None`: triangles in 2D are filled and have no such regions.
 pub(crate) fn over2<N: Real>(_: &Triangle<N, 2>, _: &Point<N, 2>, _: N) -> Option<FeatureId> {
     None
 }
 
-/// Returns the feature of a triangle in 3D nearest to the centre of a ball, as supporting features
-/// would name it; of the two faces, the one on the side of the ball. `None` if it is not certain.
+/// Returns the feature of a triangle in 3D nearest to the centre of a ball, with the id that
+/// supporting features have; for a face, the id of the one on the centre's side. `None` if the
+/// triangle is thin, or the centre is within `CERTAIN · tolerance` of a border.
 pub(crate) fn over3<N: Real>(
     triangle: &Triangle<N, 3>,
     center: &Point<N, 3>,
@@ -49,19 +53,20 @@ pub(crate) fn over3<N: Real>(
     beside(&Border { sides, arms, lengths, insides, margin })
 }
 
-/// A triangle and the position of a point relative to its border.
+/// A triangle and the position of a point relative to its sides and corners.
 struct Border<N: Real> {
     sides: [Vector<N, 3>; 3],
-    /// From the corners to the point.
+    /// Vectors from the corners to the point.
     arms: [Vector<N, 3>; 3],
     lengths: [N; 3],
-    /// The distance of the point from each side, positive inside.
+    /// Signed distances of the point from the lines of the sides, within the triangle's plane;
+    /// positive inside.
     insides: [N; 3],
     margin: N,
 }
 
-/// Returns the side that the point is beyond, between its ends, or the corner that it is beyond
-/// along both sides.
+/// Returns the side or corner whose Voronoi region contains the point; `None` close to the border
+/// of a region.
 fn beside<N: Real>(border: &Border<N>) -> Option<FeatureId> {
     let Border { sides, arms, lengths, insides, margin } = border;
     // Where two sides meet at a small angle, the nearest point may be on the other side.

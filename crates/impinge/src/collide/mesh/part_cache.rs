@@ -1,6 +1,6 @@
 //! The parts around a solid, cached between updates.
 //!
-//! The cache belongs to the shape of the last update: a new shape clears it.
+//! The cache holds parts of the shape of the last update; [`Default`] clears it for a new shape.
 //!
 //! ```text
 //!  parts   p0 p1 p2 … p10                       ascending indices of parts
@@ -16,21 +16,21 @@ use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportMap, Triangle};
 
-/// The margin around a box in which parts are cached for later updates.
+/// Margin around a box in which parts are cached for later updates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum CacheMargin {
-    /// Until it holds more parts than one packet, or another given number.
+    /// The first margin, used until it holds more parts than `most`.
     #[default]
     Large,
     /// The large margin held too many parts.
     Small,
-    /// No later update: only the box itself.
+    /// No margin, for a single update.
     None,
 }
 
 impl CacheMargin {
-    /// The margin relative to the largest half extent of the box.
+    /// Returns the margin relative to the largest half extent of the box.
     fn share(self) -> f64 {
         match self {
             Self::Large => 0.5,
@@ -40,38 +40,37 @@ impl CacheMargin {
     }
 }
 
-/// The cached seams of a triangle.
+/// State of the cached seams of a triangle.
 #[derive(Clone, Copy, Debug)]
 enum KeptSeams<N: Real> {
     /// Not computed yet.
     Unasked,
-    /// The surface must be called each time.
+    /// The surface does not give them; it must be called each time.
     Unknown,
     Known(FaceSeams<N>),
 }
 
-/// The parts around a convex solid, found for a larger box than it needs. They serve as long as the
-/// solid stays in that box.
+/// Parts around a convex solid, found for a larger box than the solid needs. They stay valid as
+/// long as the solid stays in that box.
 ///
-/// Corners of triangles and segments in the frame of the composite are copied, 8 parts side by
-/// side, in one block of memory; in the composite they lie wherever its vertices are. That takes 36
-/// bytes for each triangle around the solid with `f32`.
-/// each triangle around the solid with `f32`.
+/// Corners of triangles and segments, in the frame of the composite, are copied into packets of 8
+/// parts, in one block of memory; in the composite they are scattered. With `f32` the copy takes 36
+/// bytes per triangle.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PartCache<N: Real, const D: usize> {
-    /// The box with all its parts in the cache; `None` before the first search.
+    /// Box all of whose parts are in the cache; `None` before the first search.
     within: Option<Aabb<N, D>>,
-    /// The indices of all parts that overlap `within`, ascending.
+    /// Indices of all parts that overlap `within`, ascending.
     parts: SmallVec<[u32; 8]>,
-    /// The corners of all parts; empty unless all have corners in the frame of the composite.
+    /// Corners of all parts; empty unless all parts have corners in the frame of the composite.
     tiles: Vec<PartPacket<N, D>>,
-    /// The seams of all parts, filled where a solid was near; empty if no solid needs them.
+    /// Seams of all parts, filled where a solid was near; empty if no solid needs them.
     seams: Vec<KeptSeams<N>>,
-    /// Whether the corners in `tiles` are those of segments.
+    /// Whether the parts in `tiles` are segments, else triangles.
     are_segments: bool,
-    /// Half the extents of the solid's core, in its own frame.
+    /// Half extents of the solid's core, in its own frame; `None` until first needed.
     half: Option<Vector<N, D>>,
-    /// The margin of the next search; it never grows.
+    /// Margin of the next search; it may shrink but never grows.
     margin: CacheMargin,
 }
 
@@ -89,14 +88,14 @@ impl<N: Real, const D: usize> PartCache<N, D> {
 }
 
 impl<N: Real, const D: usize> PartCache<N, D> {
-    /// A cache for a single update, without a margin.
+    /// Returns a cache for a single update, without a margin.
     pub(super) fn for_once() -> Self {
         Self { margin: CacheMargin::None, ..Self::default() }
     }
 }
 
 impl<N: Real, const D: usize> PartCache<N, D> {
-    /// A meaningless number from the first packet, to load its cache line.
+    /// Reads the first packet, to load its cache line; the returned value is meaningless.
     #[inline]
     pub(super) fn prefetch(&self) -> N {
         self.tiles.first().map_or(N::ZERO, |tiles| tiles.corners[0][0][0])
@@ -104,7 +103,8 @@ impl<N: Real, const D: usize> PartCache<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PartCache<N, D> {
-    /// Makes sure that the cache holds all parts that overlap a box; false if the box is unbounded.
+    /// Makes sure that the cache holds all parts that overlap a box; returns `false` if the box is
+    /// unbounded.
     pub(super) fn covers(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
@@ -113,7 +113,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.covers_with(composite, aabb, LANES)
     }
 
-    /// [`Self::covers`], with the large margin as long as this holds at most `most` parts.
+    /// Does the work of [`Self::covers`], but keeps the large margin as long as it holds at most
+    /// `most` parts.
     pub(super) fn covers_with(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
@@ -130,13 +131,13 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         true
     }
 
-    /// Whether the cache holds all parts that overlap a box.
+    /// Returns whether the cache holds all parts that overlap a box.
     pub(super) fn holds(&self, aabb: &Aabb<N, D>) -> bool {
         self.within.as_ref().is_some_and(|within| within.contains(aabb))
     }
 
-    /// Searches the parts around a box with a margin and copies their corners. Once the large
-    /// margin holds more than `most` parts, the small one is used from then on.
+    /// Searches the parts around a box, with the margin, and copies their corners. If the large
+    /// margin holds more than `most` parts, this and all later searches use the small one.
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
         let with_margin = |margin: CacheMargin| aabb.loosened(half * N::lit(margin.share()));
@@ -167,7 +168,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.keep_found(composite, within);
     }
 
-    /// Keeps the seams of parts that were cached before, and drops the rest.
+    /// Keeps the seams of parts that were cached before, and drops the others. `before` are the old
+    /// indices.
     fn keep_seams(&mut self, before: &[u32]) {
         if before.is_empty() {
             return self.seams.clear();
@@ -189,16 +191,16 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         composite.search().overlapping(within, &mut |part| self.parts.push(part));
     }
 
-    /// Copies the corners of all parts, if all have corners.
+    /// Copies the corners of all parts; leaves `tiles` empty unless all parts have corners.
     fn fill_tiles(&mut self, composite: &dyn CompositeShape<N, D>) {
-        // Exact capacity: there are as many of these lists as pairs.
+        // Exact capacity, because there is one such list per pair.
         self.tiles.reserve_exact(self.parts.len().div_ceil(LANES));
         for parts in self.parts.chunks(LANES) {
             let mut tiles = PartPacket::blank();
             for lane in 0..LANES {
                 let part = composite.part(parts[lane.min(parts.len() - 1)]);
                 let is_first = lane == 0 && self.tiles.is_empty();
-                // Corners are only kept for parts in the frame of the composite.
+                // Corners are cached only for parts in the frame of the composite.
                 let corners = corners_of(&part).filter(|_| part.pose.is_same(&Pose::identity()));
                 match corners {
                     Some((corners, is_segment)) if is_first || is_segment == self.are_segments => {
@@ -212,18 +214,18 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         }
     }
 
-    /// The cached parts, ascending.
+    /// Returns the indices of the cached parts, ascending.
     pub(super) fn parts(&self) -> &[u32] {
         &self.parts
     }
 
-    /// The corners of all parts in packets of 8; empty if some part has none.
+    /// Returns the corners of all parts in packets of 8; empty unless all parts have corners.
     pub(super) fn tiles(&self) -> &[PartPacket<N, D>] {
         &self.tiles
     }
 
-    /// Gets the seams of triangles from the surface of the composite; `masks` has a bit for each
-    /// part of each packet that needs them.
+    /// Fills in the seams of triangles from the surface of the composite. `masks` selects, by a bit
+    /// per part of each packet, the parts that need them.
     pub(super) fn learn_seams(&mut self, composite: &dyn CompositeShape<N, D>, masks: &[u8]) {
         let surface = composite.surface_access().filter(|_| self.has_triangles_alone());
         let Some(surface) = surface else { return };
@@ -239,7 +241,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         }
     }
 
-    /// The seams of the part at an index in [`Self::parts`]; `None` if unknown.
+    /// Returns the seams of the part at `index` in [`Self::parts`]; `None` if they are not cached.
     pub(super) fn seams(&self, index: usize) -> Option<&FaceSeams<N>> {
         match self.seams.get(index)? {
             KeptSeams::Known(seams) => Some(seams),
@@ -247,17 +249,17 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         }
     }
 
-    /// Whether all parts are segments with cached corners.
+    /// Returns whether all cached parts are segments with corners; true without parts.
     pub(super) fn has_segments_alone(&self) -> bool {
         self.parts.is_empty() || self.are_segments && !self.tiles.is_empty()
     }
 
-    /// Whether all parts are triangles with cached corners.
+    /// Returns whether all cached parts are triangles with corners; true without parts.
     pub(super) fn has_triangles_alone(&self) -> bool {
         self.parts.is_empty() || !(self.are_segments || self.tiles.is_empty())
     }
 
-    /// Half the extents of the core of the solid, along its own axes.
+    /// Returns the half extents of the solid's core along its own axes, computed at the first call.
     pub(super) fn half(&mut self, map: &dyn SupportMap<N, D>) -> Vector<N, D> {
         *self.half.get_or_insert_with(|| {
             let center = map.center();
@@ -272,7 +274,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         })
     }
 
-    /// Returns a part from its cached corners.
+    /// Returns a part from its cached corners; `None` if it is not cached.
     pub(super) fn part(&self, part: u32) -> Option<Part<'static, N, D>> {
         if self.tiles.is_empty() {
             return None;
@@ -288,8 +290,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
     }
 }
 
-/// Returns the corners of a part in its own frame, the second end of a segment twice, and whether
-/// it is a segment; `None` for other parts.
+/// Returns the corners of a part in its own frame, and whether it is a segment, whose second end
+/// occurs twice; `None` for other parts.
 pub(super) fn corners_of<N: Real, const D: usize>(
     part: &Part<'_, N, D>,
 ) -> Option<([Point<N, D>; 3], bool)> {

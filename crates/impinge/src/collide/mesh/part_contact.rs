@@ -1,4 +1,4 @@
-//! The contact of each pair of parts, with a normal that the surfaces admit.
+//! Computes the contact of each pair of parts, with a normal that the surfaces admit.
 //!
 //! ```text
 //!   separation ──> filter_normal ──> settled ──> Nothing   no contact
@@ -22,48 +22,49 @@ use crate::shape::{FeatureId, Kind, SurfaceAccess};
 /// Whether a contact of two parts is a contact of the shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PartStatus {
-    /// It is one.
+    /// The contact holds with its own normal.
     Own,
-    /// It is along the normal of a face, whose seam does not admit the normal of the parts. Dropped
-    /// if a shallower contact explains the overlap.
+    /// The contact is along the normal of a face, because the seam does not admit the normal of the
+    /// parts. It is dropped if a shallower contact explains the overlap.
     Snapped,
-    /// It is along the normal of a face that ends at a ridge, and the normal of the parts lies
-    /// beyond the ridge. Dropped if another contact explains the overlap, even one along the same
-    /// normal.
+    /// The contact is along the normal of a face that ends at a ridge, and the normal of the parts
+    /// lies beyond the ridge. It is dropped if another contact explains the overlap, even one along
+    /// the same normal.
     Beyond,
-    /// It is dropped, unless it is the nearest and no other contact is as near.
+    /// The contact is dropped, unless it is the nearest and no other contact is as near.
     Left,
 }
 
-/// The contact of two parts that are within reach of each other.
+/// Contact of two parts that are within the prediction of each other.
 #[derive(Clone, Debug)]
 pub(crate) struct PartContact<N: Real, const D: usize> {
-    /// The separation of the two parts alone, and its normal: unit, from the first shape to the
-    /// second, in the frame of the first. The normal is zero without a normal filter.
+    /// Signed distance of the two parts alone.
     pub(super) distance: N,
+    /// Normal of this distance: a unit vector from the first shape to the second, in the frame of
+    /// the first; zero without a normal filter.
     pub(super) normal: Vector<N, D>,
-    /// The manifold of the pair, in the frame of the first shape. It has no points where the filter
-    /// drops the contact, and until [`nearest_points`] where [`Self::is_owing`].
+    /// Manifold of the pair, in the frame of the first shape. It has no points if the filter drops
+    /// the contact, and none until [`nearest_points`] if [`Self::is_owing`].
     pub(super) piece: Piece<N, D>,
-    /// The least distance of the points in `piece`; infinite without points.
+    /// Smallest distance of the points in `piece`; infinite without points.
     pub(super) lowest: N,
     pub(super) status: PartStatus,
-    /// The normal of the face in contact of the second shape's part, in the frame of the second
-    /// shape; `None` for a contact with another feature.
+    /// Normal of the face of the second shape's part in contact, in the frame of the second shape;
+    /// `None` for a contact with another feature.
     pub(super) face: Option<Vector<N, D>>,
-    /// Bound of the rounding errors of lengths.
+    /// Bound of the rounding errors of lengths of the pair.
     pub(super) tolerance: N,
 }
 
-/// The buffers of one update: the points of all contacts, and the manifold being built.
+/// Buffers of one update.
 #[derive(Default)]
 pub(crate) struct Arena<N: Real, const D: usize> {
-    /// The points of all pieces.
+    /// Points of all pieces.
     pub(super) points: RawPoints<N, D>,
-    /// Bound of the rounding errors of parts that were skipped.
+    /// Largest bound of the rounding errors of parts that were skipped.
     pub(super) rounding: N,
-    /// Whether all faces in contact are fronts, with neighbours oriented alike. Then none hides
-    /// another: the solid is in front of all.
+    /// Whether all faces in contact are fronts, with neighbours oriented alike. Then no face hides
+    /// another, because the solid is in front of all.
     pub(super) are_fronts: bool,
     raw: RawManifold<N, D>,
 }
@@ -81,19 +82,20 @@ impl<N: Real, const D: usize> PartContact<N, D> {
         self.piece.parts
     }
 
-    /// Whether the contact holds but has no points yet: those along the normal of a face did not
-    /// hold.
+    /// Returns whether the contact holds but has no points yet: the points along the normal of a
+    /// face did not represent it.
     pub(super) fn is_owing(&self) -> bool {
         self.status != PartStatus::Left && self.piece.points.is_empty()
     }
 
-    /// Replaces the points.
+    /// Replaces the manifold and its smallest distance.
     pub(super) fn set_piece(&mut self, piece: Piece<N, D>, lowest: N) {
         (self.piece, self.lowest) = (piece, lowest);
     }
 }
 
-/// Appends the manifold in the arena to its points; returns the piece and its least distance.
+/// Appends the points of the arena's manifold to the arena's points; returns the piece and its
+/// smallest distance.
 fn appended<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
@@ -103,12 +105,12 @@ fn appended<N: Space<D>, const D: usize>(
     (placed.piece(&arena.raw, parts, &mut arena.points), lowest)
 }
 
-/// The reference point of the first shape in the frame of the second: it decides on which side of a
-/// surface the shape is. `None` for the centre of the part.
+/// Reference point of the first shape in the frame of the second. It decides on which side of a
+/// surface the shape is; `None` stands for the centre of the part.
 pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 
-/// Computes the contact of two parts; `known` is their separation if it is known. `None` if they
-/// are beyond the prediction, or on a side where the surface cannot be touched.
+/// Computes the contact of two parts; `known` is their separation, if it is already known. `None`
+/// if they are beyond the prediction, or on a side from which the surface cannot be touched.
 pub(super) fn compute<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     placed: &PlacedPair<'_, N, D>,
@@ -120,11 +122,11 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
     let (reference, request) = (query.reference, query.request);
     let has_surface = scene.surfaces.iter().any(Option::is_some);
     if !(has_surface && placed.has_centers()) {
-        // The normal of a half-space is the same everywhere: seams do not matter.
+        // The normal of a half-space is the same everywhere, so seams do not matter.
         return contact_of_solids(placed, parts, request, arena);
     }
     let centers = match scene.surfaces[0] {
-        // Without a surface of the first shape, centres in its frame do not matter.
+        // If the first shape has no surface, centres in its frame are not needed.
         None => placed.centers_in_second(reference).map(|[other, own]| [[other; 2], [own; 2]])?,
         Some(_) => placed.centers()?,
     };
@@ -157,10 +159,10 @@ pub(super) fn contact_of_solids<N: Space<D>, const D: usize>(
 struct PartConfiguration<'a, N: Real, const D: usize> {
     placed: &'a PlacedPair<'a, N, D>,
     parts: [u32; 2],
-    /// The centre of part `i` in the frame of shape `j`, as `centers[i][j]`; for a convex first
-    /// shape all are in the frame of the second.
+    /// Centre of part `i` in the frame of shape `j`, as `centers[i][j]`. If the first shape has no
+    /// surface, all are in the frame of the second.
     centers: [[Point<N, D>; 2]; 2],
-    /// Replaces the centre of the first part in the frame of the second shape.
+    /// If it is `Some`, it replaces the centre of the first part in the frame of the second shape.
     reference: &'a Reference<N, D>,
 }
 
@@ -223,7 +225,8 @@ impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     }
 }
 
-/// Whether a ball lies beside a triangle, over a side or a corner: it has no point over the face.
+/// Returns whether `over` is a side or corner of a triangle: then a ball has no point over the
+/// face.
 pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
@@ -261,8 +264,8 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             PartStatus::Own
         }
         CombinedNormal::Forced(face, status) => {
-            // If the parts overlap by no more than rounding, no point is deeper than that, unless
-            // the solid comes from inside of a body.
+            // If the parts overlap by no more than rounding, no point gets a larger depth than the
+            // parts, unless the solid comes from inside of a body.
             let is_below = || {
                 distance <= N::ZERO && normal.dot(&face) < N::lit(BEHIND) && scene.are_bodies(parts)
             };
@@ -300,7 +303,8 @@ fn build_touching<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the feature of a triangle that is nearest to the centre of a ball, if it is certain.
+/// Returns the feature of a triangle nearest to the centre of a ball; `None` for other pairs and if
+/// it is not certain.
 fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Option<FeatureId> {
     let (Kind::Ball(_), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
         return None;
@@ -309,8 +313,8 @@ fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Opt
     <N::Algorithms>::over(triangle, &center, tolerance)
 }
 
-/// Whether `over` and the filter agree on face or rim: the contact gets the id of `over`, but a
-/// ball close to a side may have the normal of the face.
+/// Returns whether `over` and the filter agree on a face or on its border. If so, the contact gets
+/// the feature `over`; a ball close to a side may still have the normal of the face.
 pub(super) fn is_certain<N: Real, const D: usize>(
     over: FeatureId,
     filtered: &FilteredNormal<N, D>,
@@ -318,7 +322,7 @@ pub(super) fn is_certain<N: Real, const D: usize>(
     matches!(over, FeatureId::Face(_)) == matches!(filtered, FilteredNormal::Face(_))
 }
 
-/// Makes the contact point of a ball and a known feature.
+/// Makes the contact point of a ball and a known feature of the second part.
 pub(super) fn of_ball<N: Real, const D: usize>(
     witness: &Separation<N, D>,
     over: FeatureId,
@@ -328,7 +332,8 @@ pub(super) fn of_ball<N: Real, const D: usize>(
     RawPoint { point1, distance, feature1, feature2, id, code: 0 }
 }
 
-/// Appends the manifold of two parts at their nearest points, without a normal filter.
+/// Appends the manifold of two parts at their nearest points, without a normal filter; returns the
+/// piece and its smallest distance.
 pub(super) fn nearest_points<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     parts: [u32; 2],
@@ -343,9 +348,9 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
     appended(&placed, parts, arena)
 }
 
-/// Whether the points along the normal of a face miss the contact: there are none, or the parts
-/// overlap and all points are apart. The face, clipped to where the other part is above it, may end
-/// beside the overlap.
+/// Returns whether the points along the normal of a face miss the contact: there are none, or the
+/// parts overlap and all points are apart. The face, clipped to where the other part is above it,
+/// may end beside the overlap.
 pub(super) fn overlooks<N: Real, const D: usize>(
     points: &[RawPoint<N, D>],
     distance: N,
@@ -355,19 +360,19 @@ pub(super) fn overlooks<N: Real, const D: usize>(
     !points.iter().any(|point| point.distance <= highest)
 }
 
-/// The combined result of both surfaces. Normals are from the first shape to the second, in the
-/// frame of the first.
+/// Combined result of both surfaces. Normals are from the first shape to the second, in the frame
+/// of the first.
 enum CombinedNormal<N: Real, const D: usize> {
     Nothing,
     Refused,
     /// A contact at the nearest points, with this normal.
     Found(Vector<N, D>),
-    /// Contacts along this normal of a face, if there are any.
+    /// Contact points along this normal of a face, if there are any.
     Forced(Vector<N, D>, PartStatus),
 }
 
-/// Combines the results of both surfaces for `normal`, which is in the frame of the first shape, as
-/// is the result. If two faces compete, the one closer to `normal` wins.
+/// Combines the results of both surfaces for `normal`. It and the result are in the frame of the
+/// first shape. If two faces compete, the one closer to `normal` wins.
 fn combined_normal<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     filtered: &[FilteredNormal<N, D>; 2],

@@ -1,7 +1,7 @@
-//! Merges the manifolds of many parts into few: one for each flat patch.
+//! Merges the manifolds of many pairs of parts into few manifolds: one for each flat patch.
 //!
-//! The manifolds of the parts of a composite lie side by side. Those with one normal in one plane
-//! are pieces of one contact area; of all their points those on its outline bound it.
+//! The manifolds of the parts of a composite lie side by side. Manifolds with one normal in one
+//! plane are pieces of one contact area, which the points on its outline bound.
 //!
 //! ```text
 //!  pieces, one per pair of parts        patch
@@ -35,18 +35,18 @@ use crate::math::{Pose, Real, Space, Vector};
 /// A manifold of two shapes, at least one of them a composite, in the frame of the first shape.
 #[derive(Clone, Debug)]
 pub(crate) struct Patch<N: Real, const D: usize> {
-    /// Unit, from the first shape to the second.
+    /// Unit normal from the first shape to the second.
     pub(crate) normal: Vector<N, D>,
-    /// Sorted by id.
+    /// Points, sorted by id.
     pub(crate) points: SmallVec<[PatchPoint<N, D>; 4]>,
 }
 
 /// A point of a manifold, and the parts it lies on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchPoint<N: Real, const D: usize> {
-    /// In the frame of the first shape.
+    /// The point, in the frame of the first shape.
     pub(crate) raw: RawPoint<N, D>,
-    /// The part of the first shape and of the second; 0 for a convex solid.
+    /// Index of the part of the first shape, and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
 }
 
@@ -54,11 +54,11 @@ pub(crate) struct PatchPoint<N: Real, const D: usize> {
 /// [`RawPoints`](crate::collide::RawPoints).
 #[derive(Clone, Debug)]
 pub(crate) struct Piece<N: Real, const D: usize> {
-    /// Unit, from the first shape to the second.
+    /// Unit normal from the first shape to the second.
     pub(crate) normal: Vector<N, D>,
-    /// The part of the first shape and of the second; 0 for a convex solid.
+    /// Index of the part of the first shape, and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
-    /// Its points, as a range of `Merging::points`.
+    /// Range of the piece's points in `Merging::points`.
     pub(crate) points: Range<usize>,
 }
 
@@ -66,11 +66,11 @@ pub(crate) struct Piece<N: Real, const D: usize> {
 pub(crate) struct Merging<'a, N: Real, const D: usize> {
     pub(crate) pair: &'a Pair<'a, N, D>,
     pub(crate) request: &'a ManifoldRequest<N>,
-    /// Bound of the rounding errors of lengths.
+    /// Bound of the rounding errors of lengths of the pair.
     pub(crate) tolerance: N,
-    /// Sorted by their parts; each pair of parts occurs once.
+    /// Pieces, sorted by their parts; each pair of parts occurs once.
     pub(crate) pieces: &'a [Piece<N, D>],
-    /// The points of all pieces.
+    /// Points of all pieces.
     pub(crate) points: &'a [RawPoint<N, D>],
     /// Cache of [`Self::size`].
     pub(crate) size: OnceCell<N>,
@@ -82,8 +82,9 @@ pub(super) type KeptIds = SmallVec<[Option<Inherited>; 32]>;
 /// Merges the manifolds of parts into patches, sorted by their first parts. Replaces the patches of
 /// the last update, where the second shape had the pose `old_pose12`.
 ///
-/// The manifolds of parts may hold points beyond the prediction. Of these, `request.sine` keeps
-/// those that a rotation about the deepest point of the patch may bring within it.
+/// The manifolds of parts may hold points beyond the prediction. Such a point is kept only if a
+/// rotation about the deepest point of the patch, by the angle of `request.sine`, may bring it
+/// within the prediction.
 pub(crate) fn merge<N: Space<D>, const D: usize>(
     merging: &Merging<'_, N, D>,
     old_pose12: &Pose<N, D>,
@@ -108,7 +109,8 @@ pub(crate) fn merge<N: Space<D>, const D: usize>(
     patches.truncate(groups.groups.len());
 }
 
-/// Makes a patch of a single point, as of a ball, if it is within the prediction.
+/// Makes a patch of a single point, as a ball has, if the point is within the prediction; else
+/// clears the patches.
 fn merge_one<N: Real, const D: usize>(
     merging: &Merging<'_, N, D>,
     piece: &Piece<N, D>,
@@ -129,7 +131,7 @@ fn merge_one<N: Real, const D: usize>(
     patches.truncate(1);
 }
 
-/// Returns what identifies a point between updates: its position on both shapes, its parts and its
+/// Returns what identifies a point between updates: its positions on both shapes, its parts and its
 /// features.
 fn anchors<N: Real, const D: usize>(
     pose: &PairPose<'_, N, D>,
@@ -139,14 +141,15 @@ fn anchors<N: Real, const D: usize>(
     pose.anchors(&raw.point1, raw.distance, (parts, [raw.feature1, raw.feature2]))
 }
 
-/// Returns the points of patch `at`, cleared for reuse; appends a patch if there is none.
+/// Clears patch `at`, gives it `normal`, and returns its empty list of points; appends a patch if
+/// `at` is their number.
 fn blank<N: Real, const D: usize>(
     patches: &mut Vec<Patch<N, D>>,
     at: usize,
     normal: Vector<N, D>,
 ) -> &mut SmallVec<[PatchPoint<N, D>; 4]> {
     if at == patches.len() {
-        // Most pairs have one patch at all times.
+        // Most pairs have one patch in all updates.
         patches.reserve_exact(1);
         patches.push(Patch { normal, points: SmallVec::new() });
     }
@@ -157,7 +160,7 @@ fn blank<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Merging<'_, N, D> {
-    /// Fills in the ids that points inherit, by the rule of [`ids`](crate::collide::manifold::ids):
+    /// Computes the ids that points inherit, by the rule of [`ids`](crate::collide::manifold::ids):
     /// first by parts and features where these identify one point, then by position.
     fn keep(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>], kept: &mut KeptIds) {
         kept.resize(self.points.len(), None);
@@ -181,8 +184,9 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         }
     }
 
-    /// Returns the point of a piece that inherits the id of an old point by its features; `None` if
-    /// the features do not identify one point, among the old points and the new.
+    /// Returns the index of the point of a piece that inherits the id of an old point by its
+    /// features. `None` if the features do not identify one point among the old points and among
+    /// the new.
     fn only_heir(
         &self,
         old_pose: &PairPose<'_, N, D>,
@@ -228,14 +232,14 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         });
     }
 
-    /// The size of the pair, for tolerances in proportion to it.
+    /// Returns the length scale of the pair, for relative tolerances; cached at the first call.
     pub(super) fn size(&self) -> N {
         *self.size.get_or_init(|| smaller_size([self.pair.first, self.pair.second]))
     }
 
-    /// Returns the index of the piece of two parts. `guess` is a guess: the points of one pair of
-    /// parts come together and patches are sorted by their parts, so that it is mostly there or
-    /// next.
+    /// Returns the index of the piece of two parts; `None` if there is none. The search starts at
+    /// `guess`: the points of one pair of parts come together and patches are sorted by their
+    /// parts, so that the piece is mostly there or next.
     #[inline]
     fn piece_of(&self, parts: [u32; 2], guess: usize) -> Option<usize> {
         let is_at = |at: usize| self.pieces.get(at).is_some_and(|piece| piece.parts == parts);

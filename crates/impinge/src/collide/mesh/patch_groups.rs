@@ -1,8 +1,9 @@
-//! Groups the pieces that make one patch: those with one normal in one plane.
+//! Groups the pieces that form one patch: the pieces with one normal in one plane.
 //!
-//! If all normals differ, as on rough terrain, each piece is a patch. Else pieces are taken deepest
-//! first, and each is compared with the deepest piece of the earlier patches that may have its
-//! normal. For many pieces, cells of the normals' component along one axis limit the candidates:
+//! If all normals differ, as on rough terrain, each piece is a patch. Otherwise pieces are taken
+//! deepest first, and each is compared with the deepest piece of the earlier patches that may have
+//! its normal. If there are many pieces, cells of the normals' component along one axis limit the
+//! candidates:
 //!
 //! ```text
 //!  AXIS ──┬──────┬──────┬──────┬──────┬──>   compared: the patches in the own cell
@@ -19,22 +20,22 @@ use super::patch::{Merging, Piece};
 use crate::math::order::{order_of, sort_few, sort_keyed};
 use crate::math::{Mapped, Real, Vector, min};
 
-/// Largest difference, as vectors, of normals in one patch; and largest height above a plane,
-/// relative to the distance, of points in one plane.
+/// Largest length of the difference of two unit normals in one patch; also the largest ratio of
+/// height above a plane to distance for points in one plane.
 const SAME: f64 = 1.0 / 1024.0;
-/// Up to this number of pieces there is one cell.
+/// Up to this number of pieces, all share one cell.
 const FEW_PIECES: usize = 12;
-/// Length of a cell: `SAME` and a margin for rounding.
+/// Length of a cell: `SAME` plus a margin for rounding.
 const CELL: f64 = SAME * (1.0 + 1.0 / 16.0);
 /// The axis of the cells, a unit vector. It is oblique to the coordinate axes, along which most
 /// faces of buildings lie.
 const AXIS: [f64; 3] = [0.36, 0.48, 0.8];
-/// Patches in one cell that a piece is compared with: the deepest.
+/// Patches per cell that a piece is compared with: the deepest ones.
 const MAX_COMPARED: usize = 32;
-/// Comparisons per piece to find out whether all normals differ.
+/// Comparisons per piece, on average, that may be spent to find out whether all normals differ.
 const MAX_ALIKE: usize = 4;
 
-/// A piece and the index of its deepest point.
+/// A piece and its deepest point, by their indices.
 #[derive(Clone, Copy)]
 pub(super) struct Lead {
     pub(super) piece: usize,
@@ -43,16 +44,17 @@ pub(super) struct Lead {
 
 /// The pieces of one patch.
 pub(super) struct PieceGroup {
-    /// The piece with the deepest point.
+    /// The piece with the deepest point of the group.
     pub(super) lead: Lead,
-    /// The lowest parts among the pieces.
+    /// Smallest pair of parts among the pieces.
     first: [u32; 2],
-    /// Its range in `Groups::order`.
+    /// Range of the group's pieces in `Groups::order`.
     pieces: Range<usize>,
 }
 
-/// Returns the pieces sorted by group, and sets the range of each group; the length of
-/// `group.pieces` gives the number of its pieces. `pieces` are (piece, group).
+/// Returns the pieces sorted by group, and sets the range of each group. On entry the length of
+/// each `PieceGroup::pieces` must be the number of the group's pieces. `pieces` yields (piece,
+/// group).
 fn pieces_by_group(
     groups: &mut [PieceGroup],
     pieces: impl Iterator<Item = (usize, usize)>,
@@ -72,21 +74,21 @@ fn pieces_by_group(
     order
 }
 
-/// Sorts groups by their first parts.
+/// Sorts groups by their smallest pair of parts.
 fn sort_by_parts(groups: &mut [PieceGroup]) {
     sort_few(groups, |one, other| one.first < other.first);
 }
 
 /// The pieces, grouped into patches.
 pub(super) struct Groups {
-    /// The groups within the prediction, sorted by their first parts.
+    /// Groups within the prediction, sorted by their smallest pair of parts.
     pub(super) groups: SmallVec<[PieceGroup; 8]>,
-    /// The pieces, sorted by group.
+    /// Indices of the pieces, sorted by group.
     order: SmallVec<[usize; 16]>,
 }
 
 impl Groups {
-    /// Cost: O(n log n) in the number of pieces.
+    /// Groups the pieces. Cost: O(n log n) in the number of pieces.
     pub(super) fn of<N: Real, const D: usize>(merging: &Merging<'_, N, D>) -> Self {
         let pieces = merging.pieces;
         let mut leads = SmallVec::<[Lead; 16]>::with_capacity(pieces.len());
@@ -116,8 +118,8 @@ impl Groups {
         Self { groups: leads.iter().enumerate().map(group).collect(), order }
     }
 
-    /// Adds the pieces, deepest first, to the group whose lead they are coplanar with, or to a new
-    /// one.
+    /// Adds each piece, deepest first, to the group whose lead it is coplanar with, or to a new
+    /// group.
     fn of_coplanar<N: Real, const D: usize>(
         merging: &Merging<'_, N, D>,
         leads: &[Lead],
@@ -152,14 +154,14 @@ impl Groups {
         Self { groups, order }
     }
 
-    /// Returns the pieces of a group.
+    /// Returns the indices of the pieces of a group.
     pub(super) fn pieces(&self, group: &PieceGroup) -> &[usize] {
         &self.order[group.pieces.clone()]
     }
 }
 
-/// Whether two pieces, the first the deeper, have one normal and lie in one plane: on the surface
-/// of the first shape or on that of the second.
+/// Returns whether two pieces have one normal and lie in one plane, on the surface of the first
+/// shape or on the surface of the second. `lead1` must be the deeper.
 fn are_coplanar<N: Real, const D: usize>(
     merging: &Merging<'_, N, D>,
     lead1: &Lead,
@@ -184,21 +186,21 @@ fn square_of_same<N: Real>() -> N {
     N::lit(SAME) * N::lit(SAME)
 }
 
-/// An interval of the axis that contains the component of some normals.
+/// An interval of the normals' component along [`AXIS`], and the patches in it.
 struct NormalCell {
-    /// The position of the interval, in lengths of a cell.
+    /// Position of the interval on the axis, in lengths of a cell.
     number: i32,
-    /// The patches whose lead is in this cell, the deepest first.
+    /// Patches whose lead is in this cell, the deepest first.
     patches: SmallVec<[usize; 2]>,
 }
 
-/// The cells of the normals; one cell if there are few pieces.
+/// Cells of the normals; a single cell if there are few pieces.
 struct NormalCells {
-    /// Sorted by number.
+    /// Cells, in the order of their positions.
     cells: SmallVec<[NormalCell; 1]>,
-    /// The index of the cell of each piece; empty if there is one cell.
+    /// Index of the cell of each piece; empty if there is a single cell.
     of_pieces: Vec<usize>,
-    /// The pieces sorted by cell; empty if there is one cell.
+    /// Cell position and index of each piece, sorted; empty if there is a single cell.
     order: Vec<(i32, usize)>,
 }
 
@@ -223,8 +225,8 @@ impl NormalCells {
         Self { cells, of_pieces, order }
     }
 
-    /// Whether all normals differ. False, too, if the answer takes more than `MAX_ALIKE`
-    /// comparisons per piece.
+    /// Returns whether all normals differ. Also returns `false` if the answer would take more than
+    /// `MAX_ALIKE` comparisons per piece.
     fn have_own_normals<N: Real, const D: usize>(&self, pieces: &[Piece<N, D>]) -> bool {
         let are_apart = |a: usize, b: usize| {
             (pieces[a].normal - pieces[b].normal).norm_squared() > square_of_same()
@@ -242,7 +244,7 @@ impl NormalCells {
         })
     }
 
-    /// Whether all pieces are in one cell.
+    /// Returns whether all pieces share one cell.
     const fn is_one(&self) -> bool {
         self.of_pieces.is_empty()
     }
@@ -264,7 +266,7 @@ impl NormalCells {
     }
 }
 
-/// The cell number of a unit vector.
+/// Returns the position of the cell of a unit vector.
 #[expect(clippy::cast_possible_truncation, reason = "a unit vector is in some thousands of cells")]
 fn cell_of<N: Real, const D: usize>(normal: &Vector<N, D>) -> i32 {
     let along = |sum: f64, (own, axis): (&N, f64)| sum + own.as_f64() * axis;

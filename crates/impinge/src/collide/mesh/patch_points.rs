@@ -1,5 +1,5 @@
-//! Chooses the few points of a patch: those of its only piece, or the ones on the outline of all
-//! pieces.
+//! Chooses the few points of a patch: the points of its only piece, or the points on the outline of
+//! all pieces.
 //!
 //! ```text
 //!  gather: all points within the prediction, in 2D coordinates along two tangents
@@ -8,7 +8,7 @@
 //!  points: ids, and the depth of the deepest
 //! ```
 //!
-//! Most patches have the few points of one piece, so all steps work in place, in lists that the
+//! Most patches have the few points of a single piece. All steps work in place, in lists that the
 //! patches of a pair share.
 
 use crate::tables::ByDimension;
@@ -23,32 +23,32 @@ use crate::collide::manifold::{deepest_of, slack_level};
 use crate::math::order::sort_few;
 use crate::math::{Real, Space, Vector};
 
-/// Points that fit into the lists without an allocation.
+/// Number of points that fit into the lists without an allocation.
 const FEW: usize = 16;
 
 /// A point of a patch, projected along its normal.
 #[derive(Clone, Copy)]
 pub(super) struct Member<N> {
-    /// The coordinates along both tangents, relative to the deepest point.
+    /// Coordinates along both tangents, relative to the deepest point.
     flat: Vector<N, 2>,
-    /// The index of its piece in `Merging::pieces`; `point` is its index in `Merging::points`.
+    /// Index of the point's piece in `Merging::pieces`.
     piece: usize,
+    /// Index of the point in `Merging::points`.
     point: usize,
 }
 
 /// The points of one patch.
 pub(super) type Members<N> = SmallVec<[Member<N>; FEW]>;
 
-/// The input for choosing points; `kept` holds the inherited ids.
+/// Inputs for choosing points; `kept` holds the inherited ids.
 pub(super) struct Choosing<'a, N: Real, const D: usize> {
     pub(super) merging: &'a Merging<'a, N, D>,
     pub(super) kept: &'a KeptIds,
 }
 
 impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
-    /// Fills the patch of `pieces`, of which `lead` has the deepest point, with at most
-    /// `max_points` points: the deepest and those that span the largest area. `members` is scratch
-    /// space.
+    /// Fills a patch with at most `max_points` points of `pieces`: the deepest one, and those that
+    /// span the largest area. `lead` has the deepest point. `members` is scratch space.
     pub(super) fn fill(
         &self,
         lead: Lead,
@@ -63,13 +63,13 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             tangents = askew(&tangents);
         }
         self.gather(lead, pieces, &tangents, members);
-        // In 2D two points bound the manifold.
+        // In 2D, two points bound a manifold.
         let is_line = tangents[1] == Vector::<N, D>::zeros();
         let most = self.merging.request.max_points.max(1);
         let limit = if is_line { most.min(2) } else { most };
         let lowest = self.merging.points[lead.deepest].distance;
         let level = lowest + self.merging.tolerance;
-        // The few points of a single piece are corners of an area already.
+        // The few points of a single piece are already corners of an area.
         if !(pieces.len() == 1 && members.len() <= limit) {
             self.drop_copies(members);
             self.choose(members, level, limit, is_line);
@@ -77,7 +77,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         self.points(members, lowest, out, ids);
     }
 
-    /// Keeps at most `limit` members, one of the deepest among them.
+    /// Keeps at most `limit` members, at least one of them with a distance up to `level`.
     fn choose(&self, members: &mut Members<N>, level: N, limit: usize, is_line: bool) {
         let flattened =
             members.iter().map(|member| (member.flat, self.distance(member), self.is_old(member)));
@@ -90,15 +90,14 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         } else {
             reduce::spanning(&mut points, limit, tolerance)
         };
-        // The indices ascend, so no member is overwritten before it is read.
+        // `indices` ascend, so no member is overwritten before it is read.
         for (at, index) in indices.iter().enumerate() {
             members[at] = members[*index];
         }
         members.truncate(indices.len());
     }
 
-    /// Appends the chosen points sorted by id. The distance of one of them is set to `lowest`, that
-    /// of the deepest.
+    /// Appends the chosen points, sorted by id. A deepest one gets exactly the distance `lowest`.
     fn points(
         &self,
         chosen: &[Member<N>],
@@ -131,7 +130,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
-    /// Whether the last manifolds had this point, at this position.
+    /// Returns whether the manifolds of the last update had this point at this position.
     fn is_old(&self, member: &Member<N>) -> bool {
         self.kept[member.point].is_some_and(|kept| kept.is_old)
     }
@@ -140,8 +139,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         self.merging.points[member.point].distance
     }
 
-    /// Collects the points within the prediction, with the margin for rotation, the deepest first.
-    /// The deepest is always a member, even if its coordinates are NaN.
+    /// Collects the points within the prediction, including the margin for rotation, the deepest
+    /// first. The deepest point is always a member, even if its coordinates are NaN.
     fn gather(
         &self,
         Lead { piece: lead, deepest }: Lead,
@@ -170,8 +169,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 
     /// Sorts the points along the first tangent, then along the second, and removes copies: parts
-    /// that meet at a point all have it. The deepest copy stays, or among equals one with an
-    /// inherited id, then that of the lowest parts.
+    /// that meet at a point all have it. Of equal positions, the point that [`Self::is_better`]
+    /// prefers stays.
     fn drop_copies(&self, members: &mut Members<N>) {
         let near = N::lit(4.0) * self.merging.tolerance;
         sort(members);
@@ -180,7 +179,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         for next in 0..members.len() {
             let member = members[next];
             let flat = member.flat;
-            // Sorted along the first tangent: only the last few can be at the same position.
+            // Sorted along the first tangent, so only the last few points can be at the same
+            // position.
             let is_close = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
             let mut last = (0..count).rev().take_while(is_close);
             match last.find(|&at| (members[at].flat - flat).norm_squared() <= near * near) {
@@ -201,8 +201,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
-    /// Whether `new` replaces `old` at one position: by depth if it differs by more than the
-    /// tolerance, else by an inherited id, then by the lower parts.
+    /// Returns whether `new` replaces `old` at one position: by depth if the depths differ by more
+    /// than the tolerance, else by having an inherited id, else by the smaller pair of parts.
     fn is_better(&self, new: &Member<N>, old: &Member<N>) -> bool {
         let tolerance = self.merging.tolerance;
         let rank = |member: &Member<N>| {
@@ -213,8 +213,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 }
 
-/// Keeps, of points sorted along a line, the two ends, the old points and, if neither end is
-/// deepest, one that is.
+/// Keeps, of points sorted along a line, the two ends, the points that continue old ones and, if
+/// neither end is deepest, one deepest point.
 fn keep_ends<N: Real>(points: &mut Projections<N>) {
     let (last, deepest) = (points.len() - 1, a_deepest(points));
     let is_inner = !(points[0].is_deepest || points[last].is_deepest);
@@ -224,8 +224,8 @@ fn keep_ends<N: Real>(points: &mut Projections<N>) {
     });
 }
 
-/// Rotates the tangents by one radian, so that few points of a grid have one coordinate along the
-/// first.
+/// Rotates the tangents by one radian, so that few points of an axis-aligned grid share a
+/// coordinate along the first.
 fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vector<N, D>; 2] {
     let [cosine, sine] = [0.540_302_305_868_139_7, 0.841_470_984_807_896_5].map(N::lit);
     // In 2D the second tangent is zero.

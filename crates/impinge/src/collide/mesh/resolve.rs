@@ -7,32 +7,32 @@ use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Real, Space, Vector, max};
 
-/// Normals with a larger cosine count as one direction.
+/// Normals whose cosine is larger count as one direction.
 const ALIKE: f64 = 0.99;
 
-/// Ways out that are kept at a time, of different directions.
+/// Escapes that are kept at a time, of different directions.
 const MAX_ESCAPES: usize = 32;
 
-/// A way out of the overlap, according to one contact: the second shape moves along `normal` by
-/// `depth`.
+/// A translation that resolves the overlap, according to one contact: the second shape moves along
+/// `normal` by `depth`.
 struct Escape<N: Real, const D: usize> {
     normal: Vector<N, D>,
     depth: N,
 }
 
-/// Ways out, added shallowest first; of each direction only the longest is kept.
+/// Escapes, added shallowest first; of each direction only the longest is kept.
 struct Escapes<N: Real, const D: usize>(SmallVec<[Escape<N, D>; MAX_ESCAPES]>);
 
 /// Drops the contacts that do not hold for the whole shapes.
 ///
-/// Along the normal of a face the depth is that of the whole solid below the face. For a face that
-/// is touched only at its rim this may be the width of the solid: a box on top of a cliff is not
-/// deep in its wall. So the shallower of two explanations of an overlap holds. A contact with a
-/// face is dropped if its parts are also separated once the shapes move along the normal of
-/// another, shallower contact by the depth of that.
+/// Along the normal of a face, the depth is that of the whole solid below the face. For a face that
+/// is touched only at its rim, this may be the width of the solid: a box on top of a cliff is not
+/// deep in the cliff's wall. So the shallower of two explanations of an overlap holds. A contact
+/// with a face is dropped if its parts are also separated once the second shape moves along the
+/// normal of another, shallower contact by the depth of that contact.
 ///
-/// If no remaining contact is as near as the nearest two parts, the contact of these two is kept:
-/// solids that overlap always have a contact, except beside a ghost, where the neighbour has it.
+/// If no remaining contact is as near as the nearest two parts, the contact of these two parts is
+/// kept: solids that overlap always have a contact, except beside a ghost, whose neighbour has it.
 pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
@@ -50,10 +50,10 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     keep_one(scene, contacts, arena);
 }
 
-/// Drops contacts with faces that other contacts explain: first those that are not beyond a ridge,
-/// then those that are.
+/// Drops contacts with faces that other contacts explain: first the `Snapped` ones, then the
+/// `Beyond` ones.
 ///
-/// Cost: O(n log n) in the number of contacts, each compared with at most `MAX_ESCAPES` ways out.
+/// Cost: O(n log n) in the number of contacts; each is compared with at most `MAX_ESCAPES` escapes.
 fn leave_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
@@ -77,13 +77,13 @@ fn leave_explained<N: Space<D>, const D: usize>(
     }
 }
 
-/// The depth of a contact; negative if it is apart.
+/// Returns the depth of a contact; negative if it is apart.
 fn depth<N: Real, const D: usize>(contact: &PartContact<N, D>) -> N {
     -contact.lowest
 }
 
-/// Returns the indices of the contacts with some statuses, sorted by depth, the shallowest first;
-/// ties keep the order of the parts.
+/// Returns the indices of the contacts whose status satisfies `is_meant`, sorted by depth, the
+/// shallowest first; ties keep the order of the contacts.
 fn shallowest_first<N: Real, const D: usize>(
     contacts: &[PartContact<N, D>],
     is_meant: impl Fn(PartStatus) -> bool,
@@ -99,8 +99,9 @@ fn shallowest_first<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Escapes<N, D> {
-    /// Adds the way out of a contact that is at least as deep as all before. It replaces the one of
-    /// about the same normal, or the first if there are too many.
+    /// Adds the escape of a contact at least as deep as all before. It replaces the escape with
+    /// about the same normal or, if there are too many, the first one. Contacts that are apart add
+    /// nothing.
     fn add(&mut self, contact: &PartContact<N, D>) {
         let (normal, depth) = (contact.piece.normal, depth(contact));
         if depth <= N::ZERO {
@@ -116,8 +117,8 @@ impl<N: Real, const D: usize> Escapes<N, D> {
     }
 }
 
-/// Whether one of the ways out separates the two parts of a contact. A contact that is not beyond a
-/// ridge is not explained by a way along its own normal.
+/// Returns whether one of the escapes separates the two parts of a contact. Only a `Beyond` contact
+/// may be explained by an escape along its own normal.
 fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contact: &PartContact<N, D>,
@@ -129,12 +130,12 @@ fn is_explained<N: Space<D>, const D: usize>(
         return false;
     }
     let is_beyond = contact.status == PartStatus::Beyond;
-    // A way shorter than the depth of the parts does not separate them.
+    // An escape shorter than the depth of the parts does not separate them.
     let least = -contact.distance - contact.tolerance;
     let is_relevant = |escape: &&Escape<N, D>| {
         escape.depth >= least && (is_beyond || escape.normal.dot(&normal) < N::lit(ALIKE))
     };
-    // The known separating plane of the parts may suffice after the motion.
+    // The known separating plane of the parts may still separate them after the motion.
     let rest = |escape: &Escape<N, D>| {
         contact.distance + contact.normal.dot(&escape.normal) * escape.depth
     };
@@ -146,7 +147,7 @@ fn is_explained<N: Space<D>, const D: usize>(
         }
         relevant.push(escape);
     }
-    // If a point of the part stays well inside the solid, they are not separated.
+    // If a point of the part stays well inside the solid, the motion does not separate them.
     let points = &arena.points[contact.piece.points.clone()];
     let mut shifts = SmallVec::<[Vector<N, D>; 16]>::new();
     for escape in relevant {
@@ -162,8 +163,8 @@ fn is_explained<N: Space<D>, const D: usize>(
     !shifts.is_empty() && scene.pair(contact.parts()).is_parted_by_one(&shifts, contact.tolerance)
 }
 
-/// Adds the contact of the nearest two parts if all contacts that hold are farther. If they are
-/// farther by rounding alone, their distance is corrected instead.
+/// Adds the contact of the nearest two parts if all contacts that hold are farther. If those are
+/// farther only by rounding, their distance is corrected instead.
 fn keep_one<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
@@ -186,16 +187,16 @@ fn keep_one<N: Space<D>, const D: usize>(
         }
         _ if scene.are_beside_ghost(contacts[nearest].parts()) => {}
         _ => {
-            // Its points, if any, are along the normal of a face and farther: they are computed
-            // anew.
+            // Its points, if any, are along the normal of a face and farther, so they are computed
+            // again.
             contacts[nearest].status = PartStatus::Own;
             contacts[nearest].piece.points = 0..0;
         }
     }
 }
 
-/// Returns the index of the least value among the contacts, the first in a tie; contacts without a
-/// value are skipped.
+/// Returns the index of the contact with the smallest value, the first in a tie. Contacts without a
+/// value are skipped; `None` if no contact has one.
 fn least_of<N: Real, const D: usize>(
     contacts: &[PartContact<N, D>],
     value: impl Fn(&PartContact<N, D>) -> Option<N>,

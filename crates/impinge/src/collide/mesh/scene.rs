@@ -20,8 +20,8 @@ pub(crate) struct Scene<'a, N: Real, const D: usize> {
     pub(super) surfaces: [Option<SurfaceAccess<'a, N, D>>; 2],
     /// The cached parts of the second shape.
     around: &'a PartCache<N, D>,
-    /// The placement that the parts of a surface have relative to a convex solid; most have the
-    /// same.
+    /// Placement, relative to a convex first shape, of the part of the second shape placed first;
+    /// most parts of a surface have the same.
     shared: OnceCell<SharedPlacement<N, D>>,
 }
 
@@ -31,31 +31,31 @@ struct SharedPlacement<N: Real, const D: usize> {
     /// The pose of the part in the frame of its shape.
     pose: Pose<N, D>,
     is_segment: bool,
-    /// The anchor of both, in the frame of the part.
+    /// Anchor of both, in the frame of the part.
     local: Vector<N, D>,
-    /// The anchor in the frames of the two shapes.
+    /// Anchor in the frame of the first shape, and in the frame of the second.
     origins: [Point<N, D>; 2],
     relative: RelativePose<N, D>,
 }
 
-/// The relative pose of two bodies.
+/// Relative pose of two bodies, in the order of their kinds.
 #[derive(Clone, Copy)]
 struct RelativePose<N: Real, const D: usize> {
-    /// The pose of the second body in the frame of the first, in the order of kinds.
+    /// Pose of the second body in the frame of the first.
     pose12: Pose<N, D>,
     /// Whether the first body is the part of the second shape.
     is_swapped: bool,
-    /// The frame of the first body in that of the first shape, translated to the anchor.
+    /// Pose of the first body in the frame of the first shape, translated to the anchor.
     frame: Pose<N, D>,
-    /// The rotation from the frame of the second shape to that of the first.
+    /// Rotation from the frame of the second shape to the frame of the first.
     turn: Pose<N, D>,
 }
 
-/// A part of one of the shapes; a convex shape is its own part.
+/// A part of one of the shapes; a convex shape counts as its only part.
 struct PlacedPart<'a, N: Real, const D: usize> {
-    /// The pose in the frame of its shape, translated to the anchor.
+    /// Pose in the frame of its shape, translated to the anchor.
     pose: Pose<N, D>,
-    /// If it has corners, these are relative to the anchor.
+    /// The solid; corners of triangles and segments are relative to the anchor.
     solid: WholeOrPart<'a, N, D>,
 }
 
@@ -65,22 +65,22 @@ enum WholeOrPart<'a, N: Real, const D: usize> {
     Part(PartSolid<'a, N, D>),
 }
 
-/// A part of the first shape and one of the second, in the order of their kinds.
+/// A part of the first shape and a part of the second, in the order of their kinds.
 ///
-/// Both are relative to an anchor close to them, as in [`Between::parts`]. So this is the same
-/// pair, up to the order, with bit for bit the same distance.
+/// Both are relative to an anchor close to them, as in [`Between::parts`]. So the two form the same
+/// pair as there, up to the order, with bit for bit the same distance.
 pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
-    /// In the order of kinds.
+    /// The two parts, in the order of their kinds.
     bodies: [PlacedPart<'a, N, D>; 2],
     relative: RelativePose<N, D>,
-    /// The anchor in the frames of the two shapes.
+    /// Anchor in the frame of the first shape, and in the frame of the second.
     origins: [Point<N, D>; 2],
-    /// Whether the part of the second shape has the usual placement of its [`Scene`].
+    /// Whether the part of the second shape has the shared placement of its [`Scene`].
     is_shared: bool,
 }
 
-/// Translates a part to another origin. Corners are moved instead of the pose, so that parts keep
-/// their shared corners.
+/// Translates a part to another origin. Corners are moved instead of the pose, so that adjacent
+/// parts still share their corners bit for bit.
 fn moved<'a, N: Real, const D: usize>(
     part: &Part<'a, N, D>,
     origin: &Point<N, D>,
@@ -110,7 +110,8 @@ impl<N: Real, const D: usize> PlacedPart<'_, N, D> {
         }
     }
 
-    /// The corners of a triangle or segment, relative to the anchor.
+    /// Returns the corners of a triangle or segment, relative to the anchor; `None` for other
+    /// solids.
     fn corners(&self) -> Option<[Vector<N, D>; 3]> {
         match &self.solid {
             WholeOrPart::Whole(_) => None,
@@ -118,7 +119,7 @@ impl<N: Real, const D: usize> PlacedPart<'_, N, D> {
         }
     }
 
-    /// A point well inside; `None` for a half-space.
+    /// Returns a point well inside the solid; `None` for a half-space.
     fn center(&self) -> Option<Point<N, D>> {
         let map = Geometry(self.kind()).as_support_map()?;
         Some(self.pose.point(&map.center()))
@@ -132,7 +133,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         Self { between, surfaces, around, shared: OnceCell::new() }
     }
 
-    /// Returns a part of the second shape, from the cache or else from the shape.
+    /// Returns a part of the second shape, from the cache if it is there.
     fn part2(&self, composite: &'a dyn CompositeShape<N, D>, part: u32) -> Part<'a, N, D> {
         self.around.part(part).unwrap_or_else(|| composite.part(part))
     }
@@ -141,20 +142,21 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         self.between.composites()[0].is_none()
     }
 
-    /// Whether a ghost is adjacent to one of two parts.
+    /// Returns whether a ghost is adjacent to one of two parts.
     pub(super) fn are_beside_ghost(&self, parts: [u32; 2]) -> bool {
         let mut both = self.surfaces.iter().zip(parts);
         both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_beside_ghost(part)))
     }
 
-    /// Whether one of two parts bounds a body.
+    /// Returns whether one of two parts bounds a body.
     pub(super) fn are_bodies(&self, parts: [u32; 2]) -> bool {
         let mut both = self.surfaces.iter().zip(parts);
         both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_body(part)))
     }
 
-    /// Whether a point, in the frame of the first shape, lies in that shape by more than `depth`:
-    /// then no plane separates the two by less. False for composites and half-spaces.
+    /// Returns whether a point, in the frame of the first shape, lies in that shape deeper than
+    /// `depth`. Then no plane separates the point from the shape by less than `depth`. False for
+    /// composites and half-spaces.
     pub(super) fn is_within(&self, point: &Point<N, D>, depth: N) -> bool {
         match self.between.pair.first {
             Kind::Composite(_) | Kind::Plane(_) => false,
@@ -175,22 +177,22 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         }
     }
 
-    /// Returns a part of the second shape; `None` if that is no composite.
+    /// Returns a part of the second shape; `None` if the second shape is not a composite.
     pub(super) fn second_part(&self, part: u32) -> Option<Part<'a, N, D>> {
         let [_, composite] = self.between.composites();
         Some(self.part2(composite?, part))
     }
 
-    /// Calls `visit` with the ids of the corners of a part of the second shape, which other parts
-    /// may share.
+    /// Calls `visit` with the ids of the corners of a part of the second shape. Parts that share a
+    /// corner give the same id.
     pub(super) fn each_corner(&self, part: u32, mut visit: impl FnMut(u64)) {
         if let [_, Some(composite)] = self.between.composites() {
             composite.each_corner(part, &mut visit);
         }
     }
 
-    /// [`Self::pair`] in a reused slot: if parts have the usual placement, only the part is
-    /// replaced.
+    /// Returns the pair of two parts, built in `slot`. If `slot` holds a pair with the shared
+    /// placement, only the part of the second shape is replaced.
     pub(super) fn pair_in<'s>(
         &self,
         slot: &'s mut Option<PlacedPair<'a, N, D>>,
@@ -261,13 +263,13 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         PlacedPair::new(bodies, self.turn(), origins)
     }
 
-    /// The rotation from the frame of the second shape to that of the first.
+    /// Returns the rotation from the frame of the second shape to the frame of the first.
     fn turn(&self) -> Pose<N, D> {
         Pose { rotation: self.between.pair.pose12.rotation, ..Pose::identity() }
     }
 
-    /// Returns the pair of a convex solid and a part with the usual placement, at less cost; `None`
-    /// for other parts.
+    /// Returns the pair of a convex solid and a part with the shared placement, at less cost than
+    /// by `of`; `None` for other parts.
     fn with_shared_placement(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
         if let PartSolid::Shape(_) = part.solid {
             return None;
@@ -284,7 +286,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         })
     }
 
-    /// Returns the placement of a part, which serves all parts with the same pose and kind.
+    /// Returns the placement of a part, which holds for all parts with the same pose and kind.
     fn placement_of(&self, part: &Part<'a, N, D>) -> SharedPlacement<N, D> {
         let origins = [Point::origin(), Point::from(self.between.pose21.translation)];
         let rotation = part.pose.rotation;
@@ -302,7 +304,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> SharedPlacement<N, D> {
-    /// Returns a part translated to the anchor; `None` if it has another placement.
+    /// Returns a part translated to the anchor; `None` if the part has another placement.
     fn recentred<'a>(&self, part: &Part<'a, N, D>) -> Option<PartSolid<'a, N, D>> {
         let is_segment = matches!(part.solid, PartSolid::Segment(_));
         let is_alike = self.pose.is_same(&part.pose) && self.is_segment == is_segment;
@@ -311,7 +313,8 @@ impl<N: Space<D>, const D: usize> SharedPlacement<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> RelativePose<N, D> {
-    /// Takes the poses of a part of the first shape and one of the second, relative to the anchor.
+    /// Computes the relative pose from the poses of a part of the first shape and one of the
+    /// second, relative to the anchor.
     fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_swapped: bool) -> Self {
         let (frame1, frame2) = (*pose1, turn.compose(pose2));
         let pose12 = Pose::relative(&frame1, &frame2);
@@ -331,7 +334,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
         Self::of(bodies, relative, origins)
     }
 
-    /// Takes a part of the first shape and one of the second.
+    /// Makes a pair of a part of the first shape and one of the second.
     fn of(
         [body1, body2]: [PlacedPart<'a, N, D>; 2],
         relative: RelativePose<N, D>,
@@ -341,8 +344,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
         Self { bodies, relative, origins, is_shared: false }
     }
 
-    /// Replaces the part of the second shape; returns false, without a change, if the new part does
-    /// not have the usual placement.
+    /// Replaces the part of the second shape. Returns `false`, without a change, if the new part
+    /// does not have the shared placement.
     fn exchange(&mut self, shared: &SharedPlacement<N, D>, part: &Part<'a, N, D>) -> bool {
         let Some(solid) = shared.recentred(part) else { return false };
         let at = usize::from(!self.relative.is_swapped);
@@ -352,19 +355,19 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
-    /// The two parts in the order of their kinds.
+    /// Returns the two parts in the order of their kinds.
     pub(super) fn pair(&self) -> Pair<'_, N, D> {
         let [first, second] = &self.bodies;
         Pair { first: first.kind(), second: second.kind(), pose12: self.relative.pose12 }
     }
 
-    /// Whether neither is a half-space.
+    /// Returns whether both parts have a centre: neither is a half-space.
     pub(super) fn has_centers(&self) -> bool {
         self.bodies.iter().all(|body| Geometry(body.kind()).as_support_map().is_some())
     }
 
-    /// Points well inside the part of the first shape and that of the second, each in the frames of
-    /// both shapes; `None` if one is a half-space.
+    /// Returns points well inside the part of the first shape and the part of the second, each in
+    /// the frames of both shapes; `None` if one part is a half-space.
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
         let [center1, center2] = self.swapped([self.bodies[0].center()?, self.bodies[1].center()?]);
         let [origin1, origin2] = self.origins.mapped(|origin| origin.coords);
@@ -373,8 +376,8 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
-    /// For a convex first shape: the centre of that, or `from` instead, and the centre of the part
-    /// of the second, in the frame of the second; `None` if one is a half-space.
+    /// For a convex first shape, returns its centre, or `from` instead, and the centre of the part
+    /// of the second shape, both in the frame of the second. `None` if one is a half-space.
     pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
         let [first, second] = if self.relative.is_swapped { [1, 0] } else { [0, 1] };
         let origin = self.origins[1].coords;
@@ -386,7 +389,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         Some([other, own])
     }
 
-    /// Bound of the rounding errors of lengths in the pair.
+    /// Returns a bound of the rounding errors of lengths in the pair.
     pub(super) fn tolerance(&self) -> N {
         let size = |body: &PlacedPart<'_, N, D>| {
             let map = Geometry(body.kind()).as_support_map();
@@ -411,21 +414,22 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         self.relative.turn.inverse_vector(direction)
     }
 
-    /// Converts a direction from the first body to the second into one from the first shape to the
-    /// second.
+    /// Converts a direction from the first body to the second, in the first body's frame, into the
+    /// direction from the first shape to the second, in the first shape's frame.
     pub(super) fn outward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.relative.frame.vector(normal);
         if self.relative.is_swapped { -normal } else { normal }
     }
 
-    /// The inverse of [`Self::outward`].
+    /// Converts a direction from the first shape to the second, in the first shape's frame, into
+    /// the direction from the first body to the second, in the first body's frame.
     pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.relative.frame.inverse_vector(normal);
         if self.relative.is_swapped { -normal } else { normal }
     }
 
-    /// Whether the two parts are separated, within `tolerance`, once the second shape moves by one
-    /// of some vectors in the frame of the first.
+    /// Returns whether the two parts are separated, within `tolerance`, once the second shape moves
+    /// by one of `translations`, which are in the frame of the first.
     pub(super) fn is_parted_by_one(&self, translations: &[Vector<N, D>], tolerance: N) -> bool {
         let Some([one, other]) = self.corners() else {
             return translations.iter().any(|translation| self.is_parted(translation, tolerance));
@@ -445,24 +449,24 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         })
     }
 
-    /// The corners of both parts in the frame of the first shape, relative to the anchor; `None` if
-    /// one has no corners.
+    /// Returns the corners of both parts in the frame of the first shape, relative to the anchor;
+    /// `None` if one part has no corners.
     fn corners(&self) -> Option<[[Vector<N, D>; 3]; 2]> {
         let [first, second] = self.swapped([&self.bodies[0], &self.bodies[1]]);
         let second = second.corners()?;
         Some([first.corners()?, second.mapped(|corner| self.relative.turn.vector(&corner))])
     }
 
-    /// Whether the two parts are separated, within `tolerance`, once the second shape moves by
-    /// `translation`, in the frame of the first.
+    /// Returns whether the two parts are separated, within `tolerance`, once the second shape moves
+    /// by `translation`, in the frame of the first.
     fn is_parted(&self, translation: &Vector<N, D>, tolerance: N) -> bool {
         let mut pair = self.pair();
         pair.pose12.translation += self.inward(translation);
         <N::Algorithms>::separation(&pair, -tolerance).is_none()
     }
 
-    /// Converts a manifold of the bodies into one of the shapes, in the frame of the first; appends
-    /// its points to `points`.
+    /// Converts a manifold of the bodies into a manifold of the shapes, in the frame of the first.
+    /// Appends its points to `points`; ids and codes are copied unchanged.
     pub(super) fn piece(
         &self,
         raw: &RawManifold<N, D>,

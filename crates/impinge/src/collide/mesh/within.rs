@@ -1,4 +1,4 @@
-//! The contacts of two shapes at one time, without a cache.
+//! Computes the contacts of two shapes at one time, without a cache.
 
 use super::part_cache::PartCache;
 use super::part_contact::{Arena, PartStatus};
@@ -13,15 +13,15 @@ use crate::tables::ByDimension;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FoundContact<N: Real, const D: usize> {
     pub(crate) separation: Separation<N, D>,
-    /// The part of the first shape and of the second; 0 for a convex solid.
+    /// Index of the part of the first shape, and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
 }
 
-/// Receives each contact.
+/// Callback that receives each contact.
 type Visit<'a, N, const D: usize> = dyn FnMut(&FoundContact<N, D>) + 'a;
 
-/// Calls `visit` with each contact of the parts within `max_distance`, by the kernel of the pair if there
-/// is one.
+/// Calls `visit` with each contact of the parts within `max_distance`, by the specialised path of
+/// the pair if there is one.
 pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     max_distance: N,
@@ -44,7 +44,7 @@ pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     each_in_general(between, &request, visit);
 }
 
-/// [`each_contact_within`] by the generic path.
+/// Calls `visit` with each contact by the generic path.
 fn each_in_general<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -64,7 +64,7 @@ fn each_in_general<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> FoundContact<N, D> {
-    /// Makes a separation of a contact point; the second point follows from the first by `normal *
+    /// Converts a contact point into a separation; the second point is `point1 + normal *
     /// distance`.
     fn new(normal: &Vector<N, D>, point: &RawPoint<N, D>, parts: [u32; 2]) -> Self {
         let (normal, RawPoint { distance, point1, .. }) = (*normal, *point);
@@ -73,7 +73,8 @@ impl<N: Real, const D: usize> FoundContact<N, D> {
     }
 }
 
-/// Returns the deepest contact of the parts within `max_distance`, the first in a tie.
+/// Returns the deepest contact of the parts within `max_distance`, the first in a tie; `None`
+/// without a contact.
 pub(super) fn deepest_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     max_distance: N,
@@ -81,7 +82,7 @@ pub(super) fn deepest_within<N: Space<D>, const D: usize>(
     deepest_of(|visit| each_contact_within(between, max_distance, visit))
 }
 
-/// [`deepest_within`] by the generic path alone.
+/// Returns the deepest contact by the generic path alone; `None` without a contact.
 #[cfg(test)]
 pub(super) fn deepest_in_general<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
@@ -90,7 +91,8 @@ pub(super) fn deepest_in_general<N: Space<D>, const D: usize>(
     deepest_of(|visit| each_in_general(between, request, visit))
 }
 
-/// Returns the deepest of the contacts that `each` visits, the first in a tie.
+/// Returns the deepest of the contacts that `each` visits, the first in a tie; `None` without a
+/// contact.
 fn deepest_of<N: Real, const D: usize>(
     each: impl FnOnce(&mut Visit<'_, N, D>),
 ) -> Option<Separation<N, D>> {

@@ -1,10 +1,10 @@
-//! One part of each of two shapes as a pair, independent of the distance from the frames' origins.
+//! One part of each of two shapes as a pair, with tolerances independent of the frames' origins.
 //!
 //! The triangles of a mesh are in the frame of the mesh, whose origin may be far away, and the
 //! tolerances of the pair algorithms grow with all coordinates. So both parts are placed relative
-//! to an anchor close to them: the origin of the convex solid, or the anchor of the first part. The
-//! anchor is the same for all parts that one solid is compared with, so that triangles keep their
-//! shared corners.
+//! to an anchor close to them: the origin of the convex solid, or the anchor of the first part. All
+//! parts that one solid is compared with get the same anchor, so that adjacent triangles still
+//! share their corners.
 
 use super::bounds::{aabb_of, enclosing};
 use crate::bounding_volume::Aabb;
@@ -18,8 +18,8 @@ use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Tri
 #[derive(Clone, Copy)]
 pub(crate) struct Between<'a, N: Real, const D: usize> {
     pub(crate) pair: Pair<'a, N, D>,
-    /// The pose of the first in the frame of the second. As exact as `pair.pose12`: both come from
-    /// the difference of the positions.
+    /// Pose of the first shape in the frame of the second. It is as exact as `pair.pose12`, because
+    /// both are computed from the difference of the positions.
     pub(crate) pose21: Pose<N, D>,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct Between<'a, N: Real, const D: usize> {
 #[derive(Clone, Copy)]
 struct AnchoredPart<'a, N: Real, const D: usize> {
     solid: PartOf<'a, N, D>,
-    /// Its pose in the frame of the shape, translated to the anchor.
+    /// Pose of the solid in the frame of the shape, translated to the anchor.
     pose: Pose<N, D>,
 }
 
@@ -42,35 +42,37 @@ enum PartOf<'a, N: Real, const D: usize> {
 pub(crate) struct PartPair<'a, N: Real, const D: usize> {
     part1: AnchoredPart<'a, N, D>,
     part2: AnchoredPart<'a, N, D>,
-    /// The anchor of both parts, in the frame of the first shape.
+    /// Anchor of both parts, in the frame of the first shape.
     origin1: Point<N, D>,
     pose12: Pose<N, D>,
 }
 
 impl<'a, N: Real, const D: usize> Between<'a, N, D> {
-    /// Takes two placed shapes whose canonical order is known.
+    /// Makes a pair of two placed shapes in canonical order.
     pub(crate) fn of_ordered(ordered: &Ordered<'_, 'a, N, D>) -> Self {
         let pose21 = Pose::relative(&ordered.second.pose, &ordered.first.pose);
         Self { pair: ordered.pair(), pose21 }
     }
 
-    /// Takes two shapes with only the pose of the second in the frame of the first.
+    /// Makes a pair from the pose of the second shape in the frame of the first alone; `pose21` is
+    /// its inverse.
     pub(crate) fn of_pair(pair: &Pair<'a, N, D>) -> Self {
         Self { pair: *pair, pose21: pair.pose12.inverse() }
     }
 
-    /// Both shapes as composites; `None` for a convex solid.
+    /// Returns both shapes as composites; `None` for a convex solid.
     pub(crate) fn composites(&self) -> [Option<&'a dyn CompositeShape<N, D>>; 2] {
         [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
 
-    /// Whether a composite has ghosts beside parts.
+    /// Returns whether a composite has ghosts beside parts.
     #[inline]
     pub(crate) fn has_ghosts(&self) -> bool {
         self.composites().iter().flatten().any(|composite| composite.has_ghosts())
     }
 
-    /// Whether a composite has closed surfaces that bound bodies, in which the other shape may lie.
+    /// Returns whether a composite has closed surfaces that bound bodies, in which the other shape
+    /// may lie.
     #[inline]
     pub(crate) fn has_bodies(&self) -> bool {
         self.composites().iter().flatten().any(|composite| composite.has_bodies())
@@ -80,7 +82,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         matches!(self.pair.first, Kind::Plane(_))
     }
 
-    /// Returns the pair of two parts; a convex solid has only part 0.
+    /// Returns the pair of two parts, by their indices; the index of a convex solid is 0.
     pub(crate) fn parts(&self, [part1, part2]: [u32; 2]) -> PartPair<'a, N, D> {
         let [composite1, composite2] = self.composites();
         if composite1.is_none() && composite2.is_none() {
@@ -103,7 +105,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         PartPair { part1, part2, origin1, pose12 }
     }
 
-    /// Returns two convex solids as they are, without an anchor.
+    /// Returns two convex solids as a pair of parts, without an anchor.
     fn whole(&self) -> PartPair<'a, N, D> {
         let [part1, part2] = [self.pair.first, self.pair.second]
             .mapped(|kind| AnchoredPart { solid: PartOf::Whole(kind), pose: Pose::identity() });
@@ -127,7 +129,7 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
     }
 
     /// Returns a box around a part of the first shape (0) or the second (1), in the frame of the
-    /// other; a convex solid is its own part.
+    /// other shape; a convex solid counts as its only part.
     pub(crate) fn aabb_in_other(&self, which: usize, part: u32) -> Aabb<N, D> {
         let Some((part, pose)) = self.part_in_other(which, part) else {
             return self.whole_in_other(which);
@@ -148,7 +150,8 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         Some((part, pose))
     }
 
-    /// Whether the boxes of two composites are farther apart than `limit`, in the frame of either.
+    /// Returns whether the boxes of two composites are farther apart than `limit`, in the frame of
+    /// either; false if one shape is convex.
     pub(crate) fn are_boxes_beyond(&self, limit: N) -> bool {
         let [Some(parts1), Some(parts2)] = self.composites() else { return false };
         let is_beyond = |parts: &dyn CompositeShape<N, D>, other: usize| {
@@ -165,8 +168,8 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
     }
 }
 
-/// Returns which of two composites has fewer parts, the first (0) or the second (1, only if
-/// strictly fewer); that composite, and the other.
+/// Returns which of two composites has fewer parts, the first (0) or, only if strictly fewer, the
+/// second (1); then that composite, and the other one.
 pub(crate) fn by_number<'a, N: Real, const D: usize>(
     parts1: &'a dyn CompositeShape<N, D>,
     parts2: &'a dyn CompositeShape<N, D>,
@@ -175,7 +178,7 @@ pub(crate) fn by_number<'a, N: Real, const D: usize>(
 }
 
 impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
-    /// Places `piece`, or the whole convex shape if there is none, relative to the anchor `origin`.
+    /// Places `piece`, or the whole convex shape if it is `None`, relative to the anchor `origin`.
     fn new(whole: Kind<'a, N, D>, piece: Option<Part<'a, N, D>>, origin: &Point<N, D>) -> Self {
         let Some(piece) = piece else {
             let pose = Pose::from_translation(-origin.coords);
@@ -205,24 +208,24 @@ impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
 }
 
 impl<N: Real, const D: usize> PartPair<'_, N, D> {
-    /// The parts as the pair algorithms take them.
+    /// Returns the parts as a pair for the pair algorithms.
     pub(crate) fn pair(&self) -> Pair<'_, N, D> {
         Pair { first: self.part1.kind(), second: self.part2.kind(), pose12: self.pose12 }
     }
 
-    /// The poses of the parts in the frame of the first shape.
+    /// Returns the poses of the parts in the frame of the first shape.
     pub(crate) fn poses(&self) -> [Pose<N, D>; 2] {
         let Pose { rotation, translation } = self.part1.pose;
         let pose1 = Pose { rotation, translation: self.origin1.coords + translation };
         [pose1, pose1.compose(&self.pose12)]
     }
 
-    /// Transforms a vector from the frame of the first shape to that of the first part.
+    /// Transforms a vector from the frame of the first shape into the frame of the first part.
     pub(crate) fn to_first_part(&self, vector: &Vector<N, D>) -> Vector<N, D> {
         self.part1.pose.inverse_vector(vector)
     }
 
-    /// Transforms a separation from the frame of the first shape to that of [`Self::pair`].
+    /// Transforms a separation from the frame of the first shape into the frame of [`Self::pair`].
     pub(crate) fn in_first_part(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let placed =
             |point: &Point<N, D>| self.part1.pose.inverse_point(&Point::from(point - self.origin1));
@@ -234,7 +237,7 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
         }
     }
 
-    /// Transforms a separation from the frame of [`Self::pair`] to that of the first shape.
+    /// Transforms a separation from the frame of [`Self::pair`] into the frame of the first shape.
     pub(crate) fn in_first(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let placed = |point| self.origin1 + self.part1.pose.point(point).coords;
         Separation {

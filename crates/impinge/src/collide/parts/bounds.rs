@@ -4,13 +4,13 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
 use crate::shape::{Kind, Shape, SupportMap};
 
-/// Rounding error of boxes and times, in units of epsilon times the coordinates that they come
-/// from.
+/// Rounding error of boxes and times, in units of epsilon times the largest coordinate used to
+/// compute them.
 const ROUNDING_ERRORS: f64 = 16.0;
 
 /// Returns a box around a solid of any kind placed at `pose`.
 ///
-/// Cost: a few support points; for a composite, the bounds that its search keeps.
+/// Cost: a few support points; for a composite, reading the bounds of its search structure.
 pub(crate) fn aabb_of<N: Space<D>, const D: usize>(
     kind: Kind<'_, N, D>,
     pose: &Pose<N, D>,
@@ -31,7 +31,7 @@ pub(crate) fn aabb_of<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the box of a support map from its support points along the axes.
+/// Returns the box of a support map, computed from its support points along the axes.
 fn of_map<N: Real, const D: usize>(map: &dyn SupportMap<N, D>, pose: &Pose<N, D>) -> Aabb<N, D> {
     let (mut mins, mut maxs) = (pose.point(&map.center()), pose.point(&map.center()));
     for axis in 0..D {
@@ -44,8 +44,8 @@ fn of_map<N: Real, const D: usize>(map: &dyn SupportMap<N, D>, pose: &Pose<N, D>
     Aabb::try_new(mins, maxs).unwrap_or_else(|_| Aabb::unbounded())
 }
 
-/// Returns a box that holds what `aabb`, a box placed by `pose`, would hold in exact arithmetic.
-/// Unbounded if the loosened box is not valid.
+/// Loosens `aabb`, a box placed by `pose`, so that it encloses everything that it would enclose in
+/// exact arithmetic. Returns an unbounded box if the loosened box is not valid.
 pub(crate) fn enclosing<N: Real, const D: usize>(
     aabb: &Aabb<N, D>,
     pose: &Pose<N, D>,
@@ -82,13 +82,13 @@ pub(super) fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
     most
 }
 
-/// The rounding error of coordinates up to `scale`.
+/// Returns the rounding error of coordinates up to `scale`.
 fn rounding<N: Real>(scale: N) -> N {
     N::lit(ROUNDING_ERRORS) * N::EPSILON * scale
 }
 
 /// Returns a limit for boxes that rejects no part within `limit`, a distance or time of zero or
-/// more. Infinite if the square, which searches may compute, is not finite.
+/// more. Returns infinity if the square of the limit, which searches may compute, is not finite.
 pub(crate) fn loosened<N: Real>(limit: N) -> N {
     let within = limit + rounding(limit);
     if (within * within).is_finite_number() { within } else { N::INFINITY }

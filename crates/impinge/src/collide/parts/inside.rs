@@ -1,9 +1,9 @@
 //! Pieces of one shape that lie wholly inside a body of the other.
 //!
-//! A body is bounded by a closed surface; searches of parts see only this surface. A connected
-//! piece that touches no part of it is inside or outside as a whole, so one point decides. The exit
-//! leads from the piece through the nearest point of the boundary. The depth is the extent of the
-//! piece below the plane through that point, perpendicular to the exit.
+//! A body is bounded by a closed surface; searches of parts find only this surface. A connected
+//! piece that touches no part of the surface is inside or outside as a whole, so one point decides.
+//! The exit leads from the piece through the nearest point of the boundary. The depth is the extent
+//! of the piece below the plane through that point, perpendicular to the exit direction.
 //!
 //! ```text
 //!   ═════════●═════════  boundary        ┬
@@ -26,48 +26,48 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
 use crate::shape::{EnclosedBody, Geometry, Kind};
 
-/// A connected piece of one shape; a point of it lies in a body of the other.
+/// A connected piece of one shape, a point of which lies in a body of the other shape.
 #[derive(Clone, Debug)]
 pub(crate) struct InsidePiece<N: Real, const D: usize> {
-    /// Whether the piece belongs to the first shape (0) or the second (1).
+    /// Index of the shape that the piece belongs to: the first (0) or the second (1).
     pub(crate) inner: usize,
-    /// The index of the piece, from
+    /// Index of the piece, as given by
     /// [`CompositeShape::piece_of`](crate::shape::CompositeShape::piece_of); 0 for a convex solid.
     piece: u32,
-    /// The parts of the other shape that bound the body.
+    /// Index range of the parts of the other shape that bound the body.
     boundary: Range<u32>,
-    /// The nearest pair of a part of the piece and a part of the boundary through which the body is
-    /// left.
+    /// Nearest pair of a part of the piece and a part of the boundary behind which the body ends;
+    /// `None` before one is found.
     nearest: Option<PartSeparation<N, D>>,
-    /// The nearest pair through which a way leads deeper into the body: used if there is no
-    /// `nearest`.
+    /// Nearest pair behind whose boundary part the body does not end; used only if `nearest` is
+    /// `None`.
     blocked: Option<PartSeparation<N, D>>,
 }
 
-/// To decide whether a way leaves the body, a point behind the boundary is tested: this part of the
-/// distance farther, and at least the rounding error.
+/// Relative distance behind the boundary of the point that is tested to decide whether the body
+/// ends there; the distance is at least the rounding error.
 const BEYOND: f64 = 1.0 / 64.0;
 /// Rounding error of lengths, in units of epsilon times the coordinates.
 const ROUNDING: f64 = 64.0;
 
-/// The pieces of both shapes that are inside bodies.
+/// Pieces of both shapes that are inside bodies.
 pub(crate) type InsidePieces<N, const D: usize> = SmallVec<[InsidePiece<N, D>; 1]>;
 
-/// The exit plane: through the nearest point of the boundary, perpendicular to the way out; in the
-/// frame of the first shape.
+/// Exit plane, in the frame of the first shape: through the nearest point of the boundary,
+/// perpendicular to the exit direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exit<N: Real, const D: usize> {
     pub(crate) point: Point<N, D>,
-    /// Unit, out of the body.
+    /// Unit normal out of the body.
     pub(crate) outward: Vector<N, D>,
-    /// The pair of parts that gives the exit.
+    /// Indices of the parts of the first and second shape that give the exit.
     pub(crate) parts: [u32; 2],
 }
 
-/// Returns the pieces of both shapes with their test point in a body of the other. They are inside
+/// Returns the pieces of both shapes whose test point lies in a body of the other. They are inside
 /// the body or cross its boundary.
 ///
-/// Cost: a winding number for each piece with parts in the box of the other shape.
+/// Cost: a winding number for each piece that has parts in the box of the other shape.
 pub(crate) fn held_pieces<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
 ) -> InsidePieces<N, D> {
@@ -96,7 +96,7 @@ pub(crate) fn find_exits<N: Space<D>, const D: usize>(
     }
 }
 
-/// Appends the pieces whose test point lies in the body.
+/// Appends the pieces of shape `inner` whose test point lies in the body.
 fn add_held<N: Space<D>, const D: usize>(
     body: &EnclosedBody<'_, N, D>,
     inner: usize,
@@ -109,8 +109,8 @@ fn add_held<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns the centre of one part of each piece that may be inside the other shape, in the frame of
-/// the other. Half-spaces have none.
+/// Returns, for each piece that may be inside the other shape, its index and the centre of one of
+/// its parts, in the frame of the other shape. Empty for half-spaces.
 fn points_of_pieces<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     inner: usize,
@@ -132,8 +132,8 @@ fn points_of_pieces<N: Space<D>, const D: usize>(
     points
 }
 
-/// Returns the parts of a shape whose boxes meet that of the other, each as (piece, part), sorted.
-/// They include all parts of a piece that is inside the other shape.
+/// Returns the parts of a shape whose boxes overlap the box of the other shape, as sorted pairs
+/// (piece, part). They include all parts of a piece that is inside the other shape.
 fn parts_near_other<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     inner: usize,
@@ -150,8 +150,8 @@ fn parts_near_other<N: Space<D>, const D: usize>(
     parts
 }
 
-/// Calls `visit` with a part and its pose in the frame of its shape; a convex solid is its own
-/// part.
+/// Calls `visit` with a part and its pose in the frame of its shape; a convex solid counts as its
+/// only part.
 fn each_solid<N: Space<D>, const D: usize>(
     shape: Kind<'_, N, D>,
     part: u32,
@@ -163,20 +163,20 @@ fn each_solid<N: Space<D>, const D: usize>(
     }
 }
 
-/// Finds the nearest pair of parts of each piece and its boundary.
+/// Search for the nearest pair of parts of each piece and its boundary.
 struct NearestBoundary<'p, 'a, N: Real, const D: usize> {
     between: &'p Between<'a, N, D>,
     pieces: &'p mut InsidePieces<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, N, D> {
-    /// The largest known distance of a piece from its boundary.
+    /// Returns the largest known distance of a piece from its boundary.
     fn limit(&self) -> N {
         self.pieces.iter().fold(-N::INFINITY, |most, piece| max(most, piece.distance()))
     }
 
-    /// A piece that crosses the boundary is dropped whatever its depth, so the search ends at
-    /// contact.
+    /// Returns a negative bound at contact, which ends the search, because a piece that crosses the
+    /// boundary is dropped whatever its depth.
     fn bound(&self) -> N {
         let limit = self.limit();
         if limit <= N::ZERO { -N::ONE } else { loosened(limit) }
@@ -202,12 +202,13 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, 
 }
 
 impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
-    /// Whether one part belongs to the piece and the other to the boundary of the body.
+    /// Returns whether one of the parts belongs to the piece and the other to the boundary of the
+    /// body.
     pub(crate) fn has(&self, between: &Between<'_, N, D>, parts: [u32; 2]) -> bool {
         self.boundary.contains(&parts[1 - self.inner]) && self.is_own(between, parts[self.inner])
     }
 
-    /// Whether a part of the inner shape belongs to the piece.
+    /// Returns whether a part of the inner shape belongs to the piece.
     fn is_own(&self, between: &Between<'_, N, D>, part: u32) -> bool {
         let composite = between.composites()[self.inner];
         composite.is_none_or(|composite| composite.piece_of(part) == self.piece)
@@ -219,13 +220,14 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         near.iter().filter(|(piece, _)| *piece == self.piece).for_each(|(_, part)| visit(*part));
     }
 
-    /// The distance to the boundary as far as known; infinite at first.
+    /// Returns the distance to the nearest part of the boundary found so far; infinite before the
+    /// first.
     fn distance(&self) -> N {
         self.nearest.map_or(N::INFINITY, |nearest| nearest.separation.distance)
     }
 
-    /// Whether the body ends behind the nearest point of the boundary. It does not where bodies of
-    /// one surface overlap.
+    /// Returns whether the body ends behind the nearest point of the boundary. It does not end
+    /// there if bodies of one surface overlap.
     fn leads_out(&self, between: &Between<'_, N, D>, found: &PartSeparation<N, D>) -> bool {
         let Some(Exit { point, outward, .. }) = self.exit_at(found) else { return true };
         let outer = 1 - self.inner;
@@ -244,7 +246,7 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         !is_held
     }
 
-    /// Returns the exit from the body. `None` if the piece clearly crosses the boundary: then the
+    /// Returns the exit from the body. `None` if the piece clearly crosses the boundary; then the
     /// contacts of its parts hold.
     pub(crate) fn exit(&self) -> Option<Exit<N, D>> {
         self.exit_at(&self.nearest.or(self.blocked)?)
@@ -259,7 +261,7 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         (distance > -rounding([&point1, &point2])).then_some(Exit { point, outward, parts })
     }
 
-    /// Returns the depth of the piece as a separation; `None` if there is no [`Self::exit`].
+    /// Returns the depth of the piece as a separation; `None` if [`Self::exit`] is `None`.
     fn separation(&self, between: &Between<'_, N, D>) -> Option<PartSeparation<N, D>> {
         let Exit { point, outward, parts } = self.exit()?;
         let pose12 = &between.pair.pose12;
@@ -299,13 +301,13 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     }
 }
 
-/// The rounding error of lengths between two points.
+/// Returns the rounding error of lengths between two points.
 fn rounding<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> N {
     let size = max(max_component(&points[0].coords), max_component(&points[1].coords));
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
-/// Extends `best`, the result for the surfaces alone, to the bodies of the shapes: returns the pair
+/// Extends the result for the surfaces alone, `best`, to the bodies of the shapes: returns the pair
 /// of parts that is [`Wanted`] within `limit`.
 pub(super) fn with_inside<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,

@@ -1,11 +1,12 @@
-//! Composites as their parts: which pairs of parts are near, and how far apart the nearest are.
+//! Composites as collections of parts: which pairs of parts are near, and the distance of the
+//! nearest pair.
 //!
-//! Nested composites are flattened: their parts are numbered consecutively, on one level. The
-//! result for a part is that of the convex algorithm. [`between`] makes a pair of two parts,
-//! [`bounds`] makes boxes that include rounding errors, [`solid_bounds`] bounds the distance from a
-//! convex solid to a part, [`slab_lanes`] from one part to 8, and [`inside`] finds pieces
-//! inside closed surfaces that bound bodies. The part that is returned does not depend on the order
-//! of a search: the lowest indices win a tie.
+//! Nested composites are flattened: their parts have consecutive indices on one level. The result
+//! for a pair of parts is computed by the convex algorithms. [`between`] makes a pair of two parts,
+//! [`bounds`] makes boxes that include rounding errors, [`solid_bounds`] computes lower bounds of
+//! the distance from a convex solid to a part, [`slab_lanes`] from one part to 8 others, and
+//! [`inside`] finds pieces inside closed surfaces that bound bodies. The returned parts do not
+//! depend on the order of a search: the lowest indices win a tie.
 
 pub(crate) mod between;
 pub(crate) mod bounds;

@@ -1,4 +1,4 @@
-//! The nearest two parts of two shapes, or the deepest overlapping ones.
+//! Finds the nearest two parts of two shapes, or the deepest overlapping ones.
 
 use super::between::Between;
 use super::bounds::loosened;
@@ -8,17 +8,17 @@ use super::touching::{Touching, TouchingVisitor, each_touching};
 use crate::collide::separation::separation as of_convex;
 use crate::math::{Real, Space, Vector, max, min};
 
-/// The pair of parts that a search looks for.
+/// Which pair of parts a search looks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wanted {
     /// The nearest pair, or the deepest if parts overlap; the lowest indices win a tie.
     Deepest,
-    /// The nearest pair, or any that touches or overlaps: enough for the distance.
+    /// The nearest pair, or any pair that touches or overlaps, which suffices for the distance.
     Touching,
 }
 
-/// Returns the separation of the pair that is [`Wanted`]; `None` if no pair is within `limit`. A
-/// likely pair can be passed as `first`: its distance bounds the search. See [`visit_near_pairs`]
+/// Returns the separation of the pair that is [`Wanted`]; `None` if no pair is within `limit`.
+/// `first` may name a likely pair, whose distance then bounds the search. See [`visit_near_pairs`]
 /// for the cost.
 pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
@@ -41,7 +41,7 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     nearest.best
 }
 
-/// The search for one pair, with the best so far.
+/// Search for one pair, with the best pair so far.
 struct NearestPart<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     limit: N,
@@ -50,8 +50,8 @@ struct NearestPart<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
-    /// Searches two composites for parts that touch, by overlaps of boxes alone. Returns true if
-    /// the search is settled: there is a contact, or `limit` admits nothing else.
+    /// Searches two composites for parts that touch, by overlaps of boxes alone. Returns `true` if
+    /// the search is complete: a touching pair was found, or `limit` admits no other.
     fn finds_touching(&mut self) -> bool {
         let (between, max_distance) = (self.between, min(self.limit, N::ZERO));
         let mut touching = TouchingPart { nearest: self, max_distance };
@@ -59,8 +59,8 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
         is_searched && (self.limit <= N::ZERO || self.bound() < N::ZERO)
     }
 
-    /// Searches two composites for their nearest parts. Returns true if these are apart, so that
-    /// they are the wanted pair; parts that overlap need the search by depth.
+    /// Searches two composites for their nearest parts. Returns `true` if these are apart, so that
+    /// they are the wanted pair; overlapping parts need the search by depth.
     fn finds_apart(&mut self) -> bool {
         let (between, max_distance) = (self.between, self.limit());
         max_distance > N::ZERO
@@ -69,7 +69,7 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     }
 }
 
-/// The search for any pair that touches.
+/// Search for any pair that touches.
 struct TouchingPart<'a, 'q, N: Real, const D: usize> {
     nearest: &'q mut NearestPart<'a, N, D>,
     max_distance: N,
@@ -83,7 +83,8 @@ impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for TouchingPart<'_, '_,
 }
 
 impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for NearestPart<'_, N, D> {
-    /// Ends the search at contact: overlaps need the search by depth.
+    /// Visits a pair; returns `None` at contact, which ends the search, because overlaps need the
+    /// search by depth.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self, parts);
         Some(self.limit()).filter(|max_distance| *max_distance > N::ZERO)
@@ -99,7 +100,8 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
         self.best.map_or(self.limit, |best| best.separation.distance)
     }
 
-    /// Negative, to end the search, once there is a contact and any is enough.
+    /// Returns a negative bound, which ends the search, once a touching pair is known and any is
+    /// wanted.
     fn bound(&self) -> N {
         let limit = self.limit();
         let is_known = self.best.is_some() && limit <= N::ZERO && self.wanted == Wanted::Touching;
@@ -114,7 +116,7 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
         self.wanted == Wanted::Touching
     }
 
-    /// Computes the separation of two parts, unless they are the best pair already.
+    /// Computes the separation of two parts, unless they already are the best pair.
     fn visit(&mut self, parts: [u32; 2]) {
         if self.best.is_some_and(|best| best.parts == parts) {
             return;

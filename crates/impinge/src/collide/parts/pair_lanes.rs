@@ -1,11 +1,12 @@
-//! Eight pairs of parts at a time: which are certainly farther apart than a limit, and which
+//! Tests 8 pairs of parts at a time: which are certainly farther apart than a limit, and which
 //! certainly are not.
 //!
 //! Separating axes (Gottschalk, Lin and Manocha, "`OBBTree`", 1996): two triangles in 3D overlap
 //! iff neither normal and no direction perpendicular to a side of each separates them; two coplanar
-//! triangles, iff no direction across a side within the plane does; two convex shapes in 2D, iff no
-//! direction across a side does. If they overlap, the shortest way out is along one of these axes.
-//! The axes have any length `l`: gaps are compared with `limit * l` instead of divided.
+//! triangles, iff no direction perpendicular to a side within the plane does; two convex shapes in
+//! 2D, iff no direction perpendicular to a side does. If they overlap, the shortest separating
+//! translation is along one of these axes. An axis may have any length `l`: gaps are compared with
+//! `limit * l` instead of being divided.
 //!
 //! ```text
 //!  axis                        lanes              stops when all are beyond
@@ -21,41 +22,40 @@ use crate::math::lanes::{bits, cross, dot, in_lanes, load, minus, plus};
 use crate::math::simd::{Level, Run, Simd};
 use crate::math::{Real, Wide};
 
-/// A direction perpendicular to two sides is exact only if the sine of their angle is larger; else
-/// the pair is not called within.
+/// Smallest sine of the angle between two sides at which the direction perpendicular to both counts
+/// as exact; otherwise the pair never counts as within.
 const MIN_SINE: f64 = 1.0 / 64.0;
-/// Rounding errors by which a pair must be inside the limit to be called within.
+/// Number of rounding errors by which a pair must be inside the limit to count as within.
 const CERTAIN: f64 = 4.0;
 
-/// Up to 8 pairs of parts, both of each in one frame.
+/// Up to 8 pairs of parts; the corners of both parts of a pair are in one frame.
 pub(crate) struct PartPairs<N, const D: usize> {
     pub(crate) ones: PartPacket<N, D>,
     pub(crate) others: PartPacket<N, D>,
-    /// The number of pairs.
+    /// Number of pairs.
     pub(crate) count: usize,
-    /// A length that the rounding error of the corners is in proportion to, unless their
-    /// coordinates are larger.
+    /// Length that scales the rounding error of the corners, unless their coordinates are larger.
     pub(crate) scale: N,
 }
 
-/// Results for 8 pairs, as bits; neither bit of a pair is set if the test is undecided.
+/// Results for 8 pairs, one bit each. If the test of a pair is undecided, neither bit is set.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct PairMasks {
-    /// The pair is farther apart than the limit; the distance of an overlap is negative.
+    /// Pairs farther apart than the limit; the distance of an overlap is negative.
     pub(crate) beyond: u8,
-    /// The pair is not beyond the limit. Only valid for a limit of zero or less: the gaps along
-    /// these axes may be less than a positive distance.
+    /// Pairs not farther apart than the limit. Only valid for a limit of zero or less, because the
+    /// gaps along these axes may be smaller than a positive distance.
     pub(crate) within: u8,
 }
 
 impl<N: Real, const D: usize> PartPairs<N, D> {
-    /// An empty batch; rounding errors are in proportion to `scale` at least.
+    /// Returns an empty batch; rounding errors are at least proportional to `scale`.
     pub(crate) fn new(scale: N) -> Self {
         Self { ones: PartPacket::blank(), others: PartPacket::blank(), count: 0, scale }
     }
 }
 
-/// Tests pairs in 2D. No `within` bit is set.
+/// Tests pairs in 2D; sets no `within` bit.
 pub(crate) fn part_pairs2<N: Real>(pairs: &PartPairs<N, 2>, limit: N) -> PairMasks {
     masks(
         pairs.count,
@@ -71,7 +71,7 @@ pub(crate) fn part_pairs3<N: Real>(pairs: &PartPairs<N, 3>, limit: N) -> PairMas
     )
 }
 
-/// Tests the lanes in use, one SIMD run after another.
+/// Tests the used lanes, one SIMD run after another.
 #[inline(always)]
 fn masks(count: usize, of_run: impl Fn(Run) -> PairMasks) -> PairMasks {
     let mut all = PairMasks::default();
@@ -83,7 +83,7 @@ fn masks(count: usize, of_run: impl Fn(Run) -> PairMasks) -> PairMasks {
     all
 }
 
-/// Tests the axes in 2D: perpendicular to each side of both parts.
+/// Tests the axes in 2D: the perpendiculars of all sides of both parts.
 #[inline(always)]
 fn in_lanes_2d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -108,7 +108,7 @@ fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (own, others) = (sides(&held.one), sides(&held.other));
     let [normal, other_normal] = [cross(&own[0], &own[1]), cross(&others[0], &others[1])];
     if limit > N::ZERO {
-        // Distant coplanar pairs are hardly separated by the axes of overlap.
+        // Axes that detect overlaps hardly separate distant coplanar pairs.
         held.between_middles();
         if bits(held.beyond) == u8::MAX {
             return held.masks(false);
@@ -140,31 +140,31 @@ fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
                 held.along(&cross(side, normal));
             }
         }
-        // The extra axes count for coplanar pairs alone, so that no lane depends on another.
+        // The extra axes are used for coplanar pairs only, so that no lane depends on another.
         held.beyond = beyond | (held.beyond & !is_askew);
         held.within = within;
     }
     held.masks(true)
 }
 
-/// Eight pairs relative to the first corner of their first part, and the results so far.
+/// Eight pairs, relative to the first corner of their first part, and the results so far.
 struct HeldPairs<S: Simd, V: Wide<S>, const D: usize> {
     simd: S,
     one: [[V; D]; 3],
     other: [[V; D]; 3],
-    /// The limit plus the rounding error, and minus [`CERTAIN`] times it.
+    /// The limit plus the rounding error, and the limit minus [`CERTAIN`] times the rounding error.
     limits: [V; 2],
     is_precise: V::Mask,
     beyond: V::Mask,
-    /// No axis so far may separate the pair by more than the limit.
+    /// Pairs that no axis so far separates by more than the limit.
     within: V::Mask,
-    /// The direction of an axis was not exact.
+    /// Pairs for which the direction of some axis was not exact.
     unsure: V::Mask,
 }
 
 impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D> {
-    /// The rounding error is that of the coordinates as given, before the translation to the first
-    /// corner.
+    /// Loads the pairs. The rounding error is that of the coordinates as given, before they are
+    /// translated to the first corner.
     #[inline(always)]
     fn new(simd: S, pairs: &PartPairs<N, D>, limit: N) -> Self {
         let [a, b, c] = &pairs.ones.corners;
@@ -176,7 +176,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
             size = value.abs().larger(size);
         }
         let slack = size * V::all(simd, rounding_unit());
-        // Subnormal lengths are not precise.
+        // Subnormal lengths have too few digits.
         let least = N::MIN_POSITIVE / N::EPSILON * rounding_unit::<N>();
         let is_precise = slack.simd_gt(V::all(simd, least));
         let limit = V::all(simd, limit);
@@ -190,7 +190,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         Self { simd, one, other, limits, is_precise, beyond: none, within: !none, unsure: none }
     }
 
-    /// Adds the gap along an axis of any length.
+    /// Tests an axis, which may have any length, and updates the results.
     #[inline(always)]
     fn along(&mut self, along: &[V; D]) {
         let squared = dot(along, along);
@@ -205,8 +205,8 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.within &= gap.simd_le(self.limits[1] * length);
     }
 
-    /// Adds the gap along the line through the centroids to `beyond` alone: it says nothing about
-    /// an overlap.
+    /// Tests the line through the centroids and updates `beyond` only, because this axis cannot
+    /// prove an overlap.
     #[inline(always)]
     fn between_middles(&mut self) {
         let ([a, b, c], [d, e, f]) = (&self.one, &self.other);
@@ -215,8 +215,8 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.within = within;
     }
 
-    /// Whether a direction perpendicular to two vectors is exact; `squares` is the product of their
-    /// squared lengths.
+    /// Returns the lanes where the vector `along`, perpendicular to two sides, is exact; `squares`
+    /// is the product of the squared lengths of the sides.
     #[inline(always)]
     fn is_wide(&self, along: &[V; D], squares: V) -> V::Mask {
         let least = N::lit(MIN_SINE * MIN_SINE);
@@ -229,7 +229,8 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.unsure |= !self.is_wide(along, squares);
     }
 
-    /// Returns the results. `within` takes exact directions, and all axes (`has_all`).
+    /// Returns the results. `within` requires exact directions and that all axes were tested
+    /// (`has_all`).
     #[inline(always)]
     fn masks(&self, has_all: bool) -> PairMasks {
         let beyond = bits(self.beyond & self.is_precise);
@@ -238,7 +239,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
     }
 }
 
-/// The vectors from each corner to the next.
+/// Returns the vectors from each corner to the next.
 #[inline(always)]
 fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &[[V; D]; 3]) -> [[V; D]; 3] {
     [minus(b, a), minus(c, b), minus(a, c)]
@@ -249,7 +250,8 @@ fn squares_of<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &[[V; D]; 3]) -> [
     [dot(a, a), dot(b, b), dot(c, c)]
 }
 
-/// Returns the lowest and the highest of the corners along a direction.
+/// Returns the smallest and the largest coordinate of the corners along a direction, times its
+/// length.
 #[inline(always)]
 fn extent<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &[[V; D]; 3], along: &[V; D]) -> [V; 2] {
     let (a, b, c) = (dot(a, along), dot(b, along), dot(c, along));

@@ -1,4 +1,4 @@
-//! The distance of a composite to another shape: that of its nearest part.
+//! Distance of a composite to another shape, which is the distance of the nearest pair of parts.
 
 use crate::math::order::sort_few;
 use crate::tables::ByDimension;
@@ -19,17 +19,18 @@ use crate::math::{Mapped, Point, Real, Space, Vector, max, max_component, unit};
 use crate::partitioning::BoxTree;
 use crate::shape::{CompositeShape, Kind};
 
-/// The separation of two parts, in the frame of the first shape, and their indices.
+/// Separation of two parts, in the frame of the first shape, and their indices.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartSeparation<N: Real, const D: usize> {
     pub(crate) separation: Separation<N, D>,
-    /// The separation in the frame of the first part: [`Between::parts`].
+    /// The same separation in the frame of [`Between::parts`], the first part's.
     pub(crate) local: Separation<N, D>,
-    /// The part of the first shape and of the second; 0 for a convex solid.
+    /// Index of the part of the first shape, and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
 }
 
-/// The entry of the pair table: the separation of two shapes, the deepest if parts overlap.
+/// Computes the separation of two shapes, at least one a composite: that of the nearest parts, or
+/// of the deepest if parts overlap. `None` beyond `limit`.
 pub(crate) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -38,44 +39,46 @@ pub(crate) fn separation<N: Space<D>, const D: usize>(
     found.map(|found| found.separation)
 }
 
-/// A query that visits pairs of parts, near ones first.
+/// Receives the pairs of parts that a search finds, near ones first, and limits the search.
 pub(crate) trait PairVisitor<N: Real, const D: usize> {
-    /// The largest distance at which a pair of parts matters.
+    /// Returns the largest distance at which a pair of parts is still needed; it may shrink but
+    /// must not grow.
     fn limit(&self) -> N;
 
-    /// The largest distance at which a pair of boxes matters; negative to end the search.
+    /// Returns the largest distance at which a pair of boxes must be opened; negative to end the
+    /// search.
     fn bound(&self) -> N {
         loosened(max(self.limit(), N::ZERO))
     }
 
-    /// The sweep of the first shape (0) or the second (1) in the frame of the other: distances are
-    /// from where its parts go. `None` if they stay where they are.
+    /// Returns the sweep of the first shape (0) or the second (1) in the frame of the other shape;
+    /// distances then are to the swept parts. `None` if the shape does not move.
     fn sweep(&self, _which: usize) -> Option<PartSweep<N, D>> {
         None
     }
 
-    /// The unit vector from the first shape to the second between the best parts so far, in the
-    /// frame of the first. `None` before there is a pair, and if one of the shapes moves.
+    /// Returns the unit vector from the first shape to the second between the best pair so far, in
+    /// the frame of the first shape. `None` before a pair is found, and if one of the shapes moves.
     fn normal(&self) -> Option<Vector<N, D>> {
         None
     }
 
-    /// Whether any pair that touches ends the search.
+    /// Returns whether the first pair that touches ends the search.
     fn ends_at_touch(&self) -> bool {
         false
     }
 
-    /// Receives a pair of parts; a guessed pair may come twice.
+    /// Handles a pair of parts. A guessed pair may be passed twice.
     fn visit(&mut self, parts: [u32; 2]);
 }
 
 /// Visits the pairs of parts of two shapes that are within the limit of a visitor, near ones first.
 ///
-/// Cost: a convex solid searches the parts near it. Two composites that are searched by trees are
-/// descended together, as far as their boxes are near each other. Otherwise each part of the
-/// composite with fewer parts, near ones first, searches the other: at most n log m, where n is the
-/// smaller number, as long as parts do not all overlap. A half-space that is not aligned to an axis
-/// has no box and is compared with every part.
+/// Cost: a convex solid searches the parts near it. Two composites with trees are descended
+/// together where their boxes are near each other. Otherwise each part of the composite with fewer
+/// parts, near ones first, searches the other composite: at most n log m for n parts in the smaller
+/// and m in the larger, as long as parts do not all overlap. A half-space that is not aligned to an
+/// axis has no box and is compared with every part.
 pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     visitor: &mut dyn PairVisitor<N, D>,
@@ -101,19 +104,19 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
     }
 }
 
-/// Two composites that are searched by trees.
+/// Search of two composites that both have trees.
 struct TreeParts<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
-    /// The rounding error of gaps along a direction; infinite if these cannot be used, since parts
-    /// move.
+    /// Rounding error of gaps along a direction; infinite if such gaps cannot be used, because
+    /// parts move or their size is not finite.
     slack: N,
-    /// The slabs around the part that was visited last.
+    /// Slabs around the part that was visited last.
     slabs: Option<PartSlabs<N, D>>,
 }
 
-/// The slabs around a part of the first (0) or the second (1) composite.
+/// Slabs around a part of the first (0) or the second (1) composite.
 struct PartSlabs<N: Real, const D: usize> {
     which: usize,
     part: u32,
@@ -121,8 +124,8 @@ struct PartSlabs<N: Real, const D: usize> {
 }
 
 impl<'a, 'q, N: Space<D>, const D: usize> TreeParts<'a, 'q, N, D> {
-    /// Gaps along directions are used only if neither shape moves and their rounding error is
-    /// finite.
+    /// Creates the search. Gaps along directions are used only if neither shape moves and their
+    /// rounding error is finite.
     fn new(
         between: &'a Between<'a, N, D>,
         parts: [&'a dyn CompositeShape<N, D>; 2],
@@ -136,7 +139,7 @@ impl<'a, 'q, N: Space<D>, const D: usize> TreeParts<'a, 'q, N, D> {
         Self { between, visitor, parts, slack, slabs: None }
     }
 
-    /// Returns a box, in the frame of the other composite, around where the contents of `aabb` go.
+    /// Returns a box, in the frame of the other composite, around the swept contents of `aabb`.
     fn swept(&self, which: usize, aabb: Aabb<N, D>) -> Aabb<N, D> {
         self.visitor.sweep(which).map_or(aabb, |sweep| sweep.of_box(&aabb))
     }
@@ -159,7 +162,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.visitor.limit()
     }
 
-    /// Parts deeper than a negative limit have boxes that overlap as deep, but for rounding error.
+    /// Returns a lower bound of the overlap of boxes: parts deeper than a negative limit have boxes
+    /// that overlap as deep, up to rounding error.
     fn depth(&self) -> N {
         max(-self.visitor.limit() - self.slack, N::ZERO)
     }
@@ -168,7 +172,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.toward(0, &self.visitor.normal()?)
     }
 
-    /// Transforms the opposite vector into the frame of the other shape.
+    /// Returns `along`, from shape `which` to the other, in that shape's frame, and its opposite in
+    /// the frame of the other shape.
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>> {
         let pose12 = &self.between.pair.pose12;
         let toward = match which {
@@ -183,14 +188,14 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.toward(0, &unit(&offset)?.0)
     }
 
-    /// Infinite for parts without corners.
+    /// Returns the extent of a part along a direction; infinite for parts without corners.
     fn extent(&self, which: usize, id: u32, along: &Vector<N, D>) -> N {
         let part = self.parts[which].part(id);
         let Some(corners) = corners(&part.solid, &part.pose) else { return N::INFINITY };
         range(&corners, along)[1]
     }
 
-    /// Minus the rounding error, so that it is a lower bound.
+    /// Returns the gap along a direction minus the rounding error, so that it is a lower bound.
     fn gap(&self, toward: &Toward<N, D>, [extent1, extent2]: [N; 2]) -> N {
         let offset = toward[0].dot(&self.between.pair.pose12.translation);
         offset - extent1 - extent2 - self.slack
@@ -202,8 +207,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         }
     }
 
-    /// Rejects parts by the best direction, by the line through the centroids and by slabs; visits
-    /// the rest in the order of their lower bounds.
+    /// Rejects parts by the gap along the best direction, along the line through the centroids and
+    /// along slabs; visits the others in the order of their lower bounds.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         let pair = |other: u32| if which == 0 { [own, other] } else { [other, own] };
         let (best, mut near) = (self.best(), PartGaps::new());
@@ -240,16 +245,18 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 }
 
-/// Lower bounds of the distances of parts, negative where they may overlap, with the parts.
+/// Parts with a lower bound of their distance, which is negative if they may overlap.
 type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
-    /// The gap of two parts along a direction; minus infinity without corners.
+    /// Returns a lower bound of the gap of two parts along a direction; minus infinity without
+    /// corners.
     fn gap_along(&self, toward: &Toward<N, D>, parts: [u32; 2]) -> N {
         self.gap(toward, [0, 1].mapped(|which| self.extent(which, parts[which], &toward[which])))
     }
 
-    /// The gap along the line through the centroids of two parts; minus infinity without corners.
+    /// Returns a lower bound of the gap along the line through the centroids of two parts; minus
+    /// infinity without corners.
     fn gap_between(&self, parts: [u32; 2]) -> N {
         let middles = [0, 1].mapped(|which| {
             let part = self.parts[which].part(parts[which]);
@@ -261,10 +268,10 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
         toward.map_or(-N::INFINITY, |toward| self.gap_along(&toward, parts))
     }
 
-    /// Returns the slabs around a part of the first shape (0) or the second (1), cached from the
-    /// last visit.
+    /// Returns the slabs around a part of the first shape (0) or the second (1); takes them from
+    /// `self.slabs` if that holds the same part.
     fn slabs_of(&mut self, which: usize, part: u32) -> PartSlabs<N, D> {
-        // Sweeps only get shorter, so that old slabs are wide enough.
+        // Sweeps only get shorter, so old slabs are still wide enough.
         let is_own = |kept: &PartSlabs<N, D>| kept.which == which && kept.part == part;
         if let Some(kept) = self.slabs.take().filter(is_own) {
             return kept;
@@ -298,7 +305,7 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
     }
 }
 
-/// The search of [`visit_near_pairs`] for shapes that are not both searched by trees.
+/// Search of [`visit_near_pairs`] for shapes that do not both have trees.
 struct NearestSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
@@ -321,14 +328,14 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits the near parts of `others` for one part of the first shape or the second.
+    /// Visits the near parts of `others` for one part of the first shape (0) or the second (1).
     fn of_one(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let between = self.between;
         self.outside(which, part, others, |sweep| AxisSlabs::of_part(between, which, part, sweep));
     }
 
-    /// Visits the near parts of `others` for one part, less those that slabs reject; the slabs are
-    /// made at the first candidate.
+    /// Visits the near parts of `others` for one part, except those that the slabs reject; the
+    /// slabs are computed at the first candidate.
     fn outside(
         &mut self,
         which: usize,
@@ -348,7 +355,8 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
         });
     }
 
-    /// Visits the near pairs of two composites: each part of the one with fewer searches the other.
+    /// Visits the near pairs of two composites: each part of the one with fewer parts searches the
+    /// other.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let (sweep, bound) = (self.visitor.sweep(1 - which), self.visitor.bound());
@@ -364,8 +372,8 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
     }
 }
 
-/// Ranks the parts of a composite by a lower bound of their distance to a convex solid, the first
-/// shape (0) or the second (1).
+/// Ranks the parts of a composite by a lower bound of their distance to a convex solid, which is
+/// the first shape (0) or the second (1).
 struct RankedParts<'a, 'q, N: Real, const D: usize> {
     bounds: SolidBounds<'a, N, D>,
     parts: &'a dyn CompositeShape<N, D>,
@@ -386,7 +394,7 @@ impl<N: Space<D>, const D: usize> BoxRanking<N, D> for RankedParts<'_, '_, N, D>
     fn limit(&self) -> Option<N> {
         let ends = self.visitor.bound() < N::ZERO;
         let limit = self.visitor.limit();
-        // False for NaN, within which there is nothing.
+        // False for NaN, within which no part is.
         (!ends && limit <= N::INFINITY).then_some(limit)
     }
 
@@ -400,7 +408,7 @@ impl<N: Space<D>, const D: usize> BoxRanking<N, D> for RankedParts<'_, '_, N, D>
 }
 
 impl<N: Real, const D: usize> PartSeparation<N, D> {
-    /// Whether this pair is nearer, or as near with lower indices.
+    /// Returns whether this pair is nearer than `other`, or equally near with lower indices.
     pub(super) fn is_before(&self, other: &Self) -> bool {
         let (distance, others) = (self.separation.distance, other.separation.distance);
         distance < others || (distance == others && self.parts < other.parts)

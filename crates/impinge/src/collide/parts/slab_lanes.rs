@@ -1,9 +1,10 @@
-//! Lower bounds of the distances from one part to 8 others at a time, by the slabs around the
-//! one and the axes of the others.
+//! Lower bounds of the distances from one part to 8 others at a time, along the slabs around the
+//! one part and the separating axes of the others.
 //!
 //! Two triangles in 3D overlap iff neither normal and no direction perpendicular to a side of each
-//! separates them, and if they do, the shortest way out is along one of these axes (Gottschalk, Lin
-//! and Manocha, "`OBBTree`", 1996); two in 2D, iff no direction across a side of either does.
+//! separates them; if they overlap, the shortest separating translation is along one of these axes
+//! (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). Two triangles in 2D overlap iff no direction
+//! perpendicular to a side of either separates them.
 
 use super::slabs::{AxisSlabs, rounding_unit};
 use crate::collide::packet::{LANES, PartPacket};
@@ -11,12 +12,12 @@ use crate::math::lanes::{bits, cross, dot, in_lanes, load, minus, spread};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 
-/// The corners of parts relative to the origin of the slabs, by corner and axis.
+/// Corners of parts relative to the origin of the slabs, indexed by corner and axis.
 type Corners<V, const D: usize> = [[V; D]; 3];
 
-/// Returns lower bounds of the distances of 8 parts in 2D from the content of the slabs;
-/// negative for overlaps. If the slabs alone put a whole SIMD run beyond `limit`, the other axes
-/// are skipped, so that bounds beyond it may differ by SIMD level.
+/// Returns lower bounds of the distances of 8 parts in 2D from the solid inside the slabs; negative
+/// for overlaps. If the slabs alone put a whole SIMD run beyond `limit`, the other axes are
+/// skipped, so bounds above `limit` may differ by SIMD level.
 pub(crate) fn part_gaps2<N: Real>(
     slabs: &AxisSlabs<N, 2>,
     tiles: &PartPacket<N, 2>,
@@ -31,7 +32,8 @@ pub(crate) fn part_gaps2<N: Real>(
     gaps
 }
 
-/// [`part_gaps2`], in 3D.
+/// Returns lower bounds of the distances of 8 parts in 3D from the solid inside the slabs, with the
+/// contract of [`part_gaps2`].
 pub(crate) fn part_gaps3<N: Real>(
     slabs: &AxisSlabs<N, 3>,
     tiles: &PartPacket<N, 3>,
@@ -46,7 +48,7 @@ pub(crate) fn part_gaps3<N: Real>(
     gaps
 }
 
-/// Gaps in 2D: along the slabs, then across the sides of the other parts.
+/// Computes gaps in 2D: along the slabs, then perpendicular to the sides of the other parts.
 #[inline(always)]
 fn in_lanes_2d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -66,8 +68,8 @@ fn in_lanes_2d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     gaps.certain(slabs)
 }
 
-/// Gaps in 3D: along the slabs, then across the planes of the other parts, then perpendicular to a
-/// side of each.
+/// Computes gaps in 3D: along the slabs, then along the normals of the other parts, then
+/// perpendicular to a side of each.
 #[inline(always)]
 fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -95,7 +97,7 @@ fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     gaps.certain(slabs)
 }
 
-/// The largest gaps of 8 parts so far.
+/// Largest gaps of 8 parts so far.
 struct SlabGaps<S, V, const D: usize> {
     simd: S,
     corners: Corners<V, D>,
@@ -103,7 +105,7 @@ struct SlabGaps<S, V, const D: usize> {
 }
 
 impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D> {
-    /// Adds the gaps along the slabs.
+    /// Raises the gaps to those along the slabs.
     #[inline(always)]
     fn along(&mut self, slabs: &AxisSlabs<N, D>) {
         for slab in &slabs.slabs {
@@ -114,7 +116,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         }
     }
 
-    /// Adds the gaps along directions of any length.
+    /// Raises the gaps to those along directions of any length.
     #[inline(always)]
     fn across(&mut self, own: &Corners<V, D>, along: &[V; D]) {
         let squared = dot(along, along);
@@ -126,14 +128,14 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         self.gaps = is_length.select(gap, -V::all(simd, N::INFINITY)).larger(self.gaps);
     }
 
-    /// Whether some part may still be within the limit.
+    /// Returns whether some part may still be within `limit`.
     #[inline(always)]
     fn are_within(&self, slabs: &AxisSlabs<N, D>, limit: N) -> bool {
         let beyond = V::all(self.simd, limit) + self.slack(slabs);
         bits(self.gaps.simd_gt(beyond)) != u8::MAX
     }
 
-    /// The rounding error of the gaps.
+    /// Returns the rounding error of the gaps.
     #[inline(always)]
     fn slack(&self, slabs: &AxisSlabs<N, D>) -> V {
         let mut size = V::all(self.simd, slabs.size);
@@ -149,7 +151,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
     #[inline(always)]
     fn certain(&self, slabs: &AxisSlabs<N, D>) -> [N; LANES] {
         let (simd, slack) = (self.simd, self.slack(slabs));
-        // Subnormal lengths are not precise.
+        // Subnormal lengths have too few digits.
         let least = N::MIN_POSITIVE / N::EPSILON * rounding_unit::<N>();
         let is_precise = slack.simd_gt(V::all(simd, least));
         let gaps = is_precise.select(self.gaps - slack, -V::all(simd, N::INFINITY));
@@ -181,13 +183,14 @@ fn spread_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     [spread(simd, a), spread(simd, b), spread(simd, c)]
 }
 
-/// The vectors from each corner to the next.
+/// Returns the vectors from each corner to the next.
 #[inline(always)]
 fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &Corners<V, D>) -> Corners<V, D> {
     [minus(b, a), minus(c, b), minus(a, c)]
 }
 
-/// Returns the lowest and the highest of the corners along a direction.
+/// Returns the smallest and the largest coordinate of the corners along a direction, times its
+/// length.
 #[inline(always)]
 fn extent<S: Simd, V: Wide<S>, const D: usize>(
     [a, b, c]: &Corners<V, D>,

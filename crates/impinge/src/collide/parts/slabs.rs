@@ -1,4 +1,5 @@
-//! Slabs around one part, to reject parts of the other shape that lie far outside one of them.
+//! Slabs around one part, which reject parts of the other shape that lie far outside one of the
+//! slabs.
 //!
 //! ```text
 //!                   r ── s
@@ -20,16 +21,17 @@ use crate::shape::{Part, PartSolid, Plane};
 /// Rounding error of gaps, in units of epsilon times the largest length.
 const ROUNDING: f64 = 128.0;
 
-/// Slabs that contain a solid while it moves, in the frame of the composite that it is compared
+/// Slabs that contain a solid during its motion, in the frame of the composite that it is compared
 /// with.
 pub(crate) struct AxisSlabs<N: Real, const D: usize> {
-    /// The zero of all heights.
+    /// Point from which all heights of the slabs are measured.
     pub(super) origin: Vector<N, D>,
-    /// The solid's contribution to the length that rounding errors are in proportion to.
+    /// The solid's contribution to the length that scales rounding errors.
     pub(super) size: N,
-    /// For a triangle, one across each side and, in 3D, one across its plane.
+    /// For a triangle, a slab perpendicular to each side's normal and, in 3D, to the plane's
+    /// normal.
     pub(super) slabs: SmallVec<[Slab<N, D>; 5]>,
-    /// The corners of the part relative to `origin`; `None` if it moves.
+    /// Corners of the part relative to `origin`; `None` if it moves.
     pub(super) corners: Option<[Vector<N, D>; 3]>,
 }
 
@@ -41,7 +43,7 @@ pub(super) struct Slab<N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
-    /// The slab of a half-space, as the first shape; it has no lower side.
+    /// Returns the slab of a half-space, which is the first shape; the slab is unbounded below.
     pub(crate) fn of_half_space(
         between: &Between<'_, N, D>,
         plane: &Plane<N, D>,
@@ -55,8 +57,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         Self { origin, size: highest, slabs: smallvec![slab], corners: None }
     }
 
-    /// The slabs around a part of the first shape (0) or the second (1); empty for parts without
-    /// corners.
+    /// Returns the slabs around a part of the first shape (0) or the second (1); without slabs for
+    /// parts without corners.
     pub(crate) fn of_part(
         between: &Between<'_, N, D>,
         which: usize,
@@ -80,8 +82,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         slabs
     }
 
-    /// Adds slabs around corners, relative to the first of them, and around their ends, widened by
-    /// `spread`.
+    /// Adds slabs around the corners, relative to the first of them, and around the positions
+    /// `ends` of the corners after the motion, all widened by `spread`.
     fn surround(&mut self, corners: &[Vector<N, D>; 3], ends: &[Vector<N, D>; 3], spread: N) {
         for along in across(corners) {
             let (start, end) = (range(corners, &along), range(ends, &along));
@@ -91,8 +93,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         }
     }
 
-    /// Whether a part of the composite is certainly farther from the solid than `limit`; the
-    /// distance of an overlap is negative. False if there are no slabs or no corners.
+    /// Returns whether a part of the composite is certainly farther from the solid than `limit`;
+    /// the distance of an overlap is negative. False without slabs or corners.
     pub(crate) fn are_beyond(&self, part: &Part<'_, N, D>, limit: N) -> bool {
         if self.slabs.is_empty() {
             return false;
@@ -104,19 +106,19 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
             let [lowest, highest] = range(&corners, &slab.along);
             max(max(lowest - slab.highest, slab.lowest - highest), gap)
         });
-        // Subnormal lengths are not precise.
+        // Subnormal lengths have too few digits.
         let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
         is_precise && gap - size * rounding_unit() > limit
     }
 }
 
-/// The rounding error of gaps in units of the largest length.
+/// Returns the rounding error of gaps in units of the largest length.
 pub(super) fn rounding_unit<N: Real>() -> N {
     N::lit(ROUNDING) * N::EPSILON
 }
 
-/// Returns unit vectors across each side of a triangle whose first corner is the origin and, in 3D,
-/// across its plane. Directions without length are left out.
+/// Returns unit vectors perpendicular to each side of a triangle whose first corner is the origin,
+/// within its plane, and, in 3D, its normal. Vectors without length are left out.
 pub(crate) fn across<N: Real, const D: usize>(
     [_, one, other]: &[Vector<N, D>; 3],
 ) -> impl Iterator<Item = Vector<N, D>> {
@@ -125,8 +127,8 @@ pub(crate) fn across<N: Real, const D: usize>(
     all.filter_map(|direction| Some(unit(&direction)?.0))
 }
 
-/// Returns the placed corners of a triangle or segment, the first end of a segment twice; `None`
-/// for other parts.
+/// Returns the placed corners of a triangle or segment, whose first end occurs twice; `None` for
+/// other parts.
 pub(crate) fn corners<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     pose: &Pose<N, D>,
@@ -139,7 +141,7 @@ pub(crate) fn corners<N: Real, const D: usize>(
     Some(corners.mapped(|corner| pose.point(&corner).coords))
 }
 
-/// Returns the lowest and the highest of the corners along a direction.
+/// Returns the smallest and the largest coordinate of the corners along a direction.
 pub(crate) fn range<N: Real, const D: usize>(
     corners: &[Vector<N, D>; 3],
     along: &Vector<N, D>,
@@ -153,8 +155,8 @@ fn without<N: Real, const D: usize>(v: &Vector<N, D>, other: &Vector<N, D>) -> V
     unit(other).map_or(*v, |(along, _)| v - along * v.dot(&along))
 }
 
-/// Returns the longest component, perpendicular to both vectors, of a coordinate axis; zero if they
-/// span all directions.
+/// Returns the longest component, perpendicular to both vectors, of a coordinate axis; zero if the
+/// two vectors span all directions.
 fn normal_to<N: Real, const D: usize>(one: &Vector<N, D>, other: &Vector<N, D>) -> Vector<N, D> {
     let along = |v: &Vector<N, D>| unit(v).map_or_else(Vector::<N, D>::zeros, |(along, _)| along);
     let spans = [along(one), along(&without(other, one))];

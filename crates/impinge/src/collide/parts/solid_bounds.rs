@@ -1,9 +1,9 @@
 //! Lower bounds of the signed distance from a convex solid to boxes and parts of a composite.
 //!
-//! Along any unit vector two convex sets leave a gap, negative where they overlap, and the largest
-//! gap is their signed distance. So every direction gives a lower bound. The normal of the solid at
-//! its nearest point to some point of the other gives one that is close to the distance if the
-//! other is small.
+//! Along any unit vector, two convex sets have a gap, negative if their projections overlap. The
+//! largest gap is their signed distance, so every direction gives a lower bound. The solid's normal
+//! at its nearest point to some point of the other set gives a bound close to the distance if the
+//! other set is small.
 //!
 //! ```text
 //!     solid                       box or part
@@ -19,9 +19,10 @@ use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, unit};
 use crate::shape::{Geometry, Kind, Part, SupportMap};
 use crate::tables::ByDimension;
 
-/// Rounding error of bounds in units of epsilon times the coordinates. The slack is at least
-/// `CURVED` times these: the algorithms for curved solids stop at 2⁻⁴⁰.
+/// Rounding error of bounds, in units of epsilon times the coordinates.
 const ROUNDING: f64 = 128.0;
+/// Smallest slack of bounds, relative to the coordinates: the algorithms for curved solids stop at
+/// 2⁻⁴⁰.
 const CURVED: f64 = 8.0e-12;
 
 /// A convex solid in the frame of a composite.
@@ -30,12 +31,13 @@ pub(crate) struct SolidBounds<'a, N: Real, const D: usize> {
     map: &'a dyn SupportMap<N, D>,
     pose: Pose<N, D>,
     center: Point<N, D>,
-    /// Bound of the absolute coordinates of the solid, but for rounding.
+    /// Bound of the absolute coordinates of the solid, up to rounding.
     size: N,
 }
 
 impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
-    /// Takes the first shape (0) or the second (1); `None` for composites and half-spaces.
+    /// Creates bounds for the first shape (0) or the second (1); `None` for composites and
+    /// half-spaces.
     pub(crate) fn of(between: &'a Between<'_, N, D>, which: usize) -> Option<Self> {
         let (solid, pose) = between.in_frame_of_other(which);
         let map = Geometry(solid).as_support_map()?;
@@ -43,27 +45,28 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         Some(Self { solid, map, pose: *pose, center: pose.point(&map.center()), size })
     }
 
-    /// The centre of the solid, in the frame of the composite.
+    /// Returns the centre of the solid, in the frame of the composite.
     pub(crate) const fn center(&self) -> Point<N, D> {
         self.center
     }
 
-    /// Returns the outward unit normal at the solid's nearest point to the centre of a box, and an
-    /// upper bound of the solid's extent along it. `None` if there is no finite bound.
+    /// Returns the outward unit normal of the solid at its nearest point to the centre of a box,
+    /// and an upper bound of the solid's extent along this normal. `None` if the extent has no
+    /// finite bound.
     pub(crate) fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)> {
         let outward = self.outward_at(&aabb.center());
         let extent = -self.gap(&outward, N::ZERO, largest_coordinate(aabb));
         (extent < N::INFINITY).then_some((outward, extent))
     }
 
-    /// Returns a lower bound of the signed distance to anything in the box.
+    /// Returns a lower bound of the signed distance from the solid to everything in the box.
     pub(super) fn of_box(&self, aabb: &Aabb<N, D>) -> N {
         self.toward(aabb).map_or(-N::INFINITY, |(along, extent)| {
             along.dot(&aabb.center().coords) - along.abs().dot(&aabb.half_extents()) - extent
         })
     }
 
-    /// Returns a lower bound of the signed distance to a part, which lies in the box.
+    /// Returns a lower bound of the signed distance from the solid to a part that lies in the box.
     pub(crate) fn of_part(&self, part: &Part<'_, N, D>, aabb: &Aabb<N, D>) -> N {
         let geometry = part.solid.geometry();
         let Some(map) = geometry.as_support_map() else { return self.of_box(aabb) };
@@ -81,8 +84,8 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         max(gap(&self.outward_at(&part.pose.point(&projected.point))), across)
     }
 
-    /// The outward unit normal at the nearest point to `point`, or the direction from the centre to
-    /// `point` for solids without a closed form.
+    /// Returns the outward unit normal at the solid's nearest point to `point`. For solids without
+    /// a closed form, returns the direction from the centre to `point` instead.
     fn outward_at(&self, point: &Point<N, D>) -> Vector<N, D> {
         match <N::Algorithms>::project_on_solid(self.solid, &self.pose.inverse_point(point)) {
             Some(projected) => self.pose.vector(&projected.outward),
@@ -91,28 +94,28 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         }
     }
 
-    /// Returns the gap along a unit vector from the solid to what lies above `lowest`, minus the
-    /// rounding error; minus infinity if `along` is not a unit vector. `largest` bounds the
-    /// coordinates of the other.
+    /// Returns the gap along a unit vector from the solid to points whose coordinate along it is at
+    /// least `lowest`, minus the rounding error. Minus infinity if `along` is not a unit vector.
+    /// `largest` bounds the coordinates of these points.
     fn gap(&self, along: &Vector<N, D>, lowest: N, largest: N) -> N {
         let highest = self.map.core_support(&self.pose.inverse_vector(along));
         let height = along.dot(&self.pose.point(&highest).coords) + self.map.rounding();
         let size = self.size + largest;
         let bound = lowest - height - gap_slack(size);
-        // Subnormal lengths are not precise.
+        // Subnormal lengths have too few digits.
         let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
         let is_unit = (along.norm_squared() - N::ONE).abs() < N::lit(64.0) * N::EPSILON;
         if is_precise && is_unit && bound.is_finite_number() { bound } else { -N::INFINITY }
     }
 }
 
-/// The error of gaps between solids with coordinates up to `size`, from rounding and from the
-/// tolerance of iterations.
+/// Returns the error of gaps between solids with coordinates up to `size`, from rounding and from
+/// the tolerance of iterations.
 pub(super) fn gap_slack<N: Real>(size: N) -> N {
     size * max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED))
 }
 
-/// The largest absolute coordinate of a bounded box, but for rounding.
+/// Returns the largest absolute coordinate of a bounded box, up to rounding.
 fn largest_coordinate<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
     max_component(&(aabb.center().coords.abs() + aabb.half_extents()))
 }

@@ -1,9 +1,9 @@
-//! The motion of the parts of one shape in the frame of the other.
+//! Motion of the parts of one shape in the frame of the other.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Matrix, Point, Real, Vector, max, min};
 
-/// The motion of the points of one shape during some time, in the frame of the other. A point `x`
+/// Motion of the points of one shape during some time, in the frame of the other shape. A point `x`
 /// stays within `spread` of the segment from `x` to `x + turn · x + shift`.
 ///
 /// ```text
@@ -15,18 +15,18 @@ use crate::math::{Matrix, Point, Real, Vector, max, min};
 pub(crate) struct PartSweep<N: Real, const D: usize> {
     pub(crate) turn: Matrix<N, D>,
     pub(crate) shift: Vector<N, D>,
-    /// The deviation of the path from the segment, with the rounding error of positions; not
+    /// Largest deviation of a path from its segment, including the rounding error of positions; not
     /// negative.
     pub(crate) spread: N,
 }
 
 impl<N: Real, const D: usize> PartSweep<N, D> {
-    /// A motion of which only a bound is known: each point stays within `spread`.
+    /// Returns a motion with no known direction: each point stays within `spread` of its position.
     pub(crate) fn anywhere(spread: N) -> Self {
         Self { turn: Matrix::<N, D>::zeros(), shift: Vector::<N, D>::zeros(), spread }
     }
 
-    /// The displacement of a point, without the spread.
+    /// Returns the displacement of a point along its segment, without the spread.
     pub(crate) fn displacement(&self, point: &Vector<N, D>) -> Vector<N, D> {
         self.turn * point + self.shift
     }

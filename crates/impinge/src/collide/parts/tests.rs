@@ -1,4 +1,4 @@
-//! The searches and their bounds compared with all parts, one by one.
+//! Compares the searches and their bounds with a test of all pairs of parts.
 
 use super::nearest::nearest_between;
 use super::solid_bounds::SolidBounds;
@@ -16,7 +16,7 @@ use crate::shape::{
 
 type Solids<N, const D: usize> = Vec<Box<dyn Shape<N, D>>>;
 
-/// Triangles of all sizes, some of them thin, flat along an axis, or equal.
+/// Returns triangles of all sizes, some of them thin, flat along an axis, or equal.
 fn soup<N: Space<D>, const D: usize>(
     random: &mut Random,
     vector: fn(&mut Random) -> Vector<N, D>,
@@ -37,7 +37,7 @@ fn soup<N: Space<D>, const D: usize>(
     TriMesh::new(corners, triangles)
 }
 
-/// The best pair among all.
+/// Returns the best pair among all pairs of parts.
 fn of_all<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     counts: [u32; 2],
@@ -51,8 +51,8 @@ fn of_all<N: Space<D>, const D: usize>(
     found.reduce(|best, next| if next.is_before(&best) { next } else { best }).expect("some parts")
 }
 
-/// Checks that the search finds the best pair for each [`Wanted`] and limit, and none for a limit
-/// slightly below its distance.
+/// Asserts that the search finds the best pair for each [`Wanted`] and limit, and finds none for a
+/// limit slightly below its distance.
 fn check<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, counts: [u32; 2]) -> N {
     let between = Between::of_pair(pair);
     let best = of_all(&between, counts);
@@ -107,8 +107,8 @@ fn searches<N: Space<D>, const D: usize>(
     assert!(overlaps.iter().all(|count| count * 6 > overlaps[0] + overlaps[1]), "{overlaps:?}");
 }
 
-/// Checks the searches beside a fine smooth surface, whose blocks have thin slabs and lie in many
-/// layers: from inside, across it, near it and far away, aligned with it and not.
+/// Asserts that searches beside a fine smooth surface, whose blocks have thin slabs and lie in many
+/// layers, are right: from inside, across it, near it and far away, aligned with it and not.
 fn searches_of_surface<N: Space<3>>() {
     let half = Vector::<N, 3>::new(N::ONE, N::lit(0.75), N::HALF);
     let surface = ellipsoid(&Ellipsoid::new(half), 40);
@@ -132,7 +132,7 @@ fn searches_of_surface<N: Space<3>>() {
     assert!(parts > 1000 && overlaps.iter().all(|&count| count > 40), "{parts} {overlaps:?}");
 }
 
-/// Bounds must not exceed the distances of parts, and must be close to them where the parts are
+/// Asserts that bounds do not exceed the distances of parts, and are close to them if the parts are
 /// small.
 fn bounds<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,

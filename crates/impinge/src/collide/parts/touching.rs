@@ -1,5 +1,4 @@
-//! Pairs of parts of two composites, both searched by trees, that may be within reach of each
-//! other.
+//! Pairs of parts of two composites, both with trees, that may be within a distance of each other.
 //!
 //! The trees reject pairs by boxes. The remaining pairs are tested in SIMD lanes ([`pair_lanes`]),
 //! along every axis that may separate two triangles.
@@ -20,33 +19,35 @@ use crate::tables::ByDimension;
 
 /// Receives the pairs of parts that a search finds.
 pub(crate) trait TouchingVisitor<N: Real, const D: usize> {
-    /// Handles two parts. Returns the reach from now on, which must never grow; `None` ends the
-    /// search.
+    /// Handles two parts. Returns the distance to search from now on, which must never grow; `None`
+    /// ends the search.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N>;
 
-    /// The unit vector from the first composite to the second between the best parts so far, in the
-    /// frame of the first.
+    /// Returns the unit vector from the first composite to the second between the best pair so far,
+    /// in the frame of the first. `None` if there is none.
     fn normal(&self) -> Option<Vector<N, D>> {
         None
     }
 }
 
-/// The pairs of parts that a search looks for.
+/// Which pairs of parts a search looks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Touching {
-    /// All within reach, each once.
+    /// All pairs within `max_distance`, each once.
     Each,
-    /// Any pair: one is likely to end the search, so that no pair waits for a full batch of lanes.
+    /// Any pair: the first one is likely to end the search, so no pair waits for a full batch of
+    /// lanes.
     Any,
-    /// The nearest: the reach shrinks to the best distance. A pair that is likely to be near comes
-    /// first, and may come twice.
+    /// The nearest pair: `max_distance` shrinks to the best distance. A pair that is likely to be
+    /// near is visited first, and may be visited twice.
     Nearest,
 }
 
-/// Visits the pairs of parts that may be within `max_distance`. Returns false, without a visit, for
-/// composites that are not searched by trees or are too far away for boxes of `f32`.
+/// Visits the pairs of parts that may be within `max_distance`. Returns `false`, without a visit,
+/// for composites without trees or too far apart for boxes of `f32`.
 ///
-/// Cost: O(n + k) for k pairs with boxes within reach in n blocks within reach, as long as the
+/// Cost: O(n + k) for k pairs of parts and n pairs of blocks with boxes within `max_distance`, as
+/// long as the boxes fit tightly.
 /// boxes fit tightly.
 pub(crate) fn each_touching<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
@@ -82,28 +83,28 @@ pub(crate) fn each_touching<N: Space<D>, const D: usize>(
     true
 }
 
-/// A search of two trees for pairs of parts, with up to 8 pairs waiting for the lanes.
+/// Search of two trees for pairs of parts, with up to 8 pairs waiting for the lanes.
 struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
-    /// The composites that are meshes, for quicker access to corners.
+    /// The composites that are meshes, whose corners can be read faster.
     meshes: [Option<&'a TriMesh<N, D>>; 2],
     max_distance: Option<N>,
-    /// Boxes may be farther apart than the nearest parts by this rounding error.
+    /// Rounding error by which boxes may be farther apart than the nearest parts.
     slack: N,
     wanted: Touching,
-    /// The corners of the current part in the frame of the other composite; `None` for a shape
-    /// without corners.
+    /// Corners of the current part in the frame of the other composite; `None` for a part without
+    /// corners.
     own: Option<[Vector<N, D>; 3]>,
-    /// The pairs in the lanes, waiting for a full batch.
+    /// Pairs in the lanes, waiting for a full batch.
     kept: [[u32; 2]; LANES],
     pairs: PartPairs<N, D>,
     visitor: &'q mut dyn TouchingVisitor<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
-    /// Returns the corners of a part of the first shape (0) or the second (1), in its frame; `None`
-    /// for a part without.
+    /// Returns the corners of a part of the first shape (0) or the second (1), in the frame of its
+    /// shape; `None` for a part without corners.
     fn corners_of(&self, which: usize, id: u32) -> Option<[Vector<N, D>; 3]> {
         if let Some(mesh) = self.meshes[which] {
             return Some(mesh.corners(id).mapped(|corner| corner.coords));
@@ -112,8 +113,8 @@ impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
         corners(&part.solid, &part.pose)
     }
 
-    /// Whether two parts are beyond reach along the line through their centroids; this rejects most
-    /// pairs that boxes do not.
+    /// Returns whether two parts are beyond `max_distance` along the line through their centroids;
+    /// this rejects most pairs that boxes do not.
     fn are_beyond(&self, one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) -> bool {
         let Some(max_distance) = self.max_distance.filter(|_| self.wanted == Touching::Nearest)
         else {
@@ -124,16 +125,16 @@ impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
         gap2 - gap1 > (max_distance + self.slack) * axis.norm()
     }
 
-    /// Passes a pair to the visitor, which returns the new reach.
+    /// Passes a pair to the visitor and takes over the distance that it returns.
     fn found(&mut self, pair: [u32; 2]) {
         self.max_distance = self.max_distance.and_then(|_| self.visitor.visit(pair));
     }
 
-    /// Tests the waiting pairs in lanes and visits those not certainly beyond reach.
+    /// Tests the waiting pairs in lanes and visits those not certainly beyond `max_distance`.
     fn flush(&mut self) {
         let (mut looked_at, mut within) = (0, None);
         while let Some(max_distance) = self.max_distance.filter(|_| looked_at < self.pairs.count) {
-            // The lanes are tested again only after the reach has shrunk.
+            // The lanes are tested again only after the distance has shrunk.
             if within.is_none_or(|(known, _)| max_distance < known) {
                 let beyond = <N::Algorithms>::part_pairs(&self.pairs, max_distance).beyond;
                 within = Some((max_distance, !beyond));
@@ -146,7 +147,7 @@ impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
         self.pairs.count = 0;
     }
 
-    /// Puts a pair into the next lane; the corners of both parts are in one frame.
+    /// Puts a pair into the next lane; the corners of both parts must be in one frame.
     fn keep(&mut self, pair: [u32; 2], one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) {
         let lane = self.pairs.count;
         self.kept[lane] = pair;
@@ -181,7 +182,8 @@ impl<N: Space<D>, const D: usize> TouchQuery<N, D> for TouchingSearch<'_, '_, N,
         Some([normal, self.pose(0).vector(&-normal)])
     }
 
-    /// Also keeps the transformed corners of the part in `own`.
+    /// Returns the box of a part in the frame of the other composite; also stores the transformed
+    /// corners in `own`.
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D> {
         let pose = self.pose(which);
         let own = self.corners_of(which, id);
@@ -199,8 +201,8 @@ impl<N: Space<D>, const D: usize> TouchQuery<N, D> for TouchingSearch<'_, '_, N,
         self.own
     }
 
-    /// Rejects pairs along the line through their centroids, puts those with corners into the
-    /// lanes, and visits all others at once.
+    /// Rejects pairs along the line through their centroids, puts the others into the lanes, and
+    /// visits pairs without corners directly.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         for &other in others {
             let pair = if which == 0 { [own, other] } else { [other, own] };

@@ -1,28 +1,28 @@
-//! Ellipsoids as smaller solids with a radius.
+//! Ellipsoids as smaller solids with a radius around them.
 //!
-//! If a ball rolls inside a convex solid and touches every point of its surface, the solid consists
-//! of the points within the ball's radius of a smaller convex solid (W. Blaschke, "Kreis und
-//! Kugel", 1916). So it is a core with a radius, like a capsule: until the cores overlap, its depth
-//! is found like a distance, by a convex search.
+//! If a ball can roll inside a convex solid and touch every point of its surface, the solid
+//! consists of the points within the ball's radius of a smaller convex solid (W. Blaschke, "Kreis
+//! und Kugel", 1916). So the solid is a core with a radius, like a capsule: as long as the cores do
+//! not overlap, its depth is computed like a distance, by a convex search.
 
 use crate::math::{Matrix, Point, Real, Vector, max_component, min};
 use crate::shape::{CurvedSupport, Ellipsoid, Geometry, Kind, SupportMap};
 
-/// Share of the largest radius that is taken off. Below 1, so that the core of a sphere keeps a
-/// size.
+/// Fraction of the largest possible radius that is taken off. It is below 1 so that the core of a
+/// sphere is not a point.
 const SHARE: f64 = 15.0 / 16.0;
 
 /// A solid as a core with a radius: the points within `radius` of the eroded solid. Support points
-/// are only asked for along unit vectors.
+/// may only be requested along unit vectors.
 #[derive(Clone, Copy)]
 pub(super) struct Eroded<'a, N: Real, const D: usize> {
     solid: &'a dyn SupportMap<N, D>,
-    /// Radius taken off, zero for all kinds but ellipsoids.
+    /// Radius that is taken off; zero for all kinds but ellipsoids.
     radius: N,
 }
 
 impl<'a, N: Real, const D: usize> Eroded<'a, N, D> {
-    /// `None` for half-spaces and composites.
+    /// Wraps a solid; `None` for half-spaces and composites.
     pub(super) fn of(kind: Kind<'a, N, D>) -> Option<Self> {
         let radius = if let Kind::Ellipsoid(ellipsoid) = kind {
             least_curvature_radius(ellipsoid) * N::lit(SHARE)
@@ -33,7 +33,7 @@ impl<'a, N: Real, const D: usize> Eroded<'a, N, D> {
     }
 }
 
-/// Returns the radius of the largest ball that rolls inside an ellipsoid: the least radius of
+/// Returns the radius of the largest ball that can roll inside an ellipsoid: the smallest radius of
 /// curvature, `shortest² / longest`, at the ends of the longest axis.
 fn least_curvature_radius<N: Real, const D: usize>(ellipsoid: &Ellipsoid<N, D>) -> N {
     let half_axes = ellipsoid.half_axes();

@@ -1,5 +1,5 @@
-//! Solids whose cores are hulls of points, as one type: the general algorithm compiled for it makes
-//! no indirect calls.
+//! Solids whose cores are hulls of points, as one type, so that the general algorithm compiled for
+//! it makes no indirect calls.
 
 use crate::math::{Point, Real, Vector};
 use crate::shape::{Capsule, Cuboid, Kind, Polytope, Segment, SupportMap, Triangle};
@@ -15,7 +15,7 @@ pub(super) enum FlatCore<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> FlatCore<'a, N, D> {
-    /// Wraps a solid; `None` for other kinds.
+    /// Wraps a solid; `None` if its core is not a hull of points.
     pub(super) fn of(kind: Kind<'a, N, D>) -> Option<Self> {
         Some(match kind {
             Kind::Segment(segment) => Self::Segment(segment),

@@ -1,5 +1,5 @@
-//! Any two convex solids by the general algorithm (`convex`), with a tolerance on the limit and
-//! shared corners, so that its answers agree with those of the closed forms.
+//! Any two convex solids by the general algorithm (`convex`), with a tolerance on the limit and the
+//! rule for shared corners, so that results agree with those of the closed forms.
 
 use super::eroded::Eroded;
 use super::flat_core::FlatCore;
@@ -19,9 +19,10 @@ fn maps<'a, N: Real, const D: usize>(
     }
 }
 
-/// Raises `limit` so that rounding rejects nothing within it. The general algorithm may stop at a
-/// bound that is off by rounding; the exact comparison is made with the final distance. Zero or
-/// more: for overlapping solids the bounds may be off by more than the final depth.
+/// Returns `limit` raised so that rounding rejects nothing within it. The general algorithm may
+/// stop at a bound that is wrong by rounding; the exact comparison is made with the final distance.
+/// The result is at least zero, because for overlapping solids the bounds may be wrong by more than
+/// the final depth.
 pub(super) fn loosened<N: Real, const D: usize>(
     map1: &(impl SupportMap<N, D> + ?Sized),
     map2: &(impl SupportMap<N, D> + ?Sized),
@@ -29,7 +30,7 @@ pub(super) fn loosened<N: Real, const D: usize>(
     limit: N,
 ) -> N {
     let sizes = map1.reach() + map1.rounding() + map2.reach() + map2.rounding();
-    // The general algorithm accepts 2⁻⁴⁰ of the size for curved solids.
+    // The general algorithm stops at a gap of 2⁻⁴⁰ of the size for curved solids.
     let relative = max(N::lit(64.0) * N::EPSILON, N::lit(4.0e-12));
     max(limit, N::ZERO) + relative * (sizes + pose12.translation.norm() + limit.abs())
 }
@@ -56,8 +57,8 @@ fn are_smooth<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     matches!((pair.first, pair.second), (Segment(_) | Capsule(_) | Ellipsoid(_), Ellipsoid(_)))
 }
 
-/// Returns [`separation`] for two solids whose cores are hulls of points. Compiled for the concrete
-/// type [`FlatCore`], so all calls can be inlined.
+/// Returns the separation of two solids whose cores are hulls of points. It is compiled for the
+/// concrete type [`FlatCore`], so all calls can be inlined.
 pub(super) fn of_flat_cores<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -65,8 +66,8 @@ pub(super) fn of_flat_cores<N: Simplicial<D>, const D: usize>(
     from_start(pair, limit, None)
 }
 
-/// Computes [`of_flat_cores`], starting the search along `normal`, a unit vector from the first
-/// solid to the second. The closer to the final normal, the fewer steps.
+/// Computes [`of_flat_cores`] with a search that starts along `normal`, a unit vector from the
+/// first solid to the second. The closer it is to the final normal, the fewer steps are needed.
 pub(super) fn of_flat_cores_near<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -75,7 +76,7 @@ pub(super) fn of_flat_cores_near<N: Simplicial<D>, const D: usize>(
     from_start(pair, limit, Some(normal))
 }
 
-/// Computes [`of_flat_cores`] from a first direction, if one is given.
+/// Computes [`of_flat_cores`], starting along `start` if it is given.
 fn from_start<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -90,7 +91,7 @@ fn from_start<N: Simplicial<D>, const D: usize>(
     found.filter(|found| found.distance <= limit)
 }
 
-/// Returns the distance of [`separation`], or zero if the solids certainly overlap.
+/// Returns the distance of [`separation`], or zero if a certain overlap is found during the search.
 pub(super) fn distance<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

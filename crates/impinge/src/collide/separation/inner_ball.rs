@@ -1,13 +1,15 @@
-//! Balls inside solids: if the balls of two solids overlap, so do the solids.
+//! Proves overlaps by balls inside the solids: if the balls overlap, so do the solids.
 
 use crate::collide::Pair;
 use crate::math::{Point, Real, Vector, min};
 use crate::shape::{Cone, Kind, SupportMap};
 
-/// Share of the sum of both radii below which centres prove an overlap; the rest covers rounding.
+/// Fraction of the sum of both radii below which the distance of the centres proves an overlap; the
+/// rest covers rounding.
 const SHARE: f64 = 1023.0 / 1024.0;
 
-/// Returns whether balls inside the two solids certainly overlap. `false` proves nothing.
+/// Returns whether balls inside the two solids overlap by more than rounding. `false` proves
+/// nothing.
 pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     let (Some((center1, radius1)), Some((center2, radius2))) = (of(pair.first), of(pair.second))
     else {
@@ -17,7 +19,7 @@ pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -
     (pair.pose12.point(&center2) - center1).norm_squared() < max_distance * max_distance
 }
 
-/// Returns a ball inside a solid, about its centre; `None` for kinds without one. The ball of a
+/// Returns centre and radius of a ball inside a solid; `None` for kinds without one. The ball of a
 /// segment has radius zero.
 fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Option<(Point<N, D>, N)> {
     let least = |sizes: &Vector<N, D>| sizes.iter().fold(N::MAX, |least, &size| min(size, least));
@@ -39,7 +41,8 @@ fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Option<(Point<N, D>, N)>
     })
 }
 
-/// Returns the inscribed ball, which touches base and side: the incircle of the axial section.
+/// Returns the inscribed ball, which touches base and side: its section is the incircle of the
+/// axial section.
 fn of_cone<N: Real, const D: usize>(cone: &Cone<N>) -> (Point<N, D>, N) {
     let (height, radius) = (cone.half_height() * N::TWO, cone.radius());
     let side = (height * height + radius * radius).sqrt();

@@ -24,9 +24,9 @@
 //! - `plane_any` serves half-spaces, `rounded` inflated solids, and `general` all other pairs by
 //!   GJK and EPA; it runs on `eroded` ellipsoids.
 //!
-//! Each function takes a pair and a `limit` and returns its answer in the frame of the first solid.
-//! It returns `None` exactly if the signed distance is above `limit` or NaN. `limit` never changes
-//! the answer.
+//! Each function takes a pair and a `limit` and returns the separation in the frame of the first
+//! solid, or `None` exactly if the signed distance is above `limit` or NaN. `limit` does not change
+//! the value of the result.
 
 pub(crate) mod apart;
 pub(crate) mod balls;
@@ -79,7 +79,7 @@ pub(crate) use world::{
     touching_of_ordered,
 };
 
-/// Algorithm for one pair of kinds: takes the pair and the largest distance of interest.
+/// Algorithm for one pair of kinds: takes the pair and the largest distance of interest, inclusive.
 pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;
 
 /// One algorithm for each pair of kinds; row and column are the kinds in the order of
@@ -101,7 +101,7 @@ fn look_up<N: Real, const D: usize>(table: &Table<N, D>, pair: &Pair<'_, N, D>) 
     table[Geometry(pair.first).kind() as usize][Geometry(pair.second).kind() as usize]
 }
 
-/// Entry below the diagonal: computes the pair in its canonical order and flips the answer back.
+/// Entry below the diagonal: computes the pair in canonical order, and flips the result back.
 fn flipped<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -111,7 +111,7 @@ fn flipped<N: Space<D>, const D: usize>(
     separation(&ordered, limit).map(|found| found.flipped(&pose12))
 }
 
-/// Panics: the table sent this pair to an algorithm for other kinds.
+/// Panics because the table sent this pair to an algorithm for other kinds.
 fn wrong_kinds<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> ! {
     let (first, second) = (Geometry(pair.first).kind(), Geometry(pair.second).kind());
     unreachable!("the pair table sent {first:?} and {second:?} to the wrong algorithm")

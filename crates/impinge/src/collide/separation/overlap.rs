@@ -1,6 +1,6 @@
-//! Distance of two solids where the depth of an overlap is not needed.
+//! Distance of two solids if the depth of an overlap is not needed.
 //!
-//! Where the solids are apart, it is the distance of the separation, to the bit.
+//! If the solids are apart, it has the bits of the separation's distance.
 
 use super::balls::{
     ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polygon, ball_polytope, ball_segment,
@@ -16,20 +16,20 @@ use crate::convex::{self, Simplicial};
 use crate::math::{Point, Real, Space};
 use crate::shape::{Geometry, Kind};
 
-/// Faceted solids with this depth along the line of their middles, in units of the pair, are
-/// searched for an overlap first. Below it, separating axes prove as fast that they are apart.
+/// Faceted solids whose depth along the line of their centres is at least this, in units of the
+/// pair, are first searched for a proof of overlap. Below it, separating axes are as fast.
 const DEEP: f64 = 1.0 / 8.0;
 
 /// How the distance of a pair is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DistanceMethod {
-    /// By a closed form, which costs the same with the depth.
+    /// By a closed form, which costs no more if it includes the depth.
     Formula,
     /// By formulas for features; proving an overlap first is faster than computing the depth.
     Features,
-    /// By separating axes; proving an overlap first is faster if it is deep.
+    /// By separating axes; proving an overlap first is faster only if it is deep.
     Axes,
-    /// By the formulas of `revolved`, with a fallback that needs no depths.
+    /// By the formulas of `revolved`, with a fallback that computes no depths.
     Revolved,
     /// By the general algorithm.
     Search,
@@ -37,9 +37,10 @@ enum DistanceMethod {
 
 /// Returns the signed distance of two solids in 3D; `None` above `limit`.
 ///
-/// If they overlap and `limit` is zero or more, any number that is not positive may stand for it,
-/// so clear overlaps are not measured. Otherwise it is the distance of the separation, to the bit.
-/// Pairs that are not in the order of kinds go to the separation, which orders them.
+/// If the solids overlap and `limit` is zero or more, any number that is not positive may be
+/// returned, so clear overlaps are not measured. Otherwise the result has the bits of the
+/// separation's distance. Pairs that are not in the order of kinds are passed to the separation,
+/// which orders them.
 pub(crate) fn distance_3d<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     if let Some(known) = known_3d(pair) {
         return (known <= limit).then_some(known);
@@ -57,7 +58,7 @@ pub(crate) fn distance_3d<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> 
     distance(pair, limit, method)
 }
 
-/// Returns the signed distance of two solids in 2D, with the rule of [`distance_3d`].
+/// Returns the signed distance of two solids in 2D, with the contract of [`distance_3d`].
 pub(crate) fn distance_2d<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
     if let Some(known) = known(pair, beside_ball_2d) {
         return (known <= limit).then_some(known);
@@ -68,7 +69,8 @@ pub(crate) fn distance_2d<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> 
     distance(pair, limit, method_2d(pair))
 }
 
-/// Returns the signed distance where its formula is a part of the formula for the separation.
+/// Returns the signed distance if its formula is a part of the formula for the separation; else
+/// `None`.
 fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     use Kind::{Capsule, Segment};
     match (pair.first, pair.second) {
@@ -79,8 +81,8 @@ fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     }
 }
 
-/// Computes [`known_3d`] for the kinds that do not depend on the dimension; balls by the
-/// projection of their centre (`beside_ball`).
+/// Computes [`known_3d`] for the kinds that do not depend on the dimension. For balls,
+/// `beside_ball` projects the centre.
 #[inline(always)]
 fn known<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -99,9 +101,9 @@ fn known<N: Real, const D: usize>(
     }
 }
 
-/// Returns the signed distance of a ball from a solid in 3D, in the frame of the solid: the
-/// projection of its centre without the direction. Radii are subtracted in the order of the
-/// separation.
+/// Returns the signed distance of a ball from a solid in 3D; `center` is in the frame of the solid.
+/// It projects the centre without computing a direction, and subtracts radii in the order of the
+/// separation. `None` without a closed form.
 fn beside_ball_3d<N: Real>(radius: N, kind: Kind<'_, N, 3>, center: &Point<N, 3>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle::distance_from(triangle.corners(), center),
@@ -117,7 +119,8 @@ fn beside_ball_3d<N: Real>(radius: N, kind: Kind<'_, N, 3>, center: &Point<N, 3>
     Some(apart - radius)
 }
 
-/// Computes [`beside_ball_3d`] in 2D.
+/// Returns the signed distance of a ball from a solid in 2D, with the contract of
+/// [`beside_ball_3d`].
 fn beside_ball_2d<N: Real>(radius: N, kind: Kind<'_, N, 2>, center: &Point<N, 2>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), center)?.distance,
@@ -131,7 +134,8 @@ fn beside_ball_2d<N: Real>(radius: N, kind: Kind<'_, N, 2>, center: &Point<N, 2>
     Some(apart - radius)
 }
 
-/// Computes the distance of a ball from the kinds that do not depend on the dimension.
+/// Returns the signed distance of a ball from a solid of a kind that does not depend on the
+/// dimension; `None` for other kinds.
 #[inline]
 fn beside_ball<N: Real, const D: usize>(
     radius: N,
@@ -149,8 +153,8 @@ fn beside_ball<N: Real, const D: usize>(
     Some(apart - radius)
 }
 
-/// Computes the distance by a method; [`is_distance_only`] pairs prove an overlap first where that is
-/// faster.
+/// Computes the distance by a method. For [`is_distance_only`] pairs, an overlap is proved first if
+/// that is faster.
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -183,10 +187,10 @@ fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
     !is_rounded(pair.first) && !is_rounded(pair.second)
 }
 
-/// Returns whether two solids certainly overlap, by more than rounding. `false` proves nothing. The
-/// cores of capsules and rounded solids need not overlap.
+/// Returns whether two solids overlap by more than rounding, for certain. `false` proves nothing.
+/// The cores of capsules and rounded solids need not overlap.
 ///
-/// Costs a few support points of each solid, which are wasted if they are apart.
+/// Costs a few support points of each solid, which are wasted if the solids are apart.
 fn certainly_overlap<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     method: DistanceMethod,

@@ -1,4 +1,4 @@
-//! Half-spaces against all convex solids, in any dimension.
+//! Half-spaces against all convex solids, in 2D and 3D.
 
 use super::projection::first_axis;
 use super::wrong_kinds;
@@ -7,10 +7,11 @@ use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector, unit_or};
 use crate::shape::{Geometry, Kind, Plane, SupportMap};
 
-/// Returns the separation of a convex solid from a half-space, at the point deepest in it.
+/// Returns the separation of a convex solid from a half-space, at the solid's point deepest in the
+/// half-space.
 ///
-/// Exact for every support map, curved ones included. Of several equally deep points the solid's
-/// support map chooses.
+/// Exact for every support map, including curved ones. Of several equally deep points, the solid's
+/// support map chooses one.
 pub(super) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -26,7 +27,8 @@ pub(super) fn separation<N: Real, const D: usize>(
 }
 
 /// Returns the distance of [`separation`] for a convex solid, rounded ones included, and a
-/// half-space at `pose12` in its frame; `None` for two half-spaces.
+/// half-space whose pose in the solid's frame is `pose12`; `None` if the solid is also a
+/// half-space.
 #[inline]
 pub(super) fn distance<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
@@ -39,10 +41,9 @@ pub(super) fn distance<N: Real, const D: usize>(
     Some(Deepest::of(Geometry(kind).as_support_map()?, plane, pose12).distance)
 }
 
-/// The point of a core deepest in a half-space, the normal into it, and the solid's distance from
-/// it.
+/// The point of a core deepest in a half-space, and the signed distance there.
 struct Deepest<N: Real, const D: usize> {
-    /// Unit, into the half-space, in the frame of the solid.
+    /// Unit normal into the half-space, in the frame of the solid.
     normal: Vector<N, D>,
     /// Point of the core, in the frame of the solid.
     core: Point<N, D>,
@@ -63,9 +64,9 @@ impl<N: Real, const D: usize> Deepest<N, D> {
 /// Returns the separation of two half-spaces.
 ///
 /// If they face each other, exactly or up to the rounding of rotations (an angle below 16 epsilon),
-/// they have a gap or a finite depth. All others overlap without bound: the distance is minus
-/// infinity, the normal the mean of the first normal and the negated second, and the points are the
-/// origins.
+/// they have a gap or a finite depth. All other pairs overlap without bound: then the distance is
+/// minus infinity, the normal is the mean of the first normal and the negated second, and the
+/// points are the origins.
 pub(super) fn plane_plane<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

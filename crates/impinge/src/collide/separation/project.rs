@@ -1,4 +1,4 @@
-//! Projects a point onto a solid of any kind: all that the separation from a ball needs.
+//! Projects a point onto a solid of any kind, from which the separation of a ball follows.
 
 use super::balls::{
     ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polygon, ball_polytope,
@@ -41,7 +41,8 @@ pub(crate) fn project_on_solid_3d<N: Real>(
     })
 }
 
-/// Projects a point onto the kinds whose formula does not depend on the dimension.
+/// Projects a point onto a solid whose formula does not depend on the dimension; `None` for other
+/// kinds.
 #[inline]
 fn project_on_common<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,

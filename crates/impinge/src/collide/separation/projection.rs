@@ -1,4 +1,5 @@
-//! Projection of a point onto a solid. The separation of a ball follows from that of its centre.
+//! Projection of a point onto a solid. The separation of a ball follows from the projection of its
+//! centre.
 //!
 //! ```text
 //!         point  *        distance > 0: outside; < 0: inside, minus the depth
@@ -19,14 +20,14 @@ pub(crate) struct Projection<N: Real, const D: usize> {
     pub(crate) distance: N,
     /// Unit vector out of the solid along which `distance` is measured.
     pub(crate) outward: Vector<N, D>,
-    /// The point of the surface nearest to the given one.
+    /// Point of the surface nearest to the projected point.
     pub(crate) point: Point<N, D>,
 }
 
 impl<N: Real, const D: usize> Projection<N, D> {
-    /// Returns the separation of a ball from the solid. The ball's centre is the origin of the
-    /// first frame and the point projected; the solid lies at `pose12`. `None` if the distance
-    /// exceeds `limit`.
+    /// Returns the separation of a ball from the solid; `None` if the distance exceeds `limit`.
+    /// `self` must be the projection of the ball's centre, which is the origin of the first frame;
+    /// the pose of the solid in that frame is `pose12`.
     pub(super) fn of_ball(
         &self,
         radius: N,
@@ -41,27 +42,29 @@ impl<N: Real, const D: usize> Projection<N, D> {
     }
 }
 
-/// Returns the rounding error of lengths between points within `reach` of the origin.
+/// Returns the rounding error of lengths between points at most `reach` from the origin.
 pub(super) fn rounding_error<N: Real>(reach: N) -> N {
     N::lit(8.0) * N::EPSILON * reach
 }
 
-/// Returns the centre of a ball, the origin of the first frame, in the frame of the second solid.
+/// Returns the origin of the first frame, which is the centre of a ball, in the frame of the second
+/// solid.
 pub(super) fn center_in_second<N: Real, const D: usize>(pose12: &Pose<N, D>) -> Point<N, D> {
     pose12.inverse_point(&Point::origin())
 }
 
-/// Returns the first axis, the direction for degenerate cases.
+/// Returns the first coordinate axis, which serves as normal in degenerate cases.
 pub(super) fn first_axis<N: Real, const D: usize>() -> Vector<N, D> {
     let mut axis = Vector::<N, D>::zeros();
     axis[0] = N::ONE;
     axis
 }
 
-/// Returns the unit vector of the part of `v` perpendicular to the unit vector `d`; `None` if that
-/// part is within rounding.
+/// Returns the unit vector along the part of `v` perpendicular to the unit vector `d`; `None` if
+/// that part is within rounding error.
 ///
-/// Subtracts twice: the first remainder may be small and so inexact (Kahan: twice is enough).
+/// It subtracts the component along `d` twice: the first remainder may be small and so inexact
+/// (Kahan: twice is enough).
 pub(super) fn made_perpendicular<N: Real, const D: usize>(
     v: &Vector<N, D>,
     d: &Vector<N, D>,

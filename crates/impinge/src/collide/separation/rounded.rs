@@ -1,4 +1,4 @@
-//! Rounded solids against all kinds: the separation of the inner solid, less the radius.
+//! Rounded solids against all kinds: the separation of the inner solids, minus the radii.
 
 use crate::collide::Pair;
 use crate::convex::Separation;
@@ -20,8 +20,8 @@ pub(super) fn separation<N: Space<D>, const D: usize>(
     (found.distance <= limit).then_some(found)
 }
 
-/// Returns the inner solid of a rounded one and its radius; other solids with radius zero. Removes
-/// one layer only.
+/// Returns the inner solid of a rounded solid and the radius; for other solids the solid itself and
+/// zero. Removes only one layer.
 pub(crate) fn bare<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Kind<'_, N, D>, N) {
     match kind {
         Kind::Rounded(solid) => (solid.inner().0, solid.radius()),

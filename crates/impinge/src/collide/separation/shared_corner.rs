@@ -1,10 +1,10 @@
-//! Sets the distance to zero if a corner of one solid is a corner of the other, or lies on one of
-//! its sides, whatever rounding makes of their distance.
+//! Sets the distance to exactly zero if a corner of one solid coincides with a corner of the other,
+//! or lies on one of its sides, where rounding would leave a small distance.
 //!
-//! People build from shared corners: triangles of a mesh, polygons of a map, tetrahedra. The height
+//! Users build from shared corners: triangles of a mesh, polygons of a map, tetrahedra. The height
 //! of a corner over a side that ends there is computed from the other end of the side, so it may be
-//! a rounding error above zero. Where the distance is no more than such an error, the corners
-//! themselves are compared: to the bit, in the frame of the first solid, and with sides by the
+//! a rounding error above zero. If the distance is no more than such an error, the corners
+//! themselves are compared bit for bit, in the frame of the first solid, and with sides by the
 //! exact sign of an area.
 
 use smallvec::SmallVec;
@@ -14,12 +14,12 @@ use crate::convex::Separation;
 use crate::math::{Mapped, Point, Real, exact, filled, max, max_component, min};
 use crate::shape::{Geometry, Kind, SupportMap};
 
-/// Distances up to this may be rounding errors, in epsilon of the sizes plus the distance of
-/// origins.
+/// Distances up to this may be rounding errors, in epsilons of the sum of both sizes and the
+/// distance of the origins.
 const ROUNDING: f64 = 64.0;
 
-/// Returns `found`, or a distance of zero at a shared corner. Pairs of two boxes stay as they are:
-/// their distance is a difference of their numbers.
+/// Returns `found`, with a distance of zero if the solids share a corner. For two boxes it returns
+/// `found` unchanged, because their distance is a difference of their dimensions.
 #[inline]
 pub(super) fn with_shared_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -38,7 +38,8 @@ fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
-/// Compares the corners that are highest along the normal, up to rounding, of both solids.
+/// Compares those corners of both solids that are extreme along the normal, up to rounding; returns
+/// `found`, with distance zero if two coincide.
 #[cold]
 fn at_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -74,7 +75,7 @@ fn at_corner<N: Real, const D: usize>(
     }
 }
 
-/// Returns whether a point is one of `corners`, or lies between two of them.
+/// Returns whether a point is one of `corners`, or lies exactly between two of them.
 fn lies_among<N: Real, const D: usize>(point: &Point<N, D>, corners: &[Point<N, D>]) -> bool {
     let mut pairs = corners
         .iter()
@@ -83,8 +84,8 @@ fn lies_among<N: Real, const D: usize>(point: &Point<N, D>, corners: &[Point<N, 
     corners.contains(point) || pairs.any(|(a, b)| is_between(point, a, b))
 }
 
-/// Returns whether a point lies exactly on the segment `a b`: within its box, and the triangle of
-/// the three has no area in any projection along an axis.
+/// Returns whether a point lies exactly on the segment from `a` to `b`: it is in the segment's box,
+/// and the triangle of the three points has no area in any projection along an axis.
 fn is_between<N: Real, const D: usize>(
     point: &Point<N, D>,
     a: &Point<N, D>,
@@ -101,7 +102,7 @@ fn is_between<N: Real, const D: usize>(
     (0..D).all(is_within) && (0..D).all(|one| (one + 1..D).all(|other| is_collinear(one, other)))
 }
 
-/// Visits the corners of a flat-sided solid, in its own frame; none for other solids.
+/// Calls `visit` with each corner of a flat-sided solid, in its own frame; never for other solids.
 fn each_corner<N: Real, const D: usize>(
     kind: &Kind<'_, N, D>,
     visit: &mut dyn FnMut(&Point<N, D>),

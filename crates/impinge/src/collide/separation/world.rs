@@ -10,10 +10,10 @@ use crate::tables::ByDimension;
 
 /// Returns the separation of two placed solids in the world frame; `None` beyond `limit`.
 ///
-/// Also `None` if a pose is not finite. It is computed in canonical order, in the frame of the
-/// first solid of that order, and then placed in the world. So swapping the arguments swaps the
-/// points and negates the normal, bit for bit. For overlapping composites it is the separation of
-/// the deepest pair of parts.
+/// Also `None` if a pose is not finite. The separation is computed in canonical order, in the frame
+/// of the first solid in that order, and then transformed to the world. So swapping the arguments
+/// swaps the points and negates the normal, bit for bit. For overlapping composites it is the
+/// separation of the deepest pair of parts.
 pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -32,7 +32,8 @@ pub(crate) fn of_ordered<N: Space<D>, const D: usize>(
     Some(placed(&found, ordered.first, ordered.swapped))
 }
 
-/// Computes [`in_world`], but for overlapping composites the separation of any overlapping parts.
+/// Computes [`in_world`], except that for overlapping composites it may return the separation of
+/// any overlapping parts.
 pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -51,7 +52,7 @@ pub(crate) fn touching_of_ordered<N: Space<D>, const D: usize>(
 }
 
 /// Returns the distance of [`touching_in_world`]. For two convex solids that certainly overlap it
-/// is zero, without computing the depth.
+/// returns zero, without computing the depth.
 pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -68,7 +69,8 @@ pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     <N::Algorithms>::distance(&pair, limit)
 }
 
-/// Computes the separation in the frame of the first solid; `None` also if a pose is not finite.
+/// Computes the separation in the frame of the first solid; `None` beyond `limit` and if a pose is
+/// not finite.
 #[inline]
 fn in_first<N: Space<D>, const D: usize>(
     ordered: &Ordered<'_, '_, N, D>,
@@ -82,7 +84,7 @@ fn in_first<N: Space<D>, const D: usize>(
     if pair.pose12.is_finite() { super::separation(&pair, limit) } else { None }
 }
 
-/// Computes [`in_first`] where at least one solid is a composite.
+/// Computes [`in_first`] if at least one solid is a composite.
 fn of_composites<N: Space<D>, const D: usize>(
     ordered: &Ordered<'_, '_, N, D>,
     limit: N,
@@ -132,7 +134,8 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
         Self { pose: shape.pose_at(isometry), shape }
     }
 
-    /// Places a solid at a pose, without the rotation if the solid does not turn.
+    /// Places a solid at a pose; the rotation is dropped if the solid looks the same at any
+    /// rotation.
     pub(crate) fn of_pose(pose: &Pose<N, D>, shape: Geometry<'a, N, D>) -> Self {
         Self { pose: if shape.turns() { *pose } else { pose.without_rotation() }, shape }
     }
@@ -151,7 +154,7 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
     }
 }
 
-/// A shape at the user's isometry, placed only when needed.
+/// A shape at the user's isometry, converted to a pose only when needed.
 #[derive(Clone, Copy)]
 pub(crate) struct AtIsometry<'i, 'a, N: Space<D>, const D: usize> {
     isometry: IsometryRef<'i, N, D>,

@@ -1,4 +1,4 @@
-//! All collected cases with convex solids: those that other libraries got wrong.
+//! Runs all collected cases with convex solids, which other libraries got wrong.
 
 use serde_json::Value;
 
@@ -32,7 +32,7 @@ fn relative<N: Own<D>, const D: usize>(case: &Case<'_>) -> Pose<N, D> {
     }
 }
 
-/// Returns the error of the answer; `None` for solids that are not convex.
+/// Checks a case; the error is a message. `None` for solids that are not convex.
 fn check<N, const D: usize>(case: &Case<'_>) -> Option<Result<(), String>>
 where
     N: Simplicial<D> + Own<D>,

@@ -26,7 +26,8 @@ fn solve<N: Simplicial<D>, const D: usize>(
     found
 }
 
-/// The distance is zero up to a few roundings, and the normal is one of `normals` or its opposite.
+/// Asserts that the distance is zero up to a few rounding errors, and that the normal is one of
+/// `normals` or its opposite.
 #[track_caller]
 fn touches<N: Simplicial<D>, const D: usize>(found: &Separation<N, D>, normals: &[[f64; D]]) {
     let tolerance = N::lit(64.0) * N::EPSILON;

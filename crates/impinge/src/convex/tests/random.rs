@@ -1,8 +1,8 @@
-//! Random pairs, judged by certificates: no reference is needed.
+//! Tests random pairs by certificates, without a reference implementation.
 //!
-//! The signed distance is the largest height over all unit vectors. So an answer is right if its
-//! own normal reaches its distance, if no other direction reaches more, and if its points lie on
-//! the solids, just that far apart.
+//! The signed distance is the largest height over all unit vectors. So a separation is right if the
+//! height of its own normal is its distance, if no other direction has a larger height, and if its
+//! points lie on the solids at that distance.
 
 use super::super::{Simplicial, separation};
 use super::generator::{Generator, Sample};
@@ -23,7 +23,7 @@ const KINDS: [&str; 9] = [
 ];
 /// Number of kinds with a flat-faced core: those before the last two.
 const FLAT: usize = 7;
-/// Far, near, touching from both sides, shallow, deep; relative to the size.
+/// Target distances: far, near, touching from both sides, shallow, deep; relative to the size.
 const TARGETS: [f64; 6] = [1.5, 1e-2, 1e-6, -1e-6, -1e-2, -0.4];
 /// Sizes, and whether one extent is far smaller.
 const SIZES: [(f64, bool); 4] = [(1.0, false), (1e-3, false), (1e3, false), (1.0, true)];
@@ -48,7 +48,8 @@ where
     }
 }
 
-/// Returns the largest height along sampled directions: all around, and ever closer to the normal.
+/// Returns the largest height along sampled directions: all around, and with increasing density
+/// near the normal.
 fn sampled<const D: usize>(
     solids: [&dyn SupportMap<f64, D>; 2],
     sample: &Sample<D>,
@@ -68,7 +69,7 @@ fn sampled<const D: usize>(
 struct Tally {
     /// Errors of distances.
     errors: Vec<f64>,
-    /// Errors of points: how far they lie off the solids.
+    /// Errors of points: their distances from the solids' surfaces.
     astray: Vec<f64>,
     overlaps: usize,
     worst: [f64; 5],
@@ -105,7 +106,7 @@ where
     }
 }
 
-/// Returns the largest number, and the one that a hundredth of them exceeds.
+/// Returns the largest number, and the one that a hundredth of the numbers exceeds.
 fn summary(errors: &mut [f64]) -> [f64; 2] {
     errors.sort_by(f64::total_cmp);
     let count = errors.len();
@@ -153,7 +154,7 @@ fn lower_bounds_3d() {
     lower_bounds::<f64, 3>(KINDS.len(), [flat, [[1e-10, 1e-11], [1e-7, 1e-8]]]);
 }
 
-/// Asserts that the answer for swapped solids is the flipped answer, up to rounding.
+/// Asserts that the separation of swapped solids is the flipped separation, up to rounding.
 fn swapped<N, const D: usize>(kinds: usize, tolerance: [f64; 2])
 where
     N: Simplicial<D> + Own<D>,
@@ -189,7 +190,7 @@ fn scaled(shape: &serde_json::Value, factor: f64) -> serde_json::Value {
     }
 }
 
-/// Asserts that scaling all lengths by 2^`exponent` scales all answers, to the bit.
+/// Asserts that scaling all lengths by 2^`exponent` scales all results, bit for bit.
 fn scales_exactly<N, const D: usize>(kinds: usize, exponent: i32)
 where
     N: Simplicial<D> + Own<D>,

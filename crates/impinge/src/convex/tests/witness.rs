@@ -1,4 +1,4 @@
-//! The points of an answer lie on the two solids, by closed forms.
+//! Tests, by closed forms, that the points of a separation lie on the two solids.
 
 use super::super::{Separation, Simplicial, separation};
 use super::generator::{Generator, Sample};
@@ -13,8 +13,8 @@ const TARGETS: [f64; 10] = [1.0, 1e-2, 1e-5, 0.0, -1e-5, -1e-3, -1e-2, -0.1, -0.
 /// Number of trials for each pair of kinds.
 const ROUNDS: usize = 400;
 
-/// Returns the errors of an answer's points: off either solid, and from lying across from each
-/// other.
+/// Returns the errors of a separation's points: their distances from the two solids' surfaces, and
+/// how much they are offset across the normal.
 fn errors<N: Simplicial<3> + Own<3>>(sample: &Sample<3>, found: &Separation<N, 3>) -> [f64; 3] {
     let [point1, point2] =
         [found.point1, found.point2].map(|p| Point::from(p.coords.map(Real::as_f64)));

@@ -11,18 +11,19 @@ use crate::math::lanes::{bits, norm};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The slots of `L` pairs, with two masks for each slot.
+/// The slots of `L` pairs, each with two masks over the lanes.
 pub(super) struct Slots<N: Real, const D: usize, const COUNT: usize, const L: usize> {
     /// Coordinates in the plane perpendicular to the normal; in 2D the second is always zero.
     pub(super) flat: [[[N; L]; COUNT]; 2],
-    /// Height above the reference face or side.
+    /// Height above the reference face or side, along the normal away from its box.
     pub(super) height: [[N; L]; COUNT],
-    /// For admitted candidates: the point on the first box, in its frame, and the distance.
+    /// For admitted candidates: the point on the first box, in its frame.
     pub(super) points1: [[[N; L]; D]; COUNT],
+    /// For admitted candidates: the signed distance, at least the gap.
     pub(super) distances: [[N; L]; COUNT],
     /// Lanes where the slot holds a candidate.
     pub(super) valid: [u8; COUNT],
-    /// Lanes where its distance is the smallest up to rounding.
+    /// Lanes where the candidate's height is the gap, up to the tolerance.
     pub(super) level: [u8; COUNT],
 }
 
@@ -39,10 +40,11 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> Slots<N, D, CO
     }
 }
 
-/// Numbers that the candidates are compared with.
+/// Bounds that decide which candidates are admitted.
 #[derive(Clone, Copy)]
 pub(super) struct Limits<V> {
-    /// Signed distance along the separating axis, which the lowest candidate must have.
+    /// Signed distance along the separating axis. If the faces are right, the lowest candidate has
+    /// this height.
     pub(super) gap: V,
     pub(super) prediction: V,
     /// Sine of the angle by which the boxes may turn.
@@ -51,10 +53,11 @@ pub(super) struct Limits<V> {
     pub(super) tolerance: V,
 }
 
-/// State of the admission while candidates are found.
+/// State of the admission while slots are filled.
 ///
-/// A candidate is admitted up to the prediction; beyond it, if turning brings it that near. The
-/// boxes turn about the middle of the candidates that are lowest up to rounding:
+/// A candidate is admitted if its height is within the prediction, or if turning brings it within.
+/// The boxes turn about the pivot: the centroid of the candidates whose height is the gap, up to
+/// rounding.
 ///
 /// ```text
 ///     other box     .-o   height <= prediction + sine * arm
@@ -64,19 +67,20 @@ pub(super) struct Limits<V> {
 /// ```
 pub(super) struct Admission<V> {
     limits: Limits<V>,
-    /// Height of the lowest candidate so far.
+    /// Smallest height of a candidate so far; infinite without one.
     lowest: V,
-    /// Largest height admitted without turning, and largest that is level with the gap.
+    /// Largest height admitted without turning.
     most: V,
+    /// Largest height that counts as level with the gap.
     level: V,
-    /// Sum of the coordinates of the level candidates, and their number.
+    /// Sum of the coordinates `flat` of the level candidates.
     sum: [V; 2],
-    /// Number of level candidates, as a number of the scalar type.
+    /// How many candidates are level, as a value of the scalar type.
     count: V,
 }
 
 impl<V> Admission<V> {
-    /// State without a candidate.
+    /// Returns the state without a candidate.
     #[inline(always)]
     pub(super) fn new<S: Simd, N: Real>(simd: S, limits: Limits<V>) -> Self
     where
@@ -84,12 +88,14 @@ impl<V> Admission<V> {
     {
         let (zero, infinity) = (V::all(simd, N::ZERO), V::all(simd, N::INFINITY));
         let (most, level) = (limits.prediction + limits.tolerance, limits.gap + limits.tolerance);
-        // If the gap is within the tolerance of the prediction, all up to the prediction are level.
+        // If the gap is within the tolerance of the prediction, all candidates up to the prediction
+        // are level.
         let level = limits.prediction.simd_le(level).select(most, level);
         Self { limits, lowest: infinity, most, level, sum: [zero; 2], count: zero }
     }
 
-    /// Stores coordinates and height of a candidate in the lanes of `is_there`.
+    /// Stores coordinates and height of a candidate in a slot. Only the lanes of `is_there` have
+    /// it.
     #[inline(always)]
     pub(super) fn store<S: Simd, N: Real, M, const D: usize, const COUNT: usize, const L: usize>(
         &mut self,
@@ -116,7 +122,7 @@ impl<V> Admission<V> {
         slots.level[slot] = bits(is_level);
     }
 
-    /// Returns the lanes where the height of the lowest candidate is the gap.
+    /// Returns the lanes where the lowest candidate has the height `gap`, up to the tolerance.
     #[inline(always)]
     pub(super) fn is_found<S: Simd, N: Real>(&self) -> V::Mask
     where
@@ -125,8 +131,8 @@ impl<V> Admission<V> {
         (self.lowest - self.limits.gap).abs().simd_le(self.limits.tolerance)
     }
 
-    /// Removes the candidates that are not admitted; stores points and distances of the others.
-    /// `point1` maps coordinates and height to the point on the first box.
+    /// Clears the slots whose candidates are not admitted; computes `points1` and `distances` of
+    /// the others. `point1` maps coordinates and height to the point on the first box.
     #[inline(always)]
     pub(super) fn admit<S: Simd, N: Real, const D: usize, const COUNT: usize, const L: usize>(
         &self,

@@ -1,12 +1,12 @@
-//! Builds the manifold of one pair from its filled slots: the rules of `choose`, without moving any
-//! candidate. A set of slots is a `u32`: bit `slot` of each.
+//! Builds the manifold of one pair from its filled slots by the rules of `manifold::choose`,
+//! without moving candidates. A set of slots is a `u32` whose bit `slot` belongs to that slot.
 //!
 //! ```text
 //!   code of a point   31        12            5         0
 //!                     [1 | faces | parts       | slot   ]   layout of the middle: `SlotFeatures::code`
 //! ```
 //!
-//! Bit 31 is always set, so no code is 0, which stands for points without a slot
+//! Bit 31 of every code is set. So no code is 0, the code of points that have no slot
 //! (`raw_manifold.rs`).
 
 use super::admit::Slots;
@@ -21,19 +21,19 @@ use crate::shape::FeatureId;
 
 /// The slots of one pair.
 pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, const L: usize> {
-    /// Slots of all lanes, of which this pair's are read.
+    /// Slots of all lanes; only `lane` is read.
     pub(super) slots: &'a Slots<N, D, COUNT, L>,
     /// Lane of the pair.
     pub(super) lane: usize,
-    /// Bits of the slots that hold a candidate.
+    /// Bits of the filled slots.
     pub(super) valid: u32,
-    /// Bits of the slots with the smallest distance, up to rounding.
+    /// Bits of the slots whose height is the gap, up to rounding.
     pub(super) level: u32,
-    /// Signed distance of the boxes, which the deepest point takes.
+    /// Signed distance of the boxes. The deepest point gets exactly this distance.
     pub(super) gap: N,
     /// Lengths up to this are rounding errors.
     pub(super) tolerance: N,
-    /// Size of the pair, as `collide::size` defines it.
+    /// Length scale of the pair, as `collide::size` defines it.
     pub(super) size: N,
     /// Normals of all lanes, from the first box to the second, in the frame of the first.
     pub(super) normal: &'a [[N; L]; D],
@@ -41,14 +41,15 @@ pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, co
 
 /// Features and codes of the slots of one pair.
 pub(super) trait SlotFeatures {
-    /// Returns the features of a candidate: of the first and the second box.
+    /// Returns the features of the candidate in `slot`, on the first box and on the second.
     fn features(&self, slot: usize) -> [FeatureId; 2];
 
-    /// Returns the slot in `valid` whose candidate has the features of a point.
+    /// Returns the slot in `valid` whose candidate has the features of `point`; `None` if there is
+    /// none.
     fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize>;
 
-    /// Returns the candidates in `among` on a feature of the second box; none unless it is a
-    /// vertex.
+    /// Returns the slots in `among` whose candidate is on `feature` of the second box; 0 unless the
+    /// feature is a vertex.
     #[inline(always)]
     fn on_vertex(&self, feature: FeatureId, among: u32) -> u32 {
         if !matches!(feature, FeatureId::Vertex(_)) {
@@ -58,8 +59,8 @@ pub(super) trait SlotFeatures {
         Ones::<SLOTS_OF_CODE>(among).filter(is_on).fold(0, |slots, slot| slots | 1 << slot)
     }
 
-    /// Returns a code that no other slot and no other features of any pair have. It is not zero;
-    /// the slot is in its lowest bits.
+    /// Returns the code of the candidate in `slot`: not 0, different for every slot and every pair
+    /// of features, with the slot in its lowest bits.
     fn code(&self, slot: usize) -> u32;
 }
 
@@ -68,28 +69,28 @@ const SLOT_BITS: u32 = 31;
 /// Number of slots that a code distinguishes.
 const SLOTS_OF_CODE: usize = 32;
 
-/// Decodes the slot.
+/// Returns the slot that a code holds.
 #[inline(always)]
 const fn slot_of(code: u32) -> usize {
     (code & SLOT_BITS) as usize
 }
 
-/// Ids of old points, by the slots that continue them.
+/// Assignment of the points of the previous update to the slots that continue them.
 struct KeptSlots<const COUNT: usize> {
     /// Bits of the slots that continue an old point.
     slots: u32,
-    /// All old points are candidates again, in the same slots.
+    /// Every old point still has its candidate, in the slot of its code.
     is_still: bool,
     /// Bits of the old points that no slot continues.
     left: u32,
     /// Id of each slot in `slots`.
     ids: [u32; COUNT],
-    /// Slot that continues each old point, by index in the manifold.
+    /// Slot that continues each old point, by the point's index in the manifold.
     heirs: [u8; COUNT],
 }
 
 impl<const COUNT: usize> KeptSlots<COUNT> {
-    /// Keeps the ids of `slots` only; updates `left`.
+    /// Drops the assignments to slots outside `slots`; updates `left`.
     fn retain<N: Real, const D: usize>(&mut self, slots: u32, old: &[RawPoint<N, D>]) {
         self.slots &= slots;
         self.left = 0;
@@ -104,12 +105,13 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     /// Replaces the points of a manifold, and its normal, by at most `limit` candidates.
     ///
     /// 1. Old points find their slots by code, else by features ([`Self::kept`]).
-    /// 2. Slots that jumped lose their ids ([`Self::drop_jumped`]).
-    /// 3. Old points that are left give their ids by position ([`Self::match_positions`]).
-    /// 4. If there are too many candidates, some are chosen, with a preference for old points
-    ///    ([`Self::chosen`]); ids of the others pass to chosen ones near them.
-    /// 5. If nothing changed but positions, points are updated in place ([`Self::put_all`]); else
-    ///    new ones get ids, and all are written in the order of ids ([`Self::replace`]).
+    /// 2. Slots that are too far from their old points lose the ids ([`Self::drop_jumped`]).
+    /// 3. Old points without a slot pass on their ids by position ([`Self::match_positions`]).
+    /// 4. If there are more than `limit` candidates, some are chosen, with a preference for slots
+    /// that continue old points ([`Self::chosen`]); ids of unchosen slots pass to chosen ones near
+    /// them.
+    /// 5. If only positions changed, the points are updated in place ([`Self::put_all`]); else new
+    /// points get ids and all points are written in the order of ids ([`Self::replace`]).
     #[inline(always)]
     pub(super) fn write_manifold(
         &self,
@@ -122,16 +124,16 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
             self.drop_jumped(&raw.points, &mut kept);
         }
         let normal = self.normal();
-        // By position, only if the normal turned by at most 45°.
+        // Ids pass by position only if the normal turned by at most 45°.
         let may_match = normals_agree(&raw.normal, &normal);
         if may_match && kept.left != 0 && kept.slots != self.valid {
             self.match_positions(slot_features, raw, self.valid, &mut kept);
         }
-        // Up to four candidates are all kept, as by `manifold::choose`.
+        // Up to `ALL` candidates are all kept, as in `manifold::choose`.
         let is_full = self.valid.count_ones() as usize <= limit.min(ALL);
         let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
         if may_match && !is_full && !raw.points.is_empty() && slots & !kept.slots != 0 {
-            // Ids of candidates that are not chosen go to chosen ones near them.
+            // Ids of slots that are not chosen pass to chosen slots near them.
             kept.retain(slots, &raw.points);
             if kept.left != 0 {
                 self.match_positions(slot_features, raw, slots, &mut kept);
@@ -149,8 +151,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         raw.normal = normal;
     }
 
-    /// Finds the slots of old points by their features; features of points, and of slots, are
-    /// distinct.
+    /// Assigns old points to slots by code, else by features. Each pair of features occurs at most
+    /// once among the points and once among the slots.
     #[inline(always)]
     fn kept(&self, old: &[RawPoint<N, D>], slot_features: &impl SlotFeatures) -> KeptSlots<COUNT> {
         let mut kept =
@@ -173,7 +175,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         kept
     }
 
-    /// Takes ids back from slots that are too far from their old points ([`is_same_point`]).
+    /// Takes ids from slots that are too far from their old points ([`is_same_point`]).
     #[inline(always)]
     fn drop_jumped(&self, old: &[RawPoint<N, D>], kept: &mut KeptSlots<COUNT>) {
         for (at, point) in old.iter().enumerate() {
@@ -185,13 +187,13 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Returns whether a candidate at `write_position`, with the features of `old`, is the same point.
+    /// Returns whether a candidate at `position`, with the features of `old`, continues `old`.
     #[inline(always)]
     fn is_same(&self, old: &RawPoint<N, D>, position: &Point<N, D>) -> bool {
         is_same_point([old.feature1, old.feature2], &(position - old.point1), || self.size)
     }
 
-    /// Gives the ids of the remaining old points to slots of `some` without an id, by position.
+    /// Passes the ids of the remaining old points to slots of `some` without an id, by position.
     #[inline(never)]
     fn match_positions(
         &self,
@@ -221,14 +223,14 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         )
     }
 
-    /// Updates positions and distances: slots, features and order have not changed.
+    /// Updates positions and distances of the points in place; slots, features and order stay.
     #[inline(always)]
     fn put_all(&self, deepest: usize, raw: &mut RawManifold<N, D>) {
         let mut has_jumped = false;
         for point in &mut raw.points {
             let old = *point;
             self.write_position(slot_of(point.code), deepest, point);
-            // A crossing of two edges that jumped is a new contact.
+            // A crossing of two edges that jumped is a new contact and gets a new id.
             if !self.is_same(&old, &point.point1) {
                 (point.id, has_jumped) = (raw.ids.next(), true);
             }
@@ -238,7 +240,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Replaces the points by those of `slots`.
+    /// Replaces the points by the candidates in `slots`, ordered by id.
     #[inline(always)]
     fn replace(
         &self,
@@ -258,8 +260,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Gives new ids to the slots `new`, in the order in which the builder for one pair numbers
-    /// points.
+    /// Gives new ids to the slots in `new`, in the order in which the builder for one pair does.
     #[inline(never)]
     fn begin(&self, new: u32, kept: &mut KeptSlots<COUNT>, raw: &mut RawManifold<N, D>) {
         for (_, slot) in in_order(Ones::<COUNT>(new).map(|slot| (slot, self.point1(slot)))) {
@@ -267,7 +268,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Returns the slots in the order of their ids, and their number.
+    /// Returns the slots in the order of their ids, and how many there are.
     #[inline(always)]
     fn by_ids(slots: u32, kept: &KeptSlots<COUNT>) -> ([usize; COUNT], usize) {
         let (mut order, mut count) = ([0; COUNT], 0);
@@ -312,8 +313,9 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         Vector::<N, 2>::new(x[slot][lane], y[slot][lane])
     }
 
-    /// Returns the slot that stands for the witness: among those with the smallest distance up to
-    /// rounding one that continues an old point; then the deepest.
+    /// Returns the slot that gets the distance `gap`: of the level slots, first the ones that
+    /// continue an old point; else of all slots. Among the preferred ones, the one with the
+    /// smallest distance.
     #[inline(always)]
     fn deepest(&self, slots: u32, kept: u32) -> usize {
         let level = self.level & slots;
@@ -321,7 +323,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         self.lowest(preferred.into_iter().find(|&slots| slots != 0).unwrap_or(slots))
     }
 
-    /// Returns the first slot with the smallest distance.
+    /// Returns the slot with the smallest distance; the first one of equals.
     #[inline(always)]
     fn lowest(&self, slots: u32) -> usize {
         let (mut lowest, mut distance) = (slots.trailing_zeros() as usize, N::INFINITY);
@@ -336,10 +338,10 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         lowest
     }
 
-    /// Returns at most `limit` slots, chosen as `reduce::chosen` does.
+    /// Returns at most `limit` slots, by the rule of `reduce::chosen`.
     #[inline(always)]
     fn chosen(&self, limit: usize, kept: u32) -> u32 {
-        // Without a candidate at the gap, the lowest ones are level.
+        // If no candidate is at the gap, the lowest ones are level.
         let mut level = self.level;
         if level == 0 {
             let least = self.distance(self.lowest(self.valid));

@@ -1,13 +1,13 @@
 //! Boxes against boxes.
 //!
-//! Branches on the pair become masks. Each possible corner of the common area has a slot of its
-//! own, filled or not ([`admit`]): 4 slots in 2D ([`plane`]), 24 in 3D ([`space`]). Only the choice
-//! of the points ([`choose`]) goes pair by pair. Flat boxes, and pairs whose nearest points lie off
-//! the faces that face each other, fall back to the builder for one pair.
+//! Branches on the pair become masks. Each possible corner of the overlap area of the two faces has
+//! its own slot, filled or not ([`admit`]): 4 slots in 2D ([`plane`]), 24 in 3D ([`space`]). Only
+//! the choice of the points ([`choose`]) runs pair by pair. Flat boxes, and pairs whose nearest
+//! points do not lie on the two faces, fall back to the builder for one pair.
 //!
-//! The angle by which boxes may turn is a number in the test of each corner. Of [`Inputs`] the
-//! kernels read both poses, the half extents in `ends[0][0]` and `ends[1][0]`, `prediction` and
-//! `sine`.
+//! The sine of the angle by which the boxes may turn enters the test of each corner. The kernels
+//! read these fields of [`Inputs`]: both poses, the half extents in `ends[0][0]` and `ends[1][0]`,
+//! `prediction` and `sine`.
 
 mod admit;
 mod choose;
@@ -50,13 +50,14 @@ pub(super) struct Boxes<V, const D: usize> {
     pub(super) rotation: [[V; D]; D],
     /// Centre of the second box in the frame of the first.
     pub(super) translation: [V; D],
-    /// Half extents of the first box, and of the second.
+    /// Half extents of the first box, along its own axes.
     pub(super) half1: [V; D],
+    /// Half extents of the second box, along its own axes.
     pub(super) half2: [V; D],
 }
 
-/// Returns axes and translation of the other box in the frame of one box: of the second box in the
-/// first, or, where `is_second`, of the first in the second, as `Pose::inverse` computes them.
+/// Returns axes and translation of the second box in the frame of the first or, in the lanes of
+/// `is_second`, of the first box in the frame of the second, rounded as by `Pose::inverse`.
 #[inline(always)]
 pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
     boxes: &Boxes<V, D>,
@@ -81,7 +82,8 @@ pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
     (rotation, shift)
 }
 
-/// Returns the length up to which differences are rounding, as in the builder for one pair.
+/// Returns the length up to which differences are rounding error, by the formula of the builder for
+/// one pair.
 #[inline(always)]
 pub(super) fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -91,13 +93,14 @@ pub(super) fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
     lit::<S, N, V>(simd, ROUNDING_ERRORS) * V::all(simd, N::EPSILON) * size
 }
 
-/// Returns the size of each pair: half the diagonal of the smaller box.
+/// Returns the length scale of each pair: half the diagonal of the smaller box.
 #[inline(always)]
 pub(super) fn smaller_size<S: Simd, V: Wide<S>, const D: usize>(boxes: &Boxes<V, D>) -> V {
     norm(&boxes.half1).smaller(norm(&boxes.half2))
 }
 
-/// Returns the lanes where the sum of the absolute values of the pose is finite.
+/// Returns the lanes where every entry of the pose is finite and the sum of their absolute values
+/// does not overflow.
 #[inline(always)]
 pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -110,7 +113,7 @@ pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
     all.simd_lt(V::all(simd, N::INFINITY))
 }
 
-/// Sum of the absolute values.
+/// Returns the sum of the absolute values of the components.
 #[inline(always)]
 fn size<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
     let mut sum = v[0].abs();

@@ -1,5 +1,6 @@
-//! Measures what a solid and 8 triangles show along the normals: the distances of the corners
-//! of each outline from the sides of the other, and the distances between both along the normal.
+//! Measures a solid's supporting feature and 8 triangles along the normals: the distances of the
+//! corners of each outline from the sides of the other, and the distances between both along the
+//! normal.
 //!
 //! ```text
 //!      v3 ──────────── v2     seen along the normal n of the lane, which points into the page
@@ -9,8 +10,8 @@
 //!      v0 ──────────── v1     depth    distance along n from c1 to the plane of the face
 //! ```
 //!
-//! Everything is in the frame of the solid. A row `[N; LANES]` has a number for each triangle, a
-//! byte a bit.
+//! All vectors are in the frame of the solid. A row `[N; LANES]` has one entry per triangle, a mask
+//! byte one bit.
 
 use super::super::frame::ROUNDING_ERRORS;
 use super::FaceSolid;
@@ -22,20 +23,21 @@ use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 use crate::shape::{CLEARLY_LARGER, FACING_SINE_SQUARED, FaceRing, THIN_SQUARED};
 
-/// Most corners of a face.
+/// Largest number of corners of a face.
 const MAX: usize = FaceRing::<f32>::MAX;
 
-/// Distances of the corners of one outline from the sides of the other, by corner and side, and
-/// masks of the lanes in which they exceed the rounding error.
+/// Signed distances of the corners of one outline from the sides of the other, by corner and side,
+/// and masks over the lanes.
 pub(super) struct SideHeights<N, const CORNERS: usize, const SIDES: usize> {
     /// Signed distances, positive on the inner side.
     inside: [[[N; LANES]; SIDES]; CORNERS],
-    /// The lanes in which `inside` is above the tolerance, and below its opposite. NaN is neither.
+    /// Lanes where `inside` is above the tolerance; not set for NaN.
     within: [[u8; SIDES]; CORNERS],
+    /// Lanes where `inside` is below minus the tolerance; not set for NaN.
     beyond: [[u8; SIDES]; CORNERS],
-    /// The lanes in which a corner is beyond some side, and in which it is on the line of some
-    /// side.
+    /// Lanes where the corner is beyond some side.
     pub(super) is_beyond: [u8; CORNERS],
+    /// Lanes where the corner is on the line of some side, within the tolerance.
     pub(super) is_on: [u8; CORNERS],
 }
 
@@ -64,53 +66,59 @@ impl<N: Real, const CORNERS: usize, const SIDES: usize> SideHeights<N, CORNERS, 
         self.is_on[corner] |= !(within | beyond);
     }
 
-    /// The lanes in which a corner is on the line of a side, within the tolerance.
+    /// Returns the lanes where a corner is on the line of a side, within the tolerance.
     pub(super) const fn on(&self, corner: usize, side: usize) -> u8 {
         !(self.within[corner][side] | self.beyond[corner][side])
     }
 
-    /// The lanes in which two corners lie on different sides of the line of a side, both off it.
+    /// Returns the lanes where two corners lie on different sides of a side's line, both farther
+    /// from it than the tolerance.
     fn parted(&self, [from, to]: [usize; 2], side: usize) -> u8 {
         self.within[from][side] & self.beyond[to][side]
             | self.beyond[from][side] & self.within[to][side]
     }
 
-    /// The share of the way from one corner to another at which it crosses the line of a side.
+    /// Returns the parameter, from 0 at `from` to 1 at `to`, at which the segment between two
+    /// corners crosses the line of a side.
     pub(super) fn share(&self, [from, to]: [usize; 2], side: usize, lane: usize) -> N {
         let [from, to] = [self.inside[from][side][lane], self.inside[to][side][lane]];
         from / (from - to)
     }
 }
 
-/// A face and 8 triangles, measured along the normals. Of an edge or corner of the solid, the
-/// ring holds two points or one.
+/// A feature of the solid and 8 triangles, measured along the normals. The ring holds the corners
+/// of a face, the two ends of an edge, or one corner.
 pub(in crate::collide) struct FaceClip<N: Real> {
     pub(super) ring: FaceRing<N>,
-    /// The corners of the triangles, and the signed distances along the normal from these to the
-    /// plane of the face; negative where they overlap. Unused unless the ring is a face.
+    /// Corners of the triangles.
     pub(super) corners: [[[N; LANES]; 3]; 3],
+    /// Signed distances along the normal from the corners of the triangles to the plane of the
+    /// face; negative where they overlap. Unused unless the ring is a face.
     pub(super) depths: [[N; LANES]; 3],
-    /// The signed distances along the normal from the planes of the triangles to the corners of the
-    /// ring.
+    /// Signed distances along the normal from the planes of the triangles to the corners of the
+    /// ring; negative where they overlap.
     pub(super) vertex_depths: [[N; LANES]; MAX],
-    /// The corners of the triangles against the sides of the ring, and the reverse.
+    /// Corners of the triangles, measured against the sides of the ring.
     pub(super) in_face: SideHeights<N, 3, MAX>,
+    /// Corners of the ring, measured against the sides of the triangles.
     pub(super) in_triangle: SideHeights<N, MAX, 3>,
-    /// Bound of the rounding errors of lengths.
+    /// Bound of the rounding errors of lengths, for each lane.
     pub(super) tolerance: [N; LANES],
     pub(super) supporting: SupportingBits,
-    /// The lanes in which the shown feature is certain and all sides are longer than two
+    /// Lanes where the triangle's supporting feature is certain and all sides are longer than two
     /// tolerances.
     pub(super) with_extent: u8,
-    /// The lanes in which a side of the triangle, the first index, and a side of the ring cross.
+    /// Lanes where a side of the triangle (first index) and a side of the ring (second index)
+    /// cross.
     pub(super) crossed: [[u8; MAX]; 3],
 }
 
-/// The lanes in which a triangle shows its face, and the corners and sides of the shown feature.
+/// Supporting features of the triangles along the normals. Lanes where it is a face, and lanes
+/// where each corner or side belongs to it.
 #[derive(Clone, Copy, Default)]
 pub(super) struct SupportingBits {
     pub(super) face: u8,
-    /// The lanes in which the face is the back.
+    /// Lanes where the supporting face is the back of the triangle.
     pub(super) back: u8,
     pub(super) corners: [u8; 3],
     pub(super) sides: [u8; 3],
@@ -133,7 +141,7 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// Measures the lanes of a run.
+    /// Measures the lanes of one SIMD run.
     pub(super) fn measure(
         &mut self,
         run: Run,
@@ -180,7 +188,8 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// Two sides cross where each has its ends on different sides of the other.
+    /// Finds the crossings: two sides cross if each has its ends on different sides of the other's
+    /// line.
     fn find_crossings(&mut self) {
         let (count, sides) = (self.ring.count, self.sides());
         for (side, crossed) in self.crossed.iter_mut().enumerate() {
@@ -193,7 +202,7 @@ impl<N: Real> FaceClip<N> {
     }
 
     /// Measures the corners of the triangles against the sides and the plane of the ring. Returns
-    /// the lanes in which all its sides are longer than two tolerances.
+    /// the lanes where all sides of the ring are longer than two tolerances.
     #[inline(always)]
     fn measure_face<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -243,14 +252,14 @@ impl<N: Real> FaceClip<N> {
         }
     }
 
-    /// The number of sides of the ring: one of an edge, none of a corner.
+    /// Returns the number of sides of the ring: one for an edge, none for a corner.
     #[inline(always)]
     pub(super) const fn sides(&self) -> usize {
         let count = self.ring.count;
         if count < 3 { count - 1 } else { count }
     }
 
-    /// A corner of the ring.
+    /// Returns a corner of the ring.
     #[inline(always)]
     pub(super) fn vertex(&self, at: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.ring.corners;
@@ -258,19 +267,21 @@ impl<N: Real> FaceClip<N> {
     }
 }
 
-/// Eight triangles and their normals.
+/// Eight triangles, projected along their normals.
 struct ProjectedTriangles<V> {
     corners: [[V; 3]; 3],
     normal: [V; 3],
-    /// From each corner to the next, the squared lengths, and the cross product of the first two.
+    /// Vectors from each corner to the next.
     sides: [[V; 3]; 3],
+    /// Squared lengths of `sides`.
     squared: [V; 3],
+    /// Cross product of the first two sides.
     across: [V; 3],
     /// Twice the area projected along the normal; negative if the solid is behind the triangle.
     rise: V,
-    /// Unit, perpendicular to the normal and a side, into the triangle; and the projected lengths
-    /// of the sides.
+    /// Unit vectors perpendicular to the normal and to a side, into the triangle.
     inward: [[V; 3]; 3],
+    /// Projected lengths of the sides.
     lengths: [V; 3],
 }
 
@@ -287,7 +298,7 @@ impl<V> ProjectedTriangles<V> {
         let across = cross(&sides[0], &sides[1]);
         let rise = dot(&across, normal);
         let one: V = lit(simd, 1.0);
-        // Seen from the back, the sides run clockwise.
+        // The sides of a triangle seen from its back run clockwise.
         let turn = rise.simd_lt(V::all(simd, N::ZERO)).select(-one, one);
         let (mut inward, mut lengths) = (sides, squared);
         for (own, length) in inward.iter_mut().zip(&mut lengths) {
@@ -298,9 +309,9 @@ impl<V> ProjectedTriangles<V> {
         Self { corners: *corners, normal: *normal, sides, squared, across, rise, inward, lengths }
     }
 
-    /// Returns the features that the triangles show along the normals, by the rule of
-    /// [`core_feature`](crate::shape::SupportMap::core_feature), and the lanes in which rounding
-    /// cannot change them and they are not degenerate.
+    /// Returns the supporting features of the triangles along the normals, by the rule of
+    /// [`core_feature`](crate::shape::SupportMap::core_feature). The mask has the lanes where
+    /// rounding cannot change the feature and it is not degenerate.
     #[inline(always)]
     fn supporting<S: Simd, N: Real>(&self, simd: S, tolerance: V) -> (SupportingBits, V::Mask)
     where
@@ -312,12 +323,12 @@ impl<V> ProjectedTriangles<V> {
         let (area, rise) = (dot(&self.across, &self.across), self.rise * self.rise);
         let is_wide = area.simd_gt(lit::<S, N, V>(simd, THIN_SQUARED) * longest * longest)
             & longest.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()));
-        // A face is shown if the squared cosine of its tilt is above 1 - `FACING_SINE_SQUARED`.
-        // Close cases are neither `is_face` nor `is_steep`.
+        // The feature is a face if the squared cosine of its tilt is above 1 -
+        // `FACING_SINE_SQUARED`. Close cases are neither `is_face` nor `is_steep`.
         let upright = lit::<S, N, V>(simd, 1.0 - FACING_SINE_SQUARED) * area;
         let is_face = is_wide & upright.simd_lt(rise * less);
         let is_steep = is_wide & rise.simd_lt(upright * less);
-        // The farthest corner along the normal, and the squared sines of the slopes of the sides at
+        // Farthest corner along the normal, and the squared sines of the slopes of the two sides at
         // it.
         let climbs = [
             dot(&self.sides[0], &self.normal),
@@ -335,7 +346,7 @@ impl<V> ProjectedTriangles<V> {
         let at = |of: [V; 3]| tops[0].select(of[0], tops[1].select(of[1], of[2]));
         let (out, back) = (at(slopes), at([slopes[2], slopes[0], slopes[1]]));
         let is_back = back.simd_lt(out);
-        // The flatter of the two sides at the farthest corner is shown if it is flat enough.
+        // The flatter of the two sides at the farthest corner is the feature if it is flat enough.
         let (least, other) = (is_back.select(back, out), is_back.select(out, back));
         let is_corner = is_steep & limit.simd_lt(least * less);
         let is_side = is_steep & least.simd_lt(limit * less) & least.simd_lt(other * less);

@@ -10,13 +10,14 @@
 //!        v0────────────v1
 //! ```
 //!
-//! The result is that of [`clip`](super::clip) for the features that a solid and a triangle show
-//! along the normal: a face, a side or a corner each, at least one of them a face. A lane is one
-//! triangle. [`measure`] computes how far inside each side of one outline the corners of the other
-//! are, in lanes. Few candidates count, and [`points`] makes these one by one. Lanes with a
-//! degenerate outline, or whose shown feature is uncertain, are left to the clip of the pair.
+//! The result is that of [`clip`](super::clip) for the supporting features of the solid and of the
+//! triangle along the normal: a face, a side or a corner each, at least one of them a face. A lane
+//! is one triangle. [`measure`] computes, in lanes, how far the corners of one outline are inside
+//! each side of the other. Few candidates remain, and [`points`] makes them one by one. Lanes with
+//! a degenerate outline, or whose supporting feature is uncertain, are left to the clip of the
+//! pair.
 //!
-//! All is in the frame of the solid.
+//! All vectors are in the frame of the solid.
 
 mod measure;
 mod points;
@@ -30,22 +31,23 @@ use crate::math::simd::Level;
 use crate::math::{Matrix, Real, Vector};
 use crate::shape::{FaceRing, FeatureId, Geometry, Kind, SupportMap};
 
-/// The input of the clip for one triangle.
+/// Input of the clip for one triangle.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct ClipRequest<N: Real> {
-    /// Unit, from the triangle to the solid, in the frame of the solid.
+    /// Unit normal from the triangle to the solid, in the frame of the solid.
     pub(in crate::collide) normal: Vector<N, 3>,
-    /// The feature of the solid that faces the triangle, against the normal.
+    /// Supporting feature of the solid towards the triangle, against the normal.
     part: FeatureId,
-    /// The distance of the nearest points, if they have this normal. Then no point gets a smaller
-    /// distance, and the clip is undecided if none is that near.
+    /// Signed distance of the nearest points, if they have this normal. Then no point gets a
+    /// smaller distance, and the clip is undecided if no point is that near.
     pub(in crate::collide) nearest: Option<N>,
-    /// Points nearer than this by more than rounding are dropped; others are at least this far.
+    /// Points nearer than this by more than rounding are dropped; the distances of the others are
+    /// raised to at least this.
     pub(in crate::collide) least: N,
 }
 
 impl<N: Real> ClipRequest<N> {
-    /// `None` for solids other than boxes and hulls, and for flat boxes.
+    /// Creates a request; `None` for solids other than boxes and hulls, and for flat boxes.
     pub(in crate::collide) fn new(
         solid: Kind<'_, N, 3>,
         normal: Vector<N, 3>,
@@ -56,12 +58,13 @@ impl<N: Real> ClipRequest<N> {
     }
 }
 
-/// A solid and its placement among the triangles.
+/// A solid and its placement relative to the triangles.
 pub(in crate::collide) struct FaceSolid<'a, N: Real> {
     pub(in crate::collide) solid: Kind<'a, N, 3>,
-    /// The rotation from the frame of the solid to that of the triangles, whose columns are the
-    /// axes of the solid, and the origin of the solid in the frame of the triangles.
+    /// Rotation from the frame of the solid to that of the triangles; its columns are the axes of
+    /// the solid.
     pub(in crate::collide) turn: &'a Matrix<N, 3>,
+    /// Origin of the solid in the frame of the triangles.
     pub(in crate::collide) origin: Vector<N, 3>,
     /// Points farther than this are dropped.
     pub(in crate::collide) prediction: N,
@@ -69,9 +72,9 @@ pub(in crate::collide) struct FaceSolid<'a, N: Real> {
 
 impl<N: Real> FaceSolid<'_, N> {
     /// Appends the points of each of up to 8 triangles, given in their own frame. Calls `visit`
-    /// with the lane and the least distance of its points, infinite without points, or with `None`
-    /// if the clip of the pair has to decide. The order of lanes is by the feature that the solid
-    /// shows.
+    /// with the lane and the smallest distance of its points, infinite without points, or with
+    /// `None` if the clip of the pair has to decide. Lanes are visited in groups with the same
+    /// supporting feature of the solid.
     pub(in crate::collide) fn each_clip(
         &self,
         triangles: &PartPacket<N, 3>,
@@ -83,8 +86,8 @@ impl<N: Real> FaceSolid<'_, N> {
         self.each_clip_at(Level::new(), (triangles, requests), clip, points, visit);
     }
 
-    /// [`Self::each_clip`] with the vectors of an instruction set; the result does not depend on
-    /// it.
+    /// Runs [`Self::each_clip`] with the vectors of an instruction set; the result does not depend
+    /// on it.
     pub(super) fn each_clip_at(
         &self,
         level: Level,
@@ -100,7 +103,7 @@ impl<N: Real> FaceSolid<'_, N> {
             }
         }
         let mut left = u8::MAX >> (LANES - requests.len());
-        // Lanes in which the solid shows one feature share a ring.
+        // Lanes with the same supporting feature of the solid share a ring.
         while left != 0 {
             let part = requests[left.trailing_zeros() as usize].part;
             let is_same = |lane: &usize| requests[*lane].part == part;
@@ -124,13 +127,13 @@ impl<N: Real> FaceSolid<'_, N> {
         }
     }
 
-    /// The bounding radius of the core of the solid around its origin.
+    /// Returns the bounding radius of the solid's core around its origin.
     fn reach(&self) -> N {
         Geometry(self.solid).as_support_map().map_or(N::ZERO, SupportMap::reach)
     }
 }
 
-/// The lanes of a mask.
+/// Returns an iterator over the lanes of a mask.
 fn ones(bits: u8) -> Ones<LANES> {
     Ones(bits.into())
 }

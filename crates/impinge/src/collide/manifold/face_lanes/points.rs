@@ -7,7 +7,7 @@ use crate::math::{Point, Real, Vector, max, min};
 use crate::shape::FeatureId;
 
 impl<N: Real> FaceClip<N> {
-    /// Appends the points of one triangle and returns their least distance, infinite without
+    /// Appends the points of one triangle; returns their smallest distance, infinite without
     /// points. `None`, with nothing appended, if the clip of the pair has to decide.
     pub(super) fn points_of(
         &self,
@@ -17,7 +17,7 @@ impl<N: Real> FaceClip<N> {
         points: &mut RawPoints<N, 3>,
     ) -> Option<N> {
         let has_extent = self.with_extent >> lane & 1 == 1;
-        // Without an area on either side, edges may be parallel or corners coincide.
+        // If neither outline has an area, edges may be parallel or corners coincide.
         let has_area = self.ring.count > 2 || self.supporting.face >> lane & 1 == 1;
         if !(has_extent && has_area) {
             return None;
@@ -37,19 +37,19 @@ impl<N: Real> FaceClip<N> {
     }
 }
 
-/// The points of one triangle found so far.
+/// Points of one triangle found so far.
 struct FoundPoints<'a, N: Real> {
     request: &'a ClipRequest<N>,
     /// Points farther than this by more than the tolerance are dropped.
     prediction: N,
     tolerance: N,
     points: &'a mut RawPoints<N, 3>,
-    /// The index of its first point.
+    /// Index of the triangle's first point in `points`.
     first: usize,
 }
 
 impl<N: Real> FoundPoints<'_, N> {
-    /// Returns the least distance; infinite without points. If `nearest` is known, the deepest
+    /// Returns the smallest distance; infinite without points. If `nearest` is known, the deepest
     /// point gets that distance; `None` if no point is that near.
     fn lowest(&mut self) -> Option<N> {
         let new = &mut self.points[self.first..];
@@ -63,7 +63,7 @@ impl<N: Real> FoundPoints<'_, N> {
     }
 
     /// Adds the point `point` of the triangle, at the signed `distance` from the face of the solid
-    /// along the normal, unless it is beyond the prediction, below `least`, or already known.
+    /// along the normal, unless it is beyond the prediction, below `least`, or already added.
     fn push(&mut self, point: &Vector<N, 3>, distance: N, [feature1, feature2]: [FeatureId; 2]) {
         let ClipRequest { normal, nearest, least, .. } = self.request;
         let mut distance = max(distance, nearest.unwrap_or(distance));
@@ -74,7 +74,7 @@ impl<N: Real> FoundPoints<'_, N> {
         }
         distance = max(min(distance, self.prediction), *least);
         let point1 = Point::from(point + normal * distance);
-        // A corner on a corner is found from both outlines.
+        // A corner that coincides with a corner is found from both outlines.
         let near = N::lit(4.0) * self.tolerance;
         let is_same = |old: &RawPoint<N, 3>| {
             let moved = old.point1 - point1;
@@ -88,7 +88,7 @@ impl<N: Real> FoundPoints<'_, N> {
     }
 }
 
-/// One lane of a clip: a triangle.
+/// The triangle in one lane of a clip.
 struct LaneClip<'a, N: Real> {
     clip: &'a FaceClip<N>,
     lane: usize,
@@ -96,19 +96,19 @@ struct LaneClip<'a, N: Real> {
 }
 
 impl<N: Real> LaneClip<'_, N> {
-    /// Whether a mask has this lane.
+    /// Returns whether a mask has the bit of this lane.
     fn has(&self, bits: u8) -> bool {
         bits >> self.lane & 1 == 1
     }
 
-    /// A corner of the triangle, in the frame of the solid.
+    /// Returns a corner of the triangle, in the frame of the solid.
     fn corner(&self, corner: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.clip.corners[corner];
         Vector::<N, 3>::new(x[self.lane], y[self.lane], z[self.lane])
     }
 
-    /// Adds the corners that the triangle shows within the face. `None` if the solid shows an edge
-    /// and a corner of the triangle is on its line.
+    /// Adds the corners of the triangle's supporting feature that lie within the face. `None` if
+    /// the solid's supporting feature is an edge and a corner of the triangle is on its line.
     fn corners(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
         let FaceClip { ring, in_face, supporting, depths, .. } = self.clip;
         if ring.count < 3 {
@@ -126,8 +126,9 @@ impl<N: Real> LaneClip<'_, N> {
         Some(())
     }
 
-    /// Adds the corners of the ring within the face of the triangle. `None` if the triangle shows
-    /// no face and a corner of the ring is on the line of a shown side.
+    /// Adds the corners of the ring that lie within the triangle. `None` if the triangle's
+    /// supporting feature is not its face and a corner of the ring is on the line of a supporting
+    /// side.
     fn vertices(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
         let FaceClip { ring, in_triangle, supporting, vertex_depths, .. } = self.clip;
         let face = FeatureId::Face(u32::from(self.has(supporting.back)));
@@ -161,8 +162,8 @@ impl<N: Real> LaneClip<'_, N> {
         self.part_with(at, sides, |side| [with_ids(side), with_ids((side + 1) % 3)])
     }
 
-    /// Returns the side or corner of the face that a corner of the triangle projects to; `None` if
-    /// it projects to the inside.
+    /// Returns the side or corner of the solid's face that a corner of the triangle projects to;
+    /// `None` if it projects to the inside.
     fn part_of_face(&self, corner: usize, at: &Vector<N, 3>) -> Option<FeatureId> {
         let FaceClip { ring, in_face, .. } = self.clip;
         if !self.has(in_face.is_on[corner]) {
@@ -173,8 +174,8 @@ impl<N: Real> LaneClip<'_, N> {
         self.part_with(at, sides, |side| [with_ids(side), with_ids((side + 1) % ring.count)])
     }
 
-    /// Adds the crossings of a side of the triangle and one of the ring. The ends of each are off
-    /// the line of the other by more than the tolerance.
+    /// Adds the crossings of a side of the triangle and a side of the ring. Only sides are crossed
+    /// whose ends are farther than the tolerance from the other's line, on both sides of it.
     fn crossings(&self, found: &mut FoundPoints<'_, N>) {
         let FaceClip { ring, in_face, in_triangle, crossed, .. } = self.clip;
         for side in 0..3 {
@@ -193,9 +194,9 @@ impl<N: Real> LaneClip<'_, N> {
         }
     }
 
-    /// Returns the side or corner of an outline that the point `at` projects to, which is on the
-    /// lines of `sides`; the last of these decides. `ends` gives the two corners of a side, each
-    /// with its id and that of the side that leaves it.
+    /// Returns the side or corner of an outline that the point `at`, on the lines of `sides`,
+    /// projects to; the last of `sides` that contains it decides. `ends` returns the two corners of
+    /// a side, each with its id and the id of the side that begins there.
     fn part_with(
         &self,
         at: &Vector<N, 3>,

@@ -1,4 +1,4 @@
-//! Contacts of faces with triangles, 8 at a time, against the exact overlap of both outlines.
+//! Compares contacts of faces with triangles, 8 at a time, with the exact overlap of both outlines.
 
 use super::clip::{Outline, common, prism, regular};
 use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
@@ -17,10 +17,10 @@ struct Scene<N: Real> {
     requests: Vec<ClipRequest<N>>,
 }
 
-/// The points of one triangle; `None` if the lanes leave it undecided.
+/// Points of one triangle; `None` if the lanes leave it undecided.
 type Found<N> = Option<Vec<RawPoint<N, 3>>>;
 
-/// The unit normal of a triangle with a positive z.
+/// Returns the unit normal of a triangle that has a positive z.
 fn upward<N: Real>([a, b, c]: &Corners<N>) -> Vector<N, 3> {
     let normal = cross(&(b - a), &(c - a)).normalize();
     if normal.z < N::ZERO { -normal } else { normal }
@@ -38,8 +38,8 @@ impl<N: Real> Scene<N> {
         scene
     }
 
-    /// Clips all triangles, given to the kernel in a frame of their own. There the solid is at
-    /// `turn` and `origin`; the points are in the frame of the solid.
+    /// Clips all triangles, which are passed to the kernel in a frame in which the solid is at
+    /// `turn` and `origin`; the returned points are in the frame of the solid.
     fn found(
         &self,
         level: Level,
@@ -78,7 +78,7 @@ fn projected_along<N: Real>(point: &Point<N, 3>, normal: &Vector<N, 3>) -> [f64;
     [point.coords.dot(&u).as_f64(), point.coords.dot(&v).as_f64()]
 }
 
-/// Twice the area of the convex hull of some points.
+/// Returns twice the area of the convex hull of some points.
 fn hull_area(positions: &[[f64; 2]]) -> f64 {
     let mut sorted = positions.to_vec();
     sorted.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
@@ -110,13 +110,14 @@ fn outline_area(outline: &Outline) -> f64 {
     outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
 }
 
-/// The bottom of a solid that stands on the plane z = 0, in the order of its outline.
+/// Returns the bottom of a solid that stands on the plane z = 0, in the order of its outline.
 fn bottom(outline: &Outline) -> Vec<Point<f64, 3>> {
     outline.iter().map(|&[x, y]| Point::<f64, 3>::new(x, y, 0.0)).collect()
 }
 
-/// Checks the points of one triangle. They span the overlap of the triangle and the bottom of the
-/// solid, each lies on both at its distance, and has the ids of the features it lies on.
+/// Asserts that the points of one triangle span the overlap of the triangle and the bottom of the
+/// solid, that each lies on both at its distance, and that it has the ids of the features it lies
+/// on.
 fn check<N: Real>(
     outline: &Outline,
     corners: &Corners<N>,
@@ -164,8 +165,7 @@ fn check<N: Real>(
     }
 }
 
-/// Two frames for the triangles: that of the solid, and one that is turned and translated at
-/// random.
+/// Returns two frames for the triangles: that of the solid, and a random one.
 fn frames<N: Real>(random: &mut Xorshift) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
     let (normal, _) = (random.vector::<N>(1.0).normalize(), 0);
     let (u, v) = orthonormal_basis(&normal);
@@ -173,8 +173,9 @@ fn frames<N: Real>(random: &mut Xorshift) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
     [(Matrix::<N, 3>::identity(), Vector::<N, 3>::zeros()), (turn, random.vector(2.0))]
 }
 
-/// Random triangles close to the plane z = 0, nearly horizontal, so that a solid on the plane shows
-/// its bottom. On a grid, corners and sides of the outlines coincide.
+/// Returns random triangles close to the plane z = 0, nearly horizontal, so that the bottom of a
+/// solid on the plane is its supporting feature. On a grid, corners and sides of the outlines
+/// coincide.
 fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     let mut corner = |at: usize| {
         let mut position = random.vector::<N>(2.0);
@@ -194,8 +195,8 @@ fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     all.filter(is_wide).collect()
 }
 
-/// Checks a solid over some triangles, moved down by `lift` in the frame of the solid. Returns how
-/// many the lanes leave undecided, and how many not.
+/// Asserts the points of a solid over some triangles, moved down by `lift` in the frame of the
+/// solid. Returns how many triangles the lanes leave undecided, and how many not.
 fn check_all<N: Real>(
     outline: &Outline,
     (solid, lift): (&dyn Shape<N, 3>, N),

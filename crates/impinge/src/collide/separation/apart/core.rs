@@ -1,4 +1,4 @@
-//! Cores in lanes: support points, and the feature that is as far along a direction.
+//! Cores in lanes: support points, and the number of vertices tied along a direction.
 
 use crate::math::lanes::{dot, either, minus, spread, times};
 use crate::math::simd::{Simd, SimdMask};
@@ -8,7 +8,7 @@ use crate::shape::{Polytope, SupportMap};
 /// Core of one solid of each pair, in its own frame and in units of the pair. All lanes have the
 /// same kind.
 pub(super) enum LaneCore<'a, N: Real, V> {
-    /// The half extents.
+    /// Half extents of each lane's box.
     Cuboid([V; 3]),
     /// Vertices shared by all lanes, in units of the shape; `shrink` scales them to each pair's
     /// units.
@@ -19,15 +19,17 @@ pub(super) enum LaneCore<'a, N: Real, V> {
 #[derive(Clone, Copy)]
 pub(super) struct CorePoints<'a, N: Real> {
     pub(super) vertices: &'a [Point<N, 3>],
-    /// The hull that owns the vertices; a lone pair finds support points faster by it.
+    /// The hull that owns the vertices, by which a lone pair finds support points faster; `None`
+    /// for a triangle.
     pub(super) hull: Option<&'a Polytope<N, 3>>,
 }
 
-/// Vertices as far along a direction as the farthest one, up to a tolerance.
+/// Vertices tied for the farthest along a direction, up to a tolerance.
 pub(super) struct LaneTies<V> {
-    /// Number of tied vertices, as a number of the scalar type.
+    /// How many vertices are tied, as a value of the scalar type. Coinciding vertices may count
+    /// twice.
     pub(super) count: V,
-    /// Vector between the two vertices if there are two. Coinciding vertices may count twice.
+    /// Vector between the two tied vertices, if there are exactly two.
     pub(super) along: [V; 3],
 }
 
@@ -57,7 +59,8 @@ impl<N: Real, V> LaneCore<'_, N, V> {
         }
     }
 
-    /// Returns the vertices within `tolerance` of the farthest along the unit vector `direction`.
+    /// Returns the vertices within `tolerance` of the farthest one along the unit vector
+    /// `direction`.
     #[inline(always)]
     pub(super) fn ties<S: Simd>(&self, simd: S, direction: &[V; 3], tolerance: V) -> LaneTies<V>
     where
@@ -89,8 +92,8 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                     count = is_tied.select(count + one, count);
                     other = either(is_tied, &vertex, &other);
                 }
-                // `other` is the last tied vertex: the support point is the first, or `along` is
-                // zero.
+                // `other` is the last tied vertex: if it is the only one, it is the support point
+                // itself and `along` is zero.
                 LaneTies { count, along: minus(&other, &best) }
             }
         }

@@ -1,12 +1,13 @@
 //! Nearest points of triangles, boxes and hulls in 3D that are well apart, for one pair or for
 //! 8 pairs at a time. Both run the same source and so give the same bits.
 //!
-//! The search is that of E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the
-//! Distance Between Complex Objects in Three-Dimensional Space", 1988), without branches: each step
-//! computes all features of the simplex at its newest corner and selects the nearest ([`simplex`]).
-//! An answer is returned only with a proof: its points are as far apart as two supporting planes.
-//! Without a proof the pair goes to the algorithm of its kinds: cores nearer than 2⁻⁶ of the pair's
-//! size (`MIN_GAP`) or overlapping, several pairs of nearest points, bounds that do not meet.
+//! The search is the one of E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing
+//! the Distance Between Complex Objects in Three-Dimensional Space", 1988), without branches: each
+//! step computes all features of the simplex at its newest corner and selects the nearest
+//! ([`simplex`]). A result is returned only with a proof: its points are as far apart as two
+//! supporting planes. Without a proof the pair falls back to the algorithm of its kinds. This
+//! happens for cores nearer than 2⁻⁶ of the pair's size (`MIN_GAP`) or overlapping, for several
+//! pairs of nearest points, and if the bounds do not agree.
 //!
 //! ```text
 //!        core 1             core 2        normal = nearest / |nearest|
@@ -15,8 +16,8 @@
 //!      +--------+          \__\           both agree up to rounding, or there is no answer
 //! ```
 //!
-//! `packet` lays out [`LANES`] pairs by rows, `core` has the support points, `search` the loop. The
-//! packets are cut from the runs of equal kinds in `collide/batch/convex.rs`.
+//! `packet` lays out [`LANES`] pairs in rows, `core` computes support points, and `search` has the
+//! loop. `collide/batch/convex.rs` cuts the packets from runs of pairs of equal kinds.
 
 mod core;
 mod packet;
@@ -40,17 +41,18 @@ use crate::math::simd::Level;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{Kind, SupportMap};
 
-/// Pairs in one packet: the width of the vectors in `math::simd`.
+/// Number of pairs in one packet.
 const LANES: usize = 8;
 
-/// Hulls with more vertices go to algorithms that do not visit every vertex in each step.
+/// Largest number of vertices; hulls with more go to algorithms that do not visit every vertex in
+/// each step.
 const MAX_VERTICES: usize = 128;
 
 /// Returns the separation of two triangles, boxes or hulls: by the search if they are well apart,
 /// else by the algorithm of their kinds.
 ///
-/// Two boxes take their separating axis test first if `limit` is finite: most of them touch, and
-/// the test proves it in less time than the search needs to give up. The test for hulls takes
+/// For two boxes and a finite `limit`, the separating axis test runs first: most of them touch, and
+/// the test proves it in less time than the search needs to give up. For hulls the test takes
 /// longer than the search.
 #[inline]
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
@@ -60,7 +62,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     {
         return found;
     }
-    // The search only proves distances above zero, which are all beyond this limit.
+    // The search proves only distances above zero, which are all beyond this limit.
     if limit <= N::ZERO
         && let (Kind::Triangle(_), Kind::Triangle(_)) = (pair.first, pair.second)
     {
@@ -74,8 +76,8 @@ pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     result(pair, limit, limit >= N::ZERO).distance(pair, limit)
 }
 
-/// Computes [`separation`] for up to [`LANES`] pairs of the same kinds, to the bit. The outer
-/// `None` marks pairs that have to be computed one by one.
+/// Computes [`separation`] for up to [`LANES`] pairs of the same kinds, bit for bit. An outer
+/// `None` marks a pair that has to be computed alone, an inner one a pair beyond `limit`.
 pub(crate) fn separations<'p, 'a: 'p, N: Real>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
     limit: N,
@@ -84,7 +86,8 @@ pub(crate) fn separations<'p, 'a: 'p, N: Real>(
 }
 
 /// Computes [`distance`] for up to [`LANES`] pairs of the same kinds, for a `limit` of zero or
-/// more.
+/// more. An outer `None` marks a pair that has to be computed alone, an inner one a pair beyond
+/// `limit`.
 pub(crate) fn distances<'p, 'a: 'p, N: Real>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
     limit: N,
@@ -92,8 +95,8 @@ pub(crate) fn distances<'p, 'a: 'p, N: Real>(
     each(pairs, limit, true, |result, pair| result.distance(pair, limit))
 }
 
-/// Searches up to [`LANES`] pairs and applies `convert` to the result of each. All `None` without
-/// vectors, or if the pairs do not share the vertices of their hulls.
+/// Searches up to [`LANES`] pairs and applies `convert` to the result of each. Returns `None` for
+/// all pairs without vectors, or if the pairs do not share the vertices of their hulls.
 #[inline]
 fn each<'p, 'a: 'p, N: Real, T: Copy>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
@@ -130,16 +133,17 @@ fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
 enum GapResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
-    /// The separation of the solids, proved.
+    /// Separation of the solids, with a proof.
     Apart(Separation<N, 3>),
     /// The cores certainly overlap.
     Overlap,
-    /// No answer is proved.
+    /// The search found no proof.
     Unproved,
 }
 
 impl<N: Real> GapResult<N> {
-    /// Returns the separation; unproved pairs are computed by the algorithm of their kinds.
+    /// Returns the separation, `None` beyond `limit`; computes unproved pairs by the algorithm of
+    /// their kinds.
     #[inline]
     fn separation(&self, pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
         match self {
@@ -149,7 +153,8 @@ impl<N: Real> GapResult<N> {
         }
     }
 
-    /// Returns the distance, or zero if the cores certainly overlap.
+    /// Returns the distance, `None` beyond `limit`, or zero if the cores certainly overlap;
+    /// computes unproved pairs by the algorithm of their kinds.
     #[inline]
     fn distance(&self, pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
         let distance = match self {
@@ -185,15 +190,15 @@ struct FlatPair<'a, N: Real> {
     solids: [FlatCore<'a, N, 3>; 2],
     /// Radii around both cores.
     radii: [N; 2],
-    /// Unit of length in which the cores are about 1 large.
+    /// Unit of length in which the size of the cores is about 1.
     units: Units<N>,
     /// Centres of the cores in their own frames, in units of the pair.
     middles: [Vector<N, 3>; 2],
 }
 
 impl<'a, N: Real> FlatPair<'a, N> {
-    /// `None` for other kinds, for hulls of more than [`MAX_VERTICES`] vertices, and if the unit of
-    /// the pair is not finite.
+    /// Wraps a pair; `None` for other kinds, for hulls of more than [`MAX_VERTICES`] vertices, and
+    /// if the unit of the pair is not finite.
     #[inline]
     fn of(pair: &Pair<'a, N, 3>) -> Option<Self> {
         if !(is_faceted(&pair.first) && is_faceted(&pair.second)) {
@@ -239,8 +244,8 @@ impl<'a, N: Real> FlatPair<'a, N> {
         }
     }
 
-    /// Returns the result for the solids: `core` is the separation of the cores in units of the
-    /// pair, used if they are apart.
+    /// Returns the result for the solids. `core` computes the separation of the cores in units of
+    /// the pair; it is called only if they are apart.
     #[inline]
     fn result(
         &self,

@@ -24,7 +24,7 @@ use crate::math::{Point, Real, Vector, Wide, filled};
 /// One vector per lane, stored by coordinate.
 type LaneVectors<N> = [[N; LANES]; 3];
 
-/// Input of up to 8 pairs of the same kinds. Lanes without a pair stay zero.
+/// Inputs of up to 8 pairs of the same kinds. Lanes without a pair stay zero.
 struct Packet<'a, N: Real> {
     /// Both solids of each pair; `None` for lanes without a pair.
     pairs: [Option<FlatPair<'a, N>>; LANES],
@@ -38,26 +38,28 @@ struct Packet<'a, N: Real> {
     middles: [LaneVectors<N>; 2],
     /// Factor from lengths of the shapes to units of each pair.
     shrink: [N; LANES],
-    /// Largest distance of the cores of interest, in units of each pair.
+    /// Limit of the distance of the cores, in units of each pair.
     limit: [N; LANES],
 }
 
-/// Output of the search, in units of each lane's pair.
+/// Results of the search, in units of each lane's pair.
 struct PacketGap<N: Real> {
     distance: [N; LANES],
-    /// Unit, from the first core to the second, in the frame of the first.
+    /// Unit normals from the first core to the second, in the frame of the first.
     normal: LaneVectors<N>,
     /// Nearest points of both cores, in the frame of the first.
     points: [LaneVectors<N>; 2],
-    /// One bit per lane, as in the other two masks.
+    /// Bits of the lanes with a proved separation.
     is_apart: u64,
+    /// Bits of the lanes whose cores are beyond the limit.
     is_beyond: u64,
+    /// Bits of the lanes whose cores certainly overlap.
     is_overlap: u64,
 }
 
-/// Computes the results of up to 8 pairs of the same kinds, with the bits of [`super::result`].
-/// They do not depend on the instruction set. `None` if the pairs do not share the vertices of
-/// their hulls.
+/// Computes the results of up to 8 pairs of the same kinds, with the bits of [`super::result`] and
+/// independent of the instruction set. `None` if the pairs do not share the vertices of their
+/// hulls.
 pub(super) fn results<'p, 'a: 'p, N: Real>(
     vectors: Vectors,
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>>,
@@ -128,7 +130,7 @@ impl<'a, N: Real> Packet<'a, N> {
         packet
     }
 
-    /// Puts a pair into its lane; a pair without flat cores leaves it empty.
+    /// Copies a pair into its lane; leaves the lane empty if the pair has no flat cores.
     fn put(&mut self, lane: usize, pair: &Pair<'a, N, 3>, limit: N) {
         let Some(solids) = FlatPair::of(pair) else { return };
         let (pose12, shrink) = (&pair.pose12, solids.units.shrink);
@@ -147,8 +149,8 @@ impl<'a, N: Real> Packet<'a, N> {
         self.pairs[lane] = Some(solids);
     }
 
-    /// Returns whether hulls and triangles are the same object in all lanes, so that their vertices
-    /// need no gathering.
+    /// Returns whether each solid that is a hull or triangle is the same object in all lanes, so
+    /// that its vertices need no gathering.
     fn shares_vertices(&self) -> bool {
         let mut solids = self.pairs.iter().flatten();
         let Some(first) = solids.next() else { return false };

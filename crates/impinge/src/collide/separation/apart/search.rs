@@ -19,14 +19,15 @@ use crate::math::{Real, Wide, max};
 /// Cap on the number of support points. Most pairs take five or six.
 const ROUNDS: usize = 32;
 
-/// Cores nearer than this, in units of the pair, go to algorithms that decide about touching: 2⁻⁶.
+/// Cores nearer than this, in units of the pair, are left to the algorithms that decide about
+/// touching: 2⁻⁶.
 pub(super) const MIN_GAP: f64 = 1.0 / 64.0;
 
 /// Edges count as parallel if the squared sine of their angle is below this: 2⁻²⁰.
 const PARALLEL: f64 = 1.0 / 1_048_576.0;
 
-/// Returns the gap between both bounds of a distance that counts as rounding, in units of the pair:
-/// 2⁻¹⁹ in `f32`, 2⁻⁴⁶ in `f64`.
+/// Returns the gap between the bounds of a distance up to which they count as equal, in units of
+/// the pair: 2⁻¹⁹ in `f32`, 2⁻⁴⁶ in `f64`.
 fn tolerance<N: Real>() -> N {
     max(N::lit(16.0) * N::EPSILON, N::lit(1.0 / 70_368_744_177_664.0))
 }
@@ -35,22 +36,22 @@ fn tolerance<N: Real>() -> N {
 pub(super) struct LaneCores<'a, N: Real, V> {
     pub(super) cores: [LaneCore<'a, N, V>; 2],
     pub(super) pose12: LanePose<V, 3>,
-    /// Vector from the middle of the first core to the middle of the second: the first direction.
+    /// Vector from the centre of the first core to the centre of the second: the first direction.
     pub(super) between: [V; 3],
-    /// Largest distance of interest, in units of the pair. Lanes beyond it need no answer.
+    /// Limit of the distance, in units of the pair. Lanes beyond it need no result.
     pub(super) limit: V,
 }
 
 /// Result of the search, in units of the pair and in the frame of the first core.
 pub(super) struct LaneGap<V, M> {
-    /// Lower bound of the distance of the cores; equal to the distance, up to rounding, where
-    /// apart.
+    /// Lower bound of the distance of the cores. In the lanes of `is_apart` it equals the distance
+    /// up to rounding.
     pub(super) distance: V,
-    /// Unit, from the first core to the second.
+    /// Unit vector from the first core to the second.
     pub(super) normal: [V; 3],
     /// Nearest points of both cores.
     pub(super) points: [[V; 3]; 2],
-    /// Lanes whose cores are apart; only there the other fields are proved.
+    /// Lanes whose cores are apart; the fields above are proved only there.
     pub(super) is_apart: M,
     /// Lanes whose cores are farther apart than the limit.
     pub(super) is_beyond: M,
@@ -59,9 +60,10 @@ pub(super) struct LaneGap<V, M> {
 }
 
 impl<N: Real, V: Copy> LaneCores<'_, N, V> {
-    /// Runs the search. Without `with_overlap`, lanes nearer than [`MIN_GAP`] are given up at once.
+    /// Runs the search. Without `with_overlap`, lanes nearer than [`MIN_GAP`] are given up
+    /// immediately.
     ///
-    /// A lane that is done keeps its values, so no lane depends on its neighbours.
+    /// A finished lane keeps its values, so no lane depends on its neighbours.
     #[inline(always)]
     pub(super) fn gap<S: Simd>(&self, simd: S, with_overlap: bool) -> LaneGap<V, V::Mask>
     where
@@ -118,8 +120,8 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
     }
 
     /// Returns the lanes with a single pair of nearest points: no face or edge of one core is
-    /// parallel to a face or edge of the other. Where there are several pairs their middle is
-    /// wanted, which other algorithms find.
+    /// parallel to a face or edge of the other. Of several pairs the middle is wanted, which other
+    /// algorithms find.
     #[inline(always)]
     fn is_unique<S: Simd>(&self, simd: S, normal: &[V; 3]) -> V::Mask
     where

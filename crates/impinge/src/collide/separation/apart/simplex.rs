@@ -10,20 +10,21 @@
 //!           p2
 //! ```
 //!
-//! The old face p0 p1 p2 is skipped: the newest corner lies beyond it, toward the origin.
+//! The old face p0 p1 p2 is skipped, because the newest corner lies beyond it, toward the origin.
 
 use crate::math::lanes::{cross, dot, either, either_mask, lit, minus, negated, plus, times};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The origin is clearly inside a simplex if it is farther than this from each plane: 2⁻¹⁰ of the
-/// pair.
+/// The origin is clearly inside a simplex if its distance from each plane exceeds this: 2⁻¹⁰ of the
+/// pair's size.
 const CLEAR: f64 = 1.0 / 1024.0;
 
 /// A point of the difference of two cores, and the point of the first core that it comes from.
 #[derive(Clone, Copy)]
 pub(super) struct LaneCorner<V> {
-    /// Second core minus first, in units of the pair and in the frame of the first core.
+    /// Point of the second core minus point of the first, in units of the pair and in the frame of
+    /// the first core.
     pub(super) point: [V; 3],
     pub(super) on1: [V; 3],
 }
@@ -45,26 +46,28 @@ impl<V> LaneCorner<V> {
 /// Up to three corners and the point of their hull nearest to the origin.
 #[derive(Clone, Copy)]
 pub(super) struct LaneSimplex<V> {
-    /// In lanes with fewer corners the last is repeated, with weight zero.
+    /// Corners; in lanes with fewer corners, the last is repeated with weight zero.
     pub(super) corners: [LaneCorner<V>; 3],
     /// Barycentric weights of the corners; their sum is 1.
     pub(super) weights: [V; 3],
-    /// Nearest point to the origin, and its squared length.
+    /// Point of the hull nearest to the origin.
     pub(super) nearest: [V; 3],
+    /// Squared length of `nearest`.
     pub(super) squared: V,
 }
 
-/// The nearest of the candidates so far.
+/// The feature nearest to the origin among the candidates so far.
 struct BestFeature<V> {
     nearest: [V; 3],
     squared: V,
-    /// Weights of up to two old corners, and their indices 0, 1 or 2.
+    /// Weights of up to two old corners.
     weights: [V; 2],
+    /// Indices 0, 1 or 2 of these corners, as values of the scalar type.
     corner_indices: [V; 2],
 }
 
 impl<V> BestFeature<V> {
-    /// Selects `other` where it is nearer and admitted.
+    /// Selects `other` in the lanes where it is nearer and admitted.
     #[inline(always)]
     fn or_nearer<S: Simd>(self, (other, is_admitted): (Self, V::Mask)) -> Self
     where
@@ -93,7 +96,7 @@ struct Fan<'a, V> {
 }
 
 impl<V: Copy> LaneSimplex<V> {
-    /// A simplex of a single corner.
+    /// Creates a simplex of a single corner.
     #[inline(always)]
     pub(super) fn new<S: Simd, N: Real>(simd: S, corner: LaneCorner<V>) -> Self
     where
@@ -108,11 +111,11 @@ impl<V: Copy> LaneSimplex<V> {
         }
     }
 
-    /// Adds a corner: returns the simplex around the new nearest point, and the lanes in which all
+    /// Adds a corner. Returns the simplex around the new nearest point, and the lanes where the
     /// four corners contain a ball around the origin.
     ///
-    /// In a lane with two corners the third is a copy, which adds no nearer point. Its features are
-    /// skipped if no lane has three.
+    /// In a lane with two corners the third is a copy, which adds no nearer point. If no lane has
+    /// three, the third corner's features are skipped.
     #[inline(always)]
     pub(super) fn with<S: Simd, N: Real>(&self, simd: S, newest: &LaneCorner<V>) -> (Self, V::Mask)
     where
@@ -151,8 +154,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         Self { old, newest, edges, squares, turns }
     }
 
-    /// Nearest point on the edge to an old corner, ends included, and the lanes in which it has a
-    /// length.
+    /// Returns the nearest point on the edge to an old corner, ends included, and the lanes where
+    /// the edge has a length.
     #[inline(always)]
     fn edge<S: Simd, N: Real>(&self, simd: S, old: usize) -> (BestFeature<V>, V::Mask)
     where
@@ -174,8 +177,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         (feature, has_length)
     }
 
-    /// Nearest point on a face at the newest corner, and the lanes in which it lies inside the
-    /// face.
+    /// Returns the nearest point on a face at the newest corner, and the lanes where it lies inside
+    /// the face.
     #[inline(always)]
     fn face<S: Simd, N: Real>(&self, simd: S, [one, two]: [usize; 2]) -> (BestFeature<V>, V::Mask)
     where
@@ -203,7 +206,7 @@ impl<'a, V: Copy> Fan<'a, V> {
         (feature, is_within)
     }
 
-    /// Returns the lanes in which the origin is clearly on the inner side of each face of the
+    /// Returns the lanes where the origin is clearly on the inner side of each face of the
     /// tetrahedron.
     #[inline(always)]
     fn holds_origin<S: Simd, N: Real>(&self, simd: S) -> V::Mask
@@ -241,7 +244,7 @@ impl<'a, V: Copy> Fan<'a, V> {
         }
     }
 
-    /// Returns the old corner of an index.
+    /// Returns the old corner with this index.
     #[inline(always)]
     fn at<S: Simd, N: Real>(&self, simd: S, corner_index: V) -> LaneCorner<V>
     where
@@ -254,8 +257,9 @@ impl<'a, V: Copy> Fan<'a, V> {
     }
 }
 
-/// Returns the lanes in which the origin and another point lie on the same side of a plane, the
-/// origin clearly. `of_origin` and `of_point` are their heights times the length of `normal`.
+/// Returns the lanes where the origin and another point lie on the same side of a plane, the origin
+/// clearly. `of_origin` and `of_point` are their heights above the plane, times the length of
+/// `normal`.
 #[inline(always)]
 fn is_clear<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -270,7 +274,7 @@ fn is_clear<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     is_far & both
 }
 
-/// Returns the index of an old corner as a number of the scalar type.
+/// Returns the index of an old corner as a value of the scalar type.
 #[inline(always)]
 fn index<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, old: usize) -> V {
     lit(simd, [0.0, 1.0, 2.0][old])

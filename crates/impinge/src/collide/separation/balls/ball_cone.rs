@@ -17,8 +17,8 @@ use crate::shape::{Cone, Kind};
 
 /// Returns the separation of a ball from a cone.
 ///
-/// A centre inside leaves through the nearer of base and side, through the base if equally near. On
-/// the axis the side is left towards positive x.
+/// A centre inside leaves through the nearer of base and side, through the base in a tie. From the
+/// axis, it leaves the side towards positive x.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -57,8 +57,8 @@ impl<N: Real> Section<N> {
 
     /// Returns the largest height of `p` above a side, and the normal of that side.
     ///
-    /// Sideways and up are tried too, after the sides: a cone without height or radius has no side
-    /// there, and its end would be missed.
+    /// The directions sideways and up are also tried, after the sides: a cone without height or
+    /// radius has no side there, and its end would be missed.
     fn highest(&self, p: &Vector<N, 2>) -> (N, Vector<N, 2>) {
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
         let mut best = (self.height(&-y, p), -y);

@@ -9,8 +9,8 @@ use crate::shape::{Cylinder, Kind};
 
 /// Returns the separation of a ball from a cylinder.
 ///
-/// A centre inside leaves through the nearer of cap and side, through the cap if equally near. On
-/// the axis the side is left towards positive x.
+/// A centre inside leaves through the nearer of cap and side, through the cap in a tie. From the
+/// axis, it leaves the side towards positive x.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -22,8 +22,8 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     project(cylinder, &center).of_ball(ball.radius(), &pair.pose12, limit)
 }
 
-/// A point in cylindrical coordinates: distance from the y axis, height, and the unit direction
-/// away from the axis, positive x for points on it.
+/// A point in cylindrical coordinates: distance from the y axis, height, and the unit vector away
+/// from the axis, which is the x axis for points on the y axis.
 pub(in crate::collide::separation) struct HalfPlane<N: Real> {
     /// `x` is the distance from the axis, `y` the height.
     pub(in crate::collide::separation) point: Vector<N, 2>,

@@ -7,13 +7,13 @@ use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, max_component, min, unit};
 use crate::shape::{Ellipsoid, Kind, SupportMap};
 
-/// Cap on the Newton steps. They converge from one side, in the end quadratically: about six are
-/// taken, up to twenty close to the middle of a flat ellipsoid.
+/// Cap on the Newton steps. They converge from one side, finally quadratically. Usually about six
+/// are taken; close to the centre of a flat ellipsoid up to twenty.
 const STEPS: usize = 64;
 
 /// Returns the separation of a ball from an ellipsoid.
 ///
-/// From the middle the ball leaves along the shortest half axis: the first of equals, towards its
+/// From the centre, the ball leaves along the shortest half axis, the first of equals, towards its
 /// positive side.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -54,7 +54,7 @@ pub(crate) fn project<N: Real, const D: usize>(
     }
 }
 
-/// Projects a point so far away that only its direction counts, or onto an ellipsoid of size zero.
+/// Projects a point so far away that only its direction matters, or onto an ellipsoid of size zero.
 fn from_afar<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,
@@ -81,7 +81,7 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         Self { half_axes: *half_axes, least, excess, point: *point }
     }
 
-    /// Projects the point, by the root or, where the shortest axis alone decides, directly.
+    /// Projects the point, by the root or, if the shortest axis alone decides, directly.
     fn project(&self) -> Projection<N, D> {
         let low = (0..D).fold(N::ZERO, |low, axis| {
             let alone = self.half_axes[axis] * self.point[axis].abs() - self.excess[axis];
@@ -91,7 +91,8 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
             return self.across();
         }
         let root = self.root(low);
-        // The normal is this vector, not a difference of points, so it is exact on the surface too.
+        // The normal is this vector, not a difference of points, so it is exact on the surface as
+        // well.
         let normal =
             Vector::<N, D>::from_fn(|axis, _| quotient(self.point[axis], root + self.excess[axis]));
         let (outward, length) = unit(&normal).unwrap_or_else(|| (first_axis(), N::ZERO));
@@ -102,8 +103,8 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         }
     }
 
-    /// Returns the point of the surface whose normal is proportional to `normal`, of the right
-    /// length.
+    /// Returns the point of the surface at which `normal` is a normal; `normal` must have the
+    /// length that the surface equation gives it.
     fn at(&self, normal: &Vector<N, D>) -> Point<N, D> {
         Point::from(normal.zip_map(&self.half_axes, |n, half| half * (half * n)))
     }
@@ -135,8 +136,9 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         t
     }
 
-    /// Projects where the shortest half axis alone decides: the point lies in the middle plane
-    /// across that axis, close enough to the middle, or the ellipsoid has no thickness there.
+    /// Projects the point if the shortest half axis alone decides: the point lies in the symmetry
+    /// plane across that axis and close enough to the centre, or the ellipsoid has no thickness
+    /// there.
     fn across(&self) -> Projection<N, D> {
         let shortest = |axis: &usize| self.excess[*axis] == N::ZERO;
         let first = (0..D).find(shortest).unwrap_or(0);

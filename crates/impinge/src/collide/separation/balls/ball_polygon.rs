@@ -10,8 +10,8 @@ use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
 /// Returns the separation of a ball from a convex polygon.
 ///
-/// Inside, the nearest side is the way out. Outside, the nearest point lies on a side that has the
-/// centre in front of it. Cost: linear in the number of sides.
+/// Inside, the centre leaves through the nearest side. Outside, the nearest point lies on a side
+/// that has the centre in front of it. Cost: linear in the number of sides.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,
@@ -38,8 +38,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
     Projection { distance, outward, point: center - outward * distance }
 }
 
-/// Projects a point outside, which is highest above the side `highest`. Mostly the nearest point
-/// lies on that side, and the supporting line there proves it.
+/// Projects a point outside; `highest` is the side with the largest height of the point. In most
+/// cases the nearest point lies on that side, and the supporting line there proves it.
 fn project_from_outside<N: Real>(
     polygon: &Polytope<N, 2>,
     center: &Point<N, 2>,
@@ -60,7 +60,8 @@ fn project_from_outside<N: Real>(
             best = projected;
         }
     }
-    // Close to a corner the offset is mostly rounding, and the normal of a side may be better.
+    // Close to a corner the offset is mostly rounding error, and the normal of a side may be
+    // better.
     if certain(&best) + rounding_error < highest.height_of(center) {
         best.outward = highest.normal;
     }

@@ -10,9 +10,9 @@ use crate::shape::{Kind, Polytope, PolytopeFace, SupportMap};
 
 /// Returns the separation of a ball from a convex hull.
 ///
-/// Inside, the nearest face is the way out, and the distance of its plane the exact depth. Outside,
+/// Inside, the centre leaves through the nearest face, whose distance is the exact depth. Outside,
 /// the nearest point lies on one of the faces that have the centre in front of them; the centre is
-/// projected onto each. Cost: linear in the number of faces.
+/// projected onto each of these. Cost: linear in the number of faces.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -37,10 +37,10 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if distance > N::ZERO { project_from_outside(hull, center, highest, &flat) } else { flat }
 }
 
-/// Projects a point outside; `flat` is its projection onto the plane of the face `highest`, which
-/// it is highest above.
+/// Projects a point outside. `highest` is the face with the largest height of the point, `flat` the
+/// projection onto its plane.
 ///
-/// Mostly the nearest point lies on that face, and the supporting plane there proves it.
+/// In most cases the nearest point lies on that face, and the supporting plane there proves it.
 fn project_from_outside<N: Real>(
     hull: &Polytope<N, 3>,
     center: &Point<N, 3>,
@@ -64,7 +64,7 @@ fn project_from_outside<N: Real>(
         }
     }
     let mut best = best.unwrap_or(*flat);
-    // Close to a side the offset is mostly rounding, and the normal of a face may be better.
+    // Close to a side the offset is mostly rounding error, and the normal of a face may be better.
     if certain(&best) + rounding_error < flat.distance {
         best.outward = flat.outward;
     }

@@ -11,8 +11,8 @@ use crate::shape::{Kind, Segment};
 
 /// Returns the separation of a ball from a segment or capsule.
 ///
-/// A centre on the segment leaves it along a fixed perpendicular. If the segment has no length and
-/// the centre coincides with it, along the first axis of the segment's frame.
+/// A centre on the segment leaves along a fixed perpendicular. If the segment has no length and the
+/// centre coincides with it, the centre leaves along the first axis of the segment's frame.
 pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
@@ -44,7 +44,7 @@ pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
     Foot::new(*ends, center).projection()
 }
 
-/// Nearest point of a segment to a given point.
+/// Point of a segment nearest to a given point.
 pub(in crate::collide::separation) struct Foot<N: Real, const D: usize> {
     ends: [Point<N, D>; 2],
     /// The nearest point of the segment.
@@ -52,7 +52,7 @@ pub(in crate::collide::separation) struct Foot<N: Real, const D: usize> {
     /// Vector from `point` to the given point; `distance` is its length.
     offset: Vector<N, D>,
     pub(in crate::collide::separation) distance: N,
-    /// `point` lies between the ends.
+    /// Whether `point` lies between the ends.
     is_inside: bool,
 }
 
@@ -68,13 +68,13 @@ impl<N: Real, const D: usize> Foot<N, D> {
         Self { ends, point, offset, distance: offset.norm(), is_inside }
     }
 
-    /// Adds the direction, which costs more than all else.
+    /// Returns the projection, which adds the direction; computing it costs more than all the rest.
     pub(in crate::collide::separation) fn projection(&self) -> Projection<N, D> {
         Projection { distance: self.distance, outward: self.outward(), point: self.point }
     }
 
-    /// Returns the unit direction from the segment to the point; a perpendicular of the segment
-    /// where the offset is rounding.
+    /// Returns the unit direction from the segment to the point, or a perpendicular of the segment
+    /// if the offset is mostly rounding error.
     fn outward(&self) -> Vector<N, D> {
         let direct = if self.is_inside { None } else { unit(&self.offset) };
         if let Some((outward, _)) = direct {

@@ -26,9 +26,9 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
 
 /// Projects a point onto a tapered capsule; also returns the nearest part of its surface.
 ///
-/// In the half-plane through axis and point the side is a segment. The perpendiculars at its ends
-/// pass through the centres of the balls and bound the region of the side, inside as well as
-/// outside.
+/// In the half-plane through axis and point, the side of the capsule is a segment. The
+/// perpendiculars at its ends pass through the centres of the balls and bound the region of the
+/// side, both inside and outside.
 pub(crate) fn project<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     point: &Point<N, D>,
@@ -53,8 +53,8 @@ pub(crate) fn project<N: Real, const D: usize>(
     (Projection { distance, outward, point: nearest }, FeatureId::Edge(0))
 }
 
-/// Projects a point onto one of the balls. `fallback` is the direction at its centre, also used if
-/// the offset from the centre is mostly rounding.
+/// Projects a point onto the ball at one end. `fallback` is the direction used if the offset from
+/// the ball's centre is zero or mostly rounding error.
 fn around_end<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     end: usize,

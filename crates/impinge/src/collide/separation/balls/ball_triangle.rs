@@ -12,8 +12,8 @@ use crate::shape::Kind;
 
 /// Returns the separation of a ball from a triangle in 3D.
 ///
-/// A centre on the triangle leaves on the side from which the corners run counter-clockwise; on a
-/// triangle without area, as from its longest side.
+/// A centre on the triangle leaves on the side from which the corners run counter-clockwise. If the
+/// triangle has no area, the centre leaves as from its longest side.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (Kind::Ball(ball), Kind::Triangle(triangle)) = (&pair.first, &pair.second) else {
         wrong_kinds(pair)
@@ -66,8 +66,8 @@ fn height_over<N: Real>(
     is_over.then(|| (max((center - corners[0]).dot(&normal), N::ZERO), normal))
 }
 
-/// Nearest point of a triangle that is a segment up to rounding: the other sides lie on the
-/// longest.
+/// Returns the nearest point of a triangle that is a segment up to rounding: its other sides lie on
+/// the longest one.
 fn on_longest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let side = longest_side(corners);
     Foot::new([corners[side], corners[(side + 1) % 3]], center)
@@ -88,14 +88,14 @@ fn front<N: Real>(corners: &[Point<N, 3>; 3]) -> Option<Vector<N, 3>> {
     unit(&cross(&along, &inward)).filter(|_| !thin).map(|(front, _)| front)
 }
 
-/// Index of the longest side, the first of equals.
+/// Returns the index of the longest side, the first of equals.
 fn longest_side<N: Real>(corners: &[Point<N, 3>; 3]) -> usize {
     let squared = |at: usize| (corners[(at + 1) % 3] - corners[at]).norm_squared();
     let longer = |a: usize, b: usize| if squared(b) > squared(a) { b } else { a };
     longer(longer(0, 1), 2)
 }
 
-/// Nearest point of the three sides, the first of equals.
+/// Returns the nearest point of the three sides, the first of equals.
 fn on_nearest_side<N: Real>(corners: &[Point<N, 3>; 3], center: &Point<N, 3>) -> Foot<N, 3> {
     let [a, b, c] = *corners;
     let mut best = Foot::new([a, b], center);
@@ -126,7 +126,7 @@ fn reach<N: Real>(corners: &[Point<N, 3>; 3], p: &Point<N, 3>) -> N {
     corners.iter().fold(p.coords.norm(), |most, corner| max(corner.coords.norm(), most))
 }
 
-/// Signed height of `p` above the highest corner along `direction`.
+/// Returns the smallest signed height of `p` above the corners, along `direction`.
 fn height<N: Real>(direction: &Vector<N, 3>, corners: &[Point<N, 3>; 3], p: &Point<N, 3>) -> N {
     corners.iter().fold(N::INFINITY, |least, corner| {
         let above = direction.dot(&(p - corner));

@@ -26,11 +26,13 @@ pub(in crate::collide::separation) fn separation<N: Real>(
 /// A side of a triangle whose inside is on its left.
 #[derive(Clone, Copy)]
 struct DirectedEdge<N: Real> {
-    /// Start of the side, unit direction to its end, and its length.
+    /// Start of the side.
     from: Point<N, 2>,
+    /// Unit direction from the start to the end of the side.
     along: Vector<N, 2>,
+    /// Length of the side.
     length: N,
-    /// Signed height of the point above the line of the side.
+    /// Signed height of the projected point above the line of the side, positive outside.
     height: N,
 }
 
@@ -45,7 +47,7 @@ impl<N: Real> DirectedEdge<N> {
         -perp(&self.along)
     }
 
-    /// Returns whether the point lies above the side itself, not only above its line.
+    /// Returns whether the point projects into the side, not only onto its line, from outside.
     fn is_below(&self, center: &Point<N, 2>) -> bool {
         let coordinate = self.along.dot(&(center - self.from));
         self.height > N::ZERO && coordinate > N::ZERO && coordinate < self.length
@@ -61,8 +63,8 @@ impl<N: Real> DirectedEdge<N> {
 /// Projects a point onto a triangle, whose corners may be in either order; `None` for a triangle
 /// that is a segment up to rounding, and for NaN.
 ///
-/// Inside, the nearest side is the way out: the first of equals in the outline, which begins with
-/// the first corner.
+/// Inside, the point leaves through the nearest side; in a tie, the first in the outline, which
+/// begins with the first corner.
 pub(in crate::collide::separation) fn project<N: Real>(
     &[a, b, c]: &[Point<N, 2>; 3],
     center: &Point<N, 2>,

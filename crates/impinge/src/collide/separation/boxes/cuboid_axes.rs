@@ -1,7 +1,8 @@
 //! Separating axis test of two boxes in 3D.
 //!
 //! Gottschalk, Lin and Manocha, "`OBBTree`" (1996): two boxes are apart iff one of 15 directions
-//! separates them; otherwise the one with the least overlap is the shortest way out.
+//! separates them; if none does, the shortest separating translation is along the direction with
+//! the least overlap.
 //!
 //! ```text
 //!   Face1(i)       axis i of box 1                    3 directions
@@ -15,30 +16,31 @@ use crate::math::{Matrix, Pose, Real, Vector, cross, max, min};
 
 /// Two boxes, the second at `pose12` in the frame of the first.
 pub(crate) struct BoxPair<N: Real> {
-    /// Half extents of both boxes.
+    /// Half extents of the first box.
     pub(crate) half1: Vector<N, 3>,
+    /// Half extents of the second box.
     pub(crate) half2: Vector<N, 3>,
     pub(crate) pose12: Pose<N, 3>,
 }
 
-/// One of the 15 directions.
+/// Which of the 15 directions an axis is; indices are those of the boxes' axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AxisKind {
     /// The normal of a face of the first box.
     Face1(usize),
     /// The normal of a face of the second box.
     Face2(usize),
-    /// Perpendicular to an edge of each box, along these axes.
+    /// The common perpendicular of an edge of each box, along these axes.
     Edges(usize, usize),
 }
 
-/// A unit direction from the first box to the second, and the signed gap along it.
+/// Unit vector from the first box to the second, and the signed gap along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BoxAxis<N: Real> {
     pub(crate) kind: AxisKind,
-    /// Unit, from the first box to the second, in the frame of the first.
+    /// Unit vector from the first box to the second, in the frame of the first.
     pub(crate) normal: Vector<N, 3>,
-    /// Signed distance along the normal.
+    /// Signed distance along the normal; negative for an overlap.
     pub(crate) gap: N,
 }
 
@@ -54,9 +56,9 @@ impl<N: Real> BoxPair<N> {
         self.pose12.rotation.column(axis).into_owned()
     }
 
-    /// Returns the direction of the largest gap. Faces of the first box come before faces of the
-    /// second. A pair of edges must exceed the best face by more than rounding, as faces give
-    /// better points.
+    /// Returns the direction of the largest gap. In a tie, faces of the first box come before faces
+    /// of the second. A pair of edges is chosen only if its gap exceeds that of the best face by
+    /// more than rounding, because faces give better points.
     pub(crate) fn best_axis(&self) -> BoxAxis<N> {
         let abs_rotation = self.pose12.rotation.abs();
         let (face, gap) = self.best_face(&abs_rotation);
@@ -87,13 +89,13 @@ impl<N: Real> BoxPair<N> {
         (best, gap)
     }
 
-    /// Returns the pair of edges with the largest gap, if it exceeds `least`.
+    /// Returns the pair of edges with the largest gap, if the gap exceeds `least`.
     ///
-    /// The cross product of two axes has the length of the sine of their angle. A negative gap can
-    /// only shrink when divided by it, so most pairs need no root. The product's components on the
-    /// axes of the second box are differences of two products, small where the sine is. They equal
-    /// entries of the rotation only up to rounding, and that error would be divided by the sine
-    /// too; so the differences are used.
+    /// The length of the cross product of two axes is the sine of their angle. Dividing a negative
+    /// gap by the sine can only lower it, so most pairs need no square root. The product's
+    /// components on the axes of the second box are differences of two products, which are small if
+    /// the sine is small. They equal entries of the rotation only up to rounding, and that error
+    /// would be divided by the sine as well; so the differences are used.
     fn best_edges(&self, abs_rotation: &Matrix<N, 3>, least: N) -> Option<(AxisKind, N)> {
         let (r, t) = (&self.pose12.rotation, &self.pose12.translation);
         let (mut best, mut bound) = (None, least);
@@ -112,7 +114,7 @@ impl<N: Real> BoxPair<N> {
                     continue;
                 }
                 let sine = (r[(i1, j)] * r[(i1, j)] + r[(i2, j)] * r[(i2, j)]).sqrt();
-                // Parallel edges add nothing: the faces suffice.
+                // Parallel edges add no direction that the faces do not have.
                 if sine > N::lit(16.0) * N::EPSILON && slack > bound * sine {
                     (best, bound) = (Some(AxisKind::Edges(i, j)), slack / sine);
                 }
@@ -121,7 +123,7 @@ impl<N: Real> BoxPair<N> {
         best.map(|edges| (edges, bound))
     }
 
-    /// Returns an axis with its direction, pointing from the first box to the second.
+    /// Returns an axis with its unit vector, pointing from the first box to the second.
     fn axis(&self, kind: AxisKind, gap: N) -> BoxAxis<N> {
         let direction = match kind {
             AxisKind::Face1(axis) => Vector::<N, 3>::ith(axis, N::ONE),

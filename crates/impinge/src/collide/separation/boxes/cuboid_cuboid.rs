@@ -12,9 +12,9 @@ use crate::shape::Kind;
 
 /// Returns the separation of two boxes.
 ///
-/// For overlapping boxes the separating axis test is exact. For boxes apart it gives a bound, and
-/// the distance if the nearest points lie on a face or between edges. In the other cases (two
-/// corners, a corner and an edge) the general algorithm decides.
+/// For overlapping boxes the separating axis test is exact. For boxes that are apart it gives a
+/// lower bound, which is the distance if the nearest points lie on a face or between edges. In the
+/// other cases (two corners, a corner and an edge) the general algorithm is used.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -23,7 +23,8 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     along_best(pair, limit, &boxes, &boxes.best_axis())
 }
 
-/// Returns [`separation`] if the axes decide: the boxes overlap, or exceed `limit` (`Some(None)`).
+/// Returns the result of [`separation`] if the axes decide: the boxes overlap, or exceed `limit`
+/// (`Some(None)`). `None` if they do not decide.
 pub(in crate::collide::separation) fn decided_by_axes<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -99,7 +100,7 @@ fn along<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>) -> Separation<N, 3> {
     Separation { distance, normal, point1, point2 }
 }
 
-/// Returns the nearest points of the two edges along these axes that face each other along
+/// Returns the points of the edges along these axes, one of each box, that face each other along
 /// `normal`.
 fn between_edges<N: Real>(
     boxes: &BoxPair<N>,
@@ -124,7 +125,8 @@ fn edge_toward<N: Real>(
     [Point::from(low), Point::from(high)]
 }
 
-/// A face of a box in its own frame: normal to `axis`, on the side of the sign of `toward`.
+/// A face of a box, in the box's frame: perpendicular to `axis`, at the end with the sign of
+/// `toward`.
 struct BoxReferenceFace<N: Real> {
     half: Vector<N, 3>,
     axis: usize,
@@ -141,7 +143,7 @@ impl<N: Real> BoxReferenceFace<N> {
         self.sign() * point[self.axis] - self.half[self.axis]
     }
 
-    /// The point of the face nearest to a point.
+    /// Returns the point of the face nearest to a point.
     fn onto(&self, point: &Point<N, 3>) -> Point<N, 3> {
         let clamped = point.coords.zip_map(&self.half, |x, h| max(min(x, h), -h));
         let mut below = Point::from(clamped);
@@ -158,7 +160,7 @@ impl<N: Real> BoxReferenceFace<N> {
         })
     }
 
-    /// Returns the lowest of the points, if all others are higher by more than `slack`.
+    /// Returns the lowest of the points; `None` unless all others are higher by more than `slack`.
     fn alone(&self, points: &[Point<N, 3>], slack: N) -> Option<Point<N, 3>> {
         let lower = |a, b| if self.height(b) < self.height(a) { b } else { a };
         let lowest = points.iter().reduce(lower)?;
@@ -167,14 +169,14 @@ impl<N: Real> BoxReferenceFace<N> {
         (low.count() == 1).then_some(*lowest)
     }
 
-    /// Returns whether a point lies over or under the face, not beside it.
+    /// Returns whether a point projects into the face.
     fn is_below(&self, point: &Point<N, 3>) -> bool {
         let across = [(self.axis + 1) % 3, (self.axis + 2) % 3];
         across.iter().all(|&axis| point[axis].abs() <= self.half[axis])
     }
 
-    /// Returns the middle of the lowest points of the other box over this face. `pose` is the pose
-    /// of the other box in the frame of this one, `distance` its known signed height.
+    /// Returns the centroid of the other box's lowest points that project into this face. `pose` is
+    /// the pose of the other box in the frame of this one, `distance` its known signed height.
     fn deepest(&self, other: &Vector<N, 3>, pose: &Pose<N, 3>, distance: N) -> Point<N, 3> {
         let direction = Vector::<N, 3>::ith(self.axis, -self.sign());
         let facing = face_toward(other, &pose.inverse_vector(&direction));
@@ -182,13 +184,13 @@ impl<N: Real> BoxReferenceFace<N> {
         let size = self.half.sum() + other.sum() + distance.abs();
         let rounding_error = N::lit(16.0) * N::EPSILON * size;
         if let Some(corner) = self.alone(&facing, rounding_error) {
-            // If the boxes are apart and the lowest corner lies beside the face, no point lies
-            // across.
+            // If the boxes are apart and the lowest corner projects beside the face, no lowest
+            // point projects into it.
             if distance > N::ZERO || self.is_below(&corner) {
                 return corner;
             }
         }
-        // Rounding may leave no point over a face without width. If the boxes are apart there may
+        // Rounding may leave no point over a face without width. If the boxes are apart, there may
         // be none.
         let mut above = self.above(&facing, N::ZERO);
         if above.is_empty() {

@@ -14,8 +14,8 @@ impl<N: Real> Rectangles<N> {
     /// Returns the normal of a side with the largest gap, pointing from the first box to the
     /// second.
     ///
-    /// Ties: sides of the first box come before sides of the second, each in the order of its
-    /// outline, which starts below and is counter-clockwise.
+    /// In a tie, sides of the first box come before sides of the second, each in the order of its
+    /// outline: below, right, above, left.
     pub(in crate::collide::separation) fn best_axis(&self) -> Axis<N> {
         let abs_rotation = self.pose12.rotation.abs();
         let offset = self.pose12.translation;
@@ -47,7 +47,7 @@ impl<N: Real> Rectangles<N> {
     }
 }
 
-/// Position of a side in the outline: below, right, above, left.
+/// Returns the position of a side in the outline: 0 below, 1 right, 2 above, 3 left.
 const fn rank(axis: usize, is_positive: bool) -> usize {
     match (axis, is_positive) {
         (0, true) => 1,
@@ -57,10 +57,11 @@ const fn rank(axis: usize, is_positive: bool) -> usize {
     }
 }
 
-/// Gap, position in the outline, axis, and whether the other box is on its positive side.
+/// Gap, position in the outline, axis, and whether the other box is on the positive side of the
+/// axis.
 type FoundAxis<N> = (N, usize, usize, bool);
 
-/// Returns the larger gap; of equals the one that comes first.
+/// Returns the axis with the larger gap; in a tie the one that comes first in the outline.
 fn better<N: Real>(one: FoundAxis<N>, other: FoundAxis<N>) -> FoundAxis<N> {
     if other.0 > one.0 || other.0 == one.0 && other.1 < one.1 { other } else { one }
 }

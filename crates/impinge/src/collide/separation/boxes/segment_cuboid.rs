@@ -2,10 +2,10 @@
 //!
 //! The squared distance of a point from a box is a sum over the axes. Along a segment its slope is
 //! piecewise linear, with breaks where the segment crosses the planes of faces, so the nearest
-//! point is found between two of them. If the two overlap, the separating axis test over three
-//! faces and three pairs of edges is exact. Answers whose points are not as far apart as supporting
-//! planes go to the general algorithm. The test of [`hulls`](crate::collide::separation::hulls)
-//! takes twice as long.
+//! point is found between two breaks. If the two overlap, the separating axis test over three faces
+//! and three pairs of edges is exact. Results whose points are not as far apart as supporting
+//! planes fall back to the general algorithm. The test of
+//! [`hulls`](crate::collide::separation::hulls) takes twice as long.
 //!
 //! ```text
 //!   slope of the squared distance along the segment, by share of its length
@@ -68,8 +68,9 @@ struct LocalSegment<'a, N: Real> {
 struct Parting<N: Real> {
     /// Unit vector from the solid to the segment.
     outward: Vector<N, 3>,
-    /// Points of the segment and of the solid, across from each other.
+    /// Point of the core that faces `on_solid`.
     on_segment: Vector<N, 3>,
+    /// Point of the solid that faces `on_segment`.
     on_solid: Vector<N, 3>,
     /// Signed distance of the core from the solid.
     distance: N,
@@ -80,7 +81,7 @@ enum SegmentResult<N: Real> {
     /// The core is farther from the solid than the limit.
     Beyond,
     Found(Parting<N>),
-    /// No answer is proved.
+    /// No result is proved; the general algorithm has to decide.
     Unproved,
 }
 
@@ -90,7 +91,7 @@ fn rounding_error<N: Real>() -> N {
 }
 
 impl<'a, N: Real> LocalSegment<'a, N> {
-    /// `None` if the size of the pair, or its reciprocal, is zero or not finite.
+    /// Scales a segment; `None` if the size of the pair, or its reciprocal, is zero or not finite.
     fn new(ends: [&Point<N, 3>; 2], pose12: &'a Pose<N, 3>, reach: N) -> Option<Self> {
         let of_ends = max(max_component(&ends[0].coords), max_component(&ends[1].coords));
         let size = max(max(reach, max_component(&pose12.translation)), of_ends);
@@ -103,7 +104,8 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         let local = |end: &Point<N, 3>| {
             pose12.rotation.tr_mul(&((end.coords - pose12.translation) * shrink))
         };
-        // From the ends as given: the distance between the origins costs no digits then.
+        // Computed from the ends as given, so that the distance between the origins costs no
+        // digits.
         let along = pose12.rotation.tr_mul(&((ends[1] - ends[0]) * shrink));
         Some(Self { ends: [local(ends[0]), local(ends[1])], along, pose12, scale, shrink })
     }
@@ -117,13 +119,14 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         }
     }
 
-    /// Returns the lower coordinate of the two ends along a vector.
+    /// Returns the smaller coordinate of the two ends along a vector.
     fn low(&self, along: &Vector<N, 3>) -> N {
         min(along.dot(&self.ends[0]), along.dot(&self.ends[1]))
     }
 
-    /// Returns the separation along the unit vector `outward`, if both points are as far apart
-    /// along it as the supporting planes. `extent` is the extent of the solid along it.
+    /// Returns the separation along the unit vector `outward`; `None` unless both points are as far
+    /// apart along it as the supporting planes. `extent` is the extent of the solid along
+    /// `outward`.
     fn proved(
         &self,
         outward: Vector<N, 3>,
@@ -136,7 +139,8 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         is_proved.then_some(Parting { outward, on_segment, on_solid, distance })
     }
 
-    /// Returns the separation of the cores in the frame of the segment and the caller's units.
+    /// Returns the separation of the cores in the frame of the segment and in the caller's unit of
+    /// length.
     fn restored(&self, found: &Parting<N>) -> Separation<N, 3> {
         let placed = |point: Vector<N, 3>| self.pose12.point(&Point::from(point * self.scale));
         Separation {
@@ -156,7 +160,7 @@ struct LocalBox<'a, N: Real> {
 }
 
 impl<N: Real> LocalBox<'_, N> {
-    /// Returns the result for the core; distances above `most` are beyond.
+    /// Returns the result for the core; distances above `most` give `Beyond`.
     fn solve(&self, most: N) -> SegmentResult<N> {
         let (axis, sign, gap) = self.best_face();
         if gap > most {
@@ -190,8 +194,8 @@ impl<N: Real> LocalBox<'_, N> {
         best
     }
 
-    /// Returns the axis of the edges that leave the largest gap, the unit vector of that gap, and
-    /// the gap; `None` unless it exceeds `least`.
+    /// Returns the axis of the box edges with the largest gap, the unit vector of that gap, and the
+    /// gap; `None` unless the gap exceeds `least`.
     fn best_edge(&self, least: N) -> Option<(usize, Vector<N, 3>, N)> {
         let (from, along) = (&self.segment.ends[0], &self.segment.along);
         let (mut best, mut bound) = (None, least);
@@ -220,7 +224,8 @@ impl<N: Real> LocalBox<'_, N> {
             + along[2].abs() * self.half[2]
     }
 
-    /// Returns the answer along the normal of a face that the segment crosses.
+    /// Returns the separation along the normal of a face that the segment crosses; `None` if no
+    /// point of the segment is proved.
     fn at_face(&self, axis: usize, sign: N, gap: N) -> Option<Parting<N>> {
         let [a, b] = &self.segment.ends;
         let climb = (b[axis] - a[axis]) * sign;
@@ -240,7 +245,8 @@ impl<N: Real> LocalBox<'_, N> {
         is_over.then_some(Parting { outward, on_segment, on_solid, distance: gap })
     }
 
-    /// Returns the middle of the part of the segment over a face.
+    /// Returns the middle of the part of the segment that projects into a face; `None` if no part
+    /// does.
     fn middle_over(&self, face: usize) -> Option<Vector<N, 3>> {
         let (from, along) = (&self.segment.ends[0], &self.segment.along);
         let (mut first, mut last) = (N::ZERO, N::ONE);
@@ -255,7 +261,8 @@ impl<N: Real> LocalBox<'_, N> {
         (first <= last).then(|| self.segment.at((first + last) * N::HALF))
     }
 
-    /// Returns the answer along the common perpendicular of the segment and the edges along `axis`.
+    /// Returns the separation along the common perpendicular of the segment and the box edges along
+    /// `axis`; `None` without a proof.
     fn at_edge(&self, axis: usize, outward: &Vector<N, 3>, gap: N) -> Option<Parting<N>> {
         let mut ends = [Point::origin(); 2];
         for at in 0..3 {
@@ -271,7 +278,8 @@ impl<N: Real> LocalBox<'_, N> {
         is_across.then_some(Parting { outward: *outward, on_segment, on_solid, distance: gap })
     }
 
-    /// Returns the nearest points of the two, which are apart.
+    /// Returns the separation at the nearest points of segment and box, which are apart; `None`
+    /// without a proof.
     fn nearest(&self) -> Option<Parting<N>> {
         let share = self.nearest_share();
         let on_segment = self.segment.at(share);
@@ -343,7 +351,7 @@ impl<N: Real> LocalBox<'_, N> {
             (0..3).flat_map(|axis| [-self.half[axis], self.half[axis]].mapped(|at| (axis, at)));
         for (axis, side) in sides {
             let share = (side - from[axis]) / along[axis];
-            // NaN is skipped.
+            // NaN parameters are skipped.
             if share > low.0 && share < high.0 {
                 let slope = slope(share);
                 let end = if slope < N::ZERO { &mut low } else { &mut high };

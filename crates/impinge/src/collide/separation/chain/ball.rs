@@ -1,4 +1,4 @@
-//! Eight segments against a ball.
+//! Eight segments of a chain against a ball.
 
 use super::super::balls::ball_segment;
 use super::{ChainQuestion, EightSegments, Links};
@@ -35,8 +35,8 @@ pub(super) fn links<N: Real>(
     Some(())
 }
 
-/// Returns the segments beyond the limit, and the least distance from the centre, with the vectors
-/// of an instruction set, on which the result does not depend.
+/// Returns the bits of the segments beyond the limit, and the smallest distance from the centre.
+/// Runs with the vectors of an instruction set, on which the result does not depend.
 fn at<N: Real>(
     level: Level,
     tiles: &PartPacket<N, 2>,
@@ -46,7 +46,7 @@ fn at<N: Real>(
     with_lanes!(level, simd => beyond::<_, N, N::Lanes<_>>(simd, tiles, question, radius))
 }
 
-/// Compares with the distances that [`ball_segment`] computes.
+/// Compares the limit with distances that have the bits of [`ball_segment`].
 #[inline(always)]
 fn beyond<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -2,9 +2,9 @@
 //!
 //! The kernels run the algorithms of [`polygon_polygon`](super::polygons::polygon_polygon),
 //! [`segment_lanes`](super::segments::segment_lanes) and
-//! [`ball_segment`](super::balls::ball_segment) in the same order of operations, so the answers
-//! have the same bits. Most segments are culled as beyond the limit; the others are computed from
-//! the axis already known.
+//! [`ball_segment`](super::balls::ball_segment) in the same order of operations, so results have
+//! the same bits. Most segments are culled as beyond the limit; for the others, the separation is
+//! computed from the axis that the test found.
 //!
 //! ```text
 //!   question.tiles   [0 1 2 3 4 5 6 7] [8 9 . . . . . .]    corners 0 and 1 of each `PartPacket`
@@ -34,43 +34,43 @@ use crate::shape::Kind;
 pub(crate) struct ChainQuestion<'a, N: Real> {
     /// Corners of the segments, 8 per packet, in the frame of the chain.
     pub(crate) tiles: &'a [PartPacket<N, 2>],
-    /// Number of segments; the rest of the last tile is ignored.
+    /// Number of segments; lanes of the last packet after them are ignored.
     pub(crate) count: usize,
-    /// Origin that the segments are taken relative to.
+    /// Origin that the segments are translated to, in the frame of the chain.
     pub(crate) origin: Vector<N, 2>,
     pub(crate) solid: Kind<'a, N, 2>,
-    /// Pose of the second solid of each pair in the frame of the first. The segment comes first, so
-    /// this is the pose of the solid; a ball or a segment comes before it, so this is the pose of
-    /// the chain.
+    /// Pose of the second of each pair in the frame of the first, in the order of kinds. If the
+    /// segment comes first, this is the pose of the solid; if the solid is a ball or a segment, it
+    /// comes first, and this is the pose of the chain.
     pub(crate) pose12: Pose<N, 2>,
     /// Centre of the solid in the frame of the chain.
     pub(crate) center: Point<N, 2>,
-    /// Largest separation of interest.
+    /// Separations above this are dropped.
     pub(crate) limit: N,
 }
 
 /// Separations found between segments and the solid.
 pub(crate) struct Links<N: Real> {
-    /// Least distance of the segments from the centre of the solid, up to rounding.
+    /// Smallest distance of the segments from the centre of the solid, up to rounding.
     pub(crate) from_middle: N,
     /// Separations within the limit, by index of the segment.
     pub(crate) found: SmallVec<[(usize, Separation<N, 2>); 6]>,
 }
 
 impl<N: Real> Links<N> {
-    /// No separations yet; `from_middle` is the least distance known so far.
+    /// Creates an empty list; `from_middle` is the smallest distance known so far.
     pub(crate) fn new(from_middle: N) -> Self {
         Self { from_middle, found: SmallVec::new() }
     }
 }
 
-/// Computes the separations of the segments from the solid; `None` if a lane has no result, and all
-/// have to be computed one by one.
+/// Computes the separations of the segments from the solid and adds them to `links`. `None` if some
+/// lane has no result; then all segments have to be computed one by one.
 pub(crate) fn links<N: Real>(question: &ChainQuestion<'_, N>, links: &mut Links<N>) -> Option<()> {
     links_at(Level::new(), question, links)
 }
 
-/// Runs [`links`] with the vectors of an instruction set.
+/// Runs [`links`] with the vectors of an instruction set, on which the result does not depend.
 fn links_at<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -90,18 +90,19 @@ fn links_at<N: Real>(
 }
 
 impl<N: Real> ChainQuestion<'_, N> {
-    /// Returns the bits of the lanes of a tile that hold segments.
+    /// Returns the bits of those lanes of a packet that hold segments.
     fn lanes_of(&self, block: usize) -> u8 {
         u8::MAX >> (LANES - (self.count - block * LANES).min(LANES))
     }
 }
 
-/// Eight segments relative to the origin of the pairs.
+/// Eight segments, relative to the origin of the question.
 struct EightSegments<V> {
     /// First and second ends.
     ends: [[V; 2]; 2],
-    /// Vector from the first end to the second, and its squared length.
+    /// Vector from the first end to the second.
     side: [V; 2],
+    /// Squared length of `side`.
     squared: V,
     /// Squared distances from the centre of the solid.
     from_middle: V,
@@ -133,7 +134,7 @@ impl<V> EightSegments<V> {
         Some(Self { ends: [a, b], side, squared, from_middle: dot(&offset, &offset) })
     }
 
-    /// Returns the least distance from the centre of the solid.
+    /// Returns the smallest distance of the segments from the centre of the solid.
     #[inline(always)]
     fn least<S: Simd, N: Real>(&self) -> N
     where

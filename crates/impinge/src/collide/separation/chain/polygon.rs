@@ -1,4 +1,4 @@
-//! Eight segments against a polygon of up to 8 vertices, with or without a radius.
+//! Eight segments of a chain against a polygon of up to 8 vertices, with or without a radius.
 
 use super::super::polygons::outline::{PolygonOutline, Row};
 use super::super::polygons::polygon_polygon::{Axis, of_axis};
@@ -9,7 +9,7 @@ use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide, min};
 use crate::shape::Segment;
 
-/// Computes the separations of the segments from a polygon; `None` if a lane has no result.
+/// Computes the separations of the segments from a polygon; `None` if some lane has no result.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -18,7 +18,7 @@ pub(super) fn links<N: Real>(
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, links))
 }
 
-/// Culls 8 segments at a time by their best axis, then computes the rest one by one along it.
+/// Culls 8 segments at a time by their best axis; computes the others one by one along that axis.
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -51,22 +51,24 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     Some(())
 }
 
-/// A polygon in the frame of the segments, with its extents along its own directions.
+/// A polygon in the frame of the segments, with its extents along the normals of its sides and its
+/// tips.
 struct PolygonExtents<N: Real> {
     outline: PolygonOutline<N>,
-    /// Bound of the distance of its vertices from the origin.
+    /// Upper bound of the distance of the vertices from the origin.
     size: N,
     /// Extent along the normal of each side.
     extents: Row<N>,
-    /// Direction of the tip at each vertex, and the extent along it.
+    /// Direction of the tip at each vertex.
     tips: [Row<N>; 2],
+    /// Extent of the polygon along each tip.
     tip_extents: Row<N>,
-    /// Bit of each vertex with a tip.
+    /// Bits of the vertices with a tip.
     are_tips: u64,
 }
 
 impl<N: Real> PolygonExtents<N> {
-    /// Computes the extents of a polygon along its own directions.
+    /// Computes the extents of a polygon along the normals of its sides and its tips.
     #[inline(always)]
     fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: PolygonOutline<N>) -> Self {
         let (mut tips, mut tip_extents) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
@@ -91,22 +93,22 @@ impl<N: Real> PolygonExtents<N> {
 struct SegmentAxes<N> {
     /// Signed distance along the best direction of each segment.
     gaps: Row<N>,
-    /// Unit, from the segment to the polygon.
+    /// Unit vectors from the segment to the polygon.
     normals: [Row<N>; 2],
     /// Rounding error of lengths of each pair.
     rounding_error: Row<N>,
-    /// Bit of each segment that is beyond the limit.
+    /// Bits of the segments beyond the limit.
     beyond: u8,
 }
 
-/// Direction of the largest gap so far.
+/// Direction with the largest gap so far.
 struct BestDirection<V> {
     gap: V,
     normal: [V; 2],
 }
 
 impl<V> BestDirection<V> {
-    /// Tries another direction; the first of equals counts.
+    /// Tries another direction; it replaces the best one only if its gap is larger.
     #[inline(always)]
     fn attempt<S: Simd>(&mut self, gap: V, normal: &[V; 2])
     where
@@ -136,7 +138,7 @@ impl<N: Real> SegmentAxes<N> {
         let rounding_error = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
         let slack = rounding_error + V::all(simd, N::EPSILON * rounding);
         let max_gap = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * slack;
-        // The gap is a lower bound: a gap beyond the limit by more than rounding rejects the
+        // The gap is a lower bound. A gap beyond the limit by more than rounding rejects the
         // segment.
         let beyond = (best.gap - V::all(simd, rounding)).simd_gt(max_gap);
         let (beyond, zeros) = (bits(beyond), [N::ZERO; LANES]);
@@ -180,7 +182,7 @@ fn of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// Returns the lowest and highest coordinate of a polygon along directions.
+/// Returns the smallest and the largest coordinate of a polygon along directions.
 #[inline(always)]
 fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -196,7 +198,8 @@ fn heights<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     (low, high)
 }
 
-/// Tries the polygon's directions: for each vertex the normal of its side, then its tip.
+/// Tries the polygon's directions: for each vertex the normal of the side that starts there, then
+/// its tip.
 #[inline(always)]
 fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -214,7 +217,7 @@ fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     }
 }
 
-/// Tries a direction out of the polygon, along which the polygon extends to `extent`.
+/// Tries a direction that points out of the polygon; `extent` is the polygon's extent along it.
 #[inline(always)]
 fn add<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

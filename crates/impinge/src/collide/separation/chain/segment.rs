@@ -1,4 +1,4 @@
-//! Eight segments against a segment or capsule.
+//! Eight segments of a chain against a segment or capsule.
 
 use super::super::polygons::polygon_polygon;
 use super::super::segments::segment_lanes::SegmentGap;
@@ -11,8 +11,8 @@ use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Real, Vector, Wide, min};
 use crate::shape::{Kind, Segment};
 
-/// Computes the separations of the segments from a core with a radius; `None` if a length is close
-/// to underflow or overflow.
+/// Computes the separations of the segments from a core with a radius; `None` if a length in some
+/// lane is close to underflow or overflow.
 pub(super) fn links<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -41,7 +41,7 @@ pub(super) fn links<N: Real>(
     Some(())
 }
 
-/// Computes one segment of the chain whose [`SegmentGap`] is not known.
+/// Computes the separation of one segment whose [`SegmentGap`] is not known.
 #[inline(never)]
 fn alone<N: Real>(
     question: &ChainQuestion<'_, N>,
@@ -54,7 +54,7 @@ fn alone<N: Real>(
     polygon_polygon::separation_of_outlines(&pair, question.limit)
 }
 
-/// Separations of 8 segments from another, by rows.
+/// Separations of 8 segments of a chain from a core, in rows.
 struct SegmentGaps<N> {
     /// Signed distances of the cores.
     gaps: [N; LANES],
@@ -62,9 +62,9 @@ struct SegmentGaps<N> {
     normals: [[N; LANES]; 2],
     /// Nearest points of both cores, in the frame of the first.
     points: [[[N; LANES]; 2]; 2],
-    /// Bit of each lane whose values hold.
+    /// Bits of the lanes whose values are valid.
     known: u8,
-    /// Least distance from the centre of the solid.
+    /// Lower bound of the distance of the segments from the centre of the solid.
     least: N,
 }
 

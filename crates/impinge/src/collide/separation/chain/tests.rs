@@ -1,4 +1,4 @@
-//! Compares segments in lanes with one after the other, on every instruction set.
+//! Compares segments in lanes with segments one by one, on every instruction set.
 
 use super::*;
 use crate::collide::Pair;
@@ -7,7 +7,7 @@ use crate::collide::separation::polygons::polygon_polygon::tests::solid_of;
 use crate::collide::separation::separation_2d;
 use crate::shape::{Ball, Segment};
 
-/// One to sixteen segments around an origin, and their tiles.
+/// Returns one to sixteen segments around an origin, and their packets.
 fn segments_of<N: Real>(
     random: &mut Random,
     origin: &Vector<N, 2>,

@@ -28,13 +28,15 @@ pub(super) const MAX_EDGES: usize = 90;
 /// An edge of the solid with the reference face, in the frame of that solid.
 pub(super) struct ReferenceEdge<N: Real> {
     pub(super) index: usize,
-    /// First end, vector to the second end, and its squared length; in units of the pair.
+    /// First end, in units of the pair.
     pub(super) from: Vector<N, 3>,
+    /// Vector from the first end to the second.
     pub(super) along: Vector<N, 3>,
+    /// Squared length of `along`.
     pub(super) squared: N,
 }
 
-/// Eight edges of the other solid, in the same frame.
+/// Eight edges of the other solid, in the frame of the solid with the reference face.
 pub(super) struct EdgeBlock<N: Real> {
     /// Index of the edge in each lane.
     pub(super) indices: [u8; LANES],
@@ -82,14 +84,15 @@ impl CandidateEdges {
     pub(super) fn of(edges: &[PolytopeEdge], is_candidate: impl Fn(&PolytopeEdge) -> bool) -> Self {
         let mut candidates = Self { indices: [0; MAX_EDGES], len: 0 };
         for (index, edge) in (0_u8..).zip(edges) {
-            // Without a branch: an edge that is no candidate is overwritten by the next.
+            // Written without a branch: an edge that is not a candidate is overwritten by the next
+            // one.
             candidates.indices[candidates.len] = index;
             candidates.len += usize::from(is_candidate(edge));
         }
         candidates
     }
 
-    /// Edges that end at one of the vertices given as bits.
+    /// Collects the edges with an end in `vertices`, a mask of vertices.
     #[inline(always)]
     fn at(edges: &[PolytopeEdge], vertices: u32) -> Self {
         Self::of(
@@ -104,7 +107,8 @@ impl CandidateEdges {
     }
 }
 
-/// A pair of edges that forms a face of the Minkowski difference: own edge, other edge.
+/// A pair of edges that forms a face of the Minkowski difference: of the reference face's solid,
+/// and of the other.
 pub(super) struct EdgeQuery<N> {
     edges: [usize; 2],
     /// Signed distance of the solids along the pair's common perpendicular.
@@ -112,8 +116,8 @@ pub(super) struct EdgeQuery<N> {
 }
 
 impl<N: Real> ReferenceFace<'_, '_, N> {
-    /// Returns the edges of each solid that can hold the points of an answer whose points are no
-    /// farther apart than `max_distance`: those with an end close enough to the other solid along the
+    /// Returns the edges of each solid that can hold the points of a result whose points are at
+    /// most `max_distance` apart: those with an end close enough to the other solid along the
     /// normal.
     #[inline(always)]
     fn candidates<S: Simd, V: Wide<S, Scalar = N>>(
@@ -141,14 +145,14 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         ReferenceEdge { index, from, along, squared: along.norm_squared() }
     }
 
-    /// Outward normals of the two faces beside an edge.
+    /// Returns the outward normals of the two faces beside an edge.
     #[inline(always)]
     fn normals_beside(&self, edge: usize) -> [Vector<N, 3>; 2] {
         self.own.solid.edges[edge].faces.map(|face| self.own.solid.normal(face as usize))
     }
 
-    /// Outward normals of the two faces beside each edge of a block, in the frame of the reference
-    /// face.
+    /// Returns the outward normals of the two faces beside each edge of a block, in the frame of
+    /// the reference face.
     #[inline(always)]
     fn normals_beside_block<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -169,9 +173,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         [pose.vector(&load(simd, &normals[0])), pose.vector(&load(simd, &normals[1]))]
     }
 
-    /// Queries the edge directions: returns the pair of edges that forms a face of the Minkowski
-    /// difference and separates the solids most; `None` unless it does so more than the reference
-    /// face, by more than rounding.
+    /// Queries the edge directions. Returns the pair of edges that forms a face of the Minkowski
+    /// difference and has the largest signed distance; `None` unless that exceeds the signed
+    /// distance along the reference face by more than rounding.
     #[inline(always)]
     pub(super) fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -205,8 +209,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         best
     }
 
-    /// Returns the answer at the nearest points of two edges along their common perpendicular, if
-    /// proved.
+    /// Returns the separation at the nearest points of two edges along their common perpendicular;
+    /// `None` without a proof.
     #[inline(always)]
     pub(super) fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -220,8 +224,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         self.proved::<S, V>(simd, &if is_outward { normal } else { -normal }, points)
     }
 
-    /// Returns the answer at the nearest edges of two solids that are apart, if supporting planes
-    /// prove it.
+    /// Returns the separation at the nearest edges of two solids that are apart; `None` unless
+    /// supporting planes prove it.
     #[inline(always)]
     pub(super) fn nearest_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -249,15 +253,15 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         self.proved::<S, V>(simd, &normal_between(&points, &across)?, points)
     }
 
-    /// Nearest points of two edges, and a vector perpendicular to both, of either sign.
+    /// Returns the nearest points of two edges, and a vector perpendicular to both, of either sign.
     fn nearest_points(&self, [edge1, edge2]: [usize; 2]) -> ([Vector<N, 3>; 2], Vector<N, 3>) {
         let ends1 = self.own.solid.ends(self.own.vertices, edge1);
         let ends2 = self.other.solid.ends(self.other.vertices, edge2);
         nearest_points(&ends1, &ends2)
     }
 
-    /// Returns the answer along the unit vector `normal`, if proved: both points are as far apart
-    /// along it as the supporting planes.
+    /// Returns the separation along the unit vector `normal`; `None` unless both points are as far
+    /// apart along it as the supporting planes.
     #[inline(always)]
     fn proved<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -271,7 +275,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     }
 }
 
-/// Nearest points of two edges, and a vector perpendicular to both, of either sign.
+/// Returns the nearest points of two edges, and a vector perpendicular to both, of either sign.
 pub(super) fn nearest_points<N: Real>(
     ends1: &[Vector<N, 3>; 2],
     ends2: &[Vector<N, 3>; 2],
@@ -283,7 +287,7 @@ pub(super) fn nearest_points<N: Real>(
 
 /// Returns the unit direction from the first to the second nearest point of two edges: their common
 /// perpendicular, if it leads from one point to the other. It is accurate to rounding at any
-/// distance; the difference of the points is not. `None` if the points coincide and the edges are
+/// distance, unlike the difference of the points. `None` if the points coincide and the edges are
 /// parallel.
 pub(super) fn normal_between<N: Real>(
     [from, to]: &[Vector<N, 3>; 2],
@@ -301,8 +305,8 @@ pub(super) fn normal_between<N: Real>(
     }
 }
 
-/// Returns the answer along a unit vector, if the two points lie as far apart along it as the
-/// supporting planes, which are `distance` apart.
+/// Returns the separation along a unit vector; `None` unless the two points are as far apart along
+/// it as the supporting planes, whose distance is `distance`.
 pub(super) fn proved<N: Real>(
     normal: &Vector<N, 3>,
     distance: N,
@@ -314,9 +318,9 @@ pub(super) fn proved<N: Real>(
     is_proved.then_some(Separation { distance, normal: *normal, point1, point2 })
 }
 
-/// Returns the separations of the solids along the common perpendiculars of 8 pairs of edges,
-/// and minus infinity for pairs that are no face of the Minkowski difference. `None` if no pair is
-/// one.
+/// Returns the signed distances of the solids along the common perpendiculars of 8 pairs of edges;
+/// minus infinity for pairs that do not form a face of the Minkowski difference. `None` if none of
+/// the pairs does.
 #[inline(always)]
 fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -345,7 +349,7 @@ fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     );
     let height = dot(&across, &away) / squared.sqrt();
     let outward = left1.select(-height, height);
-    // Parallel edges have no perpendicular; faces separate the solids as much.
+    // Parallel edges have no common perpendicular; faces then separate the solids as much.
     let tiny = V::all(simd, N::lit(64.0) * N::EPSILON * N::EPSILON * edge1.squared);
     let is_crossing = squared.simd_gt(dot(&along2, &along2) * tiny);
     Some((is_face & is_crossing).select(outward, V::all(simd, -N::INFINITY)))

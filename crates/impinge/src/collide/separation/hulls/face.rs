@@ -15,18 +15,18 @@ pub(super) struct LocalSolid<'s, 'a, N: Real> {
     pub(super) solid: &'s Polyhedral<'a, N>,
     /// Vertices in the frame of the reference face, in units of the pair.
     pub(super) vertices: &'s Vertices<N>,
-    /// Heights of the vertices: along the normal of the face for the other solid, against it for
-    /// its own.
+    /// Heights of the vertices: of the other solid along the normal of the face, of the face's own
+    /// solid against it.
     pub(super) heights: Heights<N>,
 }
 
-/// The face that the other solid lies farthest above, or least deep below, with both solids.
+/// The face with the largest signed height of the other solid above it, with both solids.
 pub(super) struct ReferenceFace<'s, 'a, N: Real> {
     pub(super) own: LocalSolid<'s, 'a, N>,
     pub(super) other: LocalSolid<'s, 'a, N>,
     /// Pose of the other solid in the frame of the face's own solid.
     pub(super) pose: Pose<N, 3>,
-    /// Index of the face among those of its solid.
+    /// Index of the face in its solid.
     index: usize,
     /// Outward unit normal of the face.
     normal: Vector<N, 3>,
@@ -34,18 +34,18 @@ pub(super) struct ReferenceFace<'s, 'a, N: Real> {
     shrink: N,
 }
 
-/// The lowest point of the other solid along the normal of the face.
+/// Result of the search for the lowest point of the other solid along the normal of the face.
 enum LowestPoint<N: Real> {
-    /// A point over the face, up to rounding.
+    /// A lowest point that projects into the face, up to rounding.
     Over(Vector<N, 3>),
-    /// No point lies over the face. Holds an upper bound of the distance of the solids, or of their
-    /// depth.
+    /// No lowest point projects into the face. Holds an upper bound of the distance of the solids,
+    /// or of their depth.
     Beside(N),
 }
 
 impl<'s, 'a, N: Real> ReferenceFace<'s, 'a, N> {
-    /// Creates the reference face with index `index` of the first solid; both solids come with
-    /// their vertices in its frame.
+    /// Creates the reference face with index `index` of the first solid; the vertices of both
+    /// solids are in the frame of the first.
     #[inline(always)]
     pub(super) fn new<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -65,10 +65,10 @@ impl<'s, 'a, N: Real> ReferenceFace<'s, 'a, N> {
 }
 
 impl<N: Real> ReferenceFace<'_, '_, N> {
-    /// Returns the answer; `None` without a proof.
+    /// Returns the separation; `None` without a proof.
     ///
     /// Edges are queried twice: first the few near the plane, which mostly decide, then all within
-    /// reach. No closures: they are not inlined into vector code.
+    /// the bound. Closures are avoided because they are not inlined into vector code.
     #[inline(always)]
     pub(super) fn resolve<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -96,8 +96,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         None
     }
 
-    /// Returns the answer by edges within `max_distance`; continues if farther edges may have a better
-    /// one.
+    /// Breaks with the separation by edges within `max_distance` of the plane, `None` without a
+    /// proof. Continues, unless `is_last`, if farther edges may give a better separation.
     #[inline(always)]
     fn within<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -130,9 +130,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         if is_decided { ControlFlow::Break(found) } else { ControlFlow::Continue(()) }
     }
 
-    /// Returns whether an answer by edges holds whatever edges lie farther away. It does if the
-    /// solids are apart, or have a point in common: then edges farther from the plane than the
-    /// depth along the normal of the face cannot be better.
+    /// Returns whether a separation found by edges is right whatever edges lie farther away. It is
+    /// if the solids are apart. It also is if they have a point in common, because edges farther
+    /// from the plane than the depth along the face's normal cannot be better.
     #[inline(always)]
     fn is_certain<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -152,25 +152,26 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
             && height_above::<S, N, V>(simd, other, self.shrink, &in_other) <= rounding_error()
     }
 
-    /// Signed height of the other solid above the plane of the face.
+    /// Returns the signed height of the other solid above the plane of the face.
     pub(super) fn separation(&self) -> N {
         self.other.heights.low - self.offset()
     }
 
-    /// Offset of the face's plane along its normal, in units of the pair.
+    /// Returns the offset of the face's plane along its normal, in units of the pair.
     pub(super) fn offset(&self) -> N {
         self.own.solid.offset(self.index) * self.shrink
     }
 
-    /// Returns the answer along the normal of the face, with a point of the other solid over it.
+    /// Returns the separation along the normal of the face, at a point of the other solid that
+    /// projects into the face.
     fn at(&self, point: &Vector<N, 3>) -> Separation<N, 3> {
         let distance = self.separation();
         let (point1, point2) = (Point::from(point - self.normal * distance), Point::from(*point));
         Separation { distance, normal: self.normal, point1, point2 }
     }
 
-    /// Returns the first of the lowest vertices (bits) that lies over the face. If an edge or a
-    /// face is lowest, it may be another of its points.
+    /// Returns the first vertex in `lowest` (bits) that projects into the face. If an edge or a
+    /// face is lowest, the result may be another of its points.
     fn lowest_point(&self, lowest: u32) -> LowestPoint<N> {
         let (mut max_distance, mut rest) = (N::INFINITY, lowest);
         while rest != 0 {
@@ -185,15 +186,15 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         among.map_or(LowestPoint::Beside(max_distance), LowestPoint::Over)
     }
 
-    /// Returns the lowest vertices of the other solid, up to rounding, as bits.
+    /// Returns the bits of the lowest vertices of the other solid, up to rounding.
     #[inline(always)]
     fn lowest_vertices<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> u32 {
         self.other.heights.up_to::<S, V>(simd, self.other.heights.low + rounding_error())
     }
 
-    /// Returns the answer where the lowest vertex lies beside the face, but no edge is better than
-    /// the face by more than rounding. The solids are almost coplanar there: an edge as low up to
-    /// rounding has a part over the face.
+    /// Returns the separation if the lowest vertex projects beside the face, but no edge is better
+    /// than the face by more than rounding. The solids are then nearly coplanar: an edge that is as
+    /// low up to rounding has a part over the face.
     #[inline(always)]
     fn nearly_over<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 3>> {
         let most = self.other.heights.low + N::lit(3.0) * rounding_error();
@@ -215,8 +216,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         None
     }
 
-    /// Ends of the sides of the face with the inward normals of their side planes, as long as the
-    /// sides. The side face of a triangle, an edge there and back, also has planes across both
+    /// Iterates over the sides of the face: their ends, and the inward normals of their side
+    /// planes. The side face of a triangle, an edge there and back, also gets planes across both
     /// ends.
     fn sides(&self) -> impl Iterator<Item = ([Vector<N, 3>; 2], Vector<N, 3>)> {
         let ring = self.own.solid.ring(self.index);
@@ -235,8 +236,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         around.chain(across)
     }
 
-    /// Returns the distance from the face of a point beside it; `None` for a point over it, up to
-    /// rounding.
+    /// Returns the distance from the face of a point that projects beside it; `None` for a point
+    /// that projects into it, up to rounding.
     fn distance_beside(&self, point: &Vector<N, 3>) -> Option<N> {
         let mut least: Option<N> = None;
         for (ends, inward) in self.sides() {

@@ -26,8 +26,8 @@
 //! planes. Otherwise the pair falls back to the general algorithm. There is no iteration and no
 //! state: the answer depends on the pair alone.
 //!
-//! The capacities belong together: 32 vertices are the bits of a `u32` ([`vertices`]), 64 faces
-//! those of a `u64` ([`segment`]), and 90 edges have indices of a `u8` ([`edges`]). 32 vertices
+//! The capacities depend on each other: 32 vertices are the bits of a `u32` ([`vertices`]), 64
+//! faces the bits of a `u64` ([`segment`]), and 90 edges have `u8` indices ([`edges`]). 32 vertices
 //! have at most 3 · 32 - 6 = 90 edges and 2 · 32 - 4 = 60 faces. [`LANES`] is the block size of
 //! [`Polytope`]'s vertices and planes and of the
 //! [`PartPacket`](crate::collide::packet::PartPacket)s in `triangles`.
@@ -55,9 +55,9 @@ use crate::math::lanes::with_lanes;
 use crate::math::simd::{Level, Simd};
 use crate::math::{Pose, Real, Wide};
 
-/// Vertices, faces or edges in one block.
+/// Number of vertices, faces or edges in one block.
 const LANES: usize = 8;
-/// Blocks for 32 vertices, and for the 60 faces that 32 vertices have at most.
+/// Number of blocks for 32 vertices.
 const BLOCKS: usize = 4;
 /// Blocks of planes: 64 faces, the bits of a `u64` in `segment`.
 pub(super) const PLANE_BLOCKS: usize = 8;
@@ -77,7 +77,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     }
 }
 
-/// Runs the test; `Unproved` also for solids that do not fit the lanes or have no width.
+/// Runs the test; returns `Unproved` also for solids that do not fit the lanes or have no width.
 fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N> {
     let features = [LocalFeatures::of(pair.first), LocalFeatures::of(pair.second)];
     let first = Polyhedral::of(pair.first, features[0].as_ref());
@@ -99,7 +99,7 @@ enum SatResult<N: Real> {
     Beyond,
     /// The separation of the cores or solids, proved.
     Found(Separation<N, 3>),
-    /// No answer is proved.
+    /// No result is proved.
     Unproved,
 }
 
@@ -108,7 +108,7 @@ pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// Returns what a lower bound has to exceed to be beyond the caller's `limit`: the limit plus
+/// Returns the value above which a lower bound is beyond the caller's `limit`: the limit plus
 /// rounding, in units of the pair.
 pub(super) fn beyond_limit<N: Real>(units: &Units<N>, limit: N) -> N {
     let limit = limit * units.shrink;
@@ -165,8 +165,8 @@ fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     SatResult::Found(if is_second { in_first_frame(&found, pose12) } else { found })
 }
 
-/// Transforms an answer from the frame of the second solid, with the second solid first, to the
-/// frame of the first; `pose12` is the pose of the second solid.
+/// Transforms a separation from the frame of the second solid, with the second solid as its first,
+/// into the frame of the first solid; `pose12` is the pose of the second solid.
 pub(super) fn in_first_frame<N: Real>(
     found: &Separation<N, 3>,
     pose12: &Pose<N, 3>,

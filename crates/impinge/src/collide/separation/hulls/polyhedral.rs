@@ -17,17 +17,17 @@ use crate::shape::{Cuboid, Kind, Planes, Polytope, PolytopeEdge, SupportMap, Tri
 
 /// A convex polyhedron in its own frame and in units of the shape.
 pub(in crate::collide::separation) struct Polyhedral<'a, N: Real> {
-    /// Vertices in blocks of 8; the last vertex fills the rest.
+    /// Vertices in blocks of 8; copies of the last vertex fill the last block.
     pub(in crate::collide::separation) blocks: &'a [[[N; LANES]; 3]],
     /// Number of vertices.
     pub(in crate::collide::separation) vertices: usize,
-    /// Planes of the faces in blocks of 8; the last plane fills the rest.
+    /// Planes of the faces in blocks of 8; copies of the last plane fill the last block.
     pub(in crate::collide::separation) planes: &'a [Planes<N, 3>],
     pub(in crate::collide::separation) edges: &'a [PolytopeEdge],
     rings: Rings<'a, N>,
     /// Largest distance of a vertex from the origin.
     pub(in crate::collide::separation) reach: N,
-    /// Least half extent of a box or height of a triangle; infinite for hulls.
+    /// Smallest half extent of a box, or height of a triangle; infinite for hulls.
     thickness: N,
 }
 
@@ -38,8 +38,8 @@ enum Rings<'a, N: Real> {
 }
 
 impl<'a, N: Real> Polyhedral<'a, N> {
-    /// Wraps a hull, or the features of another solid; `None` for a hull with more features than
-    /// the lanes hold, and without features.
+    /// Wraps a hull, or another solid by its `features`. `None` for a hull with more features than
+    /// the lanes hold, and for another solid without features.
     pub(in crate::collide::separation) fn of(
         kind: Kind<'a, N, 3>,
         features: Option<&'a LocalFeatures<N>>,
@@ -66,13 +66,13 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         })
     }
 
-    /// Returns whether the width exceeds rounding beside another solid of this `reach`. Faces
-    /// without width have sides without direction.
+    /// Returns whether the width exceeds the rounding error beside another solid of bounding radius
+    /// `reach`. The sides of faces without width have no direction.
     pub(super) fn has_width(&self, reach: N) -> bool {
         self.thickness > rounding_error::<N>() * (self.reach + reach)
     }
 
-    /// Number of faces.
+    /// Returns the number of faces.
     pub(in crate::collide::separation) fn faces(&self) -> usize {
         match self.rings {
             Rings::Polytope(polytope) => polytope.faces().len(),
@@ -80,7 +80,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         }
     }
 
-    /// Vertices around a face, counter-clockwise seen from outside.
+    /// Returns the vertices around a face, counter-clockwise seen from outside.
     pub(in crate::collide::separation) fn ring(&self, face: usize) -> &[u32] {
         match self.rings {
             Rings::Polytope(polytope) => polytope.face_vertices(&polytope.faces()[face]),
@@ -88,7 +88,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         }
     }
 
-    /// Ends of an edge, among the vertices in some frame.
+    /// Returns the ends of an edge, taken from `vertices`, which may be in another frame.
     #[inline(always)]
     pub(super) fn ends(&self, vertices: &Vertices<N>, edge: usize) -> [Vector<N, 3>; 2] {
         let [from, to] = self.edges[edge].vertices;
@@ -103,7 +103,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         Vector::<N, 3>::new(x[lane], y[lane], z[lane])
     }
 
-    /// Outward unit normal of a face.
+    /// Returns the outward unit normal of a face.
     #[inline(always)]
     pub(in crate::collide::separation) fn normal(&self, face: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.planes[face / LANES].normals;
@@ -111,7 +111,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
         Vector::<N, 3>::new(x[lane], y[lane], z[lane])
     }
 
-    /// Offset of a face's plane from the origin along its normal.
+    /// Returns the offset of a face's plane from the origin along its normal.
     #[inline(always)]
     pub(in crate::collide::separation) fn offset(&self, face: usize) -> N {
         self.planes[face / LANES].offsets[face % LANES]

@@ -2,10 +2,11 @@
 //! two vertices and one edge.
 //!
 //! A segment has no faces, so the reference face belongs to the solid. If the lower end of the
-//! segment lies over that face, it gives the answer. Otherwise edges decide. If the two overlap,
-//! the candidates are edges between a face whose plane the segment climbs over and one that it does
-//! not: with the segment they form the faces of the Minkowski difference. If the two are apart, the
-//! candidates are the edges of the faces that some point of the segment lies above.
+//! segment projects into that face, the separation is along the face's normal. Otherwise edges
+//! decide. If the two overlap, the candidates are the edges between a face whose plane the segment
+//! climbs over and a face whose plane it does not: with the segment they form the faces of the
+//! Minkowski difference. If the two are apart, the candidates are the edges of the faces that some
+//! point of the segment lies above.
 //!
 //! ```text
 //!    b *            `climbed`: bit f set if b is higher above plane f than a
@@ -36,8 +37,8 @@ use crate::math::{
 
 /// Returns the separation of a segment or capsule from a triangle or a convex hull.
 ///
-/// Cost: linear in the numbers of faces and edges, in blocks of 8. Thin triangles, large hulls
-/// and unproved answers fall back to the general algorithm.
+/// Cost: linear in the numbers of faces and edges, in blocks of 8. Thin triangles, large hulls and
+/// unproved results fall back to the general algorithm.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
@@ -81,7 +82,8 @@ fn sat<N: Real>(
     let query = SegmentQuery {
         solid,
         ends: [local(&ends[0]), local(&ends[1])],
-        // From the ends as given: the distance between the origins costs no digits then.
+        // Computed from the ends as given, so that the distance between the origins costs no
+        // digits.
         along: pose12.rotation.tr_mul(&((ends[1] - ends[0]) * units.shrink)),
         shrink: units.shrink,
     };
@@ -95,7 +97,7 @@ fn sat<N: Real>(
     }
 }
 
-/// A segment in the frame of a solid, in units of the pair. Answers are from the solid to the
+/// A segment in the frame of a solid, in units of the pair. Separations are from the solid to the
 /// segment.
 struct SegmentQuery<'a, N: Real> {
     solid: &'a Polyhedral<'a, N>,
@@ -109,18 +111,18 @@ struct SegmentQuery<'a, N: Real> {
 
 /// Heights of the segment above the planes of all faces.
 struct FaceHeights<N> {
-    /// The face that the lower end is highest above, the first of equals, and that height.
+    /// Index of the face with the largest height of the segment's lower end, the first of equals.
     index: usize,
     /// Signed height of the segment's lower end above that face.
     separation: N,
-    /// Bit of each face: the second end is higher above its plane than the first.
+    /// Bits of the faces above whose planes the second end is higher than the first.
     climbed: u64,
-    /// Bit of each face: some point of the segment is above its plane.
+    /// Bits of the faces above whose planes some point of the segment lies.
     visible: u64,
 }
 
 impl<N: Real> SegmentQuery<'_, N> {
-    /// Queries faces, then edges; returns the answer in the frame of the solid.
+    /// Queries faces, then edges; returns the separation in the frame of the solid.
     #[inline(always)]
     fn sat_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, beyond: N) -> SatResult<N> {
         let faces = self.query_faces::<S, V>(simd);
@@ -145,7 +147,7 @@ impl<N: Real> SegmentQuery<'_, N> {
         found.map_or(SatResult::Unproved, SatResult::Found)
     }
 
-    /// Queries the face directions.
+    /// Computes the heights of both ends above the planes of all faces.
     #[inline(always)]
     fn query_faces<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> FaceHeights<N> {
         let [a, b]: [[V; 3]; 2] = [spread(simd, &self.ends[0]), spread(simd, &self.ends[1])];
@@ -177,8 +179,9 @@ impl<N: Real> SegmentQuery<'_, N> {
         }
     }
 
-    /// Returns the answer along the normal of the highest face, if the lower end lies over it. If
-    /// the segment is parallel to the face, the middle of the part over it.
+    /// Returns the separation along the normal of the highest face; `None` unless the lower end
+    /// projects into it. If the segment is parallel to the face, it is at the middle of the part
+    /// that projects into the face.
     fn over_face(
         &self,
         vertices: &Vertices<N>,
@@ -201,8 +204,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         Some(Separation { distance, normal, point1, point2 })
     }
 
-    /// Returns the interval of the segment that lies over a face, as parameters from 0 to 1. `None`
-    /// also for a face without area, which has no inside along its length.
+    /// Returns the interval of the segment that projects into a face, as parameters from 0 to 1.
+    /// `None` if it is empty, and for a face without area.
     fn span(&self, vertices: &Vertices<N>, face: usize, normal: &Vector<N, 3>) -> Option<(N, N)> {
         let ring = self.solid.ring(face);
         let (mut first, mut last) = (N::ZERO, N::ONE);
@@ -228,9 +231,9 @@ impl<N: Real> SegmentQuery<'_, N> {
         (first <= last).then_some((first, last))
     }
 
-    /// Queries the edge directions: returns the edge that forms a face of the Minkowski difference
-    /// with the segment and separates the two most, with that separation. `None` unless it does so
-    /// more than the reference face, by more than rounding.
+    /// Queries the edge directions. Returns the edge that forms a face of the Minkowski difference
+    /// with the segment and has the largest signed distance, with that distance. `None` unless it
+    /// exceeds the distance along the reference face by more than rounding.
     #[inline(always)]
     fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -258,7 +261,7 @@ impl<N: Real> SegmentQuery<'_, N> {
                 |axis| end[axis] - V::load(simd, &block.from[axis]),
             );
             let height = dot(&across, &away) * V::load(simd, &outward) / squared.sqrt();
-            // Parallel edges have no perpendicular; faces separate the two as much.
+            // Parallel edges have no common perpendicular; faces then separate the two as much.
             let separations = squared.simd_gt(tiny).select(height, V::all(simd, -N::INFINITY));
             let highest = highest_lane(separations);
             if highest > largest {
@@ -270,16 +273,16 @@ impl<N: Real> SegmentQuery<'_, N> {
         best.map(|edge| (edge, largest))
     }
 
-    /// Returns the sign that turns the cross product of an edge and the segment out of the solid.
-    /// The edge runs around its first face, so the product points outwards if the segment climbs
-    /// over that face.
+    /// Returns the sign that makes the cross product of an edge and the segment point out of the
+    /// solid. The edge runs around its first face, so the product points outwards if the segment
+    /// climbs over that face.
     fn outward(&self, edge: usize, climbed: u64) -> N {
         let [first, _] = self.solid.edges[edge].faces;
         if climbed >> first & 1 == 1 { N::ONE } else { -N::ONE }
     }
 
-    /// Returns the answer at the nearest points of an edge and the segment along their
-    /// perpendicular, if proved.
+    /// Returns the separation at the nearest points of an edge and the segment along their common
+    /// perpendicular; `None` without a proof.
     #[inline(always)]
     fn edge_contact<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -293,7 +296,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         self.proved::<S, V>(simd, vertices, &normal, points)
     }
 
-    /// Returns the answer at the nearest of the visible edges, if supporting planes prove it.
+    /// Returns the separation at the nearest of the visible edges; `None` unless supporting planes
+    /// prove it.
     #[inline(always)]
     fn nearest_edge<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -324,8 +328,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         self.proved::<S, V>(simd, vertices, &normal_between(&points, &across)?, points)
     }
 
-    /// Returns the answer along the unit vector `normal`, if proved: both points are as far apart
-    /// along it as the supporting planes.
+    /// Returns the separation along the unit vector `normal`; `None` unless both points are as far
+    /// apart along it as the supporting planes.
     #[inline(always)]
     fn proved<S: Simd, V: Wide<S, Scalar = N>>(
         &self,

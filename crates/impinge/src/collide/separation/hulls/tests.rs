@@ -1,4 +1,4 @@
-//! Compares with the general algorithm, and one instruction set with another.
+//! Compares the test with the general algorithm, and one instruction set with another.
 
 use super::{SatResult, result, segment};
 use crate::collide::Pair;
@@ -9,7 +9,7 @@ use crate::math::simd::Level;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{ConvexHull, Cuboid, Kind, Segment, Shape, Triangle};
 
-/// Numbers between −1 and 1 by splitmix64.
+/// Random numbers between −1 and 1, by splitmix64.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -30,7 +30,7 @@ impl Random {
         self.vector::<N>().try_normalize(N::lit(0.1)).unwrap_or_else(Vector::<N, 3>::x)
     }
 
-    /// A pose with any rotation, a quarter turn or a slight one.
+    /// Returns a pose with any rotation, a right angle, or a slight rotation.
     pub(crate) fn turn<N: Real>(&mut self) -> Pose<N, 3> {
         let size = [1.0, 1.0, 0.0, 1e-3, 1e-6][self.pick(5)];
         let [i, j, k] = [0; 3].map(|_: i32| self.next() * size);
@@ -50,7 +50,8 @@ impl Random {
         (0..count).find(|&n| share * count_f64(count) < count_f64(n + 1)).unwrap_or(0)
     }
 
-    /// A hull of points on a sphere, of a grid (with coplanar faces and parallel edges), a box, or a triangle.
+    /// Returns a hull of points on a sphere, a hull of a grid (with coplanar faces and parallel
+    /// edges), a box, or a triangle.
     fn solid<N: Real>(&mut self, kind: usize) -> Box<dyn Shape<N, 3>> {
         let points: Vec<Point<N, 3>> = match kind {
             0 => return Box::new(Cuboid::new(self.vector::<N>().abs())),
@@ -76,8 +77,8 @@ fn count_f64(count: usize) -> f64 {
     f64::from(u32::try_from(count).expect("a small number"))
 }
 
-/// Returns the error of an answer: of its distance, its points, and the separation along its
-/// normal.
+/// Returns the largest error of a separation: of its distance, of its points, and of the gap along
+/// its normal.
 pub(in super::super) fn error<N: Real>(
     pair: &Pair<'_, N, 3>,
     found: &Separation<N, 3>,
@@ -98,7 +99,7 @@ pub(in super::super) fn error<N: Real>(
         .fold(0.0, |most, x| x.as_f64().max(most))
 }
 
-/// The solids to compare, and their test.
+/// Function that draws two solids, and the test that is compared for them.
 type Twin<N> =
     (fn(&mut Random) -> [Box<dyn Shape<N, 3>>; 2], fn(Level, &Pair<'_, N, 3>, N) -> SatResult<N>);
 
@@ -107,7 +108,7 @@ fn solids<N: Real>(random: &mut Random) -> [Box<dyn Shape<N, 3>>; 2] {
     [random.solid(kind1), random.solid(kind2)]
 }
 
-/// A segment, also of no length and along an axis, and a hull or a triangle.
+/// Returns a segment, which may have no length or lie along an axis, and a hull or a triangle.
 fn segment_and_solid<N: Real>(random: &mut Random) -> [Box<dyn Shape<N, 3>>; 2] {
     let from = Point::from(random.vector::<N>());
     let along = match random.pick(4) {

@@ -14,7 +14,7 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Pose, Real, Vector, Wide};
 use crate::shape::Planes;
 
-/// The vertices of a solid in some frame, in units of the pair.
+/// Vertices of a solid in some frame, in units of the pair.
 pub(super) struct Vertices<N: Real> {
     blocks: [[[N; LANES]; 3]; BLOCKS],
     /// Number of blocks that hold vertices.
@@ -23,17 +23,17 @@ pub(super) struct Vertices<N: Real> {
     count: usize,
 }
 
-/// Heights of [`Vertices`] along a direction, in their layout, and the lowest.
+/// Heights of [`Vertices`] along a direction, in the same layout.
 pub(super) struct Heights<N: Real> {
     blocks: [[N; LANES]; BLOCKS],
     used: usize,
     count: usize,
-    /// Least height.
+    /// Smallest of the heights.
     pub(super) low: N,
 }
 
 impl<N: Real> Heights<N> {
-    /// Returns the vertices that are not higher than `most`, as bits.
+    /// Returns the bits of the vertices with a height of at most `most`.
     #[inline(always)]
     pub(super) fn up_to<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, most: N) -> u32 {
         let mut bits = 0;
@@ -46,14 +46,14 @@ impl<N: Real> Heights<N> {
     }
 }
 
-/// Low 32 bits of a number.
+/// Returns the low 32 bits of a mask.
 #[inline(always)]
 fn low_half(bits: u64) -> u32 {
     let [a, b, c, d, ..] = bits.to_le_bytes();
     u32::from_le_bytes([a, b, c, d])
 }
 
-/// Result of a face query: the face that the other solid lies farthest above, or least deep below.
+/// Result of a face query: the face with the largest signed height of the other solid above it.
 #[derive(Clone, Copy)]
 pub(super) struct FaceQuery<N> {
     pub(super) index: usize,
@@ -62,7 +62,7 @@ pub(super) struct FaceQuery<N> {
 }
 
 impl<N: Real> Vertices<N> {
-    /// Vertices of a solid in its own frame, scaled to units of the pair.
+    /// Returns the vertices of a solid in its own frame, scaled to units of the pair.
     #[inline(always)]
     pub(super) fn in_own_frame<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -81,7 +81,7 @@ impl<N: Real> Vertices<N> {
         vertices
     }
 
-    /// Transforms the vertices by `pose`.
+    /// Returns the vertices transformed by `pose`.
     #[inline(always)]
     pub(super) fn placed<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -107,7 +107,7 @@ impl<N: Real> Vertices<N> {
         Vector::<N, 3>::new(block[0][lane], block[1][lane], block[2][lane])
     }
 
-    /// Heights of the vertices along a vector.
+    /// Returns the heights of the vertices along a vector, times its length.
     #[inline(always)]
     pub(super) fn heights<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -125,7 +125,7 @@ impl<N: Real> Vertices<N> {
         Heights { blocks, used, count, low: -highest_lane(-low) }
     }
 
-    /// Lowest height of the vertices along a vector.
+    /// Returns the smallest height of the vertices along a vector, times its length.
     #[inline(always)]
     pub(super) fn low<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, along: &Vector<N, 3>) -> N {
         let along: [V; 3] = spread(simd, along);
@@ -136,8 +136,8 @@ impl<N: Real> Vertices<N> {
         -highest_lane(-low)
     }
 
-    /// Queries the face directions of the other solid: returns the plane that these vertices lie
-    /// farthest above, or least deep below; the first of equals.
+    /// Queries the face directions of the other solid: returns the face with the largest signed
+    /// height of these vertices above its plane, the first of equals.
     #[inline(always)]
     pub(super) fn query_faces<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -166,7 +166,7 @@ impl<N: Real> Vertices<N> {
         FaceQuery { index, separation }
     }
 
-    /// Lowest height of the vertices along each of 8 vectors.
+    /// Returns the smallest height of the vertices along each of 8 vectors.
     #[inline(always)]
     fn lowest_along<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, along: &[V; 3]) -> V {
         let mut low = V::all(simd, N::INFINITY);
@@ -182,7 +182,7 @@ impl<N: Real> Vertices<N> {
     }
 }
 
-/// Height of a point above the highest of the planes: negative inside the solid.
+/// Returns the largest signed height of a point above the planes; negative inside the solid.
 #[inline(always)]
 pub(super) fn height_above<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -16,18 +16,20 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
 use crate::shape::{Kind, Polytope, Segment, Triangle};
 
-/// Vertices in a block; the lane count of [`Polytope`]'s blocks, which are copied.
+/// Number of vertices in a block; equal to the lane count of [`Polytope`]'s blocks, which are
+/// copied.
 pub(in crate::collide::separation) const LANES: usize = 8;
 
-/// Outlines with more blocks of vertices go to the general algorithm.
+/// Largest number of blocks; outlines with more go to the general algorithm.
 const MAX_BLOCKS: usize = 4;
 
-/// A number for each of 8 vertices.
+/// One value for each of 8 vertices.
 pub(in crate::collide::separation) type Row<N> = [N; LANES];
 
 /// A convex polygon with a radius, in some frame.
 ///
-/// Counter-clockwise. Points, segments (there and back) and flat triangles are outlines, too.
+/// The vertices are in counter-clockwise order. Points, segments (there and back) and flat
+/// triangles are outlines, too.
 pub(in crate::collide::separation) struct PolygonOutline<N: Real> {
     blocks: SmallVec<[OutlineBlock<N>; MAX_BLOCKS]>,
     /// Number of vertices.
@@ -36,7 +38,7 @@ pub(in crate::collide::separation) struct PolygonOutline<N: Real> {
     pub(in crate::collide::separation) rounding: N,
 }
 
-/// Eight vertices; the last one fills the rest.
+/// Eight vertices; copies of the last one fill the last block.
 #[derive(Clone, Copy)]
 pub(in crate::collide::separation) struct OutlineBlock<N> {
     pub(in crate::collide::separation) vertices: [Row<N>; 2],
@@ -75,7 +77,7 @@ impl<N: Real> PolygonOutline<N> {
         Self::of_block([[point.x; LANES], [point.y; LANES]], [[N::ZERO; LANES]; 2], 1, radius)
     }
 
-    /// A segment without length is a point.
+    /// Returns the outline of a segment; without length it is a point.
     #[inline(always)]
     pub(in crate::collide::separation) fn of_segment<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -92,7 +94,8 @@ impl<N: Real> PolygonOutline<N> {
         Self::of_ends(simd, &vertices, &ends, 2, radius)
     }
 
-    /// The corners may be in either order; equal corners count once.
+    /// Returns the outline of a triangle, whose corners may be in either order; equal corners are
+    /// merged.
     #[inline(always)]
     fn of_triangle<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -139,8 +142,8 @@ impl<N: Real> PolygonOutline<N> {
         Some(Self { blocks: blocks.collect(), count: polygon.vertices().len(), rounding: N::ZERO })
     }
 
-    /// Outline of `vertices` whose sides end at `ends`; `None` if a squared length is close to
-    /// underflow or overflow.
+    /// Returns the outline of `vertices` whose sides end at `ends`; `None` if a squared length is
+    /// close to underflow or overflow.
     #[inline(always)]
     fn of_ends<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -180,7 +183,7 @@ impl<N: Real> PolygonOutline<N> {
         Point::<N, 2>::new(xs[vertex % LANES], ys[vertex % LANES])
     }
 
-    /// Outward unit normal of the side that starts at a vertex.
+    /// Returns the outward unit normal of the side that starts at a vertex.
     #[inline(always)]
     pub(in crate::collide::separation) fn normal(&self, vertex: usize) -> Vector<N, 2> {
         let [xs, ys] = &self.blocks[vertex / LANES].normals;
@@ -202,7 +205,8 @@ impl<N: Real> PolygonOutline<N> {
         self.count < 2
     }
 
-    /// Returns a bound of the distance of all vertices from the origin, at most twice the largest.
+    /// Returns an upper bound of the distance of all vertices from the origin, at most twice the
+    /// largest distance.
     #[inline(always)]
     pub(in crate::collide::separation) fn size<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -244,7 +248,7 @@ impl<N: Real> PolygonOutline<N> {
         let mut most = V::all(simd, -N::INFINITY);
         for (number, block) in self.blocks.iter().enumerate() {
             let [xs, ys] = &block.vertices;
-            // The last vertex fills the rest, so half a block may be skipped.
+            // Copies of the last vertex fill the block, so half a block may be skipped.
             let halves = if self.count - number * LANES > LANES / 2 { 2 } else { 1 };
             for half in 0..halves {
                 for lane in 0..LANES / 2 {
@@ -257,14 +261,15 @@ impl<N: Real> PolygonOutline<N> {
         most
     }
 
-    /// All vertices with the normals of the sides that start there, 8 per block.
+    /// Returns all vertices, with the normals of the sides that start there, 8 per block.
     #[inline(always)]
     pub(in crate::collide::separation) fn blocks(&self) -> &[OutlineBlock<N>] {
         &self.blocks
     }
 
-    /// Returns the tips of a block: the directions halfway between the normals beside each vertex,
-    /// and the lanes where they count, which are the corners sharper than a right angle.
+    /// Returns the tips of a block: the directions halfway between the normals beside each vertex.
+    /// The mask has the lanes where a tip is needed, which are the corners sharper than a right
+    /// angle.
     ///
     /// Normals of sides alone would leave gaps of more than a right angle between directions, and
     /// flat outlines that point at each other would count as overlapping.
@@ -281,7 +286,7 @@ impl<N: Real> PolygonOutline<N> {
         ys[1..].copy_from_slice(&normals[1][..LANES - 1]);
         let (before, after): ([V; 2], [V; 2]) = (load(simd, &[xs, ys]), load(simd, normals));
         let is_tip = dot(&before, &after).simd_lt(V::all(simd, N::ZERO));
-        // Turned by a quarter: from normals to the directions of the sides.
+        // Rotated by a right angle: from normals to the directions of the sides.
         let tip = [-before[1] - -after[1], before[0] - after[0]];
         let length = dot(&tip, &tip).sqrt();
         ([tip[0] / length, tip[1] / length], is_tip)
@@ -296,7 +301,7 @@ fn stored<S: Simd, N: Real, V: Wide<S, Scalar = N>>(vectors: &[V; 2]) -> [Row<N>
     rows
 }
 
-/// Masks of all lanes but the first, and of all but the first two.
+/// Returns the mask of all lanes but the first, and of all but the first two.
 #[inline(always)]
 fn later_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> [V::Mask; 2] {
     let (no, yes) = (N::ZERO, N::ONE);
@@ -307,7 +312,7 @@ fn later_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> [V::Mask; 2
     ]
 }
 
-/// Returns the largest of 8 numbers, and the first lane that has it.
+/// Returns the largest of 8 values, and the first lane that has it.
 #[inline(always)]
 pub(in crate::collide::separation) fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -1,6 +1,6 @@
-//! Nearest points of two polygons, from their best axis: mostly a corner above a side, or two
-//! corners. Otherwise each end of the sides at one top is compared with each side at the other,
-//! 8 at a time.
+//! Nearest points of two polygons, from their best axis. In most cases they are a corner and a
+//! point of a side, or two corners. Otherwise each end of the sides at one top is compared with
+//! each side at the other, 8 at a time.
 
 use super::outline::{PolygonOutline, highest, lane};
 use super::polygon_polygon::{Axis, in_middle};
@@ -10,12 +10,13 @@ use crate::math::lanes::{dot, either, minus, spread};
 use crate::math::simd::Simd;
 use crate::math::{Point, Real, Vector, Wide, perp, unit};
 
-/// Two outlines and the direction from the first to the second with its gap, which may be negative.
+/// Two outlines and a unit direction from the first to the second with its gap, which may be
+/// negative.
 pub(in crate::collide::separation) struct OutlinePair<'a, N: Real> {
     outlines: [&'a PolygonOutline<N>; 2],
     /// Unit direction from the first outline to the second, with its gap.
     axis: Axis<N>,
-    /// The vertex of each outline that is farthest toward the other.
+    /// Vertex of each outline that is farthest toward the other.
     tops: [usize; 2],
     /// Lengths up to this are rounding errors.
     rounding_error: N,
@@ -35,8 +36,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         Self { outlines, axis: *axis, tops: [top1, top2], rounding_error }
     }
 
-    /// Returns the separation of the outlines; `None` if the axis is not that of their nearest
-    /// points.
+    /// Returns the separation of the outlines; `None` if the axis is not the direction of their
+    /// nearest points.
     #[inline(always)]
     pub(in crate::collide::separation) fn separation<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -52,7 +53,7 @@ impl<'a, N: Real> OutlinePair<'a, N> {
 
     /// Returns the separation in the clear cases: the axis is the normal of a side with a corner
     /// above it, the outlines certainly overlap, or corners next to the axis are the nearest
-    /// points. In these cases the best normal of a side is enough as axis.
+    /// points. In these cases the best normal of a side suffices as axis.
     #[inline(always)]
     pub(in crate::collide::separation) fn clear_case(&self) -> Option<Separation<N, 2>> {
         let gap = self.axis.gap;
@@ -84,16 +85,16 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         Separation { distance: self.axis.gap, normal: self.axis.normal, point1, point2 }
     }
 
-    /// Returns how far a vertex of an outline is below its top, along the axis.
+    /// Returns how far a vertex of an outline is below the outline's top, along the axis.
     #[inline(always)]
     fn below(&self, which: usize, vertex: usize) -> N {
         let down = self.axis.normal.dot(&(self.top(which) - self.outlines[which].at(vertex)));
         if which == 0 { down } else { -down }
     }
 
-    /// Returns whether the axis is the normal of a side at the top of an outline and the other
-    /// outline's top is above that side; and the end of the side nearer to it, or the top if there
-    /// is no such side.
+    /// Returns whether the axis is the normal of a side at the top of outline `which` with the
+    /// other outline's top above that side. Also returns the end of the side nearer to that top or,
+    /// without such a side, the outline's own top.
     #[inline(always)]
     fn beside(&self, which: usize) -> (bool, usize) {
         let (outline, top) = (self.outlines[which], self.tops[which]);
@@ -112,8 +113,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         (after > N::ZERO && before > N::ZERO, if before < after { other } else { top })
     }
 
-    /// Returns the separation if these corners are the nearest points: each lies in front of both
-    /// sides at the other.
+    /// Returns the separation at these corners; `None` unless each lies in front of both sides at
+    /// the other, so that they are the nearest points.
     #[inline(always)]
     fn of_corners(&self, ends: [usize; 2]) -> Option<Separation<N, 2>> {
         let [point1, point2] = [self.outlines[0].at(ends[0]), self.outlines[1].at(ends[1])];
@@ -133,7 +134,7 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         Some(Separation { distance, normal, point1, point2 })
     }
 
-    /// Separation of outlines that touch or overlap.
+    /// Returns the separation of outlines that touch or overlap.
     #[inline(always)]
     fn overlapping(&self) -> Separation<N, 2> {
         let tangent = perp(&self.axis.normal);
@@ -142,8 +143,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         in_middle([low1, high1], [low2.0, high2.0], &self.axis)
     }
 
-    /// Returns the lowest and the highest, along `tangent`, of the top and those neighbours of it
-    /// that are as far along the axis.
+    /// Returns the lowest and the highest, along `tangent`, of the top and its neighbours that are
+    /// as far along the axis.
     #[inline(always)]
     fn feature(&self, which: usize, tangent: &Vector<N, 2>) -> [(N, Point<N, 2>); 2] {
         let (outline, top) = (self.outlines[which], self.tops[which]);
@@ -160,8 +161,8 @@ impl<'a, N: Real> OutlinePair<'a, N> {
         [low, high]
     }
 
-    /// Separation of outlines that are apart along the axis; `None` if it is not that of the
-    /// nearest points.
+    /// Returns the separation of outlines that are apart along the axis; `None` if the axis is not
+    /// the direction of the nearest points.
     #[inline(always)]
     fn apart<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 2>> {
         let ([own, other], rounding_error) = (self.outlines, self.rounding_error);
@@ -185,7 +186,7 @@ impl<'a, N: Real> OutlinePair<'a, N> {
     }
 }
 
-/// A vertex between its predecessor and its successor.
+/// Returns a vertex with its predecessor before it and its successor after it.
 #[inline(always)]
 fn around<N: Real>(outline: &PolygonOutline<N>, vertex: usize) -> [Point<N, 2>; 3] {
     [outline.at(outline.previous(vertex)), outline.at(vertex), outline.at(outline.next(vertex))]
@@ -201,7 +202,7 @@ fn around<N: Real>(outline: &PolygonOutline<N>, vertex: usize) -> [Point<N, 2>; 
 ///   end      f  t  f  t  f  t  f  t      f: from, t: to
 /// ```
 ///
-/// The first of equals counts, in the order of sides of the first outline, sides of the second,
+/// In a tie the first is taken, in the order of sides of the first outline, sides of the second,
 /// ends of the first, ends of the second.
 #[inline(always)]
 pub(in crate::collide::separation) fn nearest_points<S: Simd, N: Real, V: Wide<S, Scalar = N>>(

@@ -38,7 +38,7 @@ enum OutlineResult<N: Real> {
     /// The outlines are farther apart than the limit.
     Beyond,
     Found(Separation<N, 2>),
-    /// The kernel has no answer.
+    /// The kernel has no result; the general algorithm has to decide.
     Undecided,
 }
 
@@ -70,7 +70,7 @@ pub(in crate::collide::separation) fn separation_of_outlines<N: Real>(
     }
 }
 
-/// Runs [`search`] with the vectors of an instruction set.
+/// Runs [`search`] with the vectors of an instruction set, on which the result does not depend.
 fn between<N: Real>(level: Level, pair: &Pair<'_, N, 2>, limit: N) -> OutlineResult<N> {
     let known = known_axis(pair);
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, pair, known, limit))
@@ -85,7 +85,7 @@ fn known_axis<N: Real>(pair: &Pair<'_, N, 2>) -> Option<Axis<N>> {
     Some(Rectangles { half1, half2, pose12: pair.pose12 }.best_axis())
 }
 
-/// Tries the normals of sides, then the tips of corners if these do not decide.
+/// Tries the normals of sides, then the tips of corners if the normals do not decide.
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -129,8 +129,8 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     found.map_or(OutlineResult::Undecided, OutlineResult::Found)
 }
 
-/// Returns the separation of two outlines along their best axis; `None` if it is not that of the
-/// nearest points.
+/// Returns the separation of two outlines along their best axis; `None` if that is not the
+/// direction of the nearest points.
 #[inline(always)]
 pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -185,7 +185,7 @@ fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     best
 }
 
-/// Returns the direction of the largest gap: `best`, the best normal of a side, or a tip.
+/// Returns the direction with the largest gap: `best`, the best normal of a side, or a tip.
 #[inline(always)]
 fn best_axis<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -1,10 +1,10 @@
-//! Nearest point of a chord to a cylinder or a cone, or the deepest inside.
+//! Finds the point of a chord that is nearest to a cylinder or cone, or deepest inside it.
 
 use super::profile::Profile;
 use super::{DirectedPoint, NearestHull, still};
 use crate::math::{Real, Vector, max, min};
 
-/// Cap on the points tried; about four are needed.
+/// Cap on the number of points tried; about four are needed.
 const STEPS: usize = 16;
 /// Cap on the bisections among them, which occur where the nearest part changes in between and,
 /// inside the solid, at kinks of the distance.

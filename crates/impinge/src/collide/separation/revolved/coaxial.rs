@@ -1,10 +1,9 @@
-//! Depth of solids of revolution about one axis, or nearly one, from their outlines.
+//! Depth of two solids of revolution about nearly the same axis, from their outlines.
 //!
-//! The difference of two solids about one axis is a solid about that axis. In a half-plane of the
-//! axis its outline is that of the difference of two polygons. So the least depth is along the
-//! normal of a side of one of them, and the same all around the axis, where a search over
-//! directions has no gradient. If the axes differ a little, the best direction is near the ring of
-//! such a normal.
+//! The difference of two solids about one axis is a solid about that axis. Its outline in a
+//! half-plane of the axis is the difference of two polygons. So the least depth is along the normal
+//! of a side of one of them; it is the same all around the axis, where a search over directions has
+//! no gradient. If the axes differ slightly, the best direction is near the ring of such a normal.
 //!
 //! ```text
 //!       axis |____ corners[0] (x, y)       x: distance from the axis, y: along it
@@ -25,9 +24,10 @@ use crate::convex::{self, Peak, Peaks, Separation};
 use crate::math::{Mapped, Pose, Real, Vector, cross, max, perpendicular_to, unit};
 use crate::shape::{Geometry, Kind};
 
-/// Solids of about size 1 count as coaxial if they are no farther than this from one axis: 2⁻¹².
+/// Two solids, in units of the pair, count as coaxial if their distance from a common axis is at
+/// most this: 2⁻¹².
 const NEAR: f64 = 1.0 / 4096.0;
-/// Normals of rings that differ by less than this are searched together.
+/// Normals of rings whose difference is less than this are searched together.
 const SAME_RING: f64 = 1.0 / 16.0;
 
 /// Returns the separation of two cylinders or cones by the general algorithm.
@@ -45,7 +45,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     found.filter(|found| found.distance <= limit)
 }
 
-/// Two solids of which the normals of an overlap are known if they are coaxial.
+/// Two solids whose possible normals of an overlap are known if they are coaxial.
 struct CoaxialPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }
@@ -57,8 +57,8 @@ impl<N: Real> Peaks<N, 3> for CoaxialPeaks<'_, '_, N> {
 }
 
 /// Returns the normal of least depth for the overlapping cores of two coaxial solids, each a
-/// segment, capsule, cylinder or cone. `None` for other kinds and other axes. `shrink` scales
-/// lengths to units of the pair.
+/// segment, capsule, cylinder or cone. `None` for other kinds, and unless the axes nearly coincide.
+/// `shrink` is the factor from lengths to units of the pair.
 pub(in crate::collide::separation) fn peak<N: Real>(
     pair: &Pair<'_, N, 3>,
     shrink: N,
@@ -72,7 +72,7 @@ pub(in crate::collide::separation) fn peak<N: Real>(
 /// A solid about an axis, in the frame of the first solid and in units of the pair: in a half-plane
 /// of the axis, the hull of both corners and their mirror images.
 struct AxialOutline<N: Real> {
-    /// Middle of the solid, in the frame of the first.
+    /// Centre of the solid, in the frame of the first.
     middle: Vector<N, 3>,
     /// Unit vector along the axis.
     axis: Vector<N, 3>,
@@ -81,7 +81,7 @@ struct AxialOutline<N: Real> {
 }
 
 impl<N: Real> AxialOutline<N> {
-    /// `None` for other kinds, and for solids of size zero.
+    /// Returns the outline of a solid; `None` for other kinds, and for solids of size zero.
     fn of(kind: Kind<'_, N, 3>, pose: &Pose<N, 3>, shrink: N) -> Option<Self> {
         let position = pose.translation * shrink;
         if let Some(round) = Round::new(&kind, shrink) {
@@ -115,14 +115,14 @@ impl<N: Real> AxialOutline<N> {
         max(normal.dot(&self.corners[0]), normal.dot(&self.corners[1]))
     }
 
-    /// Returns the extent along a unit vector.
+    /// Returns the extent of the solid along a unit vector.
     fn extent(&self, along: &Vector<N, 3>) -> N {
         let up = along.dot(&self.axis);
         let aside = (along - self.axis * up).norm();
         along.dot(&self.middle) + self.extent_in_half_plane(&Vector::<N, 2>::new(aside, up))
     }
 
-    /// Normals of the caps, then of the side.
+    /// Returns the normals of the caps, then of the side, in the half-plane.
     fn normals(&self) -> impl Iterator<Item = Vector<N, 2>> {
         let [top, bottom] = &self.corners;
         let up = Vector::<N, 2>::y();
@@ -148,14 +148,14 @@ impl<N: Real> AxialOutline<N> {
     }
 }
 
-/// Two solids about one axis.
+/// Two nearly coaxial solids.
 struct Coaxial<N: Real> {
     first: AxialOutline<N>,
-    /// Second solid, its axis in the direction of the first.
+    /// Second solid; its axis has the direction of the first solid's axis.
     second: AxialOutline<N>,
-    /// Offset of the second middle from the first, perpendicular to the axis; and a bound of how
-    /// far the solids are from one axis.
+    /// Offset of the second centre from the first, perpendicular to the axis.
     offset: Vector<N, 3>,
+    /// Bound of the distance of the solids from a common axis.
     apart: N,
 }
 
@@ -177,14 +177,14 @@ impl<N: Real> Coaxial<N> {
         (apart <= N::lit(NEAR)).then_some(Self { first, second, offset, apart })
     }
 
-    /// Returns the unit vector from the first axis towards the second middle; any perpendicular if
-    /// they coincide.
+    /// Returns the unit vector from the first axis towards the second centre; any perpendicular if
+    /// the centre is on the axis.
     fn aside(&self) -> Vector<N, 3> {
         let beside = unit(&self.offset).filter(|(_, offset)| *offset > rounding_error());
         beside.map_or_else(|| perpendicular_to(&self.first.axis), |(aside, _)| aside)
     }
 
-    /// Returns the exit along the normal of a side, given in the half-plane of its solid.
+    /// Returns the exit along the normal of a side, which is given in the half-plane of its solid.
     fn direction(
         &self,
         normal: Vector<N, 2>,
@@ -197,7 +197,8 @@ impl<N: Real> Coaxial<N> {
         AxialExit { normal, along, depth }
     }
 
-    /// Returns the exit of least depth; `None` if another ring of normals may have a better one.
+    /// Returns the exit of least depth; `None` if the ring of another normal may contain a better
+    /// one.
     fn peak(&self) -> Option<Peak<N, 3>> {
         let aside = self.aside();
         let own = self.first.normals().map(|n| self.direction(n, &self.first, &aside));
@@ -227,7 +228,7 @@ impl<N: Real> Coaxial<N> {
     }
 }
 
-/// A direction out of an overlap, with the depth along it.
+/// A unit vector along which the solids can be separated, with the depth along it.
 #[derive(Clone, Copy)]
 struct AxialExit<N: Real> {
     /// The normal in the half-plane of the axis.

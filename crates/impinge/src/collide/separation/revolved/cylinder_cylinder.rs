@@ -1,12 +1,12 @@
 //! Cylinder against cylinder.
 //!
-//! Tries the directions that can give the answer, each with a proof of a few products: normals of
-//! caps; the common perpendicular of both axes; from an axis to the other rim; from rim to rim. If
-//! the solids are apart, two points as far apart as a pair of supporting planes are the proof. If
-//! they overlap, a ball is: if it is centred at a point of one solid and lies within the other, no
-//! way out is shorter than its radius. A cap or a side that extends at least as far beside the
-//! point as the depth there holds such a ball. Other cases, such as two overlapping rims, go to the
-//! general algorithm.
+//! Tries the directions that can be the normal, each with a cheap proof: normals of caps; the
+//! common perpendicular of both axes; from an axis to the other rim; from rim to rim. If the solids
+//! are apart, the proof is two points as far apart as a pair of supporting planes. If they overlap,
+//! the proof is a ball: if it is centred at a point of one solid and lies within the other, no
+//! separating translation is shorter than its radius. A cap or a side that extends at least as far
+//! beside the point as the depth there contains such a ball. Other cases, such as two overlapping
+//! rims, fall back to the general algorithm.
 
 use super::coaxial;
 use crate::collide::Pair;
@@ -16,8 +16,8 @@ use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
 use crate::shape::{Cylinder, Kind, SupportMap};
 
-/// Cap on the steps of Newton's method; about four are enough from the direction between the
-/// middles.
+/// Cap on the steps of Newton's method; about four are enough, starting from the direction between
+/// the centres.
 const STEPS: usize = 10;
 
 /// Returns the separation of two cylinders.
@@ -46,14 +46,14 @@ pub(in crate::collide::separation) fn separation<N: Real>(
 pub(in crate::collide::separation) enum RevolvedResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
-    /// The answer; `true` if it is in the frame of the second solid.
+    /// The separation; `true` if it is in the frame of the second solid.
     Found(RevolvedFound<N>, bool),
     Undecided,
 }
 
 impl<N: Real> RevolvedResult<N> {
-    /// Tries directions until one gives the answer or separates the solids by more than `beyond`.
-    /// The flag of each is `true` if it is in the frame of the second solid.
+    /// Tries directions until one gives the separation, or separates the solids by more than
+    /// `beyond`. The flag of each direction is `true` if it is in the frame of the second solid.
     fn of(tries: &[(Attempt<'_, N>, bool)], beyond: N) -> Self {
         for (attempt, is_second) in tries {
             let Some(tried) = attempt() else { continue };
@@ -67,8 +67,8 @@ impl<N: Real> RevolvedResult<N> {
         Self::Undecided
     }
 
-    /// Returns the answer in the frame of the first solid and in lengths of the caller. The inner
-    /// `None` means beyond the limit, the outer one undecided.
+    /// Returns the separation in the frame of the first solid and in the caller's unit of length.
+    /// An inner `None` means beyond the limit, an outer one undecided.
     pub(in crate::collide::separation) fn answer(
         &self,
         units: &Units<N>,
@@ -85,12 +85,12 @@ impl<N: Real> RevolvedResult<N> {
     }
 }
 
-/// An answer in the frame of one solid, from it to the other, in units of the pair.
+/// A separation in the frame of one solid, from it to the other, in units of the pair.
 #[derive(Clone, Copy)]
 pub(in crate::collide::separation) struct RevolvedFound<N: Real> {
     pub(in crate::collide::separation) distance: N,
     pub(in crate::collide::separation) normal: Vector<N, 3>,
-    /// A point of the other solid; this solid's point lies across from it along `normal`.
+    /// Point of the other solid; the point of this solid faces it along `normal`.
     pub(in crate::collide::separation) on_other: Vector<N, 3>,
 }
 
@@ -117,18 +117,21 @@ struct Size<N> {
 struct CylinderView<N: Real> {
     own: Size<N>,
     other: Size<N>,
-    /// Middle of the other cylinder, and the unit vector along its axis.
+    /// Centre of the other cylinder.
     center: Vector<N, 3>,
+    /// Unit vector along the axis of the other cylinder.
     axis: Vector<N, 3>,
 }
 
-/// A direction between the solids: the signed gap along it, and the answer if it is proved.
+/// Result for one direction between the solids: the signed gap along it, and the separation if it
+/// is proved.
 struct Tried<N: Real> {
     height: N,
     found: Option<RevolvedFound<N>>,
 }
 
-/// A direction, computed when it is tried.
+/// Function that computes a direction when it is tried; it returns `None` if there is no such
+/// direction.
 type Attempt<'a, N> = &'a dyn Fn() -> Option<Tried<N>>;
 
 /// Two cylinders, each in the frame of the other.
@@ -196,16 +199,16 @@ impl<N: Real> CylinderView<N> {
         Tried { height, found: is_above.then_some(found) }
     }
 
-    /// Returns the lowest point of the other solid along the normal of a cap. Up to `rounding_error` several
-    /// are lowest: then the middle of those above the cap. `sine` is that of the angle between the
-    /// axes.
+    /// Returns the lowest point of the other solid along the normal of a cap. If several are lowest
+    /// up to `rounding_error`, returns the middle of those above the cap. `sine` is the sine of the
+    /// angle between the axes.
     fn lowest_above_cap(&self, normal: &Vector<N, 3>, sine: N) -> Vector<N, 3> {
         let cosine = normal.dot(&self.axis);
         let end = if cosine < N::ZERO { self.axis } else { -self.axis } * self.other.half;
         if sine * self.other.radius <= rounding_error() {
             return self.over_disk(&(self.center + end));
         }
-        // Direction down along the other cap: the normal minus its axial part, without a
+        // Direction down along the other cap: the normal minus its axial part, computed without a
         // difference.
         let aside = radial(&self.axis) * (cosine / sine * self.other.radius);
         let down = lifted(&aside) - normal * (sine * self.other.radius);
@@ -219,7 +222,7 @@ impl<N: Real> CylinderView<N> {
         self.center + end + down
     }
 
-    /// For parallel caps: returns the middle of the segment that both disks cover on the line
+    /// For parallel caps, returns the middle of the segment that both disks cover on the line
     /// through their centres; `middle` is the centre of the other disk.
     fn over_disk(&self, middle: &Vector<N, 3>) -> Vector<N, 3> {
         let Some((away, distance)) = unit(&radial(middle)) else { return *middle };
@@ -227,7 +230,7 @@ impl<N: Real> CylinderView<N> {
             max(distance - self.other.radius, -self.own.radius),
             min(distance + self.other.radius, self.own.radius),
         );
-        // Where the disks do not overlap, the nearest point of the other one.
+        // If the disks do not overlap, this is the nearest point of the other one.
         let at = if low > high { low } else { (low + high) * N::HALF };
         middle + lifted(&away) * (at - distance)
     }
@@ -251,8 +254,8 @@ impl<N: Real> CylinderView<N> {
         let at_other = (cosine * self.center.y - along) / squared;
         let (margin1, margin2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
         let is_between = margin1 >= -rounding_error::<N>() && margin2 >= -rounding_error::<N>();
-        // The proof: a ball around a point between the axes, or one in each solid with radii that
-        // add up.
+        // The proof is a ball around a point between the axes, or a ball in each solid with radii
+        // whose sum suffices.
         let entry = away - self.other.radius;
         let least = max(self.own.radius - margin1, max(entry, N::ZERO));
         let most = min(entry + margin2, min(away, self.own.radius));
@@ -262,8 +265,8 @@ impl<N: Real> CylinderView<N> {
         Some(Tried { height, found: (is_between && is_proved).then_some(found) })
     }
 
-    /// Tries the direction from the axis to the nearest point of the other rim, or of the other
-    /// side for parallel axes. `None` if the other solid extends to the axis.
+    /// Tries the direction from the axis to the nearest point of the other rim or, for parallel
+    /// axes, of the other side. `None` if the other solid extends to the axis.
     fn side(&self) -> Option<Tried<N>> {
         let start = unit(&radial(&self.center))?.0;
         let (normal, point) = self.toward_rim(start)?;
@@ -278,8 +281,9 @@ impl<N: Real> CylinderView<N> {
         Some(Tried { height, found: is_beside.then_some(found) })
     }
 
-    /// Returns the direction away from the axis along which the lowest point of the other solid
-    /// lies, and that point, by Newton's method.
+    /// Returns, by Newton's method, the direction away from the axis along which the lowest point
+    /// of the other solid lies, and that point. `None` if the lowest point is not unique, is not on
+    /// the outer side of the axis, or the method does not converge.
     fn toward_rim(&self, start: Vector<N, 2>) -> Option<(Vector<N, 2>, Vector<N, 3>)> {
         let mut normal = start;
         for _ in 0..STEPS {
@@ -299,7 +303,8 @@ impl<N: Real> CylinderView<N> {
     }
 
     /// Returns the lowest point of the other solid along a direction away from the axis, and its
-    /// rate of motion as that turns; `None` for a tilted side, whose lowest point is not unique.
+    /// derivative as the direction turns; `None` for a tilted side, whose lowest point is not
+    /// unique.
     fn lowest_beside(&self, normal: &Vector<N, 2>) -> Option<(Vector<N, 3>, N)> {
         let (out, across) = (lifted(normal), lifted(&Vector::<N, 2>::new(-normal.y, normal.x)));
         let (axial, turn) = (self.axis.dot(&out), self.axis.dot(&across));
@@ -320,8 +325,8 @@ impl<N: Real> CylinderView<N> {
         Some((self.center + end + down, bend))
     }
 
-    /// Returns the middle of the part of the other solid's lowest line beside this solid, for
-    /// parallel axes.
+    /// For parallel axes, returns the middle of that part of the other solid's lowest line that is
+    /// beside this solid.
     fn beside_parallel(&self, down: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let extent = self.other.half * self.axis.y.abs();
         let is_parallel = radial(&self.axis).norm() * self.other.half <= rounding_error();
@@ -330,12 +335,13 @@ impl<N: Real> CylinderView<N> {
             min(self.center.y + extent, self.own.half),
         );
         let at = ((low + high) * N::HALF - self.center.y) / self.axis.y;
-        // Never beyond the ends: a disk, whose axis may point anywhere, has no line.
+        // Clamped to the ends, because a disk, whose axis may have any direction, has no line.
         let half = self.other.half;
         is_parallel.then(|| self.center + down + self.axis * max(min(at, half), -half))
     }
 
-    /// Tries rim against rim, for solids apart, by Newton's method on the sphere of directions.
+    /// Tries rim against rim, for solids that are apart, by Newton's method on the sphere of
+    /// directions.
     fn rims(&self) -> Option<Tried<N>> {
         let mut normal = unit(&self.center)?.0;
         for _ in 0..STEPS {
@@ -356,8 +362,8 @@ impl<N: Real> CylinderView<N> {
         None
     }
 
-    /// Returns the point of this solid's rim, or of the other one's, that is farthest along a
-    /// direction.
+    /// Returns the point of a rim that is farthest along a direction: of this solid's rim if
+    /// `is_own`, else of the other's.
     fn rim(&self, direction: &Vector<N, 3>, is_own: bool) -> Option<Rim<N>> {
         let (size, center, axis) = if is_own {
             (self.own, Vector::<N, 3>::zeros(), Vector::<N, 3>::y())
@@ -373,7 +379,8 @@ impl<N: Real> CylinderView<N> {
     }
 }
 
-/// A point of a rim, the tangent there, and its rate of motion along that as the direction turns.
+/// A point of a rim, the tangent there, and the derivative of the point along the tangent as the
+/// direction turns.
 struct Rim<N: Real> {
     point: Vector<N, 3>,
     along: Vector<N, 3>,
@@ -402,12 +409,12 @@ fn step<N: Real>(
     Some(along * min(length, N::HALF))
 }
 
-/// Part of a vector perpendicular to the y axis, as (x, z).
+/// Returns the part of a vector perpendicular to the y axis, as (x, z).
 pub(in crate::collide::separation) fn radial<N: Real>(v: &Vector<N, 3>) -> Vector<N, 2> {
     Vector::<N, 2>::new(v.x, v.z)
 }
 
-/// Vector perpendicular to the y axis, given as (x, z).
+/// Returns the vector perpendicular to the y axis with these components x and z.
 fn lifted<N: Real>(v: &Vector<N, 2>) -> Vector<N, 3> {
     Vector::<N, 3>::new(v.x, N::ZERO, v.y)
 }

@@ -1,15 +1,18 @@
-//! Overlaps whose shortest way out is along a face of the flat solid or a cap of the round one.
+//! Overlaps whose shortest separating translation is along the normal of a face of the flat solid
+//! or of a cap of the round one.
 
 use super::{DirectedPoint, FlatCore, NearestHull, RevolvedFound, RevolvedPair, still};
 use crate::math::{Real, Vector};
 
 impl<N: Real> RevolvedPair<'_, N> {
-    /// Returns the answer along the face or cap with the least depth, if balls prove it.
+    /// Returns the separation along the face or cap with the least depth; `None` unless balls prove
+    /// it.
     pub(super) fn by_face(&self) -> Option<RevolvedFound<N>> {
         self.by_own_face().or_else(|| self.by_cap())
     }
 
-    /// Tries the faces of the flat solid, which has to contain the ball around the deepest point.
+    /// Tries the faces of the flat solid; as a proof, it must contain the ball around the deepest
+    /// point.
     fn by_own_face(&self) -> Option<RevolvedFound<N>> {
         let mut best: Option<(N, DirectedPoint<N>)> = None;
         let mut try_face = |normal: &Vector<N, 3>, offset: N| {
@@ -40,7 +43,8 @@ impl<N: Real> RevolvedPair<'_, N> {
         is_proved.then(|| directed.proved(height)).flatten()
     }
 
-    /// Tries the caps of the round solid, which has to contain the ball around the lowest vertex.
+    /// Tries the caps of the round solid; as a proof, it must contain the ball around the lowest
+    /// vertex.
     fn by_cap(&self) -> Option<RevolvedFound<N>> {
         self.profile.round.caps().iter().find_map(|&up| {
             let vertex = self.lowest(&(Vector::<N, 3>::y() * N::lit(up)));

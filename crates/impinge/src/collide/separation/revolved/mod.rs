@@ -42,14 +42,14 @@ use crate::convex::{Separation, Units};
 use crate::math::{Pose, Real, Vector, cross, unit};
 use crate::shape::{Geometry, SupportMap};
 
-/// Cap on the vertices added.
+/// Cap on the number of vertices added.
 const ROUNDS: usize = 12;
 
-/// Two directions define a common perpendicular if the sine of their angle exceeds this.
+/// Smallest sine of the angle between two directions whose common perpendicular is used.
 const RESOLVED: f64 = 1.0 / 64.0;
 
-/// Returns the tolerance of the search, in units of the pair: moves and differences in height up to
-/// this count as none.
+/// Returns the tolerance of the search, in units of the pair: moves and differences of heights up
+/// to this count as zero.
 fn still<N: Real>() -> N {
     rounding_error::<N>() * N::HALF
 }
@@ -64,8 +64,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     attempt(pair, limit).unwrap_or_else(otherwise)
 }
 
-/// Returns the distance of [`separation`], or any number that is not positive for overlapping
-/// solids.
+/// Returns the distance of [`separation`]; for overlapping solids, any number that is not positive.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     match (attempt(pair, limit), FlatCore::of(pair.first)) {
         (Some(found), _) => found.map(|found| found.distance),
@@ -74,7 +73,8 @@ pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     }
 }
 
-/// Returns the separation, if the search decides; the inner `None` means beyond `limit`.
+/// Returns the separation if the search decides. An inner `None` means beyond `limit`, an outer one
+/// undecided.
 fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation<N, 3>>> {
     let (first, second) = (Geometry(pair.first), Geometry(pair.second));
     let (Some(map1), Some(map2)) = (first.as_support_map(), second.as_support_map()) else {
@@ -102,13 +102,13 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
     Some(rounded.filter(|found| found.distance <= limit))
 }
 
-/// Wraps an answer in the frame of the second solid.
+/// Wraps a separation in the frame of the second solid; `None` gives `Undecided`.
 fn in_second_frame<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<N> {
     found.map_or(RevolvedResult::Undecided, |found| RevolvedResult::Found(found, true))
 }
 
-/// Core of the flat solid and the round one, in the frame of the round one and in units of the
-/// pair.
+/// The core of the flat solid, and the round solid, in the frame of the round solid and in units of
+/// the pair.
 struct RevolvedPair<'a, N: Real> {
     flat: FlatCore<'a, N, 3>,
     /// Pose of the round solid in the frame of the flat one.
@@ -120,19 +120,20 @@ struct RevolvedPair<'a, N: Real> {
     profile: Profile<N>,
 }
 
-/// A point of the flat solid with the direction along which it is nearest to the round one.
+/// A point of the flat solid, and the direction of its distance from the round solid.
 #[derive(Clone, Copy)]
 struct DirectedPoint<N: Real> {
-    /// In the frame of the round solid, in units of the pair.
+    /// Point of the flat solid, in the frame of the round solid and in units of the pair.
     point: Vector<N, 3>,
-    /// The point of the round solid across from `point`.
+    /// Point of the round solid that faces `point`.
     nearest: Vector<N, 3>,
-    /// Unit vector out of the round solid; `extent` is the extent of the round solid along it.
+    /// Unit vector out of the round solid.
     outward: Vector<N, 3>,
+    /// Extent of the round solid along `outward`.
     extent: N,
 }
 
-/// The points whose hull contains the nearest point; no more than needed.
+/// Points of the flat solid whose hull contains the nearest point, as few as possible.
 #[derive(Clone, Copy)]
 enum NearestHull<N: Real> {
     Point(Vector<N, 3>),
@@ -141,8 +142,8 @@ enum NearestHull<N: Real> {
 }
 
 impl<N: Real> RevolvedPair<'_, N> {
-    /// Runs the search from the vertex nearest along the first direction; then tries faces and
-    /// caps.
+    /// Runs the search from the vertex that is lowest along the first direction; if it is
+    /// undecided, tries faces and caps.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let middle = self.placed(&self.flat.center().coords);
         let first = self.lowest(&self.profile.project(middle).outward);
@@ -171,13 +172,13 @@ impl<N: Real> RevolvedPair<'_, N> {
         self.placed(&self.flat.core_support(&toward).coords)
     }
 
-    /// Returns the place of a single point.
+    /// Returns the hull of a single point, and that point with its direction.
     fn at_point(&self, point: Vector<N, 3>) -> (NearestHull<N>, DirectedPoint<N>) {
         (NearestHull::Point(point), DirectedPoint::of(&self.profile, &self.profile.project(point)))
     }
 
-    /// Returns the nearest place over a hull and one more vertex, which is lower than all of the
-    /// hull.
+    /// Returns the point nearest to the round solid in the hull of `directed` and the vertex `low`,
+    /// and the hull needed for it. `low` must be lower than the whole hull.
     fn nearer(
         &self,
         hull: &NearestHull<N>,
@@ -187,13 +188,13 @@ impl<N: Real> RevolvedPair<'_, N> {
         match hull {
             NearestHull::Point(point) => self.profile.along([*point, low], true),
             NearestHull::Chord([a, b]) => self.over([*a, *b, low], directed),
-            // Only chords and triangles are searched: the place stands for its triangle.
+            // Only chords and triangles are searched: the nearest point replaces its triangle.
             NearestHull::Triangle => self.profile.along([directed.point, low], true),
         }
     }
 
-    /// Returns the nearest place over the triangle `a b c`, whose corner `c` is lower than `directed`,
-    /// the nearest place of the side `a b`.
+    /// Returns the point of the triangle `a b c` nearest to the round solid. The corner `c` is
+    /// lower than `directed`, the nearest point of the side `a b`.
     fn over(
         &self,
         [a, b, c]: [Vector<N, 3>; 3],
@@ -205,7 +206,7 @@ impl<N: Real> RevolvedPair<'_, N> {
             if unit_across.dot(&directed.outward) < N::ZERO { -unit_across } else { unit_across };
         let mut nearest = self.profile.round.support(&outward);
         let extent = outward.dot(&nearest);
-        // On a cap or a line the support point is not unique; take the one known to be near.
+        // On a cap or a line the support point is not unique; use the one known to be near.
         if outward.dot(&directed.nearest) >= extent - rounding_error() {
             nearest = directed.nearest;
         }
@@ -256,8 +257,9 @@ impl<N: Real> RevolvedPair<'_, N> {
 }
 
 impl<N: Real> DirectedPoint<N> {
-    /// Takes the direction of a view. At a point on a corner, up to rounding, that direction may
-    /// not be one along which the corner is farthest; `extent` shows it.
+    /// Takes the direction of a view. If the nearest point is a corner, that direction may not be
+    /// one along which the corner is farthest, up to rounding; then `extent` exceeds the corner's
+    /// height.
     fn of(profile: &Profile<N>, projected: &ProfileView<N>) -> Self {
         let extent = profile.extent(&projected.outward);
         Self {
@@ -269,7 +271,7 @@ impl<N: Real> DirectedPoint<N> {
     }
 
     /// Takes a view at which the distance is stationary along the unit vector `along`, with a
-    /// direction perpendicular to `along` to rounding.
+    /// direction that is perpendicular to `along` up to rounding.
     fn across(
         profile: &Profile<N>,
         projected: &ProfileView<N>,
@@ -293,8 +295,8 @@ impl<N: Real> DirectedPoint<N> {
         self.outward.dot(&self.point) - self.extent
     }
 
-    /// Returns the result given the lowest vertex along the direction: beyond, or if nothing is
-    /// lower than the place, whether it is proved. `None` if a vertex is lower.
+    /// Returns the result, given the lowest vertex along the direction: `Beyond`, or, if no vertex
+    /// is lower than the point, the separation or `Undecided`. `None` if a vertex is lower.
     fn result(&self, low: &Vector<N, 3>, beyond: N) -> Option<RevolvedResult<N>> {
         let height = self.outward.dot(low) - self.extent;
         if height > beyond {
@@ -304,8 +306,8 @@ impl<N: Real> DirectedPoint<N> {
         is_lowest.then(|| in_second_frame(self.proved(height)))
     }
 
-    /// Returns the answer, if both points lie across from each other as far apart as supporting
-    /// planes.
+    /// Returns the separation; `None` unless both points face each other and are as far apart as
+    /// supporting planes.
     fn proved(&self, height: N) -> Option<RevolvedFound<N>> {
         let aside = self.point - self.nearest - self.outward * height;
         let is_across = aside.norm_squared() <= rounding_error::<N>() * rounding_error();

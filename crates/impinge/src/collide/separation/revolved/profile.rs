@@ -1,8 +1,8 @@
-//! Signed distance of a point from a cylinder or a cone, and its change as the point moves.
+//! Signed distance of a point from a cylinder or a cone, and its derivatives as the point moves.
 //!
-//! A solid about the y axis is a flat outline in the half-plane of the axis and the point: caps and
-//! a side that are lines, a rim and an apex that are corners. The signed distance is convex in 3D,
-//! inside as well.
+//! In the half-plane of the axis and the point, a solid about the y axis is a flat outline: caps
+//! and a side that are lines, a rim and an apex that are corners. The signed distance is a convex
+//! function in 3D, also inside.
 //!
 //! ```text
 //!    cylinder  y|  Cap   : Rim         cone  y| Apex .       nearest part, by region;
@@ -20,7 +20,7 @@ use crate::math::{Real, Vector, cross2, unit};
 #[derive(Clone, Copy)]
 pub(super) struct Profile<N: Real> {
     pub(super) round: Round<N>,
-    /// Unit normal of the side in the half-plane: away from the axis, and up.
+    /// Unit normal of the side in the half-plane: components away from the axis, and along it.
     pub(super) slant: Vector<N, 2>,
     /// Length of the side from the rim to the apex.
     length: N,
@@ -39,15 +39,17 @@ pub(super) enum ProfilePart {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ProfileView<N: Real> {
     pub(super) point: Vector<N, 3>,
-    /// Signed distance: negative inside.
+    /// Signed distance of `point` from the surface, negative inside.
     pub(super) distance: N,
     /// Unit vector out of the solid, along which the distance is measured.
     pub(super) outward: Vector<N, 3>,
     pub(super) part: ProfilePart,
-    /// Distance of the point from the axis, and the unit vector away from the axis, as (x, z).
+    /// Distance of the point from the axis.
     aside: N,
+    /// Unit vector away from the axis, as (x, z).
     away: Vector<N, 2>,
-    /// Vector from the nearest corner to the point, in the half-plane; for lines their unit normal.
+    /// For corners, the vector from the corner to the point, in the half-plane; for lines, their
+    /// unit normal.
     offset: Vector<N, 2>,
 }
 
@@ -65,7 +67,7 @@ impl<N: Real> Profile<N> {
         outward.dot(&self.round.support(outward))
     }
 
-    /// Returns the signed distance of a point, with the nearest part.
+    /// Returns the view of a point: its signed distance and the nearest part.
     pub(super) fn project(&self, point: Vector<N, 3>) -> ProfileView<N> {
         let fallback = (Vector::<N, 2>::x(), N::ZERO);
         let (away, aside) = unit(&radial(&point)).unwrap_or(fallback);
@@ -114,8 +116,8 @@ impl<N: Real> Profile<N> {
         self.corner(ProfilePart::Rim, from_rim)
     }
 
-    /// Corner of the outline nearest to a point at `offset`. If the squared length underflows, the
-    /// point counts as on the side.
+    /// Returns the view's values for a point at `offset` from a corner of the outline. If the
+    /// squared length underflows, the point counts as on the side.
     fn corner(&self, part: ProfilePart, offset: Vector<N, 2>) -> (ProfilePart, N, Vector<N, 2>) {
         let length = offset.norm();
         if length > N::ZERO {
@@ -137,13 +139,13 @@ impl<N: Real> ProfileView<N> {
         Vector::<N, 3>::new(-self.away.y, N::ZERO, self.away.x)
     }
 
-    /// Rate of change of the distance as the point moves along `along`.
+    /// Returns the derivative of the distance as the point moves along `along`.
     pub(super) fn slope(&self, along: &Vector<N, 3>) -> N {
         self.outward.dot(along)
     }
 
     /// Returns the Newton step along `along` to the point nearest to the rim, whatever part is
-    /// nearest: for points between the two lines of the outline that meet at the rim.
+    /// nearest now; for points between the two lines of the outline that meet at the rim.
     pub(super) fn step_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
         let Round { half, radius, is_cone } = profile.round;
         let end = if is_cone || self.point.y < N::ZERO { -half } else { half };
@@ -153,15 +155,16 @@ impl<N: Real> ProfileView<N> {
         (bend > N::ZERO).then(|| -(offset.x * out + offset.y * along.y) / bend)
     }
 
-    /// Returns how far the point has to move until the slope is zero, if its nearest part stays the
-    /// same; `None` on a line where the slope does not change. Exact except at a rim, where it is a
-    /// step of Newton's method for the squared distance.
+    /// Returns how far the point has to move along `along` until the slope is zero, if its nearest
+    /// part does not change. `None` on a line, where the slope is constant. Exact except at a rim,
+    /// where it is a step of Newton's method for the squared distance.
     pub(super) fn descent(&self, along: &Vector<N, 3>) -> Option<N> {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let (across, up) = (out * out + turn * turn, along.y);
         match self.part {
             ProfilePart::Cap => None,
-            // The distance from the axis is a hyperbola, whose slope has to be `rise`.
+            // Along the chord, the distance from the axis is a hyperbola; its slope must become
+            // `rise`.
             ProfilePart::Side => {
                 let rise = -up * self.offset.y / self.offset.x;
                 let left = across - rise * rise;
@@ -174,7 +177,7 @@ impl<N: Real> ProfileView<N> {
         }
     }
 
-    /// Gradient of the distance or, at corners, of half its square, which is smoother.
+    /// Returns the gradient of the distance or, at corners, of half its square, which is smoother.
     pub(super) fn pull(&self) -> Vector<N, 3> {
         match self.part {
             ProfilePart::Cap | ProfilePart::Side => self.outward,
@@ -182,7 +185,7 @@ impl<N: Real> ProfileView<N> {
         }
     }
 
-    /// Second derivative for [`pull`](Self::pull) along `along`.
+    /// Returns the derivative of [`pull`](Self::pull) as the point moves along `along`.
     pub(super) fn bend(&self, along: &Vector<N, 3>) -> N {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let turn_squared = turn * turn;

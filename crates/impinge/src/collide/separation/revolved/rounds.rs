@@ -1,22 +1,23 @@
 //! Cylinders and cones against each other.
 //!
-//! The apex or a rim of one solid is tried against the other: over a rim the distance is a function
-//! of one angle, whose minimum Newton's method finds. The remaining case is two sides, whose common
-//! normal is where two circles on the sphere of directions intersect. If the solids overlap, two
-//! balls around one point, one in each solid, are the proof: their radii add up to the depth.
+//! The apex or a rim of one solid is tried against the other. Over a rim the distance is a function
+//! of one angle, whose minimum Newton's method finds. The remaining case is side against side; the
+//! common normals of two sides are the intersections of two circles on the sphere of directions. If
+//! the solids overlap, the proof is two balls around one point, one in each solid, whose radii add
+//! up to the depth.
 
 use super::profile::Profile;
 use super::{DirectedPoint, RevolvedFound, RevolvedResult, in_second_frame, rounding_error, still};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 
-/// Cap on the corners and rims of one solid that are tried.
+/// Cap on the number of corners and rims of one solid that are tried.
 const TURNS: usize = 3;
 /// Cap on the steps of Newton's method; about four are needed.
 const STEPS: usize = 12;
 
-/// Returns the result for two solids, the second at a pose whose translation is `shift` in units of
-/// the pair.
+/// Returns the result for two solids. `shift` is the translation of the second solid's pose, in
+/// units of the pair.
 pub(super) fn resolve<N: Real>(
     [first, second]: [Profile<N>; 2],
     pose12: &Pose<N, 3>,
@@ -39,14 +40,15 @@ pub(super) fn resolve<N: Real>(
     in_second_frame(views[0].sides())
 }
 
-/// A solid in the frame of another.
+/// Two round solids in the frame of one of them.
 struct RoundView<N: Real> {
     /// The solid at the origin of the frame, about the y axis.
     own: Profile<N>,
     /// The solid whose corners are tried.
     other: Profile<N>,
-    /// Middle of the other solid, and its rotation.
+    /// Centre of the other solid.
     center: Vector<N, 3>,
+    /// Rotation of the other solid.
     rotation: Matrix<N, 3>,
     /// Axis of the other solid, towards its apex or positive end.
     axis: Vector<N, 3>,
@@ -76,7 +78,8 @@ impl<N: Real> RoundView<N> {
         RevolvedResult::Undecided
     }
 
-    /// Returns the place of the apex, or the nearest place of the rim, at which `low` lies.
+    /// Returns the apex, or the nearest point of the rim, that contains `low`; `None` if the search
+    /// does not converge.
     fn at_corner(&self, low: &Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let round = &self.other.round;
         let is_up = self.axis.dot(&(low - self.center)) > N::ZERO;
@@ -90,14 +93,15 @@ impl<N: Real> RoundView<N> {
         self.along_rim(&middle, out)
     }
 
-    /// Returns the unit vector of the part of `v` perpendicular to the other axis; `None` if within
-    /// noise.
+    /// Returns the unit vector of the part of `v` perpendicular to the other axis; `None` if that
+    /// part is within rounding error.
     fn beside(&self, v: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let beside = v - self.axis * self.axis.dot(v);
         unit(&beside).filter(|(_, length)| *length > rounding_error()).map(|(beside, _)| beside)
     }
 
-    /// Returns the nearest place of the rim around `middle`, starting from the direction `out`.
+    /// Returns the nearest point of the rim around `middle`, searched from the direction `out`;
+    /// `None` if the search does not converge.
     fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let radius = self.other.round.radius;
         for _ in 0..STEPS {
@@ -119,14 +123,15 @@ impl<N: Real> RoundView<N> {
         None
     }
 
-    /// Tries side against side.
+    /// Tries side against side; `None` without a proof.
     fn sides(&self) -> Option<RevolvedFound<N>> {
         let (cosine, rise1, rise2) = (self.axis.y, self.own.slant.y, self.other.slant.y);
         let squared = self.axis.x * self.axis.x + self.axis.z * self.axis.z;
         if squared <= N::lit(16.0) * N::EPSILON {
             return None;
         }
-        // The part in the plane of the axes follows from the angles of the normal with both axes.
+        // The component in the plane of the axes follows from the angles of the normal with both
+        // axes.
         let up = Vector::<N, 3>::y();
         let in_plane =
             (up * (rise1 + rise2 * cosine) - self.axis * (rise2 + rise1 * cosine)) / squared;
@@ -146,8 +151,8 @@ impl<N: Real> RoundView<N> {
         (height > N::ZERO || self.is_deepest(&found)).then_some(found)
     }
 
-    /// Returns the nearest points of the lines of both sides that face each other along a
-    /// direction.
+    /// Returns the points of the lines of both sides that face each other along a direction; `None`
+    /// if there are none.
     fn between_sides(&self, outward: Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let line = |profile: &Profile<N>, along: &Vector<N, 3>| {
             let ends = profile.round.touched(along, core::iter::empty());
@@ -161,8 +166,8 @@ impl<N: Real> RoundView<N> {
         Some(DirectedPoint { point: point.coords, nearest: nearest.coords, outward, extent })
     }
 
-    /// Returns whether balls around the midpoint of both points, one in each solid, add up to the
-    /// depth.
+    /// Returns whether two balls around the midpoint of both points, one in each solid, have radii
+    /// that add up to the depth.
     fn is_deepest(&self, found: &RevolvedFound<N>) -> bool {
         let center = found.on_other - found.normal * (found.distance * N::HALF);
         let own = self.own.project(center).distance;

@@ -1,9 +1,10 @@
-//! Least depth along an arc of normals, with a proof.
+//! Least depth along an arc of normals, with a proof that it is the least.
 //!
-//! Along a circle of unit vectors each point of a convex solid has a height that is a sinusoid; the
-//! depth is the largest of them. The two sinusoids that are largest at the ends of an arc bound it
-//! from below on the whole arc: at their crossing, or at the minimum of one. If the bound is below
-//! the best depth known, the depth at that direction is computed and the arc split there.
+//! Along a circle of unit vectors, the height of each point of a convex solid is a sinusoid, and
+//! the depth is the largest of these. The two sinusoids that are largest at the ends of an arc
+//! bound the depth from below on the whole arc: at their crossing, or at the minimum of one. If the
+//! bound is below the least depth known, the depth at that direction is computed, and the arc is
+//! split there.
 //!
 //! ```text
 //!    depth   \         /
@@ -15,8 +16,8 @@
 //!         from         to
 //! ```
 //!
-//! Growing a polygon by its side nearest to the origin, as `epa2` does, is the case of sinusoids
-//! without a base.
+//! Growing a polygon by its side nearest to the origin, as `epa2` does, is the special case of
+//! sinusoids without a `base`.
 
 use smallvec::SmallVec;
 
@@ -39,17 +40,18 @@ impl<N: Real> RidgeLine<N> {
         self.base + self.toward.dot(u)
     }
 
-    /// Returns the direction of the least height, and that height.
+    /// Returns the direction of the smallest height, and that height; `None` if the height is
+    /// constant.
     fn bottom(&self) -> Option<(Vector<N, 2>, N)> {
         let (toward, length) = unit(&self.toward)?;
         Some((-toward, self.base - length))
     }
 }
 
-/// Half a circle or less, counter-clockwise, and the lines that are highest at its ends. They are
-/// equal if one point is highest at both ends, else each is the lower one at the other's end, so
-/// that they cross. An arc may have no length: if a bound is taken at an end, one of the halves has
-/// none.
+/// An arc of at most half a circle, counter-clockwise, and the lines that are highest at its ends.
+/// The two lines are equal if one point is highest at both ends; otherwise each is the lower one at
+/// the other's end, so that they cross. An arc may have no length: if a bound is attained at an
+/// end, one of the two halves has none.
 #[derive(Clone, Copy)]
 pub(super) struct Arc<N: Real> {
     pub(super) ends: [Vector<N, 2>; 2],
@@ -57,8 +59,8 @@ pub(super) struct Arc<N: Real> {
 }
 
 impl<N: Real> Arc<N> {
-    /// Returns whether a direction is on the arc, ends included. For an arc without length the two
-    /// products alone are also zero at the opposite direction.
+    /// Returns whether a direction is on the arc, ends included. For an arc without length, the two
+    /// products alone would also be zero at the opposite direction.
     fn holds(&self, u: &Vector<N, 2>) -> bool {
         let [from, to] = &self.ends;
         let is_between = cross2(from, u) >= N::ZERO && cross2(u, to) >= N::ZERO;
@@ -79,8 +81,8 @@ impl<N: Real> Arc<N> {
         [middle + aside, middle - aside].into_iter().find(|u| self.holds(u))
     }
 
-    /// Returns the minimum of a line on the arc, with the direction; for an end the halfway
-    /// direction.
+    /// Returns the direction and the height of a line's minimum on the arc; if the minimum is at an
+    /// end, the direction halfway between the ends instead of the end.
     fn least_of(&self, line: &RidgeLine<N>) -> (Vector<N, 2>, N) {
         let halfway = unit(&(self.ends[0] + self.ends[1]));
         let ends = min(line.at(&self.ends[0]), line.at(&self.ends[1]));
@@ -90,7 +92,7 @@ impl<N: Real> Arc<N> {
         }
     }
 
-    /// Returns whether the depth is certainly nowhere on the arc less than `least`, by
+    /// Returns whether the depth is certainly at least `least` everywhere on the arc, by
     /// [`are_above`].
     fn is_above(&self, least: N) -> bool {
         let [from, to] = &self.ends;
@@ -99,8 +101,8 @@ impl<N: Real> Arc<N> {
         !has_base && are_above(&heights, least)
     }
 
-    /// Returns a direction of the arc and a lower bound of the depth on the arc. The bound is the
-    /// larger height of the two lines there, if there is one.
+    /// Returns a direction of the arc at which to split it, and a lower bound of the depth on the
+    /// arc.
     fn bound(&self) -> (Vector<N, 2>, N) {
         let Some(crossing) = self.crossing() else {
             let [first, second] = self.lines.mapped(|line| self.least_of(&line));
@@ -119,10 +121,11 @@ impl<N: Real> Arc<N> {
     }
 }
 
-/// Returns whether the depth is certainly nowhere on an arc less than `least`, a positive number.
-/// Uses products only, unlike [`Arc::bound`], and returns `false` in close cases. `heights` are
-/// those of two points at both ends: the first is the highest at the first end, the second at the
-/// second, and both are at least `least` there. Neither point has a positive `base`.
+/// Returns whether the depth is certainly at least `least`, a positive number, everywhere on an
+/// arc. It computes products only, unlike [`Arc::bound`], and returns `false` in close cases.
+/// `heights` are those of two points at both ends of the arc. Preconditions: the first point is the
+/// highest at the first end, the second at the second end, both are at least `least` there, and
+/// neither point has a positive `base`.
 ///
 /// A direction of the arc is a mix of the ends divided by the mix's length, which is at most 1.
 /// With no positive `base`, a height of at least `least` at the mix is no less at the direction. So
@@ -135,13 +138,13 @@ pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
     least > N::ZERO && (is_one || first[0] * second[1] >= first[1] * second[0])
 }
 
-/// A search along arcs.
+/// State of a search along arcs.
 pub(super) struct ArcSearch<N: Real> {
-    /// Least depth so far, of this or another search.
+    /// Least depth so far, found by this or by another search.
     pub(super) least: N,
-    /// Its direction, if it was found by this search.
+    /// Direction of the least depth; `None` if another search found it.
     pub(super) best: Option<Vector<N, 2>>,
-    /// Smaller improvements are not searched for.
+    /// Improvements smaller than this are not searched for.
     gap: N,
 }
 
@@ -150,7 +153,7 @@ impl<N: Real> ArcSearch<N> {
         Self { least, best: None, gap }
     }
 
-    /// Records the depth along `u`, given the highest line there.
+    /// Records the depth along `u`, given the highest line in that direction.
     pub(super) fn note(&mut self, u: &Vector<N, 2>, highest: &RidgeLine<N>) {
         let depth = highest.at(u);
         if depth < self.least {
@@ -158,8 +161,9 @@ impl<N: Real> ArcSearch<N> {
         }
     }
 
-    /// Searches an arc for less depth; at its ends the depth is at least the least so far.
-    /// `highest` returns the highest line in a direction. `None` after [`STEPS`] directions.
+    /// Searches an arc for a smaller depth. Precondition: the depth at its ends is at least the
+    /// least so far. `highest` returns the highest line in a direction. `None` if the search does
+    /// not end after [`STEPS`] directions.
     pub(super) fn run(
         &mut self,
         arc: Arc<N>,

@@ -16,10 +16,12 @@ use crate::collide::separation::hulls::rounding_error;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
 use crate::shape::{Cuboid, Kind, Polytope, Triangle};
 
-/// Larger solids go to the general algorithm, which does not visit all their features.
+/// Largest number of vertices; larger solids go to the general algorithm, which does not visit all
+/// their features.
 const MAX_VERTICES: usize = 128;
 
-/// An edge: its ends, and the ends of the arc of normals along which it is lowest.
+/// An edge: the indices of its ends, and of the ends of the arc of normals along which the edge is
+/// lowest.
 #[derive(Clone, Copy)]
 pub(super) struct Edge {
     pub(super) vertices: [u32; 2],
@@ -28,22 +30,24 @@ pub(super) struct Edge {
 
 /// A flat-sided solid, in units of the pair.
 pub(super) struct Flat<N: Real> {
-    /// Vertices in the solid's own frame, and in the frame of the round solid.
+    /// Vertices in the solid's own frame.
     pub(super) own_vertices: SmallVec<[Vector<N, 3>; 16]>,
+    /// Vertices in the frame of the round solid.
     pub(super) vertices: SmallVec<[Vector<N, 3>; 16]>,
-    /// Unit vectors out of the solid, in its own frame: the normals of all faces. Where these are
-    /// too few, others are added so that arcs between two cover all normals of the edges.
+    /// Unit vectors out of the solid, in its own frame: the normals of all faces. If there are too
+    /// few faces, further vectors are added, so that arcs between two of the vectors cover all
+    /// normals of the edges.
     pub(super) own_normals: SmallVec<[Vector<N, 3>; 16]>,
-    /// `own_normals` negated, in the frame of the round solid, each with a vertex that is lowest
-    /// along it.
+    /// The negated `own_normals` in the frame of the round solid, each with the index of a vertex
+    /// that is lowest along it.
     pub(super) normals: SmallVec<[(Vector<N, 3>, u32); 16]>,
     pub(super) edges: SmallVec<[Edge; 32]>,
 }
 
 impl<N: Real> Flat<N> {
-    /// Extracts the features of a solid; `pose12` is the pose of the round solid in its frame.
-    /// `None` for other kinds, for solids without normals and for more than [`MAX_VERTICES`]
-    /// vertices.
+    /// Extracts the features of a solid; `pose12` is the pose of the round solid in the frame of
+    /// this one. `None` for other kinds, for solids without normals, and for more than
+    /// [`MAX_VERTICES`] vertices.
     pub(super) fn new(kind: &Kind<'_, N, 3>, pose12: &Pose<N, 3>, shrink: N) -> Option<Self> {
         let mut flat = Self {
             own_vertices: SmallVec::new(),
@@ -67,7 +71,7 @@ impl<N: Real> Flat<N> {
         Some(flat)
     }
 
-    /// Returns the index of the vertex that is lowest along a direction: the first of equals.
+    /// Returns the index of the vertex that is lowest along a direction, the first of equals.
     pub(super) fn lowest(&self, direction: &Vector<N, 3>) -> usize {
         let (mut lowest, mut low) = (0, N::INFINITY);
         for (index, vertex) in self.vertices.iter().enumerate() {
@@ -89,7 +93,7 @@ impl<N: Real> Flat<N> {
         }
     }
 
-    /// Adds a unit vector out of the solid, with a vertex that is farthest along it.
+    /// Adds a unit vector out of the solid, with the index of a vertex that is farthest along it.
     fn push_normal(&mut self, outward: Vector<N, 3>, vertex: u32) {
         self.own_normals.push(outward);
         self.normals.push((outward, vertex));
@@ -99,8 +103,8 @@ impl<N: Real> Flat<N> {
         self.edges.push(Edge { vertices, normals });
     }
 
-    /// Extracts a segment: four normals across it, and four arcs between them. `None` if it has no
-    /// length.
+    /// Extracts a segment: four normals perpendicular to it, and four arcs between them. `None` if
+    /// it has no length.
     fn fill_segment(&mut self, ends: [&Point<N, 3>; 2], shrink: N) -> Option<()> {
         self.own_vertices.extend(ends.mapped(|end| end.coords * shrink));
         let along = self.own_vertices[1] - self.own_vertices[0];
@@ -111,7 +115,8 @@ impl<N: Real> Flat<N> {
         Some(())
     }
 
-    /// Extracts a triangle: both of its normals and those of its side planes. `None` if it is thin.
+    /// Extracts a triangle: both of its normals, and the normals of its side planes. `None` if it
+    /// is thin.
     fn fill_triangle(&mut self, triangle: &Triangle<N, 3>, shrink: N) -> Option<()> {
         let corners = triangle.corners().mapped(|corner| corner.coords * shrink);
         self.own_vertices.extend(corners);
@@ -130,7 +135,8 @@ impl<N: Real> Flat<N> {
         Some(())
     }
 
-    /// Extents may be zero: an edge without length has normals of its vertex, which are as valid.
+    /// Extracts a box. Extents may be zero: an edge without length then has normals of its vertex,
+    /// which are valid directions too.
     fn fill_box(&mut self, cuboid: &Cuboid<N, 3>, shrink: N) {
         let half = cuboid.half_extents() * shrink;
         for signs in 0..8_usize {
@@ -152,7 +158,7 @@ impl<N: Real> Flat<N> {
         }
     }
 
-    /// Extracts a hull: all faces and edges. `None` above [`MAX_VERTICES`].
+    /// Extracts a hull with all its faces and edges. `None` above [`MAX_VERTICES`] vertices.
     fn fill_polytope(&mut self, polytope: &Polytope<N, 3>, shrink: N) -> Option<()> {
         if polytope.vertices().len() > MAX_VERTICES {
             return None;

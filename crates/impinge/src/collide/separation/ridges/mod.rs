@@ -13,17 +13,17 @@
 //!   the round side                a circle of normals        searched by `arc` in four quarters
 //! ```
 //!
-//! [`arc`] proves its minimum. Nothing is iterated over two dimensions, as growing a polytope
-//! towards a curved surface is.
+//! [`arc`] proves its minimum. Every search is one-dimensional, unlike the growing of a polytope
+//! towards a curved surface.
 //!
 //! Extents may be zero: an edge without length has an arc of normals of its vertex, which are valid
-//! directions too. The general algorithm takes over for round solids, segments or triangles of
-//! almost no size, whose normals are unknown; for polytopes that are flat up to rounding, whose
-//! vertices contradict the depth found along their normals; and for rings of almost equally good
-//! normals, where arcs along the ring are cut too often.
+//! directions too. Three cases fall back to the general algorithm: round solids, segments or
+//! triangles of almost no size, whose normals are unknown; polytopes that are flat up to rounding,
+//! whose vertices contradict the depth found along their normals; and rings of almost equal depths,
+//! where arcs along the ring would be split too often.
 //!
-//! For two polytopes, restricting the search to faces and edges is the separating axis test. This
-//! is the same argument for the parts of cylinders and cones.
+//! For two polytopes, restricting the search to faces and edges is the separating axis test. The
+//! search here applies the same argument to the parts of cylinders and cones.
 
 mod arc;
 mod flat;
@@ -44,7 +44,7 @@ use crate::shape::{Geometry, SupportMap};
 
 /// Returns the separation of a flat-sided solid, segment or capsule from a cylinder or cone.
 ///
-/// If they are apart, it is that of the general algorithm to the bit.
+/// If the solids are apart, it has the bits of the general algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
@@ -52,7 +52,7 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     found.filter(|found| found.distance <= limit)
 }
 
-/// Returns the distance of [`separation`], or zero if the solids certainly overlap.
+/// Returns the distance of [`separation`], or zero if a certain overlap is found during the search.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     let (flat, round) = cores(pair);
     let loosened = general::loosened(&flat, round, &pair.pose12, limit);
@@ -98,13 +98,13 @@ impl<N: Real> Peaks<N, 3> for OverlapPeaks<'_, '_, N> {
 /// Feature on which the direction of least depth lies.
 #[derive(Clone, Copy)]
 enum DepthFeature {
-    /// Normal of the flat solid, by index.
+    /// A normal of the flat solid, by index.
     Face(usize),
     /// The normal of a cap.
     Cap,
-    /// On the arc of an edge, by index.
+    /// A direction on the arc of an edge, by the edge's index.
     Edge(usize),
-    /// On the circle of normals of the round side.
+    /// A direction on the circle of normals of the round side.
     Side,
 }
 
@@ -113,14 +113,14 @@ enum DepthFeature {
 struct DepthSearch<'a, N: Real> {
     flat: &'a Flat<N>,
     round: &'a Round<N>,
-    /// Least depth so far, with its feature and direction.
+    /// Least depth so far; `at` is its feature and `normal` its direction.
     least: N,
     at: DepthFeature,
     normal: Vector<N, 3>,
 }
 
 impl<N: Real> DepthSearch<'_, N> {
-    /// Searches all features for the least depth, up to `gap`; `None` if arcs are cut too often.
+    /// Searches all features for the least depth, up to `gap`; `None` if arcs are split too often.
     fn search(&mut self, gap: N) -> Option<()> {
         let mut ends = SmallVec::<[Vector<N, 3>; 16]>::new();
         for (index, (normal, vertex)) in self.flat.normals.iter().enumerate() {
@@ -138,8 +138,8 @@ impl<N: Real> DepthSearch<'_, N> {
         if self.search_edges(&ends, gap).is_some() {
             return self.search_side(gap);
         }
-        // Normals around the axis are almost equally good, and parts of arcs across them cannot be
-        // told from the best. The search over the side finds the best one at once.
+        // Normals around the axis have almost equal depths, so the parts of arcs across them cannot
+        // be told from the best. The search over the side finds the best one directly.
         self.search_side(gap)?;
         self.search_edges(&ends, gap)
     }
@@ -155,15 +155,15 @@ impl<N: Real> DepthSearch<'_, N> {
     }
 
     /// Returns whether all vertices confirm the depth found. It was computed with the vertices of
-    /// one face or edge, which are the lowest only as far as the normals of the faces are exact.
+    /// one face or edge, which are lowest only up to the accuracy of the face normals.
     fn is_confirmed(&self, gap: N) -> bool {
         let lowest = self.flat.vertices[self.flat.lowest(&self.normal)];
         let depth = self.normal.dot(&(self.round.support(&self.normal) - lowest));
         depth - self.least <= N::lit(8.0) * gap
     }
 
-    /// Searches the normals of an edge. In the plane across the edge it is a point; `ends` are the
-    /// support points of the round solid along the normals of the flat one.
+    /// Searches the normals of an edge, which is a point in the plane perpendicular to it. `ends`
+    /// are the support points of the round solid along the normals of the flat one.
     fn search_edge(&mut self, edge: usize, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
         let (round, vertices) = (self.round, &self.flat.vertices);
         let flat::Edge { vertices: ends_of_edge, normals: [first, second] } = self.flat.edges[edge];
@@ -176,9 +176,9 @@ impl<N: Real> DepthSearch<'_, N> {
         }
         let Some(across) = across(&(other - vertex), [&from, &to]) else { return Some(()) };
         let (cosine, sine) = (from.dot(&to), max(across.dot(&to), N::ZERO));
-        // Between normals as close as this the depth falls by less than `gap`. The angle counts,
-        // not its square: next to the normal of a cap the point of its rim moves as fast as the
-        // normal turns.
+        // Between normals as close as this the depth falls by less than `gap`. The condition is
+        // linear in the angle, because next to the normal of a cap the support point on its rim
+        // moves as fast as the normal turns.
         if cosine > N::ZERO && sine <= gap {
             return Some(());
         }
@@ -230,7 +230,7 @@ impl<N: Real> DepthSearch<'_, N> {
         Some(())
     }
 
-    /// Returns the result in the frame of the flat solid.
+    /// Returns the result as a [`Peak`] in the frame of the flat solid.
     fn peak(&self, pose12: &Pose<N, 3>, shrink: N) -> Peak<N, 3> {
         let opposite = -(pose12.rotation * self.normal);
         let (is_exact, normal) = match self.at {

@@ -29,7 +29,7 @@ pub(in super::super) struct Round<N: Real> {
 }
 
 impl<N: Real> Round<N> {
-    /// `None` for other kinds, and for solids of size zero.
+    /// Wraps a cylinder or cone; `None` for other kinds, and for solids of size zero.
     pub(in super::super) fn new(kind: &Kind<'_, N, 3>, shrink: N) -> Option<Self> {
         let (half, radius, is_cone) = match kind {
             Kind::Cylinder(cylinder, _) => (cylinder.half_height(), cylinder.radius(), false),
@@ -40,12 +40,12 @@ impl<N: Real> Round<N> {
         (round.half > rounding_error() && round.radius > rounding_error()).then_some(round)
     }
 
-    /// Signs of the caps along the axis.
+    /// Returns the signs of the caps' positions along the axis.
     pub(in super::super) fn caps(&self) -> &'static [f64] {
         if self.is_cone { &[-1.0] } else { &[1.0, -1.0] }
     }
 
-    /// Returns a point farthest along a direction.
+    /// Returns the point farthest along a direction; one of several if it is not unique.
     pub(in super::super) fn support(&self, direction: &Vector<N, 3>) -> Vector<N, 3> {
         let aside = radial(direction);
         let squared = aside.norm_squared();
@@ -65,7 +65,7 @@ impl<N: Real> Round<N> {
         Vector::<N, 3>::new(N::ZERO, self.half, N::ZERO)
     }
 
-    /// Returns the normals of the side.
+    /// Returns the unit normals of the side.
     pub(super) fn slope(&self) -> Slope<N> {
         if !self.is_cone {
             return Slope { aside: N::ONE, along: N::ZERO, extent: self.radius };
@@ -75,7 +75,8 @@ impl<N: Real> Round<N> {
         Slope { aside, along, extent: along * self.half }
     }
 
-    /// Returns points whose mixes may touch others along a direction, where the others are `below`.
+    /// Returns points of this solid that are extreme along a direction; some mix of them faces the
+    /// points `below`.
     pub(in super::super) fn touched<'a>(
         &self,
         direction: &Vector<N, 3>,

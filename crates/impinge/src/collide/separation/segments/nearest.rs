@@ -1,4 +1,4 @@
-//! Nearest points of segments: the arithmetic that several pairs share.
+//! Nearest points of segments, used by several pairs of kinds.
 
 use crate::collide::Pair;
 use crate::collide::separation::wrong_kinds;
@@ -19,7 +19,8 @@ pub(in crate::collide) fn core<N: Real, const D: usize>(
     }
 }
 
-/// Returns the point of a segment nearest to `point`, and whether it lies between the ends.
+/// Returns the point of a segment nearest to `point`, and whether it lies strictly between the
+/// ends.
 ///
 /// It is computed from the nearer end, so that long segments lose no digits.
 #[inline]
@@ -43,8 +44,8 @@ pub(in crate::collide::separation) fn nearest_on_segment<N: Real, const D: usize
 
 /// Returns the nearest points of two segments in 3D.
 ///
-/// The candidates are each end against the other segment and, unless the segments are parallel, the
-/// common perpendicular of their lines; the first of equals is taken.
+/// The candidates are each end with the nearest point of the other segment and, unless the segments
+/// are parallel, the feet of their common perpendicular; in a tie, the first candidate is taken.
 pub(in crate::collide::separation) fn nearest_of_segments<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
@@ -67,7 +68,8 @@ pub(in crate::collide::separation) fn nearest_of_segments<N: Real>(
 /// Points where the common perpendicular of two lines meets both segments.
 struct Perpendicular<N: Real> {
     points: (Point<N, 3>, Point<N, 3>),
-    /// Both points are so far from all ends that no end is as near, with any rounding.
+    /// Whether both points are so far from all ends that no end can be as near, whatever the
+    /// rounding.
     is_well_inside: bool,
 }
 
@@ -92,11 +94,11 @@ pub(in crate::collide::separation) fn nearest_of_ends<N: Real, const D: usize>(
     best
 }
 
-/// Returns the points where the common perpendicular of two lines meets them; `None` unless both
-/// lie on the segments, and for parallel lines.
+/// Returns the feet of the common perpendicular of two lines; `None` for parallel lines, and unless
+/// both feet lie on the segments.
 ///
-/// The solution by cross products is off by rounding over the sine of the angle between the lines.
-/// Each of two Newton steps from the residual reduces the error by that factor.
+/// The solution by cross products is wrong by rounding over the sine of the angle between the
+/// lines. Two Newton steps from the residual each multiply the error by the same factor.
 fn common_perpendicular<N: Real>(
     ends1: &[Point<N, 3>; 2],
     ends2: &[Point<N, 3>; 2],
@@ -122,8 +124,9 @@ fn common_perpendicular<N: Real>(
     }
     let inside = |u: N| u >= N::ZERO && u <= N::ONE;
     (inside(s) && inside(t)).then(|| {
-        // Let one point move by a length along its line. Whatever the other point does, the squared
-        // distance grows by at least the square of that length times the sine between the lines.
+        // Let one point move by a length along its line. Wherever the other point is, the squared
+        // distance grows by at least the square of that length times the sine of the angle between
+        // the lines.
         let far1 = min(s, N::ONE - s) * size1;
         let far2 = min(t, N::ONE - t) * size2;
         let growth = min(far1 * far1 / squared2, far2 * far2 / squared1) * squared;

@@ -21,12 +21,15 @@ use crate::shape::Kind;
 /// Nearest point of a segment to a given point.
 pub(crate) struct Nearest<V, M, const D: usize> {
     pub(crate) point: [V; D],
-    /// The nearest point lies between the ends.
+    /// Lanes where the nearest point lies between the ends.
     pub(crate) is_inside: M,
     /// Vector from the first end to the last.
     pub(crate) along: [V; D],
-    /// Distances of the given point from both ends along `along`, times the length of the segment.
+    /// Coordinate of the given point along `along`, measured from the first end, times the length
+    /// of the segment.
     pub(crate) from_first: V,
+    /// Coordinate of the given point against `along`, measured from the last end, times the length
+    /// of the segment.
     pub(crate) to_last: V,
 }
 
@@ -51,8 +54,8 @@ pub(crate) fn nearest_on_segment<S: Simd, N: Real, V: Wide<S, Scalar = N>, const
     Nearest { point, is_inside, along, from_first, to_last }
 }
 
-/// Returns the lanes where a square is far from underflow and overflow, so that its root is the
-/// length.
+/// Returns the lanes where a squared length is far from underflow and overflow, so that its root is
+/// accurate.
 #[inline(always)]
 pub(crate) fn is_square_in_range<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -64,20 +67,20 @@ pub(crate) fn is_square_in_range<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 
 /// Separation of two segments in 2D.
 pub(crate) struct SegmentGap<V, M> {
-    /// Unit, from the first segment to the second.
+    /// Unit vector from the first segment to the second.
     pub(crate) normal: [V; 2],
     pub(crate) gap: V,
     /// Nearest points of the first and the second segment.
     pub(crate) points: [[V; 2]; 2],
-    /// Lanes where the other fields hold. In other lanes the segments cross or touch, or a squared
-    /// length is near underflow or overflow.
+    /// Lanes where the other fields are valid. In the others, the segments cross or touch, or a
+    /// squared length is near underflow or overflow.
     pub(crate) is_known: M,
 }
 
-/// An end of one segment and the nearest point of the other.
+/// An end of one segment and the nearest point of the other segment.
 struct EndAndSide<V, M> {
     points: [[V; 2]; 2],
-    /// The point of the other segment lies between its ends.
+    /// Lanes where the point of the other segment lies between that segment's ends.
     is_inside: M,
     /// Vector between the ends of the other segment.
     along: [V; 2],
@@ -85,7 +88,7 @@ struct EndAndSide<V, M> {
 }
 
 impl<V, M> EndAndSide<V, M> {
-    /// Pairs an end of segment `which` (0 or 1) with the nearest point of the other segment.
+    /// Pairs end `end` of segment `which` (0 or 1) with the nearest point of the other segment.
     #[inline(always)]
     fn of<S: Simd, N: Real>(simd: S, ends: [&[[V; 2]; 2]; 2], which: usize, end: usize) -> Self
     where
@@ -100,7 +103,7 @@ impl<V, M> EndAndSide<V, M> {
         Self { points, is_inside: near.is_inside, along: near.along, squared }
     }
 
-    /// Selects `other` in the lanes of `is_other`.
+    /// Selects `other` in the lanes of `is_other`, else `self`.
     #[inline(always)]
     fn or<S: Simd>(&self, other: &Self, is_other: M) -> Self
     where
@@ -123,10 +126,10 @@ impl<V, M> EndAndSide<V, M> {
 impl<V, M> SegmentGap<V, M> {
     /// Returns the separation of two segments given by their ends.
     ///
-    /// Segments that do not cross are nearest at an end of one of them. If that end faces the
-    /// inside of the other segment, the normal is perpendicular to that segment, which is accurate
-    /// at any distance. Such a pair is preferred to others that are as near up to rounding;
-    /// otherwise the first of equals counts.
+    /// Segments that do not cross are nearest at an end of one of them. If the nearest point of the
+    /// other segment lies between its ends, the normal is perpendicular to that segment, which is
+    /// accurate at any distance. Such a pair of points is preferred to others that are as near up
+    /// to rounding; otherwise the first of equals is taken.
     #[inline(always)]
     pub(crate) fn of<S: Simd, N: Real>(simd: S, ends: [&[[V; 2]; 2]; 2]) -> Self
     where
@@ -148,7 +151,8 @@ impl<V, M> SegmentGap<V, M> {
         let (normal, gap) = best.normal(simd);
         let is_long = is_square_in_range(simd, length_squared(ends[0]))
             & is_square_in_range(simd, length_squared(ends[1]));
-        // Apart by more than rounding, with the gap confirmed by supporting lines.
+        // Lanes where the segments are apart by more than rounding, and supporting lines confirm
+        // the gap.
         let slack = V::all(simd, N::lit(16.0)) * rounding_error;
         let parted = lowest(ends[1], &normal) + lowest(ends[0], &negated(&normal));
         let is_apart = gap.simd_gt(slack) & (parted + slack).simd_gt(gap);
@@ -177,7 +181,8 @@ impl<V, M> EndAndSide<V, M> {
     }
 }
 
-/// Returns the largest sum of absolute coordinates of an end.
+/// Returns an upper bound of the distance of the ends from the origin: their largest sum of
+/// absolute coordinates.
 #[inline(always)]
 fn size<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, ends: [&[[V; 2]; 2]; 2]) -> V {
     let mut size = V::all(simd, N::ZERO);
@@ -193,13 +198,13 @@ fn length_squared<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2]) -> V {
     dot(&along, &along)
 }
 
-/// Lower of the two ends along a direction.
+/// Returns the smaller coordinate of the two ends along a direction.
 #[inline(always)]
 fn lowest<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2], direction: &[V; 2]) -> V {
     dot(direction, first).smaller(dot(direction, last))
 }
 
-/// Returns the separation of two segments or capsules in 2D; `None` for other kinds, and where
+/// Returns the separation of two segments or capsules in 2D; `None` for other kinds, and if
 /// [`SegmentGap`] is not known.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
@@ -214,7 +219,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     Some(cores.rounded(radius1, radius2))
 }
 
-/// Returns the separation of the cores of one pair.
+/// Returns the separation of the cores of one pair; `None` if it is not known.
 fn alone<N: Real>(ends1: &[Point<N, 2>; 2], ends2: &[Point<N, 2>; 2]) -> Option<Separation<N, 2>> {
     let lone = |ends: &[Point<N, 2>; 2]| [Lone::each(&ends[0].coords), Lone::each(&ends[1].coords)];
     let found = SegmentGap::of(OneLane(0), [&lone(ends1), &lone(ends2)]);

@@ -1,12 +1,11 @@
-//! Triangles against a ball: finds the near ones of 8 at a time, and those hidden by a
-//! neighbour.
+//! Triangles against a ball: finds the near ones, 8 at a time, and those hidden by a neighbour.
 //!
 //! A contact at a corner or edge belongs to the whole surface only if no triangle there extends
 //! along its normal: no direction into such a triangle has a positive component
 //! (`shape/surface/seam.rs`). If one of these triangles is nearer to the centre of the ball than
-//! the corner or edge, the direction to its nearest point is such a direction. So distances alone
-//! give the result of the rule for normals, and of the triangles around the place where a ball
-//! rests on a surface one is left. Close cases stay undecided.
+//! the corner or edge, the direction to its nearest point has such a component. So distances alone
+//! give the result of the rule for normals, and of all triangles around a point where a ball rests,
+//! only one is left. Close cases stay undecided.
 //!
 //! ```text
 //!           o  centre           kind 0, 1, 2: nearest on the side that starts at corner 0, 1, 2
@@ -25,28 +24,30 @@ use crate::math::{Point, Real, Vector, Wide, filled, max_component, min};
 
 /// A triangle is thin if the squared ratio of its height to its longest side is at most this.
 const TALL: f64 = 1.0 / 1000.0;
-/// Squared distances count as different above this many epsilon of all squared lengths. A nearest
-/// feature is certain if the centre has to move by the root of that to make another the nearest.
+/// Squared distances count as different if they differ by more than this many epsilons of all
+/// squared lengths. A nearest feature is certain if the centre would have to move by the root of
+/// that to change it.
 const CLEAR: f64 = 64.0;
-/// Kinds of corners follow those of sides.
+/// Kinds of corners start at this number, after the kinds of sides.
 const CORNER: f64 = 3.0;
-/// Lower bounds of distances are lowered by this many epsilon of all lengths.
+/// Lower bounds of distances are lowered by this many epsilons of all lengths.
 const ROUNDING: f64 = 128.0;
-/// A height counts as rounding if it is at most this many epsilon of all coordinates.
+/// Heights up to this many epsilons of all coordinates count as rounding.
 const HEIGHT: f64 = 64.0;
-/// A triangle's neighbours are searched in this many near packets before and after its own.
+/// Largest distance, in near packets before and after its own, in which neighbours of a triangle
+/// are searched.
 const MAX_APART: usize = 8;
 
 /// A ball among triangles.
 pub(crate) struct BallQuestion<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
-    /// Number of triangles; the rest of the last tile are copies.
+    /// Number of triangles; lanes of the last packet after them hold copies.
     pub(crate) count: usize,
     /// Centre of the ball in the frame of the triangles.
     pub(crate) center: Vector<N, 3>,
     pub(crate) radius: N,
-    /// Triangles farther than `limit` from the surface of the ball are skipped, and those whose
-    /// boxes do not overlap `within`.
+    /// Triangles farther than this from the surface of the ball are skipped, and those whose boxes
+    /// do not overlap `within`.
     pub(crate) limit: N,
     /// Box of interest, in the frame of the triangles.
     pub(crate) within: Aabb<N, 3>,
@@ -56,14 +57,14 @@ pub(crate) struct BallQuestion<'a, N: Real> {
 pub(crate) struct CandidateTriangles<N> {
     /// Lower bound of the distance from the centre to the triangles in the box; zero if unknown.
     pub(crate) from_middle: N,
-    /// For each packet with near triangles, in order: its index, and the bits of those that may be
-    /// within reach and of the hidden ones among them.
+    /// One entry for each packet with near triangles, in ascending order: its index, the bits of
+    /// the triangles within the limit, and the bits of the hidden ones among them.
     pub(crate) masks: SmallVec<[(usize, [u8; 2]); 8]>,
-    /// Squared distances of all hidden triangles are at least this; infinite if none is hidden.
+    /// Lower bound of the squared distances of all hidden triangles; infinite if none is hidden.
     pub(crate) hidden_from: N,
 }
 
-/// Finds the triangles near a ball; none counts as hidden unless `has_seams`.
+/// Finds the triangles near a ball. Unless `has_seams`, no triangle counts as hidden.
 pub(crate) fn candidate_triangles<N: Real>(
     question: &BallQuestion<'_, N>,
     has_seams: bool,
@@ -124,7 +125,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     candidates
 }
 
-/// Returns which of 8 triangles have boxes that overlap the box of the question.
+/// Returns the bits of those of 8 triangles whose boxes overlap the box of the question.
 #[inline(always)]
 fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -148,14 +149,15 @@ fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 struct NearestFeatures<N> {
     /// Index of the packet.
     block: usize,
-    /// Bit of each triangle that may be within reach.
+    /// Bits of the triangles that may be within the limit.
     mask: u8,
-    /// Bit of each triangle whose nearest point certainly lies on one of its sides or corners.
+    /// Bits of the triangles whose nearest point certainly lies on a side or corner.
     sides: u8,
     /// Nearest feature: a side by the index of its first corner, a corner by its index plus 3.
     kinds: [N; LANES],
-    /// Bounds of the squared distances; `most` is infinite for triangles that hide nothing.
+    /// Lower bounds of the squared distances.
     least: [N; LANES],
+    /// Upper bounds of the squared distances; infinite for triangles that hide nothing.
     most: [N; LANES],
 }
 
@@ -165,16 +167,18 @@ struct TrianglePacket<V> {
     corners: [[V; 3]; 3],
     /// Squared lengths of the sides, from each corner to the next.
     squares: [V; 3],
-    /// Coordinate of the centre along each side from its first corner, times the length of the
-    /// side.
+    /// Coordinate of the centre along each side, measured from its first corner, times the length
+    /// of the side.
     along: [V; 3],
-    /// Four times the squared area; and the barycentric coordinates of the centre's projection,
-    /// times that.
+    /// Four times the squared area.
     area: V,
+    /// Barycentric coordinates of the centre's projection, times `area`.
     shares: [V; 3],
-    /// Nearest points; their squared distances, and those of the farthest corners.
+    /// Nearest points to the centre.
     nearest: [V; 3],
+    /// Squared distances of the nearest points.
     squared: V,
+    /// Squared distances of the farthest corners.
     farthest: V,
 }
 
@@ -196,7 +200,7 @@ impl<V> TrianglePacket<V> {
         let (ab, bc, ca) = (minus(&b, &a), minus(&c, &b), minus(&a, &c));
         let squares = [dot(&ab, &ab), dot(&bc, &bc), dot(&ca, &ca)];
         let along = [-dot(&ab, &a), -dot(&bc, &b), -dot(&ca, &c)];
-        // Products of the two sides at the first corner, taken from that corner.
+        // Products of the two sides at the first corner, measured from that corner.
         let (turn, to_c) = (-dot(&ab, &ca), dot(&ca, &a));
         let area = squares[0] * squares[2] - turn * turn;
         let at_b = along[0] * squares[2] - to_c * turn;
@@ -261,8 +265,9 @@ impl<V> TrianglePacket<V> {
         (features, least)
     }
 
-    /// Returns lower bounds of the distances, by the planes through the nearest points
-    /// perpendicular to their directions, and the lanes where these are bounds; zero elsewhere.
+    /// Returns lower bounds of the distances, from the planes through the nearest points
+    /// perpendicular to their directions; zero in lanes without a bound. The mask has the lanes
+    /// with a bound.
     #[inline(always)]
     fn bound<S: Simd, N: Real>(&self, simd: S, size: V) -> (V, V::Mask)
     where
@@ -272,15 +277,15 @@ impl<V> TrianglePacket<V> {
         let low = dot(nearest, a).smaller(dot(nearest, b)).smaller(dot(nearest, c));
         let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
         let bound = low / length - slack;
-        // False for NaN and for values that have lost digits by underflow.
+        // False for NaN, and for values that have lost digits by underflow.
         let is_bound = bound.simd_gt(slack)
             & low.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
             & size.simd_lt(V::all(simd, N::MAX.sqrt()));
         (is_bound.select(bound, V::all(simd, N::ZERO)), is_bound)
     }
 
-    /// Returns the lanes whose triangles are neither thin nor small for their distance from the
-    /// origin.
+    /// Returns the lanes whose triangles are neither thin nor small relative to their distance from
+    /// the origin.
     #[inline(always)]
     fn is_tall<S: Simd, N: Real>(&self, simd: S, size: V, clear: V, away: N) -> V::Mask
     where
@@ -296,7 +301,7 @@ impl<V> TrianglePacket<V> {
     }
 
     /// Returns the side or corner nearest to the centre, and how far the centre is inside its
-    /// Voronoi region; not positive means unknown.
+    /// Voronoi region; if that is not positive, the feature is unknown.
     #[inline(always)]
     fn beside<S: Simd, N: Real>(&self, simd: S) -> (V, V)
     where
@@ -306,7 +311,7 @@ impl<V> TrianglePacket<V> {
         let root = [self.squares[0].sqrt(), self.squares[1].sqrt(), self.squares[2].sqrt()];
         let past = [self.along[0] / root[0], self.along[1] / root[1], self.along[2] / root[2]];
         let left = [root[0] - past[0], root[1] - past[1], root[2] - past[2]];
-        // Distances outside the sides, from the barycentric coordinate of the opposite corner.
+        // Distances outside of the sides, from the barycentric coordinate of the opposite corner.
         let outside = [
             -self.shares[2] / (area * root[0]),
             -self.shares[0] / (area * root[1]),
@@ -328,8 +333,8 @@ impl<V> TrianglePacket<V> {
     }
 }
 
-/// Returns whether a triangle that is not thin has the nearest side or corner of triangle `lane`,
-/// and is nearer to the centre.
+/// Returns whether some triangle that is not thin contains the nearest side or corner of triangle
+/// `lane`, and is nearer to the centre.
 #[inline(always)]
 fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -356,7 +361,7 @@ fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     false
 }
 
-/// Returns which triangles have a corner at a point.
+/// Returns the lanes whose triangles have a corner at a point.
 #[inline(always)]
 fn has_corner<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -381,7 +386,7 @@ fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     share: V,
 ) -> [V; 3] {
     let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
-    // A side without length is its start.
+    // A side without length counts as its start.
     let share = share.simd_gt(zero).select(share.smaller(one), zero);
     filled(
         #[inline(always)]

@@ -1,12 +1,12 @@
 //! Triangles of a surface against one solid, 8 at a time: boxes and hulls ([`axes`]), and balls
-//! ([`ball`]). And two triangles ([`pair`]).
+//! ([`ball`]); also two triangles ([`pair`]).
 //!
 //! For most triangles a surface needs only the touched side or corner; contacts along a face are
-//! computed again. A case is plain if a side and an edge cross well inside both, or if a single
-//! corner is nearest to a face and over its inside. Then the direction certainly gives the
-//! distance. All other triangles go to the separation of the pair. So do those whose distance
-//! differs from the prediction by rounding alone: for queries and manifolds alike, the separation
-//! decides whether a pair is within.
+//! computed later. A case is plain if a side and an edge cross well inside both, or if a single
+//! corner is nearest to a face and projects into its inside. Then the direction gives the distance
+//! for certain. All other triangles are passed to the separation of the pair. So are triangles
+//! whose distance differs from the prediction only by rounding, because the separation decides, for
+//! queries and manifolds alike, whether a pair is within the prediction.
 //!
 //! ```text
 //!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `masks`: bits of the selected ones
@@ -31,16 +31,17 @@ use crate::math::simd::Level;
 use crate::math::{Mapped, Pose, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Kind};
 
-/// A side and an edge cross well inside both if the crossing is farther than this share from all
-/// ends.
+/// Smallest distance of a crossing from all ends, relative to the lengths, at which a side and an
+/// edge cross well inside both.
 const INSIDE: f64 = 1.0 / 256.0;
-/// Least squared sine of the angle between the two.
+/// Smallest squared sine of the angle between side and edge of a plain case.
 const MIN_SINE: f64 = 1.0 / 1024.0;
-/// Least ratio of height to longest side: in a thinner triangle another side may be as near.
+/// Smallest ratio of height to longest side of a plain case; in a thinner triangle another side may
+/// be as near.
 const TALL: f64 = 1.0 / 32.0;
-/// `CLEAR`: one corner is nearest if the others are farther by this many times rounding. `LONG`: a
-/// side below this many times rounding in length is too short to decide.
+/// One corner is nearest if the others are farther by this many rounding errors.
 const CLEAR: f64 = 64.0;
+/// Smallest length of a side, in rounding errors, that decides.
 const LONG: f64 = 8192.0;
 
 /// Returns the rounding error of arithmetic on numbers of size 2.
@@ -48,12 +49,12 @@ fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
-/// A subset of the triangles of many tiles.
+/// A selection of the triangles of many packets.
 pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
-    /// For each tile the bits of the selected triangles.
+    /// For each packet the bits of the selected triangles.
     pub(crate) masks: &'a [u8],
-    /// Origin that the triangles are taken relative to.
+    /// Origin that the triangles are translated to.
     pub(crate) origin: Vector<N, 3>,
 }
 
@@ -62,17 +63,18 @@ pub(crate) struct TiledTriangles<'a, N: Real> {
 pub(crate) struct TriangleGap<N: Real> {
     /// Signed distance along the normal.
     pub(crate) distance: N,
-    /// Unit, from the triangle to the solid.
+    /// Unit vector from the triangle to the solid.
     pub(crate) normal: Vector<N, 3>,
-    /// The nearest side or corner of the triangle; `None` if the normal is that of the triangle.
+    /// Nearest side or corner of the triangle; `None` if `normal` is the normal of the triangle.
     pub(crate) touched: Option<FeatureId>,
 }
 
-/// Receives the index of a triangle among the selected ones, and its gap if the case is plain.
+/// Callback: receives the index of a triangle among the selected ones, and its gap, or `None` if
+/// the case is not plain.
 pub(crate) type GapVisitor<'v, N> = &'v mut dyn FnMut(usize, Option<&TriangleGap<N>>);
 
 impl<N: Real> TiledTriangles<'_, N> {
-    /// Tile and lane of each selected triangle.
+    /// Returns packet and lane of each selected triangle, in order.
     fn slots(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
         let all = self.tiles.iter().zip(self.masks);
         all.flat_map(move |(tiles, mask)| {
@@ -81,10 +83,10 @@ impl<N: Real> TiledTriangles<'_, N> {
     }
 }
 
-/// Visits the triangles that are not certainly farther than `limit` from a solid, with the gap
-/// where the case is plain. The solid lies at `pose12` in the frame of the triangles, relative to
-/// their origin. Returns `false` for solids without a kernel here. `limit` is `prediction` plus
-/// what turning adds to it.
+/// Visits the triangles that are not certainly farther than `limit` from a solid, with the gap if
+/// the case is plain. `pose12` is the pose of the solid in the frame of the triangles, relative to
+/// their origin. Returns `false`, without a visit, for solids without a kernel here. `limit` is
+/// `prediction` plus the distance that turning adds.
 pub(crate) fn gaps3<N: Real>(
     parts: &TiledTriangles<'_, N>,
     solid: Kind<'_, N, 3>,
@@ -100,12 +102,13 @@ pub(crate) fn gaps3<N: Real>(
     true
 }
 
-/// Triangles against one solid.
+/// A query of triangles near one solid.
 struct TriangleQuery<'a, N: Real> {
     parts: &'a TiledTriangles<'a, N>,
     solid: &'a Polyhedral<'a, N>,
     pose12: &'a Pose<N, 3>,
-    /// Distance up to which contacts are asked for; close to it a case is not plain.
+    /// Distance up to which contacts are wanted; a gap that differs from it by rounding is not
+    /// plain.
     prediction: N,
     /// Triangles farther than this are skipped.
     limit: N,
@@ -134,7 +137,7 @@ impl<N: Real> TriangleQuery<'_, N> {
         }
     }
 
-    /// Returns the gap along the axis of a triangle, if the case is plain.
+    /// Returns the gap along the axis of a triangle; `None` if the case is not plain.
     fn certain_gap(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<TriangleGap<N>> {
         let triangle = PlacedTriangle {
             corners: axes.corners.each_ref().mapped(|corner| of_lane(corner, lane)),
@@ -164,7 +167,7 @@ fn of_lane<N: Real>(rows: &[[N; LANES]; 3], lane: usize) -> Vector<N, 3> {
 /// A triangle in the frame of a solid, in units of the pair.
 struct PlacedTriangle<'a, N: Real> {
     corners: [Vector<N, 3>; 3],
-    /// Unit, from the triangle to the solid.
+    /// Unit vector from the triangle to the solid.
     normal: Vector<N, 3>,
     shrink: N,
     solid: &'a Polyhedral<'a, N>,
@@ -175,16 +178,16 @@ impl<N: Real> PlacedTriangle<'_, N> {
         self.solid.vertex(vertex as usize) * self.shrink
     }
 
-    /// Returns a side of the triangle if it crosses an edge of the solid well inside both. The two
-    /// are separated along their common perpendicular. `None` also for thin triangles and short
-    /// sides.
+    /// Returns the side of the triangle with index `side`, if it crosses the edge of the solid well
+    /// inside both; the two are separated along their common perpendicular. `None` otherwise, and
+    /// for thin triangles and short sides.
     fn crossing(&self, edge: usize, side: usize) -> Option<FeatureId> {
         let [from, to] = self.solid.edges[edge].vertices.mapped(|end| self.vertex(end));
         let start = &self.corners[side];
         let edge = self.corners[(side + 1) % 3] - start;
         let third = self.corners[(side + 2) % 3] - start;
         let (along, arm) = (to - from, start - from);
-        // Parameters of the nearest points of two lines, times the determinant.
+        // Parameters of the nearest points of the two lines, multiplied by the determinant.
         let (own, other, both) = (edge.norm_squared(), along.norm_squared(), edge.dot(&along));
         let (on_edge, on_along) = (edge.dot(&arm), along.dot(&arm));
         let det = own * other - both * both;
@@ -194,7 +197,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
             share1 > margin && share1 < det - margin && share2 > margin && share2 < det - margin;
         let longest = max(own, max(third.norm_squared(), (third - edge).norm_squared()));
         let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * rounding_error::<N>());
-        // Written so that NaN is not plain.
+        // Written so that NaN is not a plain case.
         let is_certain = is_inside
             && det > N::lit(MIN_SINE) * own * other
             && own > long * long
@@ -202,8 +205,8 @@ impl<N: Real> PlacedTriangle<'_, N> {
         is_certain.then(|| FeatureId::Edge([0, 1, 2][side]))
     }
 
-    /// Returns the corner of the triangle that alone is nearest to a face of the solid and over its
-    /// inside.
+    /// Returns the corner of the triangle nearest to a face of the solid, if no other corner is
+    /// about as near and it projects into the face's inside; else `None`.
     fn corner_over(&self, face: usize) -> Option<FeatureId> {
         let outward = -self.normal;
         let heights = self.corners.each_ref().mapped(|corner| outward.dot(corner));

@@ -1,9 +1,10 @@
 //! Two triangles in 3D that overlap or nearly touch: the separating axis test.
 //!
 //! The Minkowski difference of two triangles has the faces of both, and a parallelogram for each
-//! pair of sides whose arcs cross on the Gauss map. The face nearest to the origin is the shortest
-//! way out of an overlap (Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC
-//! 2013). The Gauss map of a triangle has two poles, its normals, and a half circle for each side:
+//! pair of sides whose arcs cross on the Gauss map. If the triangles overlap, the shortest
+//! separating translation is along the normal of the face nearest to the origin (Gregorius, "The
+//! Separating Axis Test between Convex Polyhedra", GDC 2013). The Gauss map of a triangle has two
+//! poles, its normals, and a half circle for each side:
 //!
 //! ```text
 //!              +n1                 side i of the first and side j of the second make a face iff
@@ -13,9 +14,9 @@
 //!              -n1
 //! ```
 //!
-//! A result counts if its two points lie on the features that the axis belongs to. All others are
-//! left to [`hulls`]: thin triangles, sides that are almost parallel, and separated triangles with
-//! nearest points at corners.
+//! A result is accepted if its two points lie on the features that the axis belongs to. All other
+//! cases fall back to [`hulls`]: thin triangles, nearly parallel sides, and separated triangles
+//! with nearest points at corners.
 
 use crate::collide::Pair;
 use crate::collide::separation::hulls::{self, THIN};
@@ -24,16 +25,18 @@ use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min};
 use crate::shape::{Kind, SupportMap, Triangle};
 
-/// The sine below which two sides count as parallel, in units of epsilon: their face of the
-/// Minkowski difference is narrower than rounding error.
+/// Sine of the angle below which two sides count as parallel, in units of epsilon: their face of
+/// the Minkowski difference is narrower than rounding errors.
 const PARALLEL: f64 = 16.0;
-/// The sine below which the direction across two sides is inexact, by up to 32 rounding units.
+/// Sine of the angle below which the common perpendicular of two sides is inexact, by up to 32
+/// rounding units.
 const MIN_SINE: f64 = 1.0 / 32.0;
 
-/// Returns the separation of two triangles: the shortest way out of an overlap, or the distance.
+/// Returns the separation of two triangles: the shortest separating translation if they overlap,
+/// else the distance.
 ///
-/// The normal of the first triangle is preferred to that of the second, and both to directions
-/// across two sides, unless the gap there is larger by more than rounding error.
+/// The normal of the first triangle is preferred to that of the second, and both to common
+/// perpendiculars of two sides, unless another gap is larger by more than rounding error.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (Kind::Triangle(first), Kind::Triangle(second)) = (pair.first, pair.second) else {
         return hulls::separation(pair, limit);
@@ -46,7 +49,7 @@ pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     }
 }
 
-/// The result of the test.
+/// Result of the separating axis test.
 enum Axes<N: Real> {
     /// The triangles are farther apart than the limit.
     Beyond,
@@ -91,20 +94,20 @@ fn by_axes<N: Real>(triangles: [&Triangle<N, 3>; 2], pose12: &Pose<N, 3>, limit:
     }
 }
 
-/// A triangle in the frame of the first, in units of the pair.
+/// A triangle in the frame of the first triangle, in units of the pair.
 struct PlacedTriangle<N: Real> {
     corners: [Vector<N, 3>; 3],
-    /// From each corner to the next.
+    /// Vectors from each corner to the next.
     sides: [Vector<N, 3>; 3],
     /// The squared lengths of the sides.
     squared: [N; 3],
-    /// Unit; the corners run counter-clockwise about it.
+    /// Unit normal; seen from its tip, the corners run counter-clockwise.
     normal: Vector<N, 3>,
 }
 
 impl<N: Real> PlacedTriangle<N> {
-    /// Takes a triangle in its own frame; `None` if it is thin, or lower than rounding error of the
-    /// pair.
+    /// Scales a triangle in its own frame; `None` if it is thin, or its height is within the
+    /// rounding error of the pair.
     fn new(triangle: &Triangle<N, 3>, shrink: N) -> Option<Self> {
         let corners = triangle.corners().mapped(|corner| corner.coords * shrink);
         let [a, b, c] = &corners;
@@ -129,8 +132,8 @@ impl<N: Real> PlacedTriangle<N> {
         }
     }
 
-    /// Whether the foot of a point on the plane of the triangle lies in the triangle, within
-    /// rounding error.
+    /// Returns whether the projection of a point onto the triangle's plane lies in the triangle, up
+    /// to rounding error.
     fn is_over(&self, point: &Vector<N, 3>) -> bool {
         let rounding_error = hulls::rounding_error::<N>();
         (0..3).all(|side: usize| {
@@ -142,19 +145,18 @@ impl<N: Real> PlacedTriangle<N> {
     }
 }
 
-/// The normal of one triangle, or its opposite, whichever has the larger gap.
+/// The normal of one triangle or its opposite, whichever gives the larger gap.
 struct FaceAxis<N: Real> {
-    /// The height of the other triangle above the plane of this one; negative where it extends
-    /// below.
+    /// Signed height of the other triangle above this one's plane; negative if it extends below.
     gap: N,
-    /// Unit, to the side of the other triangle.
+    /// Unit normal on the side of the other triangle.
     outward: Vector<N, 3>,
-    /// The heights of the other's corners above the plane.
+    /// Heights of the other triangle's corners above the plane.
     heights: [N; 3],
 }
 
 impl<N: Real> FaceAxis<N> {
-    /// Takes the direction with the larger gap, the front in a tie.
+    /// Chooses the direction with the larger gap, the front normal in a tie.
     fn new(own: &PlacedTriangle<N>, other: &PlacedTriangle<N>) -> Self {
         let up = other.corners.mapped(|corner| own.normal.dot(&(corner - own.corners[0])));
         let (low, high) = (min(min(up[0], up[1]), up[2]), max(max(up[0], up[1]), up[2]));
@@ -165,8 +167,8 @@ impl<N: Real> FaceAxis<N> {
         }
     }
 
-    /// Returns the first of the lowest corners of the other triangle that lies over this one, after
-    /// its foot on this one.
+    /// Returns the first of the lowest corners of the other triangle that projects into this one,
+    /// preceded by its projection. `None` if there is none.
     fn points(
         &self,
         own: &PlacedTriangle<N>,
@@ -178,8 +180,8 @@ impl<N: Real> FaceAxis<N> {
         Some([corner - self.outward * self.gap, *corner])
     }
 
-    /// Returns the separation by a point `own` of the triangle with this face and a point `other`
-    /// of the other. `is_second` says that the face belongs to the second triangle.
+    /// Returns the separation at a point `own` of the triangle with this face and a point `other`
+    /// of the other triangle. `is_second` says whether the face belongs to the second triangle.
     fn found(&self, is_second: bool, own: Vector<N, 3>, other: Vector<N, 3>) -> Separation<N, 3> {
         let (normal, points) =
             if is_second { (-self.outward, [other, own]) } else { (self.outward, [own, other]) };
@@ -188,18 +190,19 @@ impl<N: Real> FaceAxis<N> {
     }
 }
 
-/// The direction across one side of each triangle.
+/// Common perpendicular of one side of each triangle.
 struct EdgeAxis<N: Real> {
     gap: N,
     sides: [usize; 2],
-    /// From the first triangle to the second; its length is `length`.
+    /// Vector from the first triangle to the second; its length is `length`.
     across: Vector<N, 3>,
     length: N,
 }
 
 impl<N: Real> EdgeAxis<N> {
-    /// Returns the axis with the largest gap among those of faces of the Minkowski difference, and
-    /// an upper bound of the gaps of the inexact ones.
+    /// Returns the common perpendicular with the largest gap among the pairs of sides that form a
+    /// face of the Minkowski difference, and an upper bound of the gaps along inexact
+    /// perpendiculars.
     fn best(first: &PlacedTriangle<N>, second: &PlacedTriangle<N>) -> (Self, N) {
         let falls = second.sides.mapped(|side| side.dot(&first.normal) < N::ZERO);
         let rises = first.sides.mapped(|side| side.dot(&second.normal) > N::ZERO);
@@ -228,8 +231,8 @@ impl<N: Real> EdgeAxis<N> {
         (best, inexact)
     }
 
-    /// Returns the separation by the nearest points of the lines along both sides; `None` if one is
-    /// not on its side.
+    /// Returns the separation at the nearest points of the lines through both sides; `None` if one
+    /// of the points is not on its side.
     fn points(
         &self,
         first: &PlacedTriangle<N>,

@@ -6,34 +6,34 @@ use crate::math::lanes::{dot, either_mask, lit};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
-/// Direction of the largest gap of each pair.
+/// Separating axis of each pair, perpendicular to one side of a box, and the gap along it.
 pub(super) struct BestSide<V, M> {
-    /// The side belongs to the second box.
+    /// Lanes where the side belongs to the second box.
     pub(super) is_second: M,
-    /// It is perpendicular to the second axis of its box.
+    /// Lanes where the side is perpendicular to the y axis of its box, else to the x axis.
     pub(super) is_y: M,
-    /// Unit vector from the first box to the second.
+    /// Unit vector from the first box to the second, in the frame of the first.
     pub(super) normal: [V; 2],
-    /// Signed distance along the normal.
+    /// Signed distance along the normal; negative for an overlap.
     pub(super) gap: V,
-    /// Rounding error of lengths of the pair.
+    /// Upper bound of the rounding error of a length of this pair.
     pub(super) rounding_error: V,
-    /// The sum of all numbers of the pose is finite.
+    /// Lanes where the pose is finite.
     pub(super) is_finite: M,
 }
 
-/// The side of one box with the larger gap.
+/// Axis of one box along which the gap is largest.
 struct AxisSide<V, M> {
-    /// Signed distance along the best axis of the box.
+    /// Signed distance along the axis; negative for an overlap.
     gap: V,
-    /// It is the box's second axis.
+    /// Lanes where the axis is the y axis of the box, else the x axis.
     is_y: M,
-    /// The other box is on the positive side of the axis.
+    /// Lanes where the normal from the first box to the second points along the axis.
     is_positive: M,
 }
 
 impl<V> Boxes<V, 2> {
-    /// Rounding error of lengths of each pair.
+    /// Returns an upper bound of the rounding error of a length of each pair.
     #[inline(always)]
     fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where
@@ -45,7 +45,7 @@ impl<V> Boxes<V, 2> {
         lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * size
     }
 
-    /// Returns the direction of the largest gap, as `Rectangles::best_axis` does for one pair.
+    /// Returns the axis with the largest gap, with the bits of `Rectangles::best_axis`.
     #[inline(always)]
     pub(super) fn best_side<S: Simd, N: Real, M>(&self, simd: S) -> BestSide<V, M>
     where
@@ -71,8 +71,8 @@ impl<V> Boxes<V, 2> {
         BestSide { is_second, is_y, normal, gap, rounding_error, is_finite }
     }
 
-    /// Returns the best side of each box; of equal gaps the one that comes first in the box's
-    /// outline.
+    /// Returns the best axis of each box. Of equal gaps, the side that comes first in the box's
+    /// outline wins.
     #[inline(always)]
     fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (AxisSide<V, M>, AxisSide<V, M>)
     where
@@ -90,8 +90,8 @@ impl<V> Boxes<V, 2> {
             |i| t[i].abs() - self.half1[i] - extent2[i],
         );
         let is = [t[0].simd_ge(zero), t[1].simd_gt(zero)];
-        // Ties go by the outline: below, right, above, left. So x is first only for right and
-        // above.
+        // Ties go by the order in the outline: below, right, above, left. So x wins only if its
+        // side is the right one and that of y the upper one.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & !(is[0] & is[1]));
         let first = side(gaps, is_y, is);
         let offset2 = [dot(&r[0], t), dot(&r[1], t)];
@@ -100,13 +100,14 @@ impl<V> Boxes<V, 2> {
             |j| offset2[j].abs() - self.half2[j] - dot(&abs_rotation[j], &self.half1),
         );
         let is = [offset2[0].simd_gt(zero), offset2[1].simd_ge(zero)];
-        // The side of the second box is opposite to the normal: x is first only for left and below.
+        // The side of the second box is opposite to the normal: x wins only if its side is right
+        // and that of y above.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & (is[0] | is[1]));
         (first, side(gaps, is_y, is))
     }
 }
 
-/// Selects the side on the second axis where `is_y`.
+/// Selects the gap and sign of the y axis in the lanes of `is_y`, else of the x axis.
 #[inline(always)]
 fn side<S: Simd, V: Wide<S, Mask = M>, M: SimdMask<S>>(
     gaps: [V; 2],

@@ -12,19 +12,21 @@ use crate::collide::batch::boxes::choose::SlotFeatures;
 use crate::math::Real;
 use crate::shape::FeatureId;
 
-/// Features of a side: the side, its end on the negative side of its axis, and its other end.
+/// Features of one side: the side itself, its end at the negative coordinate, its end at the
+/// positive one.
 type PartFeatures = [FeatureId; 3];
 
-/// Sides of a box, by axis across them plus 2 on the positive side.
+/// Features of the four sides of a box, indexed by the axis across the side, plus 2 if it is on the
+/// positive side.
 static SIDES: [PartFeatures; 4] =
     [parts(0, false), parts(1, false), parts(0, true), parts(1, true)];
 
-/// Returns the vertex with these signs: of the coordinate on `axis`, and of the other coordinate.
+/// Returns the vertex with the given signs of its coordinates, on `axis` and on the other axis.
 const fn vertex(axis: usize, is_positive: bool, other_is_positive: bool) -> FeatureId {
     FeatureId::Vertex((is_positive as u32) << axis | (other_is_positive as u32) << (1 - axis))
 }
 
-/// Returns the side perpendicular to an axis.
+/// Returns the side perpendicular to `axis`, at the positive or negative coordinate.
 const fn side(axis: usize, is_positive: bool) -> FeatureId {
     FeatureId::Face(2 * (axis == 1) as u32 + !is_positive as u32)
 }
@@ -33,15 +35,14 @@ const fn parts(axis: usize, is_positive: bool) -> PartFeatures {
     [side(axis, is_positive), vertex(axis, is_positive, false), vertex(axis, is_positive, true)]
 }
 
-/// Returns the index of the part with this id.
+/// Returns the index in `parts` of the feature `id`; `None` if it belongs to another side.
 #[inline(always)]
 fn part(parts: &PartFeatures, id: FeatureId) -> Option<usize> {
     let end = usize::from(id == parts[1]) + 2 * usize::from(id == parts[2]);
     (id == parts[end]).then_some(end)
 }
 
-/// Names of the slots of one pair: the byte `LaneSides::sides`, and two bits for each slot that say
-/// whether it is at the first or the second end of the other side.
+/// Features of the slots of one pair, decoded from the masks of the kernel.
 #[derive(Clone, Copy)]
 pub(super) struct SideFeatures {
     /// Byte of the pair in `LaneSides::sides`.
@@ -50,14 +51,16 @@ pub(super) struct SideFeatures {
     pub(super) at_ends: u8,
 }
 
-/// The bits of the sides that a code holds, and their positions in it; bit 31 of every code is set.
+/// Mask of the bits of `sides` that a code holds. Below: the positions of `at_end` and `sides` in a
+/// code, and bit 31, which every code has set.
 const SIDE_BITS: u8 = 63;
 const AT_END_AT: u32 = 5;
 const SIDES_AT: u32 = 7;
 const MARK: u32 = 1 << 31;
 
 impl SideFeatures {
-    /// Returns 0 for a slot beside the other side's inside, 1 at its first end, 2 at its second.
+    /// Returns 0 for a slot between the ends of the other side, 1 at its first end, 2 at its
+    /// second.
     #[inline(always)]
     const fn at_end(self, slot: usize) -> u8 {
         self.at_ends >> (2 * slot) & 3
@@ -73,7 +76,8 @@ impl SideFeatures {
         &SIDES[usize::from(self.sides >> 2 & 3)]
     }
 
-    /// Maps an end of the upper side from the order of places to the order of its box, or back.
+    /// Maps the index of an end of the upper side from tangent order to the order of its box, or
+    /// back. The side itself (0) stays 0.
     #[inline(always)]
     const fn reordered(self, part: usize) -> usize {
         if self.sides & 32 != 0 && part != 0 { 3 - part } else { part }

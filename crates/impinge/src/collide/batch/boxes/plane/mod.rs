@@ -27,29 +27,32 @@ use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
-/// Slots: the ends of the upper side, the one with the smaller place first, and of the lower side.
+/// Number of slots: two ends of the upper side, by coordinate along the lower, then two of the
+/// lower side.
 const SLOTS: usize = 4;
 
 /// Results of the kernel for `L` pairs.
 pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     slots: Slots<N, 2, SLOTS, L>,
-    /// Signed distance of the boxes.
+    /// Signed distance of the boxes; negative for an overlap.
     gap: [N; L],
     /// Lengths up to this are rounding errors.
     tolerance: [N; L],
     /// Half the diagonal of the smaller box.
     size: [N; L],
-    /// Unit, from the first box to the second, in the frame of the first.
+    /// Unit normal from the first box to the second, in the frame of the first.
     normal: [[N; L]; 2],
-    /// Masks, after `turn` a byte for each pair: the axis across the lower side is the second; that
-    /// side is on its positive side; both for the upper side, in its own box; the lower side is the
-    /// second box's; the upper side's first end is on the positive side of its box; beyond the
-    /// prediction; slots filled.
+    /// Flags of the pairs, in the order of the figure: before `turn` one mask per flag, after it
+    /// one byte per pair. Lanes where: the lower side is across y; it is at the positive
+    /// coordinate; the upper side is across the y axis of its box; it is at the positive
+    /// coordinate; the lower side is the second box's; the upper ends are swapped; the pair is
+    /// beyond the prediction; slots are filled.
     sides: [u8; 8],
-    /// Two masks for each slot: at the first end of the other side, and at the second.
+    /// Two masks for each slot: lanes where it is at the first end of the other side, and at the
+    /// second. After `turn`, one byte per pair.
     at_ends: [u8; 2 * SLOTS],
-    /// Byte of each pair: in the low half the filled slots, in the high half those with the
-    /// smallest distance.
+    /// One byte per pair: in the low half the filled slots, in the high half the slots whose height
+    /// is the gap, up to rounding.
     filled: [u8; 8],
 }
 
@@ -110,7 +113,8 @@ impl<N: Real> Batch<N, 2> for Boxes2 {
 }
 
 impl<N: Real, const L: usize> LaneSides<N, L> {
-    /// Runs the kernel: axis, sides, slots. Lanes beyond the prediction stop after the axis.
+    /// Runs the kernel: axis, sides, slots. Returns after the axis if no lane of the batch is a
+    /// candidate.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -120,7 +124,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         let is_apart = bits(is_apart & axis.is_finite);
         let is_candidate = bits(is_near) & inputs.is_usable;
-        // Valid for batches that end here.
+        // These flags hold if the kernel returns after the axis.
         self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
         if is_candidate == 0 {
             return;
@@ -154,7 +158,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         );
     }
 
-    /// Transposes masks of all pairs into a byte for each pair.
+    /// Transposes the masks of the batch into one byte for each pair.
     #[inline(always)]
     fn turn(&mut self) {
         let [a, b, c, d] = self.slots.valid;
@@ -163,7 +167,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         (self.sides, self.at_ends) = (per_pair(self.sides), per_pair(self.at_ends));
     }
 
-    /// Replaces the manifold of one pair; returns `false` if it has to fall back.
+    /// Replaces the manifold of the pair in `lane`; returns `false` if it has to fall back.
     #[inline(always)]
     fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
         let features = SideFeatures { sides: self.sides[lane], at_ends: self.at_ends[lane] };

@@ -1,9 +1,9 @@
 //! The reference side and the incident side of `L` pairs, and the ends of their overlap.
 //!
-//! The side of the separating axis test is an interval along an axis of its own box (the lower
-//! side). The most aligned side of the other box is a tilted one above it (the upper side). The
-//! contact points are the ends of their overlap. If the upper side is tilted too far, only its
-//! lower end counts: the corner that faces the other box.
+//! The lower side is the side of the separating axis, an interval along an axis of its own box. The
+//! upper side is the side of the other box most aligned with it; it may be tilted. The contact
+//! points are the ends of their overlap interval. If the upper side is tilted too far, only its
+//! lower end is used: the corner that faces the other box.
 //!
 //! ```text
 //!      height |    *-- ends[1]               place: coordinate along the lower side, origin in its
@@ -22,34 +22,38 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 use crate::shape::FACING_SINE_SQUARED;
 
-/// A side of a box, and the side of the other box above it, in the frame of the lower side's box.
+/// The lower side of each pair, and the upper side in the frame of the lower side's box.
 pub(super) struct BoxSides<V, M> {
-    /// Lanes where the axis across the lower side is the second; and where it is on the positive
-    /// side.
+    /// Lanes where the axis across the lower side is y.
     pub(super) is_y: M,
+    /// Lanes where the lower side is at the positive coordinate of that axis.
     pub(super) is_upward: M,
-    /// Coordinate of the lower side on that axis, and half its length.
+    /// Coordinate of the lower side on the axis across it.
     level: V,
+    /// Half the length of the lower side.
     half: V,
-    /// As `is_y` and `is_upward`, for the upper side in its own box.
+    /// Lanes where the axis across the upper side is the y axis of the upper box.
     pub(super) is_own_y: M,
+    /// Lanes where the upper side is at the positive coordinate of that axis.
     pub(super) is_positive: M,
-    /// Lanes where the end with the smaller place is on the positive side of the upper box.
+    /// Lanes where the end of the upper side with the smaller `coordinate` is at the positive end,
+    /// in the frame of the upper box.
     pub(super) is_reversed: M,
-    /// Ends of the upper side, the one with the smaller place first.
+    /// Ends of the upper side, in the order of their coordinates along the lower side.
     ends: [End<V>; 2],
-    /// Length of the upper side along the lower one.
+    /// Length of the upper side projected onto the lower one.
     length: V,
-    /// Lanes where the upper side is tilted too far; where its second end faces the other box.
+    /// Lanes where the upper side is tilted too far, so that only its lower end is used.
     is_corner: M,
+    /// Lanes where the second of `ends` is the one that faces the lower box.
     is_second_lower: M,
     /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
-    /// Lanes where neither side is too short.
+    /// Lanes where neither side is too short: both exceed 8 tolerances along the lower side.
     pub(super) is_fit: M,
 }
 
-/// A point by its place along the lower side and its height above it.
+/// A point, in coordinates of the lower side.
 #[derive(Clone, Copy)]
 struct End<V> {
     /// Coordinate along the lower side, zero at its middle.
@@ -58,23 +62,25 @@ struct End<V> {
     height: V,
 }
 
-/// An end of one side, compared with the other side.
+/// An end of one side, compared with the interval of the other side.
 struct SideCandidate<V, M> {
     end: End<V>,
-    /// It lies beside the other side's inside or its ends, up to rounding.
+    /// Lanes where `end` is within the other side's interval, or outside by at most twice the
+    /// tolerance.
     is_inside: M,
-    /// Lanes where it is at the first end of the other side, and at the second.
+    /// Lanes where `end` is at the first end of the other side, and at the second, up to the
+    /// tolerance.
     at_end: [M; 2],
 }
 
-/// Selects the coordinate on the first axis, or on the second where `is_y`.
+/// Selects the y coordinate in the lanes of `is_y`, else the x coordinate.
 #[inline(always)]
 fn on<S: Simd, V: Wide<S>>(is_y: V::Mask, v: &[V; 2]) -> V {
     is_y.select(v[1], v[0])
 }
 
 impl<V, M> BoxSides<V, M> {
-    /// Finds both sides from the separating axis.
+    /// Finds the lower side from the separating axis, and the upper side above it.
     #[inline(always)]
     pub(super) fn of_axis<S: Simd, N: Real>(
         simd: S,
@@ -118,8 +124,8 @@ impl<V, M> BoxSides<V, M> {
         }
     }
 
-    /// Fills the slots with the ends of the overlap. Returns two masks for each slot: at the first
-    /// end of the other side, and at the second.
+    /// Fills the slots with the ends of the overlap interval. Returns two masks for each slot:
+    /// lanes where it is at the first end of the other side, and at the second.
     #[inline(always)]
     pub(super) fn share<S: Simd, N: Real, const L: usize>(
         &self,
@@ -135,7 +141,7 @@ impl<V, M> BoxSides<V, M> {
         above[0].is_inside &= !self.is_corner | !self.is_second_lower;
         above[1].is_inside &= !self.is_corner | self.is_second_lower;
         let mut below = [self.below(simd, -self.half), self.below(simd, self.half)];
-        // Where ends of both sides coincide, the upper one is already a candidate.
+        // Where ends of both sides coincide, the slot of the upper end holds the candidate.
         for (end, found) in below.iter_mut().enumerate() {
             found.is_inside &= !self.is_corner;
             for (other, known) in above.iter().enumerate() {
@@ -153,9 +159,10 @@ impl<V, M> BoxSides<V, M> {
         at_ends
     }
 
-    /// Returns the point on the first box, in its frame, of a place and a height. A lower side of
-    /// the second box lies below the point by the height; the point is transformed as `Pose::point`
-    /// does.
+    /// Returns the point on the first box, in the frame of the first, for a `coordinate` along the
+    /// lower side and a `height` above it. If the lower side is the second box's (`is_second`), the
+    /// point lies on the upper side, at `height`; it is transformed with the rounding of
+    /// `Pose::point`.
     #[inline(always)]
     pub(super) fn point1<S: Simd, N: Real>(
         &self,
@@ -182,7 +189,7 @@ impl<V, M> BoxSides<V, M> {
         )
     }
 
-    /// Compares an end of the upper side with the lower one.
+    /// Compares end `end` of the upper side with the lower side.
     #[inline(always)]
     fn above<S: Simd, N: Real>(&self, simd: S, end: usize) -> SideCandidate<V, M>
     where
@@ -193,7 +200,7 @@ impl<V, M> BoxSides<V, M> {
         self.beside(simd, end, end.coordinate + self.half, self.half + self.half)
     }
 
-    /// Compares an end of the lower side with the upper one.
+    /// Compares the point of the lower side at `coordinate` with the upper side.
     #[inline(always)]
     fn below<S: Simd, N: Real>(&self, simd: S, coordinate: V) -> SideCandidate<V, M>
     where
@@ -208,7 +215,8 @@ impl<V, M> BoxSides<V, M> {
         self.beside(simd, End { coordinate, height }, along, self.length)
     }
 
-    /// Compares an end with the other side, of the given length, at the coordinate `along` on it.
+    /// Compares a point with a side of the given length, on which it has the coordinate `along`,
+    /// measured from its first end.
     #[inline(always)]
     fn beside<S: Simd, N: Real>(
         &self,
@@ -229,9 +237,9 @@ impl<V, M> BoxSides<V, M> {
     }
 }
 
-/// The side of the other box that is most aligned with the lower one.
+/// The upper side: the side of the other box that is most aligned with the lower one.
 struct Upper<V, M> {
-    /// Masks and ends as in [`BoxSides`].
+    /// Fields as in [`BoxSides`]; `is_aligned` is the negation of `is_corner`.
     is_own_y: M,
     is_positive: M,
     is_reversed: M,
@@ -265,7 +273,7 @@ impl<V, M> Upper<V, M> {
         );
         let is_own_y = facing[1].abs().simd_gt(facing[0].abs());
         let (across, sine) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
-        // The limit of supporting features: `FACING_SINE_SQUARED`.
+        // Tilt limit of the supporting features: `FACING_SINE_SQUARED`.
         let is_aligned = (sine * sine).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
         let zero = V::all(simd, N::ZERO);
         let is_positive = across.simd_gt(zero);
@@ -292,7 +300,7 @@ impl<V, M> Upper<V, M> {
         );
         let is_reversed = far.coordinate.simd_lt(near.coordinate);
         let ends = [in_order(is_reversed, far, near), in_order(is_reversed, near, far)];
-        // Both hold, or neither: the far end faces the other box, the ends are exchanged.
+        // The sine's sign selects the lower end in box order; swapped ends invert the selection.
         let is_second_lower = is_reversed ^ !sine.simd_lt(zero);
         Self { is_own_y, is_positive, is_reversed, ends, is_second_lower, is_aligned }
     }

@@ -5,25 +5,26 @@ use crate::math::lanes::{dot, lit};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
-/// Direction of the largest gap of each pair.
+/// Separating axis of each pair, across a face or across two edges, and the gap along it.
 pub(super) struct BestAxis<V, M> {
-    /// Index of the axis that the best face is perpendicular to, as a number of the scalar type.
+    /// Index of the axis that the best face is perpendicular to, as a value of the scalar type.
     pub(super) face: V,
-    /// The face belongs to the second box, and no edges are better.
+    /// Lanes where the separating axis is across a face of the second box.
     pub(super) is_second: M,
-    /// Edges are better than any face.
+    /// Lanes where the separating axis is across two edges, one of each box.
     pub(super) is_edges: M,
-    /// Unit vector from the first box to the second.
+    /// Unit vector from the first box to the second, in the frame of the first.
     pub(super) normal: [V; 3],
-    /// Signed distance along the normal.
+    /// Signed distance along the normal; negative for an overlap.
     pub(super) gap: V,
-    /// Rounding error of lengths of the pair.
+    /// Upper bound of the rounding error of a length of this pair.
     pub(super) rounding_error: V,
-    /// The sum of all numbers of the pose is finite.
+    /// Lanes where the pose is finite.
     pub(super) is_finite: M,
 }
 
-/// Selects one of three vectors in each lane.
+/// Selects in each lane the vector `three[k]` for which `is[k]` is set; the last if neither of the
+/// first two is.
 #[inline(always)]
 pub(super) fn of_three<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], three: [&[V; 3]; 3]) -> [V; 3] {
     filled(
@@ -32,7 +33,7 @@ pub(super) fn of_three<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], three: [&[V; 3]; 
     )
 }
 
-/// Returns the lanes that hold 0, 1 and 2.
+/// Returns the lanes where `number` is 0, those where it is 1, and those where it is 2.
 #[inline(always)]
 pub(super) fn which<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V) -> [V::Mask; 3] {
     [
@@ -42,7 +43,7 @@ pub(super) fn which<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V
     ]
 }
 
-/// Absolute values of the rotation.
+/// Returns the absolute values of the entries of a rotation.
 #[inline(always)]
 fn abs_rotation<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
     filled(
@@ -52,7 +53,7 @@ fn abs_rotation<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
 }
 
 impl<V> Boxes<V, 3> {
-    /// Rounding error of lengths of each pair.
+    /// Returns an upper bound of the rounding error of a length of each pair.
     #[inline(always)]
     fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where
@@ -64,7 +65,7 @@ impl<V> Boxes<V, 3> {
         lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * (sizes + farthest)
     }
 
-    /// Returns the direction of the largest gap, as `BoxPair::best_axis` does for one pair.
+    /// Returns the axis with the largest gap, with the bits of `BoxPair::best_axis`.
     #[inline(always)]
     pub(super) fn best_axis<S: Simd, N: Real>(&self, simd: S) -> BestAxis<V, V::Mask>
     where
@@ -75,7 +76,7 @@ impl<V> Boxes<V, 3> {
         let rounding_error = self.rounding_error(simd);
         let (edges, bound) =
             self.best_edges(simd, &abs_rotation, (gap + rounding_error).larger(gap));
-        // The axes are negative if no pair of edges is better.
+        // Both indices in `edges` are -1 if no pair of edges exceeds the gap of the faces.
         let is_edges = V::all(simd, N::ZERO).simd_le(edges[0]);
         let is_second = is_second & !is_edges;
         let ends = [is_edges.select(edges[0], face), is_edges.select(edges[1], face)];
@@ -85,8 +86,8 @@ impl<V> Boxes<V, 3> {
         BestAxis { face, is_second, is_edges, normal, gap, rounding_error, is_finite }
     }
 
-    /// Returns the face with the largest gap: its axis, whether it is the second box's, and the
-    /// gap.
+    /// Returns the face with the largest gap: the index of its axis, the lanes where it is the
+    /// second box's, and the gap.
     #[inline(always)]
     fn best_face<S: Simd, N: Real>(&self, simd: S, abs_rotation: &[[V; 3]; 3]) -> (V, V::Mask, V)
     where
@@ -113,8 +114,8 @@ impl<V> Boxes<V, 3> {
         (best, is_second, gap)
     }
 
-    /// Returns the pair of edges with the largest gap, if it exceeds `bound`: the axis of each box,
-    /// negative if no pair does, and the gap.
+    /// Returns the pair of edges with the largest gap, if it exceeds `bound`: the index of the
+    /// edge's axis in each box, both -1 if no pair does, and the gap.
     #[inline(always)]
     fn best_edges<S: Simd, N: Real>(
         &self,
@@ -136,7 +137,7 @@ impl<V> Boxes<V, 3> {
                 let along = t[i2] * r[j][i1] - t[i1] * r[j][i2];
                 let extent1 =
                     self.half1[i1] * abs_rotation[j][i2] + self.half1[i2] * abs_rotation[j][i1];
-                // Components of the product on the other axes of the second box; see
+                // Components of the cross product on the other axes of the second box; see
                 // `BoxPair::best_edges`.
                 let product1 = (r[j][i1] * r[j1][i2] - r[j][i2] * r[j1][i1]).abs();
                 let product2 = (r[j][i1] * r[j2][i2] - r[j][i2] * r[j2][i1]).abs();
@@ -155,7 +156,8 @@ impl<V> Boxes<V, 3> {
     }
 
     /// Returns the unit vector of a face or a pair of edges, pointing from the first box to the
-    /// second. `ends` are the axes of both edges, or the axis of the face twice.
+    /// second, in the frame of the first. `ends` are the indices of the axes of both edges, or the
+    /// index of the face's axis twice.
     #[inline(always)]
     fn direction<S: Simd, N: Real>(
         &self,

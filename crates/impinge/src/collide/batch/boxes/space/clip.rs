@@ -1,4 +1,4 @@
-//! Corners of the common area of two faces, for `L` pairs, each in a slot of its own.
+//! Corners of the overlap area of two faces, for `L` pairs, each in its own slot.
 //!
 //! ```text
 //!   slot  0..4    corner of the parallelogram         signs of slot, by both axes of its own face:
@@ -12,8 +12,8 @@
 //!             6 -------------- 7
 //! ```
 //!
-//! `valid` says which of the 24 exist, so nothing is moved until all is known. `features` has the same
-//! order.
+//! The mask `valid` says which of the 24 slots are filled, so no candidate is moved before the
+//! final choice. `features` uses the same order of slots.
 
 use super::super::admit::{Admission, Limits, Slots};
 use super::SLOTS;
@@ -23,18 +23,20 @@ use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The first 8 slots are corners; their features depend on what they lie above or below.
+/// The first 8 slots are corners; their features depend on the part of the other face below or
+/// above them.
 pub(super) const CORNERS: usize = 8;
 
-/// Signs of the two coordinates of a corner, in the order of the slots.
+/// Signs of the two coordinates of a corner on its own face, in the order of the slots.
 pub(super) const SIGNS: [[bool; 2]; 4] =
     [[true, true], [false, true], [false, false], [true, false]];
 
-/// Positions of the corners relative to the other face: masks of `L` pairs.
+/// Positions of the 8 corners relative to the other face, as masks over the lanes, by axis of the
+/// other face.
 pub(super) struct Corners {
-    /// At an end of the other face along its first or second axis.
+    /// Lanes where the corner is at an end of the other face along that axis, up to the tolerance.
     pub(super) at_end: [[u8; CORNERS]; 2],
-    /// On the positive side of that axis.
+    /// Lanes where the corner is on the positive side of that axis.
     pub(super) beyond: [[u8; CORNERS]; 2],
 }
 
@@ -48,13 +50,14 @@ impl Corners {
 struct CornerPosition<V, M> {
     /// Coordinates along the axes `u` and `v` of the rectangle.
     flat: [V; 2],
-    /// Height above the rectangle along the normal.
+    /// Height above the rectangle, along the normal.
     height: V,
-    /// It lies inside the other face, or outside by at most twice the tolerance.
+    /// Lanes where the corner is inside the other face, or outside by at most twice the tolerance.
     is_inside: M,
-    /// For each axis of the other face: it is at one of its ends, up to the tolerance.
+    /// For each axis of the other face: lanes where the corner is at one of its ends, up to the
+    /// tolerance.
     at_end: [M; 2],
-    /// For each axis of the other face: it is on the positive side.
+    /// For each axis of the other face: lanes where the corner is on the positive side.
     beyond: [M; 2],
 }
 
@@ -63,22 +66,23 @@ fn signed<S: Simd, V: Wide<S>>(value: V, is_positive: bool) -> V {
     if is_positive { value } else { -value }
 }
 
-/// Returns one end of the side at the end `sign` of `arm`: the lower or the upper one.
+/// Returns the signs of one end, the lower or the upper one, of the side at the end `sign` of
+/// `arm`.
 const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
     if arm == 0 { [sign, upper] } else { [upper, sign] }
 }
 
-/// The clipping of `L` pairs.
+/// Clipping of the two faces of `L` pairs.
 pub(super) struct Clip<'a, S, N: Real, V, M, const L: usize> {
     simd: S,
     faces: &'a FacesInLanes<V, M>,
     /// Supporting features of the rectangle and of the parallelogram.
     supporting: [SupportingParts<M>; 2],
-    /// Collects heights and level candidates while the slots are filled.
+    /// Collects the lowest height and the level candidates while the slots are filled.
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS, L>,
     corners: &'a mut Corners,
-    /// One of the faces is tilted too far in some lane.
+    /// Set if one of the faces is tilted too far in some lane.
     is_partial: bool,
 }
 
@@ -102,7 +106,7 @@ where
         Self { simd, faces, supporting, admission, slots, corners, is_partial }
     }
 
-    /// Fills the slots with the candidates.
+    /// Fills all 24 slots; returns the state of the admission.
     #[inline(always)]
     pub(super) fn run(mut self) -> Admission<V> {
         let above = [self.above(0), self.above(1), self.above(2), self.above(3)];
@@ -125,7 +129,7 @@ where
         self.admission
     }
 
-    /// Returns coordinates and height of a corner of the parallelogram.
+    /// Returns coordinates `u`, `v` and height of the corner of the parallelogram with these signs.
     #[inline(always)]
     fn arm_end(&self, signs: [bool; 2]) -> ([V; 2], V) {
         let (center, arms, climbs) = (&self.faces.center, &self.faces.arms, &self.faces.climbs);
@@ -140,7 +144,7 @@ where
     fn above(&self, corner: usize) -> CornerPosition<V, M> {
         let (flat, height) = self.arm_end(SIGNS[corner]);
         let across = &self.faces.across;
-        // Distances inside the sides of the rectangle, along both of its axes.
+        // Signed distances to the sides of the rectangle, positive inside, along both of its axes.
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
         let mut position = self.compare((flat, height), inside, flat);
         if self.is_partial {
@@ -156,7 +160,7 @@ where
         let signs = SIGNS[corner];
         let (faces, one) = (self.faces, V::all(self.simd, N::ONE));
         let flat = [signed(faces.across[0], signs[0]), signed(faces.across[1], signs[1])];
-        // Coordinates along the arms are 1 and -1 at the sides of the parallelogram.
+        // Coordinates along the arms: 1 and -1 at the sides of the parallelogram, 0 at its centre.
         let arm = [flat[0] - faces.center[0], flat[1] - faces.center[1]];
         let along =
             [cross(&arm, &faces.arms[1]) / faces.area, cross(&faces.arms[0], &arm) / faces.area];
@@ -171,8 +175,8 @@ where
         position
     }
 
-    /// Compares a point with the other face, whose ends it lies `inside` of along both axes, with
-    /// the coordinates `coordinates` on them.
+    /// Compares a point with the other face. `inside` are its signed distances to the nearest sides
+    /// along both axes, positive inside; of `coordinates` on these axes only the signs are used.
     #[inline(always)]
     fn compare(
         &self,
@@ -181,8 +185,9 @@ where
         coordinates: [V; 2],
     ) -> CornerPosition<V, M> {
         let (tolerance, zero) = (self.faces.tolerance, V::all(self.simd, N::ZERO));
-        // A crossing is farther than the tolerance from all ends. Corners are admitted up to twice
-        // as far outside, so that rounding never drops both a corner and the crossing next to it.
+        // A crossing counts only farther than the tolerance from all ends. Corners count up to
+        // twice the tolerance outside, so that rounding never drops both a corner and the crossing
+        // next to it.
         let out = -(tolerance + tolerance);
         CornerPosition {
             flat,
@@ -193,7 +198,7 @@ where
         }
     }
 
-    /// Stores a corner in its slot, and its position relative to the other face.
+    /// Stores a corner in its slot, and the masks of its position in `corners`.
     #[inline(always)]
     fn corner(&mut self, slot: usize, position: &CornerPosition<V, M>) {
         for axis in 0..2 {
@@ -203,7 +208,8 @@ where
         self.store(slot, &position.flat, position.height, position.is_inside);
     }
 
-    /// Crosses a side of the parallelogram with all sides of the rectangle.
+    /// Fills four slots with the crossings of one side of the parallelogram and all sides of the
+    /// rectangle.
     #[inline(always)]
     fn crossings(&mut self, slot: usize, arm: usize, sign: bool) {
         let (from, low) = self.arm_end(ends(arm, sign, false));
@@ -218,8 +224,9 @@ where
         self.crossing(slot + 3, ends, (1, false), is_supporting);
     }
 
-    /// Crosses a side with the side of the rectangle at one end of an axis; only crossings away
-    /// from the ends of both count.
+    /// Fills `slot` with the crossing of a side of the parallelogram and the side of the rectangle
+    /// at one end of `axis`. Only crossings farther than the tolerance from the ends of both sides
+    /// count.
     #[inline(always)]
     fn crossing(
         &mut self,
@@ -231,11 +238,12 @@ where
         let (across, tolerance) = (&self.faces.across, self.faces.tolerance);
         let at = signed(across[axis], is_positive);
         let (before, after) = (from.0[axis] - at, to.0[axis] - at);
-        // Both ends farther than the tolerance from the line, on opposite sides.
+        // Both ends are farther than the tolerance from the line, on opposite sides of it.
         let leaves = before.simd_gt(tolerance) & after.simd_lt(-tolerance);
         let enters = before.simd_lt(-tolerance) & after.simd_gt(tolerance);
         if M::LEN == 1 && !(leaves | enters).any_true() {
-            // Most sides of a lone pair do not cross; among 8 pairs some do.
+            // Most sides of a lone pair do not cross; among 8 pairs some do, so the test would not
+            // pay.
             (self.slots.valid[slot], self.slots.level[slot]) = (0, 0);
             return;
         }
@@ -250,7 +258,7 @@ where
         self.store(slot, &flat, height, is_there);
     }
 
-    /// Stores a candidate.
+    /// Stores a candidate in `slot`, in the lanes of `is_there`.
     #[inline(always)]
     fn store(&mut self, slot: usize, flat: &[V; 2], height: V, is_there: M) {
         self.admission.store(self.simd, self.slots, slot, flat, height, is_there);
@@ -276,7 +284,7 @@ fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
     }
 }
 
-/// Returns the lanes where the coordinates have these signs.
+/// Returns the lanes where the corner has these signs of the coordinates on the other face.
 #[inline(always)]
 fn is_at<S: Simd, V, M: SimdMask<S>>(position: &CornerPosition<V, M>, signs: [bool; 2]) -> M {
     let [x, y] = position.beyond;

@@ -1,5 +1,6 @@
-//! The two reference faces of `L` pairs: a rectangle of one box, and a face of the other, projected
-//! along the normal onto the plane of the rectangle as a parallelogram.
+//! The two reference faces of `L` pairs: a rectangle, which is a face of one box, and a
+//! parallelogram, which is a face of the other box projected along the normal onto the rectangle's
+//! plane.
 //!
 //! ```text
 //!    rectangle                          parallelogram
@@ -10,10 +11,10 @@
 //!      +---------------+                 '------------'
 //! ```
 //!
-//! `w` is the axis across the rectangle, `u` and `v` those along its sides: the axes of its box in
-//! cyclic order ("in turn"). `across` are half the sides of the rectangle. `height` is that of `c`
-//! above the rectangle along the normal, `climbs` how much higher the end of each arm is, and
-//! `widths` the distances of `c` from the sides at the ends of the arms.
+//! `w` is the axis of the box across the rectangle; `u` and `v` are its next two axes in cyclic
+//! order ("in turn"), along the sides. `across` are half the lengths of these sides. `height` is
+//! the height of `c` above the rectangle, along the normal; `climbs` is the height of each arm's
+//! end above `c`, and `widths` are the distances of `c` from the sides at the ends of the arms.
 
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
@@ -22,30 +23,35 @@ use crate::math::lanes::{dot, either, lit, negated, norm, rotated_into};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
-/// A face of a box, and the face of the other box above it, in the frame of the first of these.
+/// The rectangle and the parallelogram of each pair, in the frame of the rectangle's box.
 pub(super) struct FacesInLanes<V, M> {
     /// Lanes where the rectangle belongs to the second box.
     pub(super) is_second: M,
-    /// Lanes where it does, and the normal is that of edges, tilted against it.
+    /// Lanes where the rectangle belongs to the second box and the separating axis is across edges,
+    /// so the normal is tilted against the rectangle.
     is_tilted: M,
-    /// Masks of the axis across the rectangle: the first, the second, the third.
+    /// Lanes where the axis across the rectangle is the first, the second, the third axis of its
+    /// box.
     pub(super) is_w: [M; 3],
-    /// Normal away from the rectangle's box, by its axes in turn.
+    /// Unit normal away from the rectangle's box, by the axes `w`, `u`, `v`.
     toward: [V; 3],
-    /// Lanes where the rectangle is on the positive side of its axis.
+    /// Lanes where the rectangle is at the positive end of the axis `w`.
     pub(super) is_upward: M,
-    /// Half extent of the rectangle's box across it, and along its sides.
+    /// Half extent of the rectangle's box along `w`.
     pub(super) half: V,
+    /// Half extents of the rectangle along `u` and `v`.
     pub(super) across: [V; 2],
-    /// Components of the normal along these sides: its tilt.
+    /// Components of the normal along `u` and `v`: its tilt.
     tilt: [V; 2],
-    /// Masks of the axis across the parallelogram, in its own box; and where its normal is on the
-    /// positive side.
+    /// Lanes where the axis across the parallelogram is the first, the second, the third axis of
+    /// its own box.
     pub(super) is_m: [M; 3],
+    /// Lanes where the parallelogram's face is at the positive end of that axis.
     pub(super) is_positive: M,
-    /// Components of the normal along the axes of the parallelogram, as it faces the rectangle.
+    /// Components, along the sides of the parallelogram's face, of the unit normal from its box
+    /// towards the rectangle.
     tilt_above: [V; 2],
-    /// Lanes where neither face is tilted too far, so that all of both is used.
+    /// Lanes where neither face is tilted too far, so that the whole of both faces is used.
     pub(super) is_whole: M,
     /// Centre of the parallelogram in the coordinates `u`, `v` of the rectangle.
     pub(super) center: [V; 2],
@@ -61,11 +67,11 @@ pub(super) struct FacesInLanes<V, M> {
     pub(super) widths: [V; 2],
     /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
-    /// Lanes where neither face is too narrow.
+    /// Lanes where no width of either face is below four tolerances.
     pub(super) is_fit: M,
 }
 
-/// Returns the components on the selected axis, on the next and on the one after.
+/// Returns the components on the selected axis, on the next, and on the one after, in cyclic order.
 #[inline(always)]
 fn in_turn<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], v: &[V; 3]) -> [V; 3] {
     filled(
@@ -74,7 +80,8 @@ fn in_turn<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], v: &[V; 3]) -> [V; 3] {
     )
 }
 
-/// Returns masks of the largest component by magnitude, the first of equals.
+/// Returns the mask of the component of largest magnitude for each axis; of equals, the first one
+/// is set.
 #[inline(always)]
 fn largest<S: Simd, V: Wide<S>>(v: &[V; 3]) -> [V::Mask; 3] {
     let (first, second, third) = (v[0].abs(), v[1].abs(), v[2].abs());
@@ -83,29 +90,31 @@ fn largest<S: Simd, V: Wide<S>>(v: &[V; 3]) -> [V::Mask; 3] {
     [!(is_second | is_third), is_second & !is_third, is_third]
 }
 
-/// Returns 1 or -1.
+/// Returns 1 in the lanes of `is_positive`, else -1.
 #[inline(always)]
 fn sign<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, is_positive: V::Mask) -> V {
     is_positive.select(V::all(simd, N::ONE), V::all(simd, -N::ONE))
 }
 
-/// The rectangle of the two faces.
+/// The rectangle of each pair.
 struct Below<V, M> {
-    /// Lanes where the rectangle is the second box's.
+    /// Lanes where the rectangle is a face of the second box.
     is_second: M,
-    /// Masks of the axis across the rectangle.
+    /// Lanes where the axis across the rectangle is the first, the second, the third axis of its
+    /// box.
     is_w: [M; 3],
-    /// Normal away from the rectangle's box, by the axes of the box.
+    /// Unit normal away from the rectangle's box, by the axes of that box.
     toward: [V; 3],
-    /// Components of `toward` by the axes in turn.
+    /// The components of `toward` along `w`, `u`, `v`.
     in_turn: [V; 3],
     is_upward: M,
-    /// Half extents of the rectangle's box, by the axes in turn.
+    /// Half extents of the rectangle's box along `w`, `u`, `v`.
     half: [V; 3],
 }
 
-/// Chooses the rectangle: the face of the separating axis, or, between edges, the most aligned face
-/// of the first box. If that is tilted too far and the second box's is not, it is the second box's.
+/// Chooses the rectangle. If the separating axis is across a face, it is that face. If it is across
+/// edges, it is the most aligned face of the first box or, if that is tilted too far and the second
+/// box's is not, the most aligned face of the second.
 #[inline(always)]
 fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -138,8 +147,9 @@ fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     }
 }
 
-/// Where edges decide, returns the normal away from the box whose face becomes the rectangle, and
-/// the lanes where the rectangle is the second box's, there and elsewhere.
+/// For lanes whose separating axis is across edges, returns the normal away from the box whose face
+/// becomes the rectangle. The mask has, of all lanes, those where the rectangle is the second
+/// box's.
 #[inline(always)]
 fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -155,7 +165,8 @@ fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask
     (either(is_second, &toward2, &axis.normal), axis.is_second | is_second)
 }
 
-/// Returns the lanes where the face of a box most aligned with a unit vector is not tilted too far.
+/// Returns the lanes where the face of a box most aligned with the unit vector `toward`, in the
+/// frame of that box, is not tilted too far.
 #[inline(always)]
 fn is_supporting<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -165,15 +176,15 @@ fn is_supporting<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask
     SupportingParts::is_all(simd, [u, v])
 }
 
-/// Selects one of three axes in each lane, times a length.
+/// Returns, in each lane, the selected one of three axes times `length`.
 #[inline(always)]
 fn arm<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], axes: [&[V; 3]; 3], length: V) -> [V; 3] {
     let [x, y, z] = of_three(is, axes);
     [x * length, y * length, z * length]
 }
 
-/// Projects a vector, by the axes in turn, along the normal onto the rectangle's plane; returns its
-/// coordinates there and its height along the normal.
+/// Projects a vector, given by `w`, `u`, `v`, along the normal onto the rectangle's plane. Returns
+/// its coordinates `u`, `v` there, and its height along the normal.
 #[inline(always)]
 fn projected<S: Simd, V: Wide<S>>([w, u, v]: [V; 3], toward: &[V; 3]) -> ([V; 2], V) {
     let height = w / toward[0];
@@ -186,7 +197,7 @@ pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 2], b: &[V; 2]) -> V {
 }
 
 impl<V, M> FacesInLanes<V, M> {
-    /// Finds both faces from the separating axis.
+    /// Finds the rectangle from the separating axis, and the parallelogram from the other box.
     #[inline(always)]
     pub(super) fn of_axis<S: Simd, N: Real>(
         simd: S,
@@ -206,7 +217,7 @@ impl<V, M> FacesInLanes<V, M> {
         let is_positive = f0.simd_gt(V::all(simd, N::ZERO));
         let half = in_turn(&is_m, &either(below.is_second, &boxes.half1, &boxes.half2));
         let [x, y, z] = &rotation;
-        // From the centre of the box to that of its face.
+        // From the centre of the box to the centre of its face.
         let up = arm(&is_m, [x, y, z], half[0]);
         let outward: V = sign(simd, is_positive);
         let from_plane =
@@ -250,7 +261,7 @@ impl<V, M> FacesInLanes<V, M> {
         }
     }
 
-    /// Returns the supporting features of the rectangle and of the parallelogram.
+    /// Returns the supporting parts of the rectangle and of the parallelogram.
     #[inline(always)]
     pub(super) fn supporting<S: Simd, N: Real>(&self, simd: S) -> [SupportingParts<M>; 2]
     where
@@ -261,9 +272,10 @@ impl<V, M> FacesInLanes<V, M> {
         [below, SupportingParts::of(simd, self.is_m[1], self.tilt_above)]
     }
 
-    /// Returns the point on the first box, in its frame, of projected coordinates and a height. A
-    /// rectangle of the second box lies below the point by the height; the point is transformed as
-    /// `Pose::point` does. Only where `is_partial` may that rectangle be tilted against the normal.
+    /// Returns the point on the first box, in the frame of the first, from the coordinates `u`, `v`
+    /// and the height. If the rectangle is the second box's, the point lies at `height` above it,
+    /// along the normal; it is transformed with the rounding of `Pose::point`. Such a rectangle may
+    /// be tilted against the normal only if `is_partial`.
     #[inline(always)]
     pub(super) fn point1<S: Simd, N: Real>(
         &self,

@@ -1,4 +1,4 @@
-//! Features and codes of the slots of one pair in 3D, and slots by features.
+//! Features and codes of the slots of one pair in 3D, and the slots of given features.
 //!
 //! ```text
 //!   parts of a face: 3 * p + q, p along its first axis, q along its second;
@@ -20,22 +20,22 @@ use crate::collide::RawPoint;
 use crate::math::Real;
 use crate::shape::FeatureId;
 
-/// Parts of a face; see the figure.
+/// Number of parts of a face: four corners, four sides and the face itself; see the figure.
 const PARTS: usize = 9;
-/// Bound of the numbers of features of each kind: a box has at most 12.
+/// Upper bound of the indices of features of one kind; a box has at most 12 of a kind.
 const NUMBERS: usize = 12;
-/// No part, or no slot.
+/// Marks a missing part or slot.
 const NONE: u8 = u8::MAX;
 
-/// Features of a face of a box.
+/// Table of the features of one face of a box.
 struct FaceFeatures {
     /// Feature of each part.
     parts: [FeatureId; PARTS],
-    /// Part of each feature, by kind and number.
+    /// Part that each feature is, by kind and index; [`NONE`] for features of other faces.
     part_of: [u8; 3 * NUMBERS],
 }
 
-/// Faces by axis, and by whether they are on its positive side.
+/// The six faces of a box, by axis, and by whether they are on its positive side.
 static FACES: [[FaceFeatures; 2]; 3] = [
     [FaceFeatures::new(0, false), FaceFeatures::new(0, true)],
     [FaceFeatures::new(1, false), FaceFeatures::new(1, true)],
@@ -43,7 +43,7 @@ static FACES: [[FaceFeatures; 2]; 3] = [
 ];
 
 impl FaceFeatures {
-    /// Lists the features of the face of `axis`.
+    /// Lists the features of the face at one end of `axis`.
     const fn new(axis: usize, is_positive: bool) -> Self {
         let mut parts = [face(axis, is_positive); PARTS];
         let mut part_of = [NONE; 3 * NUMBERS];
@@ -64,7 +64,7 @@ impl FaceFeatures {
     }
 }
 
-/// Returns the index of a feature by kind and number; beyond the list for features of other solids.
+/// Returns the position of a feature in `part_of`; `usize::MAX` for an index that no box has.
 #[inline(always)]
 const fn index_of(id: FeatureId) -> usize {
     let (kind, number) = match id {
@@ -80,7 +80,7 @@ const fn vertex([a, b, c]: [(usize, bool); 3]) -> FeatureId {
     FeatureId::Vertex((a.1 as u32) << a.0 | (b.1 as u32) << b.0 | (c.1 as u32) << c.0)
 }
 
-/// Returns the edge along an axis, given the signs on the next axis and the one after.
+/// Returns the edge along `axis`, given its signs on the next axis and on the one after.
 const fn edge(axis: usize, next: bool, after: bool) -> FeatureId {
     const FIRST: [u32; 3] = [0, 4, 8];
     FeatureId::Edge(FIRST[axis] + next as u32 + 2 * after as u32)
@@ -92,7 +92,8 @@ const fn face(axis: usize, is_positive: bool) -> FeatureId {
     FeatureId::Face(FIRST[axis] + !is_positive as u32)
 }
 
-/// Returns the feature of a part of the face across `w`, given 0, 1 or 2 for both axes.
+/// Returns the feature of one part of the face across `w`; `first` and `second` are as in the
+/// figure.
 const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> FeatureId {
     let (u, v) = ((w + 1) % 3, (w + 2) % 3);
     match (first, second) {
@@ -103,12 +104,13 @@ const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> 
     }
 }
 
-/// Parts of the four sides in the order of the slots: at both ends of the first axis, then the
-/// second.
+/// Parts of the four sides of a face: at the positive and negative end of its first axis, then of
+/// its second.
 const SIDES: [u8; 4] = [7, 1, 5, 3];
-/// Part of each corner on its own face.
+/// Part that each corner of a face is, in the order of the slots.
 const OWN: [u8; 4] = own_parts();
-/// Number of pairs of parts: rectangle's times 9 plus parallelogram's.
+/// Number of pairs of parts; pair `9 * r + p` has part `r` of the rectangle and `p` of the
+/// parallelogram.
 const PAIRS: usize = PARTS * PARTS;
 
 const fn own_parts() -> [u8; 4] {
@@ -122,7 +124,7 @@ const fn own_parts() -> [u8; 4] {
     own
 }
 
-/// Pair of parts of each slot; for a corner only what its own part contributes.
+/// Pair of parts of each slot; for a corner only its own part's share of the sum.
 const OWN_PAIRS: [u8; PLACES] = own_pairs();
 
 const fn own_pairs() -> [u8; PLACES] {
@@ -141,7 +143,7 @@ const fn own_pairs() -> [u8; PLACES] {
     pairs
 }
 
-/// Both parts of each pair.
+/// The two parts of each pair: of the rectangle and of the parallelogram.
 static PARTS_OF: [[u8; 2]; PAIRS] = parts_of();
 
 /// Computes [`PARTS_OF`].
@@ -155,11 +157,11 @@ const fn parts_of() -> [[u8; 2]; PAIRS] {
     all
 }
 
-/// The slots that may have a pair of parts: a corner of the parallelogram or a crossing, and a
-/// corner of the rectangle.
+/// Slots that may hold a pair of parts, at most two: a corner of the parallelogram or a crossing,
+/// and a corner of the rectangle.
 static SLOTS_OF: [[u8; 2]; PAIRS] = slots_of();
 
-/// Computes [`SLOTS_OF`]: each slot is entered for all pairs that it may have.
+/// Computes [`SLOTS_OF`] by entering each slot for all pairs that it may have.
 const fn slots_of() -> [[u8; 2]; PAIRS] {
     let mut all = [[NONE; 2]; PAIRS];
     let mut slot: u8 = 0;
@@ -181,36 +183,39 @@ const fn slots_of() -> [[u8; 2]; PAIRS] {
     all
 }
 
-/// One in each byte.
+/// A set lowest bit in each of 8 bytes.
 const ONES: u64 = 0x0101_0101_0101_0101;
 
-/// Names of the slots of one pair.
+/// Features of the slots of one pair.
 pub(super) struct BoxPairFeatures {
     rectangle: &'static FaceFeatures,
     parallelogram: &'static FaceFeatures,
-    /// The rectangle is the second box's.
+    /// Whether the rectangle is a face of the second box.
     is_second: bool,
-    /// Bits of the faces, at their position in a code.
+    /// Byte of the faces, shifted to its position in a code.
     faces: u32,
     /// Pair of parts of each slot.
     pairs: [u8; PLACES],
 }
 
-/// Number of slots that a code can name.
+/// Number of slots that a code distinguishes.
 const PLACES: usize = 32;
-/// Positions of the pair of parts and of the faces in a code; bit 31 of every code is set.
+/// Position of the pair of parts in a code.
 const PARTS_AT: u32 = 5;
+/// Position of the byte of the faces in a code.
 const FACES_AT: u32 = 12;
+/// Set in every code.
 const MARK: u32 = 1 << 31;
-/// Mask of a pair of parts.
+/// Mask of the bits of a pair of parts.
 const PAIR_BITS: u32 = 127;
 
 impl BoxPairFeatures {
-    /// Names for two faces, given decoded and as the byte `bits`; `parts` is from [`parts_at`].
+    /// Computes the features for two faces, given decoded and as the byte `bits`; `parts` is from
+    /// [`parts_at`].
     #[inline(always)]
     pub(super) fn new(sides: &FaceSides, bits: u8, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
-        // A byte for each corner: its own part, and the part of the other face that it lies on.
+        // A byte for each corner: its own part's share, to which the other face's part is added.
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
         ]);
@@ -278,15 +283,15 @@ pub(super) struct FaceSide {
     pub(super) is_positive: bool,
 }
 
-/// Returns the part of the other face that each of 8 corners lies on, a byte for each: from the
-/// bits of one lane in `at_end` and `beyond`.
+/// Returns, in one byte for each of the 8 corners, the part of the other face that the corner lies
+/// on, from the bits of `lane` in `at_end` and `beyond`.
 #[inline(always)]
 pub(super) fn parts_at(
     lane: usize,
     at_end: &[[u8; CORNERS]; 2],
     beyond: &[[u8; CORNERS]; 2],
 ) -> u64 {
-    // 0 at the negative end, 1 between, 2 at the positive end.
+    // Position along one axis: 0 at the negative end, 1 between, 2 at the positive end.
     let third = |axis: usize| {
         let at_end = u64::from_le_bytes(at_end[axis]) >> lane & ONES;
         let beyond = u64::from_le_bytes(beyond[axis]) >> lane;

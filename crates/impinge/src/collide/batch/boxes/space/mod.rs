@@ -27,26 +27,28 @@ use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
 
-/// Slots of a pair; `clip` has their order.
+/// Number of slots of a pair; `clip` has their order.
 const SLOTS: usize = 24;
 
 /// Results of the kernel for `L` pairs.
 pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     slots: Slots<N, 3, SLOTS, L>,
     corners: Corners,
-    /// Signed distance of the boxes.
+    /// Signed distance of the boxes; negative for an overlap.
     gap: [N; L],
     /// Lengths up to this are rounding errors.
     tolerance: [N; L],
-    /// Half the diagonal of the smaller box.
+    /// Length scale: half the diagonal of the smaller box.
     size: [N; L],
-    /// Unit, from the first box to the second, in the frame of the first.
+    /// Unit normal from the first box to the second, in the frame of the first.
     normal: [[N; L]; 3],
-    /// Masks: the axis across the rectangle is the first, or the second; the rectangle is on the
-    /// positive side of it; these three for the parallelogram; the rectangle is the second box's.
+    /// Masks. Lanes where: the axis across the rectangle is the first; it is the second; the
+    /// rectangle is at the positive end of it; three more for the parallelogram, in its own box;
+    /// the rectangle is the second box's.
     sides: [u8; 8],
-    /// Bits of the lanes beyond the prediction, and of those with filled slots.
+    /// Bits of the lanes beyond the prediction, which have no points.
     is_apart: u8,
+    /// Bits of the lanes with filled slots. Lanes in neither mask fall back.
     is_built: u8,
     columns: Columns,
 }
@@ -110,7 +112,7 @@ impl<N: Real> Batch<N, 3> for Boxes3 {
 }
 
 impl<N: Real, const L: usize> LaneFaces<N, L> {
-    /// Runs the kernel: axis, faces, slots. Lanes beyond the prediction stop after the axis.
+    /// Runs the kernel: axis, faces, slots. Returns after the axis if no lane is a candidate.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -127,7 +129,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         let faces = FacesInLanes::of_axis(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
         let limits = Limits { gap, prediction, sine, tolerance };
-        // If no face of the batch is tilted too far, nothing of the faces has to be excluded.
+        // If no face of the batch is tilted too far, no part of a face has to be excluded.
         let is_partial = bits(!faces.is_whole) & is_candidate != 0;
         let is_found = self.fill::<S, V>(simd, &boxes, &faces, &limits, is_partial);
         self.is_built = bits(is_found & faces.is_fit) & is_candidate;
@@ -149,13 +151,13 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         }
     }
 
-    /// Transposes masks of all pairs into a byte for each pair.
+    /// Transposes the masks of the batch into bytes of each pair.
     #[inline(always)]
     fn turn(&mut self) {
         self.columns = Columns::of(self);
     }
 
-    /// Replaces the manifold of one pair; returns `false` if it has to fall back.
+    /// Replaces the manifold of the pair in `lane`; returns `false` if it has to fall back.
     #[inline(always)]
     fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
         if self.is_apart >> lane & 1 == 1 {
@@ -170,8 +172,8 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         is_built
     }
 
-    /// Fills the slots; returns the lanes where they confirm the separation. `is_partial` if a face
-    /// is tilted too far in some lane.
+    /// Fills the slots; returns the lanes where the lowest candidate is at the gap. `is_partial` is
+    /// set if a face is tilted too far in some lane.
     #[inline(always)]
     fn fill<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -193,7 +195,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         found.is_found()
     }
 
-    /// Returns the candidates of one pair, and their names.
+    /// Returns the slots of the pair in `lane`, and their features.
     #[inline(always)]
     fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS, L>, BoxPairFeatures) {
         let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
@@ -213,7 +215,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
     }
 }
 
-/// The faces of one pair.
+/// The reference faces of one pair.
 struct FaceSides {
     rectangle: FaceSide,
     parallelogram: FaceSide,
@@ -221,7 +223,7 @@ struct FaceSides {
 }
 
 impl FaceSides {
-    /// Decodes a byte of `LaneFaces::sides`.
+    /// Decodes a pair's byte of `LaneFaces::sides`, after transposition.
     #[inline(always)]
     fn of(bits: u8) -> Self {
         const AXES: [usize; 4] = [2, 0, 1, 0];
@@ -231,7 +233,7 @@ impl FaceSides {
     }
 }
 
-/// Transposed masks: for each pair three bytes of the filled slots, three of the level ones, and
+/// Transposed masks, by row and lane: three bytes of the filled slots, three of the level ones, and
 /// one of the faces.
 struct Columns([[u8; 8]; 7]);
 
@@ -260,7 +262,7 @@ impl Columns {
         self.0[row][lane & 7]
     }
 
-    /// Returns the 24 bits of the slots of a pair.
+    /// Returns the 24 bits of the slots of a pair, from the rows `row` to `row + 2`.
     #[inline(always)]
     fn slots(&self, row: usize, lane: usize) -> u32 {
         let bytes = [self.byte(row, lane), self.byte(row + 1, lane), self.byte(row + 2, lane), 0];
@@ -268,7 +270,7 @@ impl Columns {
     }
 }
 
-/// Returns 8 bytes in a row.
+/// Returns the 8 bytes from index `first` on.
 #[inline(always)]
 fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; 8] {
     filled(

@@ -12,8 +12,9 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 use crate::shape::FACING_SINE_SQUARED;
 
-/// A part of a face, by its two axes: the lanes where it extends along the axis, and, for the
-/// others, those where it is at the positive end.
+/// Supporting part of a face, by the two axes `i` of the face. `is_free[i]`: lanes where the part
+/// extends along the axis. `is_positive[i]`: for the other lanes, those where it is at the axis's
+/// positive end.
 #[derive(Clone, Copy)]
 pub(super) struct SupportingParts<M> {
     is_free: [M; 2],
@@ -21,9 +22,9 @@ pub(super) struct SupportingParts<M> {
 }
 
 impl<M> SupportingParts<M> {
-    /// Computes the feature from the components of a unit vector on the two axes of the face.
-    /// `is_middle` are the lanes where the face's own axis is the second axis of the box; it breaks
-    /// ties.
+    /// Computes the part from the components `tilt` of a unit vector along the two axes of the
+    /// face. `is_middle` are the lanes where the face is across the second axis of the box; they
+    /// break ties.
     #[inline(always)]
     pub(super) fn of<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
@@ -37,7 +38,7 @@ impl<M> SupportingParts<M> {
         let squares = [tilt[0] * tilt[0], tilt[1] * tilt[1]];
         let is_all = Self::is_all(simd, tilt);
         let [one, other] = [tilt[0].abs(), tilt[1].abs()];
-        // The weaker tilt is free first; ties go by the order of the box's axes.
+        // The axis with the smaller tilt is free first; ties go by the order of the box's axes.
         let is_first_weaker = one.simd_lt(other) | (one.simd_eq(other) & !is_middle);
         Self {
             is_free: [
@@ -48,7 +49,8 @@ impl<M> SupportingParts<M> {
         }
     }
 
-    /// Returns the lanes where a face with these components along it is not tilted too far.
+    /// Returns the lanes where a face is not tilted too far; `[u, v]` are the components of the
+    /// unit normal along the face.
     #[inline(always)]
     pub(super) fn is_all<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
@@ -66,7 +68,7 @@ impl<M> SupportingParts<M> {
         self.is_free[0] & self.is_free[1]
     }
 
-    /// Returns the lanes where a corner, in the order of the slots, belongs to the feature.
+    /// Returns the lanes where a corner of the face, in the order of `SIGNS`, belongs to the part.
     #[inline(always)]
     pub(super) fn has_corner<S: Simd>(&self, corner: usize) -> M
     where
@@ -76,7 +78,7 @@ impl<M> SupportingParts<M> {
         (self.is_free[0] | self.is_at(0, x)) & (self.is_free[1] | self.is_at(1, y))
     }
 
-    /// Returns the lanes where the side at one end of an axis belongs to the feature.
+    /// Returns the lanes where the side at one end of `axis` belongs to the part.
     #[inline(always)]
     pub(super) fn has_side<S: Simd>(&self, axis: usize, is_positive: bool) -> M
     where
@@ -85,8 +87,8 @@ impl<M> SupportingParts<M> {
         self.is_free[1 - axis] & (self.is_free[axis] | self.is_at(axis, is_positive))
     }
 
-    /// Returns the lanes where a point at some ends of the face (`at_end`), on their positive sides
-    /// or not (`beyond`), belongs to the feature, if that is more than a corner.
+    /// Returns the lanes where a point at some ends of the face (`at_end`), on the positive sides
+    /// or not (`beyond`), belongs to the part, if the part is more than a corner.
     #[inline(always)]
     pub(super) fn has_position<S: Simd>(&self, at_end: &[M; 2], beyond: &[M; 2]) -> M
     where
@@ -97,8 +99,7 @@ impl<M> SupportingParts<M> {
             & (self.is_free[1] | (at_end[1] & !y & self.is_free[0]))
     }
 
-    /// Returns the lanes where the feature is at this end of an axis, if it does not extend along
-    /// it.
+    /// Returns the lanes where the part, unless it extends along `axis`, is at the given end of it.
     #[inline(always)]
     fn is_at<S: Simd>(&self, axis: usize, is_positive: bool) -> M
     where
