@@ -11,16 +11,17 @@ use crate::chunks::{CHUNK, Cut, PerChunk, each_chunk};
 /// A callback that receives the number of finished elements.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Number of chunks that are computed before their lists are joined. Bounds the memory of lists that are not joined
-/// yet.
+/// Number of chunks that are computed before their lists are joined. Bounds the memory of lists
+/// that are not joined yet.
 const CHUNKS_PER_WAVE: usize = 1024;
 
 /// Receives the progress of a batch, and may cancel it.
 ///
-/// The callback is called after each chunk of 64 elements, and after the last chunk, which may be shorter. It receives
-/// the number of elements finished so far, which grows with each call; in the last call this is the number of all
-/// elements. If the callback returns `Break`, the batch ends with [`BatchError::Cancelled`] and the callback is not
-/// called again. With the feature `parallel` the calls come from the threads of the pool, one at a time.
+/// The callback is called after each chunk of 64 elements, and after the last chunk, which may be
+/// shorter. It receives the number of elements finished so far, which grows with each call; in the
+/// last call this is the number of all elements. If the callback returns `Break`, the batch ends
+/// with [`BatchError::Cancelled`] and the callback is not called again. With the feature `parallel`
+/// the calls come from the threads of the pool, one at a time.
 ///
 /// ```
 /// use core::ops::ControlFlow;
@@ -79,7 +80,8 @@ impl<'a> Progress<'a> {
         Self { report: control.report, done: Mutex::new(0), is_cancelled }
     }
 
-    /// Runs a whole batch: calls `work` with the range of elements and the part of `columns` of each chunk.
+    /// Runs a whole batch: calls `work` with the range of elements and the part of `columns` of
+    /// each chunk.
     pub(crate) fn run<C: Cut>(
         &self,
         count: usize,
@@ -89,7 +91,8 @@ impl<'a> Progress<'a> {
         self.each(0..count, columns, &work)
     }
 
-    /// Runs a whole batch whose chunks each fill a list; passes these lists to `take` in the order of the chunks.
+    /// Runs a whole batch whose chunks each fill a list; passes these lists to `take` in the order
+    /// of the chunks.
     pub(crate) fn collect<T: Default + Send>(
         &self,
         count: usize,

@@ -9,11 +9,12 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Space, Vector};
 use crate::query::{RayBatch, RayIntersection, cast_at, cast_many_on};
 
-/// A batch of rays in the world frame, as arrays of origins and directions: ray `i` with element `i` of a side. A
-/// single ray is paired with all elements, and a single element with all rays.
+/// A batch of rays in the world frame, as arrays of origins and directions: ray `i` with element
+/// `i` of a side. A single ray is paired with all elements, and a single element with all rays.
 ///
-/// The results have the bits of [`RayCast::first_hit_with_ray`](crate::query::RayCast::first_hit_with_ray). Each ray is
-/// cast against its own element only; to find the first hit among many shapes, use a world or a
+/// The results have the bits of
+/// [`RayCast::first_hit_with_ray`](crate::query::RayCast::first_hit_with_ray). Each ray is cast
+/// against its own element only; to find the first hit among many shapes, use a world or a
 /// [`Compound`](crate::shape::Compound).
 ///
 /// ```
@@ -43,9 +44,9 @@ pub struct RayColumns<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
-    /// Pairs each ray, without a maximum time, with the placed shape of the same index; a single ray or shape is paired
-    /// with all of the other kind. A single origin or direction is used for all rays. Times are in units of the length
-    /// of each direction.
+    /// Pairs each ray, without a maximum time, with the placed shape of the same index; a single
+    /// ray or shape is paired with all of the other kind. A single origin or direction is used for
+    /// all rays. Times are in units of the length of each direction.
     ///
     /// # Errors
     /// [`BatchError::Length`] if the lengths differ, where a length of one fits any other.
@@ -65,8 +66,8 @@ impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
         Self { max_time, ..self }
     }
 
-    /// Returns the rays for hollow shapes: a ray that starts inside a shape hits the boundary where it leaves the
-    /// shape.
+    /// Returns the rays for hollow shapes: a ray that starts inside a shape hits the boundary where
+    /// it leaves the shape.
     #[must_use]
     pub const fn hollow(self) -> Self {
         Self { solid: false, ..self }

@@ -47,16 +47,18 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 
 /// A dynamic tree over bounding volumes loosened by a margin.
 ///
-/// The tree changes only when an object's exact volume leaves its loosened one, so objects that move slowly or jitter
-/// cost almost nothing. Volumes are loosened at creation too. Two objects are a pair if their loosened volumes overlap;
-/// the searches (`interferences_with_*`, `visit_*`) test exact volumes.
+/// The tree changes only when an object's exact volume leaves its loosened one, so objects that
+/// move slowly or jitter cost almost nothing. Volumes are loosened at creation too. Two objects are
+/// a pair if their loosened volumes overlap; the searches (`interferences_with_*`, `visit_*`) test
+/// exact volumes.
 ///
-/// Loosened volumes are stored as `f32`, rounded outwards, even for `f64`, so no pair is missed. A volume with a face
-/// beyond the range of `f32` is treated as unbounded: each is tested against every object that changes, so there should
-/// be few.
+/// Loosened volumes are stored as `f32`, rounded outwards, even for `f64`, so no pair is missed. A
+/// volume with a face beyond the range of `f32` is treated as unbounded: each is tested against
+/// every object that changes, so there should be few.
 ///
-/// An update costs O(changed · log n) with temporal coherence. A still object without pairs takes about 60 bytes in
-/// addition to its exact volume, its loosened volume and its data. [`PairFinder`] describes the layout.
+/// An update costs O(changed · log n) with temporal coherence. A still object without pairs takes
+/// about 60 bytes in addition to its exact volume, its loosened volume and its data. [`PairFinder`]
+/// describes the layout.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -131,8 +133,8 @@ fn id_of(handle: ProxyHandle) -> u32 {
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
-    /// Creates a broad phase without objects that uses vectors of the given width. The width does not affect results.
-    /// For tests.
+    /// Creates a broad phase without objects that uses vectors of the given width. The width does
+    /// not affect results. For tests.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.
@@ -146,14 +148,15 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         self.finder.margin()
     }
 
-    /// Returns the loosened volume of an object; `None` for a stale handle, and before the first update of the object.
+    /// Returns the loosened volume of an object; `None` for a stale handle, and before the first
+    /// update of the object.
     pub fn loosened_volume(&self, handle: ProxyHandle) -> Option<&Bounds<D>> {
         self.check(handle).ok()?;
         self.finder.loosened(id_of(handle))
     }
 
-    /// Iterates over the pairs of the last update, except those removed since. Each has the smaller handle first; the
-    /// order is unspecified.
+    /// Iterates over the pairs of the last update, except those removed since. Each has the smaller
+    /// handle first; the order is unspecified.
     pub fn pairs(&self) -> impl Iterator<Item = (ProxyHandle, ProxyHandle)> + '_ {
         let handle = |id: u32| self.handles.at(id);
         self.finder.pairs().iter().map(move |&(a, b)| (handle(a), handle(b)))
@@ -181,7 +184,8 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         twice.map_or(Ok(()), |two| Err(BroadPhaseError::RemovedTwice(two[0])))
     }
 
-    /// Passes a group of found objects to `visit`, and returns the new limit. The group has 1 to [`GROUP`] objects.
+    /// Passes a group of found objects to `visit`, and returns the new limit. The group has 1 to
+    /// [`GROUP`] objects.
     #[inline]
     fn propose(&self, found: &[(u32, N)], visit: &mut VisitProposals<'_, N, T>) -> N {
         let mut proposals = [Proposal::kept(&self.proxies, found[0].0, found[0].1); GROUP];

@@ -14,13 +14,14 @@ const KEPT_LEAVES: usize = 256;
 
 /// One layer: blocks, and for each block its bounds and the mask of changed lanes.
 ///
-/// A join searches old and present overlaps, so each block also has `swept`: the union of its boxes now and before.
-/// Where nothing changed, `swept` equals `bounds`.
+/// A join searches old and present overlaps, so each block also has `swept`: the union of its boxes
+/// now and before. Where nothing changed, `swept` equals `bounds`.
 #[derive(Debug)]
 pub(super) struct Layer<const D: usize> {
     pub(super) blocks: Vec<Block<D>>,
     pub(super) bounds: Vec<Bounds<D>>,
-    /// By block: union of its boxes now and before. For an escaped block, of the present boxes alone.
+    /// By block: union of its boxes now and before. For an escaped block, of the present boxes
+    /// alone.
     pub(super) swept: Vec<Bounds<D>>,
     /// Above the lowest layer: the swept bounds of the blocks below, as lanes.
     pub(super) swept_blocks: Vec<Block<D>>,
@@ -50,8 +51,8 @@ impl<const D: usize> Layer<D> {
         self.changed.resize(blocks, 0);
     }
 
-    /// Resizes a layer above the lowest one for `children` blocks in the layer below, at least one. Lanes without a
-    /// child become empty.
+    /// Resizes a layer above the lowest one for `children` blocks in the layer below, at least one.
+    /// Lanes without a child become empty.
     pub(super) fn fit_above(&mut self, children: usize) {
         let blocks = children.div_ceil(LANES);
         self.resize(blocks);
@@ -67,16 +68,18 @@ impl<const D: usize> Layer<D> {
 
 /// A packed tree over boxes with ids; see the module for the layout.
 ///
-/// Ids are small numbers of the caller, and index arrays of the tree. Boxes must be finite with `lo ≤ hi`.
+/// Ids are small numbers of the caller, and index arrays of the tree. Boxes must be finite with `lo
+/// ≤ hi`.
 #[derive(Debug)]
 pub(crate) struct Tree<const D: usize> {
     pub(super) lanes: Lanes,
     /// Layer 0 first; at least one layer, the last one with at most one block.
     pub(super) layers: Vec<Layer<D>>,
-    /// By leaf block: the boxes at the last [`Self::commit_boxes`], if `remembers`; see [`Self::was`].
+    /// By leaf block: the boxes at the last [`Self::commit_boxes`], if `remembers`; see
+    /// [`Self::was`].
     pub(super) before: Vec<Block<D>>,
-    /// Whether `before` is stored only while some box differs from the last commit. Saves memory in a tree whose
-    /// objects seldom change.
+    /// Whether `before` is stored only while some box differs from the last commit. Saves memory in
+    /// a tree whose objects seldom change.
     pub(super) is_sparing: bool,
     /// Slabs by layer and block, if the owner added them; valid until the boxes change.
     pub(super) slabs: Vec<Vec<Option<BlockSlab<D>>>>,
@@ -168,7 +171,8 @@ impl<const D: usize> Tree<D> {
         self.give_back();
     }
 
-    /// Makes a sparing tree an ordinary one, for objects that change often. Drops a renewal in progress.
+    /// Makes a sparing tree an ordinary one, for objects that change often. Drops a renewal in
+    /// progress.
     pub(crate) fn spend(&mut self) {
         (self.is_sparing, self.renewal) = (false, None);
         self.remember();
@@ -204,8 +208,8 @@ impl<const D: usize> Tree<D> {
         self.layers[0].blocks[slot / LANES].lane(slot % LANES)
     }
 
-    /// Returns a slot that is probably near a point: descends in each layer to the child with the nearest centre.
-    /// `None` if no box is finite, or squared distances overflow `f32`.
+    /// Returns a slot that is probably near a point: descends in each layer to the child with the
+    /// nearest centre. `None` if no box is finite, or squared distances overflow `f32`.
     pub(super) fn slot_near(&self, point: &[f32; D]) -> Option<u32> {
         self.layers.iter().rev().try_fold(0, |at, layer| {
             let lane = layer.blocks[at as usize].nearest_lane(point)?;
@@ -231,7 +235,8 @@ impl<const D: usize> Tree<D> {
         if self.remembers { &self.before } else { &self.layers[0].blocks }
     }
 
-    /// Copies the present leaf boxes to `before`, if it is not stored, because the present ones are about to change.
+    /// Copies the present leaf boxes to `before`, if it is not stored, because the present ones are
+    /// about to change.
     #[inline]
     fn remember(&mut self) {
         if !self.remembers {
@@ -240,8 +245,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Returns the box of the object at the last [`Self::commit_boxes`], which is empty for a new object; `None` if the
-    /// object is not in the tree.
+    /// Returns the box of the object at the last [`Self::commit_boxes`], which is empty for a new
+    /// object; `None` if the object is not in the tree.
     pub(crate) fn before(&self, id: u32) -> Option<Bounds<D>> {
         self.slot(id).map(|slot| self.was()[slot / LANES].lane(slot % LANES))
     }
@@ -257,8 +262,8 @@ impl<const D: usize> Tree<D> {
         self.slot(id).expect("the object is in the tree")
     }
 
-    /// Inserts an object. `before` is its box at the last [`Self::commit_boxes`]: pairs that overlapped then do not
-    /// begin now. Pass [`Bounds::NOWHERE`] for a new object.
+    /// Inserts an object. `before` is its box at the last [`Self::commit_boxes`]: pairs that
+    /// overlapped then do not begin now. Pass [`Bounds::NOWHERE`] for a new object.
     ///
     /// # Panics
     /// If the object is in the tree already.
@@ -269,8 +274,9 @@ impl<const D: usize> Tree<D> {
         self.mark_changed(slot);
     }
 
-    /// Inserts an object whose box counts as unchanged since the last [`Self::commit_boxes`], such as one from another
-    /// tree: none of its pairs begin. Returns its slot. Panics if the object is in the tree already.
+    /// Inserts an object whose box counts as unchanged since the last [`Self::commit_boxes`], such
+    /// as one from another tree: none of its pairs begin. Returns its slot. Panics if the object is
+    /// in the tree already.
     pub(crate) fn insert_still(&mut self, id: u32, bounds: &Bounds<D>) -> usize {
         assert!(!self.contains(id), "object {id} is in the tree already");
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
@@ -398,7 +404,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Sets the number of leaf blocks; new blocks are empty. The next refit resizes the upper layers.
+    /// Sets the number of leaf blocks; new blocks are empty. The next refit resizes the upper
+    /// layers.
     pub(super) fn resize_leaves(&mut self, blocks: usize) {
         self.layers[0].resize(blocks);
         if self.remembers {
@@ -441,8 +448,8 @@ impl<const D: usize> Tree<D> {
         look.trim(&mut self.dirty);
     }
 
-    /// Returns the sum of the half surfaces of all leaf blocks, added in block order: a measure of the cost of
-    /// searches.
+    /// Returns the sum of the half surfaces of all leaf blocks, added in block order: a measure of
+    /// the cost of searches.
     pub(crate) fn leaf_surface(&self) -> f64 {
         self.layers[0].bounds.iter().map(Bounds::half_surface).sum()
     }
@@ -464,8 +471,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Iterates over the changed objects in escaped blocks, as of the last refit. The [`super::Joiner`] may not have
-    /// reported ended pairs of these.
+    /// Iterates over the changed objects in escaped blocks, as of the last refit. The
+    /// [`super::Joiner`] may not have reported ended pairs of these.
     pub(crate) fn escaped(&self) -> impl Iterator<Item = u32> + '_ {
         let changed = move |&block: &u32| {
             let mask = self.layers[0].changed[block as usize];

@@ -1,4 +1,5 @@
-//! Regions of one tree in the frame of another, in `f32`, and the test of which boxes in a block a region may touch.
+//! Regions of one tree in the frame of another, in `f32`, and the test of which boxes in a block a
+//! region may touch.
 //!
 //! ```text
 //!    own frame            the other tree's frame
@@ -29,8 +30,8 @@ pub(super) struct TreePose<const D: usize> {
     pub(super) shift: [f32; D],
 }
 
-/// A convex region in the frame of the blocks that it is tested against: the intersection of a box and slabs. All are
-/// widened by the maximum distance and the rounding error.
+/// A convex region in the frame of the blocks that it is tested against: the intersection of a box
+/// and slabs. All are widened by the maximum distance and the rounding error.
 pub(super) struct RotatedBox<const D: usize> {
     bounds: Bounds<D>,
     /// Slabs along the axes of the region's own frame, and its block's slab.
@@ -39,8 +40,8 @@ pub(super) struct RotatedBox<const D: usize> {
     extent: Option<Extent<D>>,
 }
 
-/// Bounds the extent of a region along any direction: the convex hull of `points`, plus the segments from `-w` to `w`
-/// for each `w` of `wider` (a Minkowski sum), widened by `margin`.
+/// Bounds the extent of a region along any direction: the convex hull of `points`, plus the
+/// segments from `-w` to `w` for each `w` of `wider` (a Minkowski sum), widened by `margin`.
 struct Extent<const D: usize> {
     middle: [f32; D],
     points: SmallVec<[[f32; D]; 3]>,
@@ -68,8 +69,8 @@ impl<const D: usize> TreePose<D> {
         filled(|row| (0..D).map(|axis| self.axes[axis][row] * local[axis]).sum())
     }
 
-    /// Returns the region of a box and its slab, both in this tree's frame, in the frame of the other tree. The region
-    /// is widened by `margin`.
+    /// Returns the region of a box and its slab, both in this tree's frame, in the frame of the
+    /// other tree. The region is widened by `margin`.
     pub(super) fn region_of(
         &self,
         bounds: &Bounds<D>,
@@ -115,8 +116,8 @@ fn dot<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
 }
 
 impl<const D: usize> RotatedBox<D> {
-    /// Returns the region of an object's box, and of the object's corners if given, all in the frame of the blocks and
-    /// widened by `margin`.
+    /// Returns the region of an object's box, and of the object's corners if given, all in the
+    /// frame of the blocks and widened by `margin`.
     pub(super) fn of_object<N: Real>(
         bounds: &Bounds<D>,
         corners: Option<[Vector<N, D>; 3]>,
@@ -141,8 +142,8 @@ impl<const D: usize> RotatedBox<D> {
         held
     }
 
-    /// Tests 8 boxes in a block, from lane `first` on: writes their gaps and returns the mask of those that may be
-    /// touched. Empty lanes have an infinite gap.
+    /// Tests 8 boxes in a block, from lane `first` on: writes their gaps and returns the mask of
+    /// those that may be touched. Empty lanes have an infinite gap.
     #[inline(always)]
     fn held_half<S: Simd>(&self, simd: S, block: &Block<D>, first: usize, gaps: &mut [f32]) -> u8 {
         let (lanes, zero) = (first..first + HALF, S::F32x8::all(simd, 0.0));

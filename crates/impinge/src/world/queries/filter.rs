@@ -10,8 +10,8 @@ use crate::world::{CollisionGroups, CollisionObject};
 
 /// Selects the objects that a query considers. Without conditions it selects all.
 ///
-/// A query tests boxes first, then groups, excluded objects and the predicate, and exact geometry last. `into()`
-/// converts [`CollisionGroups`] to a filter that has no other condition.
+/// A query tests boxes first, then groups, excluded objects and the predicate, and exact geometry
+/// last. `into()` converts [`CollisionGroups`] to a filter that has no other condition.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -63,8 +63,8 @@ impl<'a, N: Space<D>, const D: usize, T> QueryFilter<'a, N, D, T> {
         Self { groups: Some(groups), ..self }
     }
 
-    /// Excludes another object, such as the one for which the query runs. A stale handle excludes nothing. To exclude
-    /// more than a few objects, a predicate is faster.
+    /// Excludes another object, such as the one for which the query runs. A stale handle excludes
+    /// nothing. To exclude more than a few objects, a predicate is faster.
     #[must_use]
     pub fn exclude(mut self, handle: CollisionObjectHandle) -> Self {
         self.excluded.push(handle);
@@ -73,7 +73,8 @@ impl<'a, N: Space<D>, const D: usize, T> QueryFilter<'a, N, D, T> {
 
     /// Allows only objects for which `predicate` returns `true`; replaces an earlier predicate.
     ///
-    /// A query calls it at most once for each object, in unspecified order, and not for all objects.
+    /// A query calls it at most once for each object, in unspecified order, and not for all
+    /// objects.
     #[must_use]
     pub fn predicate(self, predicate: &'a dyn Fn(&CollisionObject<N, D, T>) -> bool) -> Self {
         Self { predicate: Some(predicate), ..self }

@@ -12,8 +12,8 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Point queries, in the world frame. A point that is not finite is in no object and near none.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the objects that contain a point, boundary included, in order of their handles. Considers the objects
-    /// that may interact with `groups`.
+    /// Returns the objects that contain a point, boundary included, in order of their handles.
+    /// Considers the objects that may interact with `groups`.
     pub fn interferences_with_point<'a>(
         &'a self,
         point: &Point<N, D>,
@@ -34,12 +34,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         near.into_iter().flatten().filter(move |object| entries::holds(&object.body, &point))
     }
 
-    /// Returns the object nearest to `point`, and the projection of `point` on it; at equal distances the object with
-    /// the smallest handle. `None` if no object is at most `max_distance` away, or if `max_distance` is negative or
-    /// NaN.
+    /// Returns the object nearest to `point`, and the projection of `point` on it; at equal
+    /// distances the object with the smallest handle. `None` if no object is at most `max_distance`
+    /// away, or if `max_distance` is negative or NaN.
     ///
-    /// If `solid` is `true`, a point in an object is its own projection, at distance zero. Otherwise points are
-    /// projected on the boundary of the object, from inside and from outside.
+    /// If `solid` is `true`, a point in an object is its own projection, at distance zero.
+    /// Otherwise points are projected on the boundary of the object, from inside and from outside.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -82,9 +82,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the `count` objects nearest to a point, at most `max_distance` away, in ascending
     /// order of distance, then of handle.
     ///
-    /// An object that contains the point has distance zero and [`ClosestPoints::Intersecting`]. For other objects,
-    /// [`ClosestPoints::WithinMargin`] has `point` first, then the nearest point of the object. The list is empty if
-    /// `count` is zero, or `max_distance` is negative or NaN.
+    /// An object that contains the point has distance zero and [`ClosestPoints::Intersecting`]. For
+    /// other objects, [`ClosestPoints::WithinMargin`] has `point` first, then the nearest point of
+    /// the object. The list is empty if `count` is zero, or `max_distance` is negative or NaN.
     ///
     /// [`Self::nearest_objects`] is the query for a solid instead of a point, and has an example.
     #[must_use]
@@ -114,8 +114,8 @@ fn near<N: Space<D>, const D: usize>(point: &Point<N, D>) -> Option<WorldProbe<N
     usable.then(|| WorldProbe::Near(Aabb::at(*point)))
 }
 
-/// Returns the distance between a point and an object, and the projection of the point; `None` if the distance exceeds
-/// `farthest`.
+/// Returns the distance between a point and an object, and the projection of the point; `None` if
+/// the distance exceeds `farthest`.
 fn projection<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     point: &Point<N, D>,

@@ -12,12 +12,12 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Ray queries.
 ///
-/// Times are in units of the length of the ray's direction, and normals are in the world frame. Each object is hit at
-/// most once: where the ray first meets it.
+/// Times are in units of the length of the ray's direction, and normals are in the world frame.
+/// Each object is hit at most once: where the ray first meets it.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the objects that a ray meets, each with its first intersection, in order of their handles. There is no
-    /// maximum time, and a ray that starts inside an object meets it at time zero. Considers the objects that may
-    /// interact with `groups`.
+    /// Returns the objects that a ray meets, each with its first intersection, in order of their
+    /// handles. There is no maximum time, and a ray that starts inside an object meets it at time
+    /// zero. Considers the objects that may interact with `groups`.
     pub fn interferences_with_ray<'a>(
         &'a self,
         ray: &Ray<N, D>,
@@ -29,9 +29,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
 
-    /// Returns the object that a ray meets first, and the intersection; see [`Self::first_ray_hit`]. There is no
-    /// maximum time, and a ray that starts inside an object meets it at time zero. Considers the objects that may
-    /// interact with `groups`.
+    /// Returns the object that a ray meets first, and the intersection; see
+    /// [`Self::first_ray_hit`]. There is no maximum time, and a ray that starts inside an object
+    /// meets it at time zero. Considers the objects that may interact with `groups`.
     #[must_use]
     pub fn first_interference_with_ray(
         &self,
@@ -41,11 +41,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.first_ray_hit(ray, N::INFINITY, true, &groups.into())
     }
 
-    /// Returns the object that a ray meets first, and the intersection; at equal times the object with the smallest
-    /// handle. `None` if the ray meets no object at or before `max_time`.
+    /// Returns the object that a ray meets first, and the intersection; at equal times the object
+    /// with the smallest handle. `None` if the ray meets no object at or before `max_time`.
     ///
-    /// If `solid` is `true`, a ray that starts inside an object meets it at time zero, otherwise where the ray leaves
-    /// the object. A ray that is not finite meets nothing. No ray meets anything if `max_time` is negative or NaN.
+    /// If `solid` is `true`, a ray that starts inside an object meets it at time zero, otherwise
+    /// where the ray leaves the object. A ray that is not finite meets nothing. No ray meets
+    /// anything if `max_time` is negative or NaN.
     ///
     /// Costs a tree search, and a ray cast against a few objects.
     ///
@@ -91,11 +92,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         found.map(|(object, _, hit)| (object, hit))
     }
 
-    /// Casts many rays: `hits[i]` becomes the handle and the intersection that [`Self::first_ray_hit`] finds for
-    /// `batch.rays[i]`, to the bit. The caller can keep the memory of `hits` from frame to frame.
+    /// Casts many rays: `hits[i]` becomes the handle and the intersection that
+    /// [`Self::first_ray_hit`] finds for `batch.rays[i]`, to the bit. The caller can keep the
+    /// memory of `hits` from frame to frame.
     ///
-    /// Runs on the calling thread, whatever the features, since the data of the user need not be `Sync`. A world that
-    /// is `Sync` may be queried by several threads, each with a part of the rays.
+    /// Runs on the calling thread, whatever the features, since the data of the user need not be
+    /// `Sync`. A world that is `Sync` may be queried by several threads, each with a part of the
+    /// rays.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -132,8 +135,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         });
     }
 
-    /// Returns the objects that a ray meets at or before `max_time`, each with its first intersection, in ascending
-    /// order of time, then of handle. See [`Self::first_ray_hit`] for the arguments.
+    /// Returns the objects that a ray meets at or before `max_time`, each with its first
+    /// intersection, in ascending order of time, then of handle. See [`Self::first_ray_hit`] for
+    /// the arguments.
     #[doc(alias = "interferences_with_ray")]
     #[must_use]
     pub fn ray_hits(
@@ -161,8 +165,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Returns the first intersection of a ray and an object, with the normal in the world frame; `None` if that is after
-/// time `latest`.
+/// Returns the first intersection of a ray and an object, with the normal in the world frame;
+/// `None` if that is after time `latest`.
 fn cast<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     ray: &Ray<N, D>,

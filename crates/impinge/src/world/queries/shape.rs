@@ -16,9 +16,10 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Queries with solids and boxes, in the world frame.
 ///
-/// The solid of a query is not an object of the world: it may be any shape at any position. `&*` converts a
-/// [`ShapeHandle`](crate::shape::ShapeHandle) to its shape. A position that is not finite is near nothing. Distances
-/// are those of [`crate::query::distance`]: zero for solids that touch or overlap.
+/// The solid of a query is not an object of the world: it may be any shape at any position. `&*`
+/// converts a [`ShapeHandle`](crate::shape::ShapeHandle) to its shape. A position that is not
+/// finite is near nothing. Distances are those of [`crate::query::distance`]: zero for solids that
+/// touch or overlap.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the objects whose boxes overlap or touch `aabb`, in order of their handles; see
     /// [`Self::objects_in_aabb`]. Considers the objects that may interact with `groups`.
@@ -30,9 +31,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects_in_aabb(aabb, &groups.into())
     }
 
-    /// Returns the objects whose boxes overlap or touch `aabb`, in order of their handles. Tests the exact boxes of the
-    /// shapes at their present positions, without margin; [`Self::objects_overlapping`] with a cuboid tests the shapes
-    /// themselves.
+    /// Returns the objects whose boxes overlap or touch `aabb`, in order of their handles. Tests
+    /// the exact boxes of the shapes at their present positions, without margin;
+    /// [`Self::objects_overlapping`] with a cuboid tests the shapes themselves.
     #[doc(alias = "interferences_with_aabb")]
     pub fn objects_in_aabb<'a>(
         &'a self,
@@ -79,7 +80,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         near.into_iter().flatten().filter(move |object| entries::touches(&placed, &object.body))
     }
 
-    /// Returns `true` if at least one object touches or overlaps a solid. The search ends at the first such object.
+    /// Returns `true` if at least one object touches or overlaps a solid. The search ends at the
+    /// first such object.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -114,8 +116,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Returns the object nearest to a solid, with its distance and nearest points; at equal distances the object with
-    /// the smallest handle. `None` if no object is at most `max_distance` away. See [`Self::nearest_objects`].
+    /// Returns the object nearest to a solid, with its distance and nearest points; at equal
+    /// distances the object with the smallest handle. `None` if no object is at most `max_distance`
+    /// away. See [`Self::nearest_objects`].
     #[must_use]
     pub fn closest_object(
         &self,
@@ -127,8 +130,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.nearest_objects(position, shape, 1, max_distance, filter).pop()
     }
 
-    /// Returns all objects at most `distance` from a solid, in ascending order of distance, then of handle; see
-    /// [`Self::nearest_objects`] for the fields.
+    /// Returns all objects at most `distance` from a solid, in ascending order of distance, then of
+    /// handle; see [`Self::nearest_objects`] for the fields.
     #[must_use]
     pub fn objects_within(
         &self,
@@ -143,12 +146,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the `count` objects nearest to a solid, at most `max_distance` away, in ascending
     /// order of distance, then of handle.
     ///
-    /// Objects that touch or overlap the solid have distance zero and [`ClosestPoints::Intersecting`]. For other
-    /// objects, [`ClosestPoints::WithinMargin`] has the point on the solid first, then the point on the object. The
-    /// list is empty if `count` is zero, or `max_distance` is negative or NaN.
+    /// Objects that touch or overlap the solid have distance zero and
+    /// [`ClosestPoints::Intersecting`]. For other objects, [`ClosestPoints::WithinMargin`] has the
+    /// point on the solid first, then the point on the object. The list is empty if `count` is
+    /// zero, or `max_distance` is negative or NaN.
     ///
-    /// Costs a tree search, and a distance computation for each object found and for a few objects with boxes about as
-    /// near as the last object found.
+    /// Costs a tree search, and a distance computation for each object found and for a few objects
+    /// with boxes about as near as the last object found.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -205,7 +209,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Returns the box of a placed solid, grown by its rounding errors; `None` if the position is not finite.
+/// Returns the box of a placed solid, grown by its rounding errors; `None` if the position is not
+/// finite.
 pub(crate) fn around<N: Space<D>, const D: usize>(
     position: &N::Isometry,
     shape: &dyn Shape<N, D>,

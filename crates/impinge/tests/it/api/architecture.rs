@@ -15,8 +15,8 @@ fn document(name: &str) -> String {
     fs::read_to_string(root().join(name)).expect("a text at the root of the repository")
 }
 
-/// Returns the words in backquotes that name a file or folder: those that end in `.rs`, `.md` or `/`. Skips blocks of
-/// code, because these may name files that a command writes.
+/// Returns the words in backquotes that name a file or folder: those that end in `.rs`, `.md` or
+/// `/`. Skips blocks of code, because these may name files that a command writes.
 fn paths(text: &str) -> Vec<&str> {
     let prose = text.split("```").step_by(2);
     let quoted = prose.flat_map(|prose| prose.split('`').skip(1).step_by(2));
@@ -34,8 +34,8 @@ fn holds(folder: &Path, name: &str) -> bool {
     entries.any(|path| path.ends_with(name) || path.is_dir() && holds(&path, name))
 }
 
-/// Returns `true` if a path exists below the root or below the library's sources. A bare file name may belong to any
-/// source.
+/// Returns `true` if a path exists below the root or below the library's sources. A bare file name
+/// may belong to any source.
 fn exists(path: &str) -> bool {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let is_there = root().join(path).exists() || sources.join(path).exists();

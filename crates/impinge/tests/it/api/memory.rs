@@ -48,8 +48,8 @@ impl<N: Stage<D>, const D: usize> Grid<N, D> {
     }
 }
 
-/// Returns the bytes for each object of the grid that `make` returns. Excludes the list of handles, which only the test
-/// needs.
+/// Returns the bytes for each object of the grid that `make` returns. Excludes the list of handles,
+/// which only the test needs.
 fn bytes_each<N: Stage<D>, const D: usize>(count: usize, make: impl FnOnce() -> Grid<N, D>) -> f64 {
     let mut kept = None;
     let used = measure(|| kept = Some(make()));
@@ -58,8 +58,8 @@ fn bytes_each<N: Stage<D>, const D: usize>(count: usize, make: impl FnOnce() -> 
     (used - handles - WORLD.min(used - handles)) as f64 / count as f64
 }
 
-/// Asserts a bound of the bytes for each object that rests and never had pairs. With a spacing of 1.5, balls of
-/// diameter 1 are disjoint.
+/// Asserts a bound of the bytes for each object that rests and never had pairs. With a spacing of
+/// 1.5, balls of diameter 1 are disjoint.
 fn sleeps_in<N: Stage<D>, const D: usize>(bound: f64) {
     let count = 20_000;
     let fresh = bytes_each(count, || {
@@ -71,9 +71,9 @@ fn sleeps_in<N: Stage<D>, const D: usize>(bound: f64) {
     assert!(fresh <= bound, "{fresh} bytes for an object that sleeps, {bound} are allowed");
 }
 
-/// In 3D with `f32` an object takes 96 bytes for its record (pose 28, shape 16 and its numbers 12, query 8, groups 12,
-/// handles 16, state 4), 48 for its exact and its loosened box, 24 for its box in the tree, and about 45 for the
-/// indices that link these. An eighth is added for growth.
+/// In 3D with `f32` an object takes 96 bytes for its record (pose 28, shape 16 and its numbers 12,
+/// query 8, groups 12, handles 16, state 4), 48 for its exact and its loosened box, 24 for its box
+/// in the tree, and about 45 for the indices that link these. An eighth is added for growth.
 #[test]
 fn an_object_that_sleeps_takes_256_bytes() {
     sleeps_in::<f32, 3>(256.0);

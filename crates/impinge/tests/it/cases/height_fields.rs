@@ -5,7 +5,8 @@ use impinge::math::{Point, Real, Vector};
 use impinge::query::{Ray, RayCast};
 use impinge::shape::HeightField;
 
-/// Returns the height field of rapier#165: sin(x) + cos(z) over 100 by 100, in 20 by 20 cells of 5 by 5.
+/// Returns the height field of rapier#165: sin(x) + cos(z) over 100 by 100, in 20 by 20 cells of 5
+/// by 5.
 fn waves<N: Real>() -> HeightField<N, 3> {
     let at = |index: u32| f64::from(index) * 5.0 - 50.0;
     let height = |row: u32, column: u32| {
@@ -21,7 +22,8 @@ fn waves<N: Real>() -> HeightField<N, 3> {
     )
 }
 
-/// Asserts that a ray straight down hits the field at its height there, even at corners and borders of cells.
+/// Asserts that a ray straight down hits the field at its height there, even at corners and borders
+/// of cells.
 fn down<N: Real>(field: &HeightField<N, 3>, [x, z]: [f64; 2]) {
     let here = Isometry3::identity();
     let (x, z) = (N::lit(x), N::lit(z));
@@ -34,8 +36,8 @@ fn down<N: Real>(field: &HeightField<N, 3>, [x, z]: [f64; 2]) {
     assert!(hit.normal.y > N::ZERO, "from above at {x} {z}");
 }
 
-/// Casts vertical rays exactly on borders of cells, where rapier's rays missed: first at the reported coordinates, then
-/// on all borders and corners.
+/// Casts vertical rays exactly on borders of cells, where rapier's rays missed: first at the
+/// reported coordinates, then on all borders and corners.
 fn rapier_165<N: Real>() {
     let field = waves::<N>();
     let reported =

@@ -1,5 +1,5 @@
-//! Tests laws of composites that need no expected results: a solid and its surface agree, common motion changes
-//! nothing, nesting changes nothing, and a search visits few parts.
+//! Tests laws of composites that need no expected results: a solid and its surface agree, common
+//! motion changes nothing, nesting changes nothing, and a search visits few parts.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -95,7 +95,8 @@ fn common_motion_changes_nothing() {
     }
 }
 
-/// A compound of meshes and solids has the results of a flat list of its parts, and reports the path to each part.
+/// A compound of meshes and solids has the results of a flat list of its parts, and reports the
+/// path to each part.
 #[test]
 fn nested_is_as_flat() {
     let (mesh, _) = ball_mesh::<f64>(4);
@@ -150,8 +151,8 @@ fn nested_is_as_flat() {
         let hit =
             |shape: &dyn Shape<f64, 3>| impact(&Moving::still(&here, shape), &moving, &options);
         let hits = [hit(&outer), hit(&flat)];
-        // Whether there is a contact at the start depends on internal edges of the meshes, which the flat parts do not
-        // have.
+        // Whether there is a contact at the start depends on internal edges of the meshes, which
+        // the flat parts do not have.
         if !hits.iter().flatten().any(|hit| hit.status.is_at_start()) {
             assert_eq!(hits[0], hits[1], "impacts");
         }

@@ -1,5 +1,5 @@
-//! Tests composites in worlds: manifolds per patch, contact ids, events, one-sided and two-sided surfaces, angular
-//! predictions, and shapes that touch themselves or are deformed.
+//! Tests composites in worlds: manifolds per patch, contact ids, events, one-sided and two-sided
+//! surfaces, angular predictions, and shapes that touch themselves or are deformed.
 
 use crate::support::scene_stage;
 use crate::support::slides;
@@ -151,7 +151,8 @@ fn names_last_while_parts_and_features_do() {
     assert!(ids(&stage).iter().all(|id| !before.contains(id)), "new contacts have new names");
 }
 
-/// Returns a surface of two planes with these slopes, which meet along z: a roof, a valley or a cliff.
+/// Returns a surface of two planes with these slopes, which meet along z: a roof, a valley or a
+/// cliff.
 fn fold(left: f64, right: f64) -> TriMesh<f64, 3> {
     let slope = move |x: f64, _: f64| if x < 0.0 { -x * left } else { x * right };
     grid::<f64>(12, 0.5, [0.0; 3], Pattern::Zigzag, slope)
@@ -282,7 +283,8 @@ fn a_box_in_a_corner_touches_each_wall() {
 #[test]
 fn one_side_and_two() {
     let floor = || grid::<f64>(8, 0.5, [0.0; 3], Pattern::Slash, |_, _| 0.0);
-    // The winding of the grid decides whether its front faces up. A one-sided grid lets bodies pass from the back.
+    // The winding of the grid decides whether its front faces up. A one-sided grid lets bodies pass
+    // from the back.
     for (shape, is_one_sided) in [(floor(), false), (floor().one_sided(), true)] {
         let front = shape.normal(0).expect("an area").y;
         let mut stage = Stage::<f64, 3>::new();
