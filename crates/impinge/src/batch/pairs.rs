@@ -26,8 +26,8 @@ use crate::query::{
 
 /// A batch of pairs: element `i` of one side with element `i` of the other.
 ///
-/// A side of a single element is paired with every element of the other side. The methods write the result of pair `i`
-/// to slot `i`, with the bits of the single call.
+/// A side of a single element is paired with every element of the other side. The methods write the
+/// result of pair `i` to slot `i`, with the bits of the single call.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, ClosestColumns, Control, OnePose, PairBatch, Shapes, Side};
@@ -78,11 +78,12 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         self.len == 0
     }
 
-    /// Computes the distance of each pair: zero if the solids touch or overlap, infinite without a result. See
-    /// [`distance`](crate::query::distance()).
+    /// Computes the distance of each pair: zero if the solids touch or overlap, infinite without a
+    /// result. See [`distance`](crate::query::distance()).
     ///
-    /// Cost: the sum of the single calls, without the work that all elements of a side share. If a maximum distance
-    /// suffices, [`Self::closest_points`] and [`Self::proximities`] reject distant pairs by their bounding balls.
+    /// Cost: the sum of the single calls, without the work that all elements of a side share. If a
+    /// maximum distance suffices, [`Self::closest_points`] and [`Self::proximities`] reject distant
+    /// pairs by their bounding balls.
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -93,8 +94,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// Computes the nearest points of each pair that is at most `max_distance` apart: see
     /// [`closest_points`](crate::query::closest_points()).
     ///
-    /// Where the solids touch or overlap, the distance is zero and the points are NaN; [`Self::witnesses`] computes
-    /// points there too. A negative or NaN `max_distance` means zero.
+    /// Where the solids touch or overlap, the distance is zero and the points are NaN;
+    /// [`Self::witnesses`] computes points there too. A negative or NaN `max_distance` means zero.
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -107,8 +108,9 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::closest_points(self, max_distance, control, out)
     }
 
-    /// Computes the nearest or deepest points of each pair that is at most `max_distance` apart, with the parts and
-    /// features on which they lie. `max_distance` may be negative: see [`witness`](crate::query::witness()).
+    /// Computes the nearest or deepest points of each pair that is at most `max_distance` apart,
+    /// with the parts and features on which they lie. `max_distance` may be negative: see
+    /// [`witness`](crate::query::witness()).
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -121,8 +123,9 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::witnesses(self, max_distance, control, out)
     }
 
-    /// Computes whether the solids of each pair touch or overlap, are at most `margin` apart, or neither: see
-    /// [`proximity`](crate::query::proximity()). An element without a result is `Disjoint`.
+    /// Computes whether the solids of each pair touch or overlap, are at most `margin` apart, or
+    /// neither: see [`proximity`](crate::query::proximity()). An element without a result is
+    /// `Disjoint`.
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -149,15 +152,15 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::contacts(self, prediction, control, out)
     }
 
-    /// Computes the time at which the solids of each pair first touch if they move with constant velocities and do not
-    /// rotate: see [`impact`](crate::query::impact()).
+    /// Computes the time at which the solids of each pair first touch if they move with constant
+    /// velocities and do not rotate: see [`impact`](crate::query::impact()).
     ///
-    /// `velocities` has a list for each side, in the world frame and in units of length per unit of time: one velocity
-    /// for each pair, one for all, or none for solids at rest.
+    /// `velocities` has a list for each side, in the world frame and in units of length per unit of
+    /// time: one velocity for each pair, one for all, or none for solids at rest.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if the length of a list of velocities is neither 0, 1 nor the number of pairs, or a
-    /// column is neither empty nor as long as the batch; [`BatchError::Cancelled`].
+    /// [`BatchError::Length`] if the length of a list of velocities is neither 0, 1 nor the number
+    /// of pairs, or a column is neither empty nor as long as the batch; [`BatchError::Cancelled`].
     pub fn impacts(
         &self,
         velocities: [&[[N; D]]; 2],
@@ -171,9 +174,10 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// Computes the contact points of each pair as rows, with the bits of a new
     /// [`PairManifoldGenerator`](crate::narrow_phase::PairManifoldGenerator).
     ///
-    /// `prediction` limits distances and rotations as it does there. Manifolds have at most `max_points` points (0
-    /// means 1); by default (`None`) two in 2D and four in 3D. The content of `out` is replaced and its memory reused.
-    /// Boxes, balls, segments and capsules are computed 8 pairs at a time.
+    /// `prediction` limits distances and rotations as it does there. Manifolds have at most
+    /// `max_points` points (0 means 1); by default (`None`) two in 2D and four in 3D. The content
+    /// of `out` is replaced and its memory reused. Boxes, balls, segments and capsules are computed
+    /// 8 pairs at a time.
     ///
     /// # Errors
     /// [`BatchError::Cancelled`]; then `out` holds the rows of the first
@@ -188,11 +192,13 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::manifolds(self, (prediction, max_points), control, out)
     }
 
-    /// Returns the index and distance of the nearest pair; at equal distances the lowest index. `None` if no pair is at
-    /// most `max_distance` apart. A negative or NaN `max_distance` means zero.
+    /// Returns the index and distance of the nearest pair; at equal distances the lowest index.
+    /// `None` if no pair is at most `max_distance` apart. A negative or NaN `max_distance` means
+    /// zero.
     ///
-    /// The limit shrinks to the least distance so far, so most pairs are rejected by their bounding balls, and the call
-    /// is cheaper than [`Self::distances`]. The result does not depend on the threads.
+    /// The limit shrinks to the least distance so far, so most pairs are rejected by their bounding
+    /// balls, and the call is cheaper than [`Self::distances`]. The result does not depend on the
+    /// threads.
     ///
     /// # Errors
     /// [`BatchError::Cancelled`].
@@ -210,7 +216,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         [PreparedSide::new(&self.sides[0]), PreparedSide::new(&self.sides[1])]
     }
 
-    /// Calls `answer` with both elements of each pair, the columns of the pair's chunk, and the pair's slot in these.
+    /// Calls `answer` with both elements of each pair, the columns of the pair's chunk, and the
+    /// pair's slot in these.
     fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,
@@ -225,8 +232,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Fills the slot of each pair that is at most `limit` apart with `answer` of its distance, and every other slot
-    /// with `none`.
+    /// Fills the slot of each pair that is at most `limit` apart with `answer` of its distance, and
+    /// every other slot with `none`.
     fn each_distance<T: Copy + Send + Sync>(
         &self,
         limit: N,
@@ -250,8 +257,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Calls `answer` with the slot of each pair and `None`, then again, with the slot and a [`PairAnswer`], for each
-    /// pair that may be at most `limit` apart.
+    /// Calls `answer` with the slot of each pair and `None`, then again, with the slot and a
+    /// [`PairAnswer`], for each pair that may be at most `limit` apart.
     fn each_separation<C: AnswerColumns>(
         &self,
         limit: N,
@@ -273,8 +280,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// In a batch of one pair, calls `answer` with the placed shapes if they may be at most `limit` apart. Builds no
-    /// lists.
+    /// In a batch of one pair, calls `answer` with the placed shapes if they may be at most `limit`
+    /// apart. Builds no lists.
     fn alone<C: Cut>(
         &self,
         limit: N,
@@ -404,8 +411,8 @@ pub(super) fn impacts<N: Space<D>, const D: usize>(
     })
 }
 
-/// Returns the velocity of an element: its own if `column` has several, the common one if it has one, or zero if it is
-/// empty.
+/// Returns the velocity of an element: its own if `column` has several, the common one if it has
+/// one, or zero if it is empty.
 #[inline]
 fn velocity_at<N: Real, const D: usize>(column: &[[N; D]], index: usize) -> Vector<N, D> {
     match column.get(index_in(column.len(), index)) {
@@ -416,9 +423,9 @@ fn velocity_at<N: Real, const D: usize>(column: &[[N; D]], index: usize) -> Vect
 
 /// Implements [`PairBatch::nearest`].
 ///
-/// Each chunk starts with the nearest pair that any chunk has found so far. It rejects only pairs that are farther
-/// away, or equally far with a larger index. So the minimum by (distance, index) does not depend on the order of the
-/// chunks.
+/// Each chunk starts with the nearest pair that any chunk has found so far. It rejects only pairs
+/// that are farther away, or equally far with a larger index. So the minimum by (distance, index)
+/// does not depend on the order of the chunks.
 pub(super) fn nearest<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     max_distance: N,
@@ -435,7 +442,8 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
     Ok(best.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Returns the nearest among `known` and the pairs in `range`; `None` if there is none within `limit`.
+/// Returns the nearest among `known` and the pairs in `range`; `None` if there is none within
+/// `limit`.
 fn nearest_of<N: Space<D>, const D: usize>(
     sides: &[PreparedSide<'_, N, D>; 2],
     range: Range<usize>,

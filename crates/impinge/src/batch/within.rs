@@ -1,7 +1,8 @@
 //! All near pairs of two sets of placed shapes.
 //!
-//! A tree is built over the boxes of one set. Each element of the other set searches it with its own box, grown by the
-//! distance. The proximity of the two shapes then accepts or rejects each proposed pair.
+//! A tree is built over the boxes of one set. Each element of the other set searches it with its
+//! own box, grown by the distance. The proximity of the two shapes then accepts or rejects each
+//! proposed pair.
 //!
 //! ```text
 //!    +-------------+  the box of an element, rounded outwards and grown by the rounding errors of its pair
@@ -10,9 +11,9 @@
 //! ```
 //!
 //! The algorithms for pairs have errors of some hundred rounding errors of the pair's lengths (see
-//! [`crate::collide::far`]): the extents of both solids about their origins, and the distance. So before any pair is
-//! rejected, each box is grown by 2¹⁰ rounding errors of its own solid's extent about its origin, and the searched
-//! volume by 2¹⁰ rounding errors of the distance.
+//! [`crate::collide::far`]): the extents of both solids about their origins, and the distance. So
+//! before any pair is rejected, each box is grown by 2¹⁰ rounding errors of its own solid's extent
+//! about its origin, and the searched volume by 2¹⁰ rounding errors of the distance.
 
 use super::entries;
 use core::ops::Range;
@@ -30,11 +31,11 @@ use crate::query::distance_within;
 /// Number of rounding errors of its lengths by which a box is grown.
 const ROUNDING_ERRORS: f64 = 1024.0;
 
-/// Returns the pairs `[i, j]`, ascending, of an element `i` of the first side and an element `j` of the second that
-/// touch, overlap, or are at most `distance` apart.
+/// Returns the pairs `[i, j]`, ascending, of an element `i` of the first side and an element `j` of
+/// the second that touch, overlap, or are at most `distance` apart.
 ///
-/// The test is [`proximity`](crate::query::proximity()), and `distance` is inclusive. Elements with a pose that is not
-/// finite, and composites without parts, have no pairs.
+/// The test is [`proximity`](crate::query::proximity()), and `distance` is inclusive. Elements with
+/// a pose that is not finite, and composites without parts, have no pairs.
 ///
 /// The callback of `control` receives numbers of elements of the larger side.
 ///
@@ -56,8 +57,8 @@ const ROUNDING_ERRORS: f64 = 1024.0;
 /// ```
 ///
 /// # Errors
-/// [`BatchError::Distance`] if `distance` is negative or NaN, [`BatchError::TooMany`] if the number of elements does
-/// not fit in 32 bits, [`BatchError::Cancelled`].
+/// [`BatchError::Distance`] if `distance` is negative or NaN, [`BatchError::TooMany`] if the number
+/// of elements does not fit in 32 bits, [`BatchError::Cancelled`].
 pub fn pairs_within<N: Space<D>, const D: usize>(
     side1: &Side<'_, N, D>,
     side2: &Side<'_, N, D>,
@@ -67,8 +68,9 @@ pub fn pairs_within<N: Space<D>, const D: usize>(
     entries::pairs_within(side1, Some(side2), distance, control)
 }
 
-/// Returns the pairs `[i, j]`, `i < j`, ascending, of elements of one side that touch, overlap, or are at most
-/// `distance` apart: [`pairs_within`] for the side and itself, with each pair once and without self-pairs.
+/// Returns the pairs `[i, j]`, `i < j`, ascending, of elements of one side that touch, overlap, or
+/// are at most `distance` apart: [`pairs_within`] for the side and itself, with each pair once and
+/// without self-pairs.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, pairs_within_one};
@@ -82,8 +84,8 @@ pub fn pairs_within<N: Space<D>, const D: usize>(
 /// ```
 ///
 /// # Errors
-/// [`BatchError::Distance`] if `distance` is negative or NaN, [`BatchError::TooMany`] if the number of elements does
-/// not fit in 32 bits, [`BatchError::Cancelled`].
+/// [`BatchError::Distance`] if `distance` is negative or NaN, [`BatchError::TooMany`] if the number
+/// of elements does not fit in 32 bits, [`BatchError::Cancelled`].
 pub fn pairs_within_one<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     distance: N,
@@ -95,8 +97,8 @@ pub fn pairs_within_one<N: Space<D>, const D: usize>(
 /// Returns the box of each element of a side, grown by the rounding errors of its pairs, for
 /// [`tiles()`](super::tiles()) and [`Tiles::meeting`].
 ///
-/// An element has `None` if its pose is not finite or it is a composite without parts. Half-spaces and other unbounded
-/// shapes have infinite faces. The boxes depend on the shapes and poses alone.
+/// An element has `None` if its pose is not finite or it is a composite without parts. Half-spaces
+/// and other unbounded shapes have infinite faces. The boxes depend on the shapes and poses alone.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, boxes};
@@ -112,7 +114,8 @@ pub fn pairs_within_one<N: Space<D>, const D: usize>(
 /// ```
 ///
 /// # Errors
-/// [`BatchError::TooMany`] if the number of elements does not fit in 32 bits, [`BatchError::Cancelled`].
+/// [`BatchError::TooMany`] if the number of elements does not fit in 32 bits,
+/// [`BatchError::Cancelled`].
 pub fn boxes<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     control: &Control<'_>,
@@ -153,8 +156,8 @@ pub(super) fn pairs_of<N: Space<D>, const D: usize>(
     Ok(pairs)
 }
 
-/// Implements [`pairs_in_tile`](super::pairs_in_tile), but returns pairs of indices `[i, j]`, i < j, in no particular
-/// order.
+/// Implements [`pairs_in_tile`](super::pairs_in_tile), but returns pairs of indices `[i, j]`, i <
+/// j, in no particular order.
 pub(super) fn pairs_of_tile<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     tiles: &Tiles<N, D>,
@@ -191,8 +194,8 @@ fn margin<N: Real>(distance: N) -> N {
     distance + distance * N::lit(ROUNDING_ERRORS) * N::EPSILON
 }
 
-/// Returns the growth of each of two boxes with which they overlap if they are within `distance`. Twice the result is
-/// at least [`margin`], even where half of the smallest number rounds to zero.
+/// Returns the growth of each of two boxes with which they overlap if they are within `distance`.
+/// Twice the result is at least [`margin`], even where half of the smallest number rounds to zero.
 pub(super) fn half_margin<N: Real>(distance: N) -> N {
     let whole = margin(distance);
     let half = whole * N::HALF;
@@ -216,8 +219,9 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         Ok(Self { side, boxes })
     }
 
-    /// Returns the near pairs of an element of this side, which searches, and an element of the other side, in no
-    /// particular order. `pair_of` receives both indices and returns the pair to report; `None` to leave it out.
+    /// Returns the near pairs of an element of this side, which searches, and an element of the
+    /// other side, in no particular order. `pair_of` receives both indices and returns the pair to
+    /// report; `None` to leave it out.
     fn pairs_with(
         &self,
         other: &Self,
@@ -248,7 +252,8 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         Ok(all)
     }
 
-    /// Builds a tree over the boxes that are not `None`; returns it with the element index of each box.
+    /// Builds a tree over the boxes that are not `None`; returns it with the element index of each
+    /// box.
     fn tree(&self) -> Result<(Vec<u32>, BoxTree<N, D>), BatchError> {
         let boxes = (0..).zip(&self.boxes);
         let (numbers, boxes): (Vec<u32>, Vec<_>) =
@@ -265,8 +270,8 @@ fn number_of(element: usize) -> u32 {
     u32::try_from(element).expect("32 bits can number the elements")
 }
 
-/// Returns the box of an element, grown by its rounding errors; `None` if the pose is not finite or the element has no
-/// finite point.
+/// Returns the box of an element, grown by its rounding errors; `None` if the pose is not finite or
+/// the element has no finite point.
 fn grown_box<N: Space<D>, const D: usize>(
     side: &PreparedSide<'_, N, D>,
     element: usize,

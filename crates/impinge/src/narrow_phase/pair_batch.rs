@@ -23,8 +23,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Adds the pairs that began and removes those that ended, as [`pair_started`](Self::pair_started) and
     /// [`pair_stopped`](Self::pair_stopped) do.
     ///
-    /// Pairs are scattered in memory, so several are prefetched at once. A pair that begins takes the index of a pair
-    /// that ends, if both are in the same group, so that no other pair moves.
+    /// Pairs are scattered in memory, so several are prefetched at once. A pair that begins takes
+    /// the index of a pair that ends, if both are in the same group, so that no other pair moves.
     pub(crate) fn begin_and_end_pairs(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -100,8 +100,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Writes a new pair at the index of an old one; `None`, without a change, unless both belong to the same group of
-    /// built-in contacts.
+    /// Writes a new pair at the index of an old one; `None`, without a change, unless both belong
+    /// to the same group of built-in contacts.
     fn replace(
         &mut self,
         table: &ObjectTable<N, D>,

@@ -15,8 +15,8 @@ struct Crowd<N: Space<D>, R, const D: usize> {
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize> Crowd<N, R, D> {
-    /// Takes the second solids of every `step`-th pair of a scene, spread over a volume. Two have equal centres, and
-    /// one is a hundred times as large as the others.
+    /// Takes the second solids of every `step`-th pair of a scene, spread over a volume. Two have
+    /// equal centres, and one is a hundred times as large as the others.
     fn of(scene: &Scene<N, R, D>, step: usize) -> Self {
         let all = (0..scene.len()).step_by(step);
         let shapes = all.clone().map(|index| scene.shape(1, index).clone());
@@ -99,7 +99,8 @@ fn pairs_are_those_that_single_calls_find() {
     check(&scene3::<f64>(1e6), [97, 13]);
 }
 
-/// Balls of radius 1 on a grid of spacing 3: neighbours are exactly 1 apart, and the maximum distance is inclusive.
+/// Balls of radius 1 on a grid of spacing 3: neighbours are exactly 1 apart, and the maximum
+/// distance is inclusive.
 #[test]
 fn touching_at_exactly_the_distance_counts() {
     for away in [0.0, 1048576.0] {
@@ -175,9 +176,9 @@ fn distances_that_are_none_are_refused() {
     assert!(matches!(error, BatchError::Distance { value } if value.is_nan()), "{error}");
 }
 
-/// Every two shapes are placed side by side along an axis, so that the gap of their boxes is their distance up to
-/// rounding. The tree must propose each pair at exactly the distance of the single call, in whichever direction that
-/// was rounded.
+/// Every two shapes are placed side by side along an axis, so that the gap of their boxes is their
+/// distance up to rounding. The tree must propose each pair at exactly the distance of the single
+/// call, in whichever direction that was rounded.
 fn at_their_own_distance<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
 ) {

@@ -1,7 +1,7 @@
 //! Surfaces that touch solids up to rounding: query and manifold must agree on whether they touch.
 //!
-//! Each triangle or segment has a corner or a side in the plane of a face, and both bodies have the same pose. So the
-//! distance is zero up to the rounding of the rotation, with either sign.
+//! Each triangle or segment has a corner or a side in the plane of a face, and both bodies have the
+//! same pose. So the distance is zero up to the rounding of the rotation, with either sign.
 
 use impinge::math::na::{Translation, UnitComplex, UnitQuaternion};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Real, Space, Vector};
@@ -26,8 +26,8 @@ fn point<N: Real, const D: usize>(at: [f64; D]) -> Point<N, D> {
     Point::from(at.map(N::lit))
 }
 
-/// Returns whether a surface and a solid touch: by the query and by the manifold, each in both orders. Asserts that the
-/// depth is no larger than rounding errors.
+/// Returns whether a surface and a solid touch: by the query and by the manifold, each in both
+/// orders. Asserts that the depth is no larger than rounding errors.
 fn touch<N: Space<D>, R, const D: usize>(
     pose: &Isometry<N, R, D>,
     surface: &dyn Shape<N, D>,
@@ -54,8 +54,8 @@ where
     [query1, manifold1, query2, manifold2]
 }
 
-/// Returns how many pairs of a surface and a solid touch at a pose, with and without an angular prediction. Asserts
-/// that the four results of [`touch`] agree.
+/// Returns how many pairs of a surface and a solid touch at a pose, with and without an angular
+/// prediction. Asserts that the four results of [`touch`] agree.
 fn touching<N: Space<D>, R, const D: usize>(
     pose: &Isometry<N, R, D>,
     surfaces: &[Box<dyn Shape<N, D>>],
@@ -79,8 +79,8 @@ where
     count
 }
 
-/// Returns meshes at a face perpendicular to the x axis: with a side, a corner or a ridge in the plane of the face, and
-/// the first mesh with additional triangles of size zero at a corner.
+/// Returns meshes at a face perpendicular to the x axis: with a side, a corner or a ridge in the
+/// plane of the face, and the first mesh with additional triangles of size zero at a corner.
 fn meshes<N: Space<3>>(face: f64) -> Vec<Box<dyn Shape<N, 3>>> {
     let mesh = |points: &[[f64; 3]], triangles: &[[u32; 3]]| -> Box<dyn Shape<N, 3>> {
         let points = points.iter().map(|&[x, y, z]| point([x - 1.0 + face, y, z])).collect();
