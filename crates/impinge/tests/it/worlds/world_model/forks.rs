@@ -23,7 +23,7 @@ const MARKS: usize = 5;
 
 type World<N, const D: usize> = CollisionWorld<N, D, u64>;
 
-/// A new world; those with even seeds reuse the contacts of pairs that hardly move.
+/// Returns a new world. For an even seed, the world reuses the contacts of pairs that hardly move.
 fn new_world<N: Grid<D>, const D: usize>(seed: u64) -> World<N, D> {
     let mut world = World::new(N::lit(0.125));
     if seed.is_multiple_of(2) {
@@ -39,7 +39,7 @@ fn position<N: Grid<D>, const D: usize>(random: &mut Random) -> N::Isometry {
     N::posed(at, random).0
 }
 
-/// A convex shape, or a compound of some.
+/// Returns a convex shape, or a compound of some.
 fn shape<N: Grid<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
     if random.chance(0.8) {
         return draw::shape::<N, D>(random).0;
