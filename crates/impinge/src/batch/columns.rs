@@ -9,26 +9,27 @@ use crate::query::{
 };
 use crate::shape::FeatureId;
 
-/// The feature of an element without a result.
+/// The feature that is written for an element without a result.
 pub const NO_FEATURE: FeatureId = FeatureId::Face(u32::MAX);
 
-/// The part of an element without a result.
+/// The part index that is written for an element without a result.
 const NO_PART: u32 = u32::MAX;
 
-/// Output columns of a batch.
+/// Output columns of a batch, which can be cut into chunks.
 pub(super) trait AnswerColumns: Cut {
-    /// Returns an error unless each column has `len` slots, or is empty where that is allowed.
+    /// Returns [`BatchError::Length`] unless each column has `len` slots, or is empty where that is
+    /// allowed.
     fn check(&self, len: usize) -> Result<(), BatchError>;
 }
 
-/// A single column must not be empty.
+/// The single column of a batch with one result must not be empty.
 impl<T: Send> AnswerColumns for &mut [T] {
     fn check(&self, len: usize) -> Result<(), BatchError> {
         as_long_as(len, "out", self)
     }
 }
 
-/// Returns an error unless `array` has `needed` elements.
+/// Returns [`BatchError::Length`] with the name `argument` unless `array` has `needed` elements.
 pub(super) const fn as_long_as<T>(
     needed: usize,
     argument: &'static str,
@@ -38,7 +39,7 @@ pub(super) const fn as_long_as<T>(
     if given == needed { Ok(()) } else { Err(BatchError::Length { argument, given, needed }) }
 }
 
-/// Implements cutting and checking for a struct of columns, field by field.
+/// Implements [`Cut`] and [`AnswerColumns`] for a struct of columns, each of which may be empty.
 macro_rules! columns {
     ($name:ident<$($parameter:ident),+> [$($generics:tt)+]: $($field:ident),+) => {
         impl<'a, $($generics)+> Cut for $name<'a, $($parameter),+> {
@@ -73,13 +74,14 @@ macro_rules! columns {
 /// ```
 #[derive(Debug, Default)]
 pub struct ClosestColumns<'a, N: Real, const D: usize> {
-    /// The distance of the solids: zero if they touch or overlap, infinite beyond the limit.
+    /// The distance of the solids: zero if they touch or overlap, infinite beyond the maximum
+    /// distance.
     pub distance: &'a mut [N],
-    /// The nearest point of the first solid; NaN if the solids touch or overlap, and beyond the
-    /// limit.
+    /// The nearest point of the first solid; NaN if the solids touch, overlap, or are beyond the
+    /// maximum distance.
     pub point1: &'a mut [[N; D]],
-    /// The nearest point of the second solid; NaN if the solids touch or overlap, and beyond the
-    /// limit.
+    /// The nearest point of the second solid; NaN if the solids touch, overlap, or are beyond the
+    /// maximum distance.
     pub point2: &'a mut [[N; D]],
 }
 
@@ -107,21 +109,22 @@ impl<N: Real, const D: usize> ClosestColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct WitnessColumns<'a, N: Real, const D: usize> {
-    /// The signed distance of the shapes, negative where they overlap; infinite beyond the limit.
+    /// The signed distance of the shapes, negative where they overlap; infinite beyond the maximum
+    /// distance.
     pub distance: &'a mut [N],
     /// The point on the surface of the first shape, in the world frame.
     pub point1: &'a mut [[N; D]],
     /// The point on the surface of the second shape, in the world frame.
     pub point2: &'a mut [[N; D]],
-    /// The unit vector from the first shape to the second.
+    /// The unit vector from the first shape to the second, in the world frame.
     pub normal: &'a mut [[N; D]],
-    /// The part of the first shape; 0 for a convex solid.
+    /// The index of the part of the first shape; 0 for a convex solid.
     pub part1: &'a mut [u32],
-    /// The part of the second shape; 0 for a convex solid.
+    /// The index of the part of the second shape; 0 for a convex solid.
     pub part2: &'a mut [u32],
-    /// The feature of that part of the first shape.
+    /// The feature of the first shape's part on which `point1` lies.
     pub feature1: &'a mut [FeatureId],
-    /// The feature of that part of the second shape.
+    /// The feature of the second shape's part on which `point2` lies.
     pub feature2: &'a mut [FeatureId],
 }
 
@@ -155,10 +158,10 @@ impl<N: Real, const D: usize> WitnessColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct ContactColumns<'a, N: Real, const D: usize> {
-    /// The penetration along the normal, minus the distance when apart; minus infinity without a
-    /// contact.
+    /// The penetration along the normal, or minus the distance if the solids are disjoint; minus
+    /// infinity without a contact.
     pub depth: &'a mut [N],
-    /// The unit vector from the first solid to the second.
+    /// The unit vector from the first solid to the second, in the world frame.
     pub normal: &'a mut [[N; D]],
     /// The point on the surface of the first solid, in the world frame.
     pub point1: &'a mut [[N; D]],
@@ -191,17 +194,17 @@ impl<N: Real, const D: usize> ContactColumns<'_, N, D> {
 pub struct ImpactColumns<'a, N: Real, const D: usize> {
     /// The time at which the solids first touch, zero or more; infinite without an impact.
     pub time: &'a mut [N],
-    /// The unit vector from the first solid to the second at that time.
+    /// The unit vector from the first solid to the second at that time, in the world frame.
     pub normal: &'a mut [[N; D]],
     /// The point on the surface of the first solid at that time, in the world frame.
     pub point1: &'a mut [[N; D]],
     /// The point on the surface of the second solid at that time, in the world frame.
     pub point2: &'a mut [[N; D]],
-    /// The part of the first shape that touches; 0 for a convex solid.
+    /// The index of the part of the first shape that touches; 0 for a convex solid.
     pub part1: &'a mut [u32],
-    /// The part of the second shape that touches; 0 for a convex solid.
+    /// The index of the part of the second shape that touches; 0 for a convex solid.
     pub part2: &'a mut [u32],
-    /// The reliability of the impact; `None` without one.
+    /// The reliability of the impact; `None` without an impact.
     pub status: &'a mut [Option<ImpactStatus>],
 }
 
@@ -234,13 +237,13 @@ impl<N: Real, const D: usize> ImpactColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct ProjectionColumns<'a, N: Real, const D: usize> {
-    /// The projection of the given point on the shape or its boundary, in the world frame.
+    /// The projection of the given point onto the shape, or onto its boundary, in the world frame.
     pub point: &'a mut [[N; D]],
-    /// The given point lies in the shape or on its boundary.
+    /// Whether the given point lies in the shape or on its boundary.
     pub is_inside: &'a mut [bool],
-    /// The part of a composite that the nearest point lies on; 0 for a convex solid.
+    /// The index of the composite's part on which the nearest point lies; 0 for a convex solid.
     pub part: &'a mut [u32],
-    /// The feature of that part.
+    /// The feature of the part on which the nearest point lies.
     pub feature: &'a mut [FeatureId],
 }
 
@@ -271,14 +274,14 @@ impl<N: Real, const D: usize> ProjectionColumns<'_, N, D> {
 /// ```
 #[derive(Debug, Default)]
 pub struct HitColumns<'a, N: Real, const D: usize> {
-    /// The time of the hit, in units of the ray's direction; infinite without a hit.
+    /// The time of the hit, in units of the length of the ray's direction; infinite without a hit.
     pub time: &'a mut [N],
     /// The outward unit normal of the shape at the hit, in the world frame; zero if a ray of a
     /// solid query starts inside, NaN without a hit.
     pub normal: &'a mut [[N; D]],
-    /// The part of a composite that is hit; 0 for a convex solid.
+    /// The index of the composite's part that is hit; 0 for a convex solid.
     pub part: &'a mut [u32],
-    /// The feature of that part.
+    /// The feature of the part that is hit.
     pub feature: &'a mut [FeatureId],
 }
 
@@ -294,7 +297,7 @@ impl<N: Real, const D: usize> HitColumns<'_, N, D> {
     }
 }
 
-/// Writes a slot, if the column is not empty.
+/// Writes `value` to a slot; does nothing if the column is empty.
 #[inline]
 fn put<T>(column: &mut [T], slot: usize, value: T) {
     if let Some(element) = column.get_mut(slot) {
@@ -302,7 +305,7 @@ fn put<T>(column: &mut [T], slot: usize, value: T) {
     }
 }
 
-/// Returns the coordinates of a point or vector; NaN for `None`.
+/// Returns the coordinates of a point as an array; NaN for `None`.
 #[inline]
 fn array<N: Real, const D: usize>(point: Option<Point<N, D>>) -> [N; D] {
     let nowhere = || Vector::<N, D>::repeat(N::lit(f64::NAN));

@@ -11,16 +11,17 @@ use crate::chunks::{CHUNK, Cut, PerChunk, each_chunk};
 /// A callback that receives the number of finished elements.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Chunks that are computed before their lists are joined; bounds the memory of lists not yet
-/// joined.
+/// Number of chunks that are computed before their lists are joined. Bounds the memory of lists
+/// that are not joined yet.
 const CHUNKS_PER_WAVE: usize = 1024;
 
-/// Reports the progress of a batch, and may cancel it.
+/// Receives the progress of a batch, and may cancel it.
 ///
-/// The callback receives the number of elements finished so far after each chunk of 64 elements,
-/// all of them at last. If it breaks, the batch ends with [`BatchError::Cancelled`] and the
-/// callback is not called again. The numbers ascend. With the feature `parallel` the calls come
-/// from the threads of the pool, one at a time.
+/// The callback is called after each chunk of 64 elements, and after the last chunk, which may be
+/// shorter. It receives the number of elements finished so far, which grows with each call; in the
+/// last call this is the number of all elements. If the callback returns `Break`, the batch ends
+/// with [`BatchError::Cancelled`] and the callback is not called again. With the feature `parallel`
+/// the calls come from the threads of the pool, one at a time.
 ///
 /// ```
 /// use core::ops::ControlFlow;
@@ -46,7 +47,7 @@ pub struct Control<'a> {
 }
 
 impl<'a> Control<'a> {
-    /// Creates a control without a callback: the batch runs to its end.
+    /// Creates a control without a callback: the batch always runs to its end.
     #[must_use]
     pub const fn new() -> Self {
         Self { report: None }
@@ -65,10 +66,10 @@ impl fmt::Debug for Control<'_> {
     }
 }
 
-/// Progress of a batch.
+/// The progress of a running batch.
 pub(crate) struct Progress<'a> {
     report: Option<Report<'a>>,
-    /// The number last reported. Locked while the callback runs.
+    /// The number of elements last reported. The lock is held while the callback runs.
     done: Mutex<usize>,
     is_cancelled: AtomicBool,
 }
@@ -79,7 +80,8 @@ impl<'a> Progress<'a> {
         Self { report: control.report, done: Mutex::new(0), is_cancelled }
     }
 
-    /// Runs a whole batch, chunk by chunk.
+    /// Runs a whole batch: calls `work` with the range of elements and the part of `columns` of
+    /// each chunk.
     pub(crate) fn run<C: Cut>(
         &self,
         count: usize,
@@ -89,7 +91,8 @@ impl<'a> Progress<'a> {
         self.each(0..count, columns, &work)
     }
 
-    /// Runs a whole batch whose chunks yield lists, and passes these to `take` in order.
+    /// Runs a whole batch whose chunks each fill a list; passes these lists to `take` in the order
+    /// of the chunks.
     pub(crate) fn collect<T: Default + Send>(
         &self,
         count: usize,
@@ -133,7 +136,7 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Reports that `count` more elements are finished.
+    /// Reports that `count` more elements are finished. `Break` if the batch has been cancelled.
     fn advance(&self, count: usize) -> ControlFlow<()> {
         let Some(report) = self.report else { return ControlFlow::Continue(()) };
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);

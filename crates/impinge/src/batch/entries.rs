@@ -1,4 +1,4 @@
-//! The entries of batches, compiled in this crate.
+//! Entry points of batches, whose generic code is compiled in this crate.
 
 use super::{
     BatchError, ClosestColumns, ContactColumns, Control, HitColumns, ImpactColumns, ManifoldRows,
@@ -13,7 +13,7 @@ use crate::tables::compiled;
 type Done = Result<(), BatchError>;
 
 compiled! {
-    /// Entries of batches.
+    /// Entry points of batches.
     trait BatchEntries where feature = "batch";
 
     fn distances(pairs: &PairBatch<'_, N, D>, control: &Control<'_>, out: &mut [N]) -> Done =
@@ -55,7 +55,7 @@ compiled! {
         out: ImpactColumns<'_, N, D>,
     ) -> Done = pairs::impacts;
 
-    /// `asked` has the prediction and the maximum number of points of a manifold.
+    /// `asked` is the prediction and the maximum number of points of a manifold.
     fn manifolds(
         pairs: &PairBatch<'_, N, D>,
         asked: (&ContactPrediction<N>, Option<usize>),
@@ -63,14 +63,15 @@ compiled! {
         out: &mut ManifoldRows<N, D>,
     ) -> Done = manifolds::manifolds;
 
-    /// The nearest of all pairs.
+    /// Returns the index and distance of the nearest pair within `limit`.
     fn nearest(
         pairs: &PairBatch<'_, N, D>,
         limit: N,
         control: &Control<'_>,
     ) -> Result<Option<(usize, N)>, BatchError> = pairs::nearest;
 
-    /// The pairs of two sides, or of one with itself, within a distance.
+    /// Returns the pairs of two sides, or of one side with itself, that are at most `distance`
+    /// apart.
     fn pairs_within(
         side: &Side<'_, N, D>,
         other: Option<&Side<'_, N, D>>,

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// The reason why a batch was refused, or ended early.
+/// The reason why a batch was refused or ended early.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Shapes, Side};
@@ -18,29 +18,29 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BatchError {
-    /// The length of an array differs from that of the batch.
+    /// The length of an array does not fit the batch.
     Length {
         /// The name of the array.
         argument: &'static str,
-        /// Its length.
+        /// The length of the array.
         given: usize,
         /// The required length.
         needed: usize,
     },
-    /// A flat array ends within a row.
+    /// The length of a flat array is not a multiple of the row length.
     PartialRow {
         /// The name of the array.
         argument: &'static str,
-        /// Its length.
+        /// The length of the array.
         given: usize,
         /// The length of a row.
         width: usize,
     },
-    /// An element picks a shape that does not exist.
+    /// An element has the index of a shape that is not in the list of shapes.
     Pick {
         /// The index of the element.
         index: usize,
-        /// The picked index.
+        /// The index of the shape.
         pick: u32,
         /// The number of shapes.
         shapes: usize,
@@ -57,36 +57,36 @@ pub enum BatchError {
         /// The distance.
         value: f64,
     },
-    /// There is no tile with this number, or the number of tiles is zero.
+    /// The index of a tile is not less than the number of tiles, or zero tiles were requested.
     NoTile {
-        /// The number of the tile.
+        /// The index of the tile; 0 if zero tiles were requested.
         tile: u32,
         /// The number of tiles.
         tiles: u32,
     },
-    /// A cut between tiles has an axis that does not exist, is not finite, or lies outside the
-    /// region that it cuts.
+    /// The axis of a cut between tiles does not exist, or its position is not finite or outside the
+    /// region that is cut.
     TileCut {
         /// The index of the cut.
         index: usize,
-        /// Its axis: 0 for x.
+        /// The axis of the cut: 0 for x.
         axis: u32,
-        /// Its position on the axis.
+        /// The position of the cut on the axis.
         at: f64,
     },
-    /// There are more elements than 32 bits can number.
+    /// The number of elements does not fit in 32 bits.
     TooMany {
         /// The number of elements given.
         given: usize,
     },
     /// The callback of the [`Control`](super::Control) ended the batch.
     Cancelled {
-        /// The number of elements last reported.
+        /// The number of finished elements that was last reported.
         done: usize,
     },
 }
 
-/// The reason why a matrix is not a pose; rows and columns are counted from zero.
+/// The reason why a matrix is not a pose; indices of rows and columns start at zero.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Matrices, MatrixError};
@@ -104,26 +104,26 @@ pub enum MatrixError {
         row: usize,
         /// The column of the entry.
         column: usize,
-        /// The entry.
+        /// The value of the entry.
         value: f64,
     },
     /// The last row is not 0, …, 0, 1.
     LastRow {
         /// The column of the wrong entry.
         column: usize,
-        /// The wrong entry.
+        /// The value of the entry.
         value: f64,
     },
     /// Two columns of the rotation are not perpendicular, or one is not a unit vector.
     NotOrthogonal {
-        /// Both columns, or the same column twice.
+        /// The indices of both columns; twice the same for a column that is not a unit vector.
         columns: [usize; 2],
-        /// Their scalar product, which should be 0, or 1 for a single column.
+        /// The scalar product of the columns, which should be 0, or 1 if both are the same.
         product: f64,
     },
     /// The rotation part is a reflection.
     NotARotation {
-        /// Its determinant, which should be 1.
+        /// The determinant of the rotation, which should be 1.
         determinant: f64,
     },
 }

@@ -1,9 +1,9 @@
 //! Contact manifolds of many pairs.
 //!
-//! A chunk is computed in three steps. Its pairs are placed, and certainly distant ones rejected.
-//! The manifolds of the others are computed: pairs of boxes, balls, segments and capsules are
-//! sorted by kinds and computed 8 at a time in SIMD lanes. The points are written in the order
-//! of the pairs.
+//! A chunk is computed in three steps. First its pairs are placed, and pairs that are certainly
+//! beyond the prediction are rejected. Then the manifolds of the other pairs are computed: pairs of
+//! boxes, balls, segments and capsules are sorted by their kinds and computed 8 at a time in SIMD
+//! lanes. At last the points are written in the order of the pairs.
 
 use crate::math::order::sort_few;
 use crate::tables::ByDimension;
@@ -38,7 +38,7 @@ pub(super) fn manifolds<N: Space<D>, const D: usize>(
     Progress::new(control).collect(batch.len(), work, |rows| out.append(rows))
 }
 
-/// Computes the rows of a chunk.
+/// Appends the contact points of a chunk's pairs to `rows`.
 fn chunk<N: Space<D>, const D: usize>(
     sides: &[PreparedSide<'_, N, D>; 2],
     range: Range<usize>,
@@ -60,7 +60,7 @@ fn chunk<N: Space<D>, const D: usize>(
     }
 }
 
-/// Computes the manifolds of all pairs.
+/// Computes the manifolds of all pairs that are not `None`.
 fn update_all<N: Space<D>, const D: usize>(
     pairs: &mut [Option<PairManifolds<'_, N, D>>],
     request: &ManifoldRequest<N>,
@@ -89,17 +89,17 @@ fn kinds_of<N: Real, const D: usize>(solids: &[Solid<N, D>; 2]) -> [ShapeKind; 2
     [Geometry(solids[0].kind()).kind(), Geometry(solids[1].kind()).kind()]
 }
 
-/// A pair that may be near, and its contacts.
+/// A pair that may be within the prediction, and its contacts.
 struct PairManifolds<'a, N: Real, const D: usize> {
-    /// Both solids in canonical order.
+    /// Both solids with their poses, in canonical order.
     placed: [Placed<'a, N, D>; 2],
-    /// The canonical order is the reverse of the caller's.
+    /// Whether the canonical order is the reverse of the caller's order.
     is_swapped: bool,
-    /// Copies of the solids in canonical order, if both are small enough for SIMD lanes.
+    /// Copies of the solids in canonical order; `None` unless both are small enough for SIMD lanes.
     solids: Option<[Solid<N, D>; 2]>,
-    /// Contacts of two convex solids, in the frame of the first in canonical order.
+    /// Contacts of two convex solids, in the frame of the first one in canonical order.
     raw: RawManifold<N, D>,
-    /// Contacts of a pair with a composite.
+    /// Contacts of a pair with a composite; `None` for two convex solids.
     composite: Option<CompositeContacts<N, D>>,
 }
 
@@ -117,7 +117,7 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
         Ordered { first, second, swapped: self.is_swapped }
     }
 
-    /// Computes the manifolds of one pair.
+    /// Computes the manifolds of this pair.
     fn update(&mut self, request: &ManifoldRequest<N>) {
         let ordered = self.ordered();
         if ordered.has_composite() {
@@ -130,7 +130,7 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
         }
     }
 
-    /// Appends all points to `rows`.
+    /// Appends all contact points of the pair to `rows`.
     fn write(&self, rows: &mut ManifoldRows<N, D>) {
         let pose1 = &self.placed[0].pose;
         let placement = Placement { pose1, pair: 0, is_swapped: self.is_swapped };
@@ -144,7 +144,7 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
     }
 }
 
-/// Objects 0 and 1 are the solids in canonical order.
+/// Object `i` is solid `i` in canonical order.
 impl<N: Real, const D: usize> PlacedSolids<N, D> for PairManifolds<'_, N, D> {
     fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>) {
         let placed = &self.placed[object as usize];
@@ -152,10 +152,10 @@ impl<N: Real, const D: usize> PlacedSolids<N, D> for PairManifolds<'_, N, D> {
     }
 }
 
-/// Pairs of a chunk whose solids have equal kinds.
+/// Pairs of a chunk whose solids have the same two kinds.
 pub(crate) struct SolidGroup<'g, 'a, N: Real, const D: usize> {
     pairs: &'g mut [Option<PairManifolds<'a, N, D>>],
-    /// Kinds and index of each pair in the group.
+    /// For each pair in the group: the kinds of its solids, and its index in `pairs`.
     group: &'g [([ShapeKind; 2], usize)],
     request: &'g ManifoldRequest<N>,
 }
@@ -201,7 +201,8 @@ impl<N: Space<D>, const D: usize> KeptPairs<N, D> for SolidGroup<'_, '_, N, D> {
     fn end(&mut self, _: usize) {}
 }
 
-/// [`update_pairs2`], for pairs of a batch.
+/// Computes a group of 2D pairs in SIMD lanes by [`update_pairs2`]; returns `false` if the kinds
+/// have no kernel.
 pub(crate) fn update_group2<N: Space<2>>(
     solids: [&Solid<N, 2>; 2],
     group: &mut SolidGroup<'_, '_, N, 2>,
@@ -209,7 +210,8 @@ pub(crate) fn update_group2<N: Space<2>>(
     update_pairs2(solids, group)
 }
 
-/// [`update_pairs3`], for pairs of a batch.
+/// Computes a group of 3D pairs in SIMD lanes by [`update_pairs3`]; returns `false` if the kinds
+/// have no kernel.
 pub(crate) fn update_group3<N: Space<3>>(
     solids: [&Solid<N, 3>; 2],
     group: &mut SolidGroup<'_, '_, N, 3>,

@@ -3,11 +3,11 @@
 use super::{BatchError, MatrixError, PoseSource};
 use crate::math::{Matrix, Pose, Real, Space, Vector};
 
-/// Greatest deviation of the scalar product of two columns of a rotation from 0 or 1: 2⁻¹⁶.
+/// Greatest deviation from 0 or 1 of the scalar product of two columns of a rotation: 2⁻¹⁶.
 const TOLERANCE: f64 = 1.0 / 65536.0;
 
-/// Poses as homogeneous matrices, read in place. Each has (D+1) × (D+1) numbers in row-major order,
-/// as in an array of shape (n, D+1, D+1) in C order.
+/// Poses as homogeneous matrices, read in place. Each matrix has (D+1) × (D+1) numbers in row-major
+/// order; together they are an array of shape (n, D+1, D+1) in C order.
 ///
 /// ```text
 ///   | r00 r01 r02 t0 |
@@ -35,19 +35,18 @@ impl<'a, N: Space<D>, const D: usize> Matrices<'a, N, D> {
     /// Numbers in a matrix.
     const WIDTH: usize = (D + 1) * (D + 1);
 
-    /// Accepts matrices whose last row is 0, …, 0, 1 and whose rotation is orthogonal with
+    /// Accepts matrices whose last row is 0, …, 0, 1 and whose rotation part is orthogonal with
     /// determinant 1.
     ///
-    /// The scalar products of the columns of the rotation, which have no unit, may differ from 0
-    /// and 1 by 2⁻¹⁶, about 1.5e-5: five correct decimals suffice. The matrix is used as given:
-    /// such a deviation displaces the points of a shape by that fraction of their distance from its
-    /// origin.
+    /// The scalar products of the rotation's columns may differ by 2⁻¹⁶, about 1.5e-5, from 0 or 1:
+    /// five correct decimals suffice. The matrix is used as given. Such a deviation displaces the
+    /// points of a shape by that fraction of their distance from the shape's origin.
     ///
     /// Cost: some nanoseconds for each matrix, on one thread.
     ///
     /// # Errors
-    /// [`BatchError::PartialRow`] if the numbers are not whole matrices, and [`BatchError::Matrix`]
-    /// for the first matrix that is not a pose.
+    /// [`BatchError::PartialRow`] if the length of `numbers` is not a multiple of the matrix size,
+    /// and [`BatchError::Matrix`] for the first matrix that is not a pose.
     pub fn try_new(numbers: &'a [N]) -> Result<Self, BatchError> {
         let (given, width) = (numbers.len(), Self::WIDTH);
         if !given.is_multiple_of(width) {
@@ -61,7 +60,7 @@ impl<'a, N: Space<D>, const D: usize> Matrices<'a, N, D> {
         Ok(Self { numbers })
     }
 
-    /// Returns the numbers of one matrix.
+    /// Returns the numbers of matrix `index`.
     #[inline]
     fn matrix(&self, index: usize) -> &'a [N] {
         &self.numbers[index * Self::WIDTH..][..Self::WIDTH]
@@ -84,7 +83,7 @@ impl<N: Space<D>, const D: usize> PoseSource<N, D> for Matrices<'_, N, D> {
         translation_of(self.matrix(index))
     }
 
-    /// The rotation need not be checked: all rotations are finite.
+    /// Skips the rotation: [`Self::try_new`] has checked that it is finite.
     #[inline]
     fn unturned(&self, index: usize) -> Pose<N, D> {
         Pose::from_translation(self.translation(index))
@@ -111,8 +110,8 @@ fn translation_of<N: Real, const D: usize>(matrix: &[N]) -> Vector<N, D> {
     translation
 }
 
-/// Returns `true` if [`check`] finds no error. Branch-free over all numbers, which is faster than
-/// stopping early.
+/// Returns `true` if [`check`] finds no error. It has no branches, which is faster than an early
+/// exit.
 #[inline]
 fn is_pose<N: Space<D>, const D: usize>(matrix: &[N]) -> bool {
     let (rows, last) = matrix.split_at(D * (D + 1));
@@ -129,7 +128,8 @@ fn is_pose<N: Space<D>, const D: usize>(matrix: &[N]) -> bool {
     is_pose & (N::determinant(&rotation) > N::ZERO)
 }
 
-/// Returns the deviation of the scalar product of two columns from that of a rotation.
+/// Returns the deviation of the scalar product of two columns from its value in a rotation: 1 if
+/// both are the same column, else 0.
 #[inline]
 fn deviation<N: Real, const D: usize>(rotation: &Matrix<N, D>, one: usize, other: usize) -> N {
     let product = rotation.column(one).dot(&rotation.column(other));
@@ -161,7 +161,7 @@ fn check_rotation<N: Space<D>, const D: usize>(rotation: &Matrix<N, D>) -> Resul
             }
         }
     }
-    // The determinant is near 1 or -1 here.
+    // The columns are orthonormal up to the tolerance, so the determinant is near 1 or -1.
     let determinant = N::determinant(rotation);
     if determinant > N::ZERO {
         Ok(())

@@ -1,4 +1,4 @@
-//! Batches: one query for many placed shapes, with the results in columns that the caller owns.
+//! Batches: one query for many placed shapes, with results in columns that belong to the caller.
 //!
 //! ```text
 //!   Shapes: one, one each, or picked     Side ─┐
@@ -9,9 +9,9 @@
 //!   point1     [ p0 ][ p1 ][ p2 ][ p3 ]  …        an empty column is not computed
 //! ```
 //!
-//! Every result has the bits of the single call of [`query`](crate::query) for the same shapes and
-//! poses. It does not depend on the number of threads: with the feature `parallel` the elements are
-//! cut into chunks of 64, which the threads of rayon's current pool share.
+//! Every result has the bits of the single call in [`query`](crate::query) for the same shapes and
+//! poses. Results do not depend on the number of threads: with the feature `parallel` the elements
+//! are divided into chunks of 64, which the threads of rayon's current pool share.
 //!
 //! | single query | batch |
 //! |---|---|
@@ -27,14 +27,14 @@
 //!
 //! # No result
 //!
-//! An element without a result (beyond the limit, or with a pose, point, ray or velocity that is
-//! not finite) has the distance and the time `INFINITY`, the depth `-INFINITY`, `NaN` in points and
-//! normals, `u32::MAX` as its part and [`NO_FEATURE`] as its feature.
+//! An element has no result if it is beyond the limit, or if its pose, point, ray or velocity is
+//! not finite. Its distance and time are then `INFINITY`, its depth `-INFINITY`, its points and
+//! normals `NaN`, its part `u32::MAX`, and its feature [`NO_FEATURE`].
 //!
 //! # Errors
 //!
-//! Each method checks all lengths before it computes anything; on an error no column is changed.
-//! After [`BatchError::Cancelled`] some slots are filled.
+//! Each method checks all lengths before it computes anything. After any other error than
+//! [`BatchError::Cancelled`] no column has changed; after that one, some slots are filled.
 
 mod columns;
 mod control;

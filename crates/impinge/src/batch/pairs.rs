@@ -1,4 +1,4 @@
-//! Queries of pairs of placed shapes, element by element.
+//! Queries of pairs of placed shapes, one result for each pair.
 
 use super::entries;
 use crate::collide::mesh::contact_in_world;
@@ -24,10 +24,10 @@ use crate::query::{
     witness_between,
 };
 
-/// A batch of pairs: elements of two sides with equal indices.
+/// A batch of pairs: element `i` of one side with element `i` of the other.
 ///
-/// One side may have a single element, which is paired with each of the other side. The methods
-/// write the result of pair `i` to slot `i`, with the bits of the single call.
+/// A side of a single element is paired with every element of the other side. The methods write the
+/// result of pair `i` to slot `i`, with the bits of the single call.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, ClosestColumns, Control, OnePose, PairBatch, Shapes, Side};
@@ -57,7 +57,7 @@ pub struct PairBatch<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
-    /// Pairs two sides of equal length, or a single element with each of the other side.
+    /// Pairs two sides of equal length, or a single element with each element of the other side.
     ///
     /// # Errors
     /// [`BatchError::Length`] if the lengths differ and neither is one.
@@ -78,12 +78,12 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         self.len == 0
     }
 
-    /// Computes the distance of each pair, zero if the solids touch or overlap: see
-    /// [`distance`](crate::query::distance()). Infinite without a result.
+    /// Computes the distance of each pair: zero if the solids touch or overlap, infinite without a
+    /// result. See [`distance`](crate::query::distance()).
     ///
-    /// Cost: that of the single calls, without the work that all elements of a side share. If a
-    /// limit suffices, [`Self::closest_points`] and [`Self::proximities`] reject distant pairs by
-    /// their bounding balls.
+    /// Cost: the sum of the single calls, without the work that all elements of a side share. If a
+    /// maximum distance suffices, [`Self::closest_points`] and [`Self::proximities`] reject distant
+    /// pairs by their bounding balls.
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -94,9 +94,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// Computes the nearest points of each pair that is at most `max_distance` apart: see
     /// [`closest_points`](crate::query::closest_points()).
     ///
-    /// The distance is zero and the points are NaN where the solids touch or overlap;
-    /// [`Self::witnesses`] computes points there too. A negative or NaN `max_distance` counts as
-    /// zero.
+    /// Where the solids touch or overlap, the distance is zero and the points are NaN;
+    /// [`Self::witnesses`] computes points there too. A negative or NaN `max_distance` means zero.
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -110,8 +109,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     }
 
     /// Computes the nearest or deepest points of each pair that is at most `max_distance` apart,
-    /// with the parts and features that they lie on: see [`witness`](crate::query::witness()), also
-    /// for negative limits.
+    /// with the parts and features on which they lie. `max_distance` may be negative: see
+    /// [`witness`](crate::query::witness()).
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -125,7 +124,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     }
 
     /// Computes whether the solids of each pair touch or overlap, are at most `margin` apart, or
-    /// neither: see [`proximity`](crate::query::proximity()). Disjoint without a result.
+    /// neither: see [`proximity`](crate::query::proximity()). An element without a result is
+    /// `Disjoint`.
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -155,12 +155,12 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// Computes the time at which the solids of each pair first touch if they move with constant
     /// velocities and do not rotate: see [`impact`](crate::query::impact()).
     ///
-    /// `velocities` are those of the first and of the second side in the world frame, in units of
-    /// length per unit of time: one for each pair, one for all, or none for solids at rest.
+    /// `velocities` has a list for each side, in the world frame and in units of length per unit of
+    /// time: one velocity for each pair, one for all, or none for solids at rest.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if the number of velocities is another, or a column is neither empty
-    /// nor as long as the batch; [`BatchError::Cancelled`].
+    /// [`BatchError::Length`] if the length of a list of velocities is neither 0, 1 nor the number
+    /// of pairs, or a column is neither empty nor as long as the batch; [`BatchError::Cancelled`].
     pub fn impacts(
         &self,
         velocities: [&[[N; D]]; 2],
@@ -171,13 +171,13 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::impacts(self, velocities, options, control, out)
     }
 
-    /// Computes the contact points of each pair as rows: those of a new
-    /// [`PairManifoldGenerator`](crate::narrow_phase::PairManifoldGenerator), to the bit.
+    /// Computes the contact points of each pair as rows, with the bits of a new
+    /// [`PairManifoldGenerator`](crate::narrow_phase::PairManifoldGenerator).
     ///
-    /// `prediction` limits distances and rotations as there. Manifolds have at most `max_points`
-    /// points, but at least one; by default (`None`) two in 2D and four in 3D. The content of `out`
-    /// is replaced and its memory reused. Boxes, balls, segments and capsules are computed 8
-    /// pairs at a time.
+    /// `prediction` limits distances and rotations as it does there. Manifolds have at most
+    /// `max_points` points (0 means 1); by default (`None`) two in 2D and four in 3D. The content
+    /// of `out` is replaced and its memory reused. Boxes, balls, segments and capsules are computed
+    /// 8 pairs at a time.
     ///
     /// # Errors
     /// [`BatchError::Cancelled`]; then `out` holds the rows of the first
@@ -193,11 +193,12 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     }
 
     /// Returns the index and distance of the nearest pair; at equal distances the lowest index.
-    /// `None` if no pair is at most `max_distance` apart. A negative or NaN `max_distance` counts
-    /// as zero.
+    /// `None` if no pair is at most `max_distance` apart. A negative or NaN `max_distance` means
+    /// zero.
     ///
-    /// The limit shrinks to the least distance so far, so that most pairs are rejected by their
-    /// bounding balls: cheaper than [`Self::distances`]. The result does not depend on the threads.
+    /// The limit shrinks to the least distance so far, so most pairs are rejected by their bounding
+    /// balls, and the call is cheaper than [`Self::distances`]. The result does not depend on the
+    /// threads.
     ///
     /// # Errors
     /// [`BatchError::Cancelled`].
@@ -209,13 +210,14 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         entries::nearest(self, max_distance, control)
     }
 
-    /// Prepares both sides. Written out, because `map` copies them several times.
+    /// Prepares both sides. Written without `map`, which copies them several times.
     #[inline]
     pub(super) fn prepared(&self) -> [PreparedSide<'a, N, D>; 2] {
         [PreparedSide::new(&self.sides[0]), PreparedSide::new(&self.sides[1])]
     }
 
-    /// Calls `answer` with the elements of each pair and its slot in the columns of a chunk.
+    /// Calls `answer` with both elements of each pair, the columns of the pair's chunk, and the
+    /// pair's slot in these.
     fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,
@@ -230,8 +232,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Fills the slots of pairs at most `limit` apart with `answer` of their distance, the others
-    /// with `none`.
+    /// Fills the slot of each pair that is at most `limit` apart with `answer` of its distance, and
+    /// every other slot with `none`.
     fn each_distance<T: Copy + Send + Sync>(
         &self,
         limit: N,
@@ -255,8 +257,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Calls `answer` with the slot of each pair and `None`, then again with the slot and data of
-    /// each pair that may be at most `limit` apart.
+    /// Calls `answer` with the slot of each pair and `None`, then again, with the slot and a
+    /// [`PairAnswer`], for each pair that may be at most `limit` apart.
     fn each_separation<C: AnswerColumns>(
         &self,
         limit: N,
@@ -278,8 +280,8 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Calls `answer` for the pair of a batch of one, if it may be at most `limit` apart; avoids
-    /// building lists.
+    /// In a batch of one pair, calls `answer` with the placed shapes if they may be at most `limit`
+    /// apart. Builds no lists.
     fn alone<C: Cut>(
         &self,
         limit: N,
@@ -308,7 +310,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     }
 }
 
-/// See [`PairBatch::distances`].
+/// Implements [`PairBatch::distances`].
 pub(super) fn distances<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     control: &Control<'_>,
@@ -317,7 +319,7 @@ pub(super) fn distances<N: Space<D>, const D: usize>(
     batch.each_distance(N::INFINITY, control, out, N::INFINITY, |distance| max(distance, N::ZERO))
 }
 
-/// See [`PairBatch::closest_points`].
+/// Implements [`PairBatch::closest_points`].
 pub(super) fn closest_points<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     max_distance: N,
@@ -334,7 +336,7 @@ pub(super) fn closest_points<N: Space<D>, const D: usize>(
     })
 }
 
-/// See [`PairBatch::witnesses`].
+/// Implements [`PairBatch::witnesses`].
 pub(super) fn witnesses<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     limit: N,
@@ -355,7 +357,7 @@ pub(super) fn witnesses<N: Space<D>, const D: usize>(
     })
 }
 
-/// See [`PairBatch::proximities`].
+/// Implements [`PairBatch::proximities`].
 pub(super) fn proximities<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     margin: N,
@@ -366,7 +368,7 @@ pub(super) fn proximities<N: Space<D>, const D: usize>(
     batch.each_distance(margin, control, out, Proximity::Disjoint, Proximity::within)
 }
 
-/// See [`PairBatch::contacts`].
+/// Implements [`PairBatch::contacts`].
 pub(super) fn contacts<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     prediction: N,
@@ -384,7 +386,7 @@ pub(super) fn contacts<N: Space<D>, const D: usize>(
     })
 }
 
-/// See [`PairBatch::impacts`].
+/// Implements [`PairBatch::impacts`].
 pub(super) fn impacts<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     velocities: [&[[N; D]]; 2],
@@ -409,7 +411,8 @@ pub(super) fn impacts<N: Space<D>, const D: usize>(
     })
 }
 
-/// Returns the velocity of an element: its own, the common one, or zero for an empty column.
+/// Returns the velocity of an element: its own if `column` has several, the common one if it has
+/// one, or zero if it is empty.
 #[inline]
 fn velocity_at<N: Real, const D: usize>(column: &[[N; D]], index: usize) -> Vector<N, D> {
     match column.get(index_in(column.len(), index)) {
@@ -418,11 +421,11 @@ fn velocity_at<N: Real, const D: usize>(column: &[[N; D]], index: usize) -> Vect
     }
 }
 
-/// See [`PairBatch::nearest`].
+/// Implements [`PairBatch::nearest`].
 ///
-/// Each chunk starts from the nearest pair that any chunk has found so far, and rejects only pairs
-/// that are farther, or as far with a larger index. So the minimum by distance, then index, does
-/// not depend on the order of chunks.
+/// Each chunk starts with the nearest pair that any chunk has found so far. It rejects only pairs
+/// that are farther away, or equally far with a larger index. So the minimum by (distance, index)
+/// does not depend on the order of the chunks.
 pub(super) fn nearest<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
     max_distance: N,
@@ -439,7 +442,8 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
     Ok(best.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Returns the nearest of a range of pairs and the known one.
+/// Returns the nearest among `known` and the pairs in `range`; `None` if there is none within
+/// `limit`.
 fn nearest_of<N: Space<D>, const D: usize>(
     sides: &[PreparedSide<'_, N, D>; 2],
     range: Range<usize>,
@@ -448,7 +452,7 @@ fn nearest_of<N: Space<D>, const D: usize>(
 ) -> Option<(usize, N)> {
     let mut best = known;
     for index in range {
-        // No pair is nearer than a touching one.
+        // No pair is nearer than a pair that touches.
         if best.is_some_and(|(first, distance)| distance <= N::ZERO && first < index) {
             break;
         }
@@ -460,7 +464,7 @@ fn nearest_of<N: Space<D>, const D: usize>(
     best
 }
 
-/// Returns the nearer of two pairs; at equal distances the one with the lower index.
+/// Returns the nearer of two pairs; at equal distances the pair with the lower index.
 fn nearer<N: Real>(one: Option<(usize, N)>, other: Option<(usize, N)>) -> Option<(usize, N)> {
     let (Some((index1, distance1)), Some((index2, distance2))) = (one, other) else {
         return one.or(other);

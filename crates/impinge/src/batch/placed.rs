@@ -1,4 +1,5 @@
-//! The pairs of a chunk that may be near, with placed shapes. Convex pairs are computed together in SIMD lanes.
+//! The pairs of a chunk that may be within a limit, with their placed shapes. Convex pairs are computed together in
+//! SIMD lanes.
 
 use crate::collide::separation::distance_in_world;
 use crate::tables::ByDimension;
@@ -11,26 +12,26 @@ use crate::collide::{ConvexPair, Placed};
 use crate::convex::Separation;
 use crate::math::{Real, Space};
 
-/// Placed pairs of a chunk that are not certainly farther apart than `limit`.
+/// The pairs of a chunk that may be at most `limit` apart, with their placed shapes.
 pub(super) struct PlacedPairs<'a, N: Real, const D: usize> {
-    /// Slots of the pairs in the chunk.
+    /// By pair: its slot in the chunk.
     slots: Vec<usize>,
-    /// Placed elements of each side, parallel to `slots`.
+    /// By side, the placed elements of the pairs, in the order of `slots`.
     sides: [PlacedSide<'a, N, D>; 2],
     limit: N,
 }
 
-/// Data of a pair for the caller.
+/// The result of a pair, or its shapes.
 pub(super) enum PairAnswer<'p, 'a, N: Real, const D: usize> {
-    /// The separation of two convex solids, in the world frame and the given order.
+    /// The separation of two convex solids, in the world frame and in the caller's order.
     Convex(&'p Separation<N, D>),
-    /// A pair with a composite, which the caller computes by a single query.
+    /// A pair with a composite, which the caller must compute by a single query.
     Alone([&'p Placed<'a, N, D>; 2]),
 }
 
 impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
-    /// Collects the pairs of a range of elements. Without a limit all poses are read in bulk, else only those of pairs
-    /// that may be near.
+    /// Collects the pairs of a range of elements. If `limit` is infinite, all poses are read in bulk; else only the
+    /// poses of pairs that may be within the limit.
     pub(super) fn new(sides: &[PreparedSide<'a, N, D>; 2], range: Range<usize>, limit: N) -> Self {
         if limit == N::INFINITY {
             let slots = (0..range.len()).collect();
@@ -51,8 +52,9 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         Self { slots, sides: near, limit }
     }
 
-    /// Returns the pairs of convex solids, each with its index here as `slot`. Calls `of_composites` with the chunk
-    /// slot of each other pair.
+    /// Returns the pairs of convex solids, each with its index in `slots` as its `slot`. Leaves out pairs whose
+    /// relative pose is not finite. Calls `of_composites` with the chunk slot and the shapes of each pair with a
+    /// composite.
     fn convex(
         &self,
         mut of_composites: impl FnMut(usize, [&Placed<'a, N, D>; 2]),
@@ -74,8 +76,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         convex
     }
 
-    /// Calls `put` with the slot and the distance of each pair that is at most `limit` apart. The distance is not
-    /// positive where the shapes touch or overlap.
+    /// Calls `put` with the chunk slot and the distance of each pair that is at most `limit` apart. The distance is
+    /// zero or negative where the shapes touch or overlap.
     pub(super) fn distances(&self, mut put: impl FnMut(usize, N)) {
         let mut convex = self.convex(|slot, [placed1, placed2]| {
             if let Some(found) = distance_in_world(placed1, placed2, self.limit) {
@@ -91,7 +93,8 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
         }
     }
 
-    /// Calls `put` with the slot and data of each pair that may be at most `limit` apart.
+    /// Calls `put` with the chunk slot of each pair that may be at most `limit` apart, and with its separation or, for
+    /// a composite, its shapes.
     pub(super) fn separations(&self, mut put: impl FnMut(usize, PairAnswer<'_, 'a, N, D>)) {
         let mut convex = self.convex(|slot, placed| put(slot, PairAnswer::Alone(placed)));
         let mut found = vec![None; self.slots.len()];

@@ -1,4 +1,4 @@
-//! Queries of points and placed shapes.
+//! Queries of points against placed shapes.
 
 use super::columns::AnswerColumns;
 use super::control::Progress;
@@ -9,11 +9,11 @@ use crate::math::{Point, Pose, Real, Space};
 use crate::query::{PointQuery, located_at};
 use crate::shape::Shape;
 
-/// A batch of points in the world frame, each paired with an element of a side: point `i` with
-/// element `i`, or a single point or element with all of the other.
+/// A batch of points in the world frame: point `i` with element `i` of a side. A single point is
+/// paired with all elements, and a single element with all points.
 ///
-/// The results are those of [`PointQuery`], to the bit. See there for the inside of composites and
-/// of sets without thickness.
+/// The results have the bits of [`PointQuery`], which also defines the inside of composites and of
+/// sets without thickness.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, OnePose, PointBatch, ProjectionColumns, Shapes, Side};
@@ -43,7 +43,8 @@ pub struct PointBatch<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
-    /// Pairs points with as many placed shapes, or a single one of either with all of the other.
+    /// Pairs each point with the placed shape of the same index; a single point or shape is paired
+    /// with all of the other kind.
     ///
     /// # Errors
     /// [`BatchError::Length`] if the lengths differ and neither is one.
@@ -64,8 +65,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         self.len == 0
     }
 
-    /// Computes the point of each shape, or with `solid` false of its boundary, that is nearest to
-    /// the given point: see [`PointQuery::project_point_with_location`].
+    /// Computes the point nearest to each given point, on the shape, or on its boundary if `solid`
+    /// is `false`: see [`PointQuery::project_point_with_location`].
     ///
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
@@ -78,8 +79,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         entries::project(self, solid, control, out)
     }
 
-    /// Computes the distance of each point from the boundary of the shape, negative inside: see
-    /// [`PointQuery::distance_to_point`].
+    /// Computes the distance of each point from the boundary of its shape, negative inside;
+    /// infinite without a result. See [`PointQuery::distance_to_point`].
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -87,8 +88,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         entries::signed_distances(self, control, out)
     }
 
-    /// Computes whether each point lies in the shape or on its boundary: see
-    /// [`PointQuery::contains_point`].
+    /// Computes whether each point lies in its shape or on the boundary; `false` without a result.
+    /// See [`PointQuery::contains_point`].
     ///
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
@@ -96,8 +97,8 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         entries::contains(self, control, out)
     }
 
-    /// Calls `answer` with each point and shape, and the slot in the columns of a chunk; with
-    /// `None` if point or pose is not finite.
+    /// Calls `answer` for each pair with its point and shape, or `None` if the point or pose is not
+    /// finite, the columns of the pair's chunk, and the pair's slot in these.
     fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,
@@ -117,7 +118,7 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
     }
 }
 
-/// A point and a placed shape.
+/// A point in the world frame and a placed shape.
 struct PointQuestion<'a, N: Real, const D: usize> {
     shape: &'a dyn Shape<N, D>,
     pose: Pose<N, D>,
@@ -130,13 +131,13 @@ impl<N: Real, const D: usize> PointQuestion<'_, N, D> {
         is_finite.then_some(self)
     }
 
-    /// Returns the point in the frame of the shape.
+    /// Returns the point in the local frame of the shape.
     fn local(&self) -> Point<N, D> {
         self.pose.inverse_point(&self.point)
     }
 }
 
-/// See [`PointBatch::project`].
+/// Implements [`PointBatch::project`].
 pub(super) fn project<N: Space<D>, const D: usize>(
     batch: &PointBatch<'_, N, D>,
     solid: bool,
@@ -149,7 +150,7 @@ pub(super) fn project<N: Space<D>, const D: usize>(
     })
 }
 
-/// See [`PointBatch::signed_distances`].
+/// Implements [`PointBatch::signed_distances`].
 pub(super) fn signed_distances<N: Space<D>, const D: usize>(
     batch: &PointBatch<'_, N, D>,
     control: &Control<'_>,
@@ -161,7 +162,7 @@ pub(super) fn signed_distances<N: Space<D>, const D: usize>(
     })
 }
 
-/// See [`PointBatch::contains`].
+/// Implements [`PointBatch::contains`].
 pub(super) fn contains<N: Space<D>, const D: usize>(
     batch: &PointBatch<'_, N, D>,
     control: &Control<'_>,

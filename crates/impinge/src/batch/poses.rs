@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
 
-/// A placement of a shape: a [`Pose`], an isometry of nalgebra, or a custom type.
+/// The placement of a shape: a [`Pose`], an isometry of nalgebra, or a custom type.
 ///
 /// ```
 /// use impinge::dim2::batch::AsPose;
@@ -21,17 +21,17 @@ use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
 /// assert_eq!(Body([1.0, 2.0]).translation(), Vector::new(1.0, 2.0));
 /// ```
 pub trait AsPose<N: Real, const D: usize>: Sync {
-    /// Returns the pose: a rotation matrix and a translation.
+    /// Returns the pose as a rotation matrix and a translation.
     fn to_pose(&self) -> Pose<N, D>;
 
-    /// Returns the translation alone, to the bit. Distant shapes are rejected by it without
-    /// computing a rotation.
+    /// Returns the translation alone, with the bits of [`Self::to_pose`]. Queries reject distant
+    /// shapes by it without computing a rotation.
     fn translation(&self) -> Vector<N, D> {
         self.to_pose().translation
     }
 
-    /// Returns the pose of a shape that every rotation maps to itself, such as a ball: see
-    /// [`Pose::unturned`].
+    /// Returns the pose to use for a shape that every rotation maps to itself, such as a ball: the
+    /// rotation may be the identity. See [`Pose::unturned`].
     fn unturned(&self) -> Pose<N, D> {
         self.to_pose().without_rotation()
     }
@@ -74,14 +74,14 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> AsPose<N, D>
 /// with [`AsPose`], by [`Matrices`](super::Matrices) and by [`OnePose`]. Implement it to read poses
 /// in place from other memory.
 ///
-/// A source of one pose places every element of its side there. Poses need not be finite: an
-/// element with a pose that is not has no result.
+/// A source of one pose gives that pose to every element of its side. Poses need not be finite: an
+/// element whose pose is not finite has no result.
 pub trait PoseSource<N: Real, const D: usize>: Sync {
     /// Returns the number of poses.
     fn len(&self) -> usize;
 
-    /// Returns a pose: a rotation matrix and a translation. `index` is below [`Self::len`]; equal
-    /// indices must give equal poses.
+    /// Returns pose `index` as a rotation matrix and a translation. `index` is less than
+    /// [`Self::len`]; equal indices must give equal poses.
     fn pose(&self, index: usize) -> Pose<N, D>;
 
     /// Returns `true` if there is no pose.
@@ -89,17 +89,18 @@ pub trait PoseSource<N: Real, const D: usize>: Sync {
         self.len() == 0
     }
 
-    /// Returns the translation of a pose, to the bit.
+    /// Returns the translation of pose `index`, with the bits of [`Self::pose`].
     fn translation(&self, index: usize) -> Vector<N, D> {
         self.pose(index).translation
     }
 
-    /// Returns the pose of a shape that every rotation maps to itself: see [`Pose::unturned`].
+    /// Returns pose `index` for a shape that every rotation maps to itself: see
+    /// [`AsPose::unturned`].
     fn unturned(&self, index: usize) -> Pose<N, D> {
         self.pose(index).without_rotation()
     }
 
-    /// Appends the poses of a range of indices: one virtual call for many poses.
+    /// Appends the poses of a range of indices to `out`: one virtual call for many poses.
     fn append(&self, range: Range<usize>, out: &mut Vec<Pose<N, D>>) {
         out.reserve(range.len());
         for index in range {
@@ -107,7 +108,7 @@ pub trait PoseSource<N: Real, const D: usize>: Sync {
         }
     }
 
-    /// Appends the results of [`Self::unturned`] for a range of indices.
+    /// Appends the results of [`Self::unturned`] for a range of indices to `out`.
     fn append_unturned(&self, range: Range<usize>, out: &mut Vec<Pose<N, D>>) {
         out.reserve(range.len());
         for index in range {
@@ -116,7 +117,7 @@ pub trait PoseSource<N: Real, const D: usize>: Sync {
     }
 }
 
-/// One pose for all elements.
+/// A source of one pose, which all elements share.
 ///
 /// ```
 /// use impinge::dim3::batch::{OnePose, PoseSource};

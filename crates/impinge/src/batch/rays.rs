@@ -9,12 +9,12 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Space, Vector};
 use crate::query::{RayBatch, RayIntersection, cast_at, cast_many_on};
 
-/// A batch of rays in the world frame, as arrays of origins and directions, each paired with an
-/// element of a side: ray `i` with element `i`, or a single ray or element with all of the other.
+/// A batch of rays in the world frame, as arrays of origins and directions: ray `i` with element
+/// `i` of a side. A single ray is paired with all elements, and a single element with all rays.
 ///
-/// The results are those of
-/// [`RayCast::first_hit_with_ray`](crate::query::RayCast::first_hit_with_ray), to the bit. Each ray
-/// is cast against its own element only; to find the first hit among many shapes, use a world or a
+/// The results have the bits of
+/// [`RayCast::first_hit_with_ray`](crate::query::RayCast::first_hit_with_ray). Each ray is cast
+/// against its own element only; to find the first hit among many shapes, use a world or a
 /// [`Compound`](crate::shape::Compound).
 ///
 /// ```
@@ -44,12 +44,12 @@ pub struct RayColumns<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
-    /// Pairs unlimited rays with as many placed shapes, or a single one of either with all of the
-    /// other. A single origin or direction is that of all rays. Times are in units of the length of
-    /// each direction.
+    /// Pairs each ray, without a maximum time, with the placed shape of the same index; a single
+    /// ray or shape is paired with all of the other kind. A single origin or direction is used for
+    /// all rays. Times are in units of the length of each direction.
     ///
     /// # Errors
-    /// [`BatchError::Length`] if the lengths differ and are not one.
+    /// [`BatchError::Length`] if the lengths differ, where a length of one fits any other.
     pub fn try_new(
         side: Side<'a, N, D>,
         origins: &'a [[N; D]],
@@ -60,14 +60,14 @@ impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
         Ok(Self { side, origins, directions, max_time: N::INFINITY, solid: true, len })
     }
 
-    /// Returns the rays with the maximum time `max_time`; nothing is hit if it is negative or NaN.
+    /// Returns the rays with maximum time `max_time`; nothing is hit if it is negative or NaN.
     #[must_use]
     pub const fn until(self, max_time: N) -> Self {
         Self { max_time, ..self }
     }
 
-    /// Returns the rays with shapes reduced to their boundaries: a ray that starts inside a shape
-    /// hits where it leaves it.
+    /// Returns the rays for hollow shapes: a ray that starts inside a shape hits the boundary where
+    /// it leaves the shape.
     #[must_use]
     pub const fn hollow(self) -> Self {
         Self { solid: false, ..self }
@@ -101,7 +101,7 @@ impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
     }
 }
 
-/// See [`RayColumns::cast`].
+/// Implements [`RayColumns::cast`].
 pub(super) fn cast<N: Space<D>, const D: usize>(
     rays: &RayColumns<'_, N, D>,
     control: &Control<'_>,

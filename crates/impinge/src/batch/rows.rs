@@ -1,4 +1,4 @@
-//! Contact points of many pairs as rows.
+//! Contact points of many pairs, as rows.
 
 use core::ops::Range;
 
@@ -6,8 +6,8 @@ use crate::math::{Real, Space};
 use crate::query::ManifoldView;
 use crate::shape::FeatureId;
 
-/// Contact points of many pairs in columns. The points of pair `i` are in slots
-/// `starts[i]..starts[i + 1]`, as in the compressed rows of a sparse matrix.
+/// Contact points of many pairs, in columns. The points of pair `i` are in slots
+/// `starts[i]..starts[i + 1]`, as in the compressed sparse row format of matrices.
 ///
 /// ```text
 ///   starts      0        2  2           6            one more than there are pairs
@@ -15,8 +15,8 @@ use crate::shape::FeatureId;
 ///   manifold  [ 0 0    ][  ][ 0 0  1 1 ]             pair 2 has two manifolds of two points each
 /// ```
 ///
-/// Two convex solids have at most one manifold, composites one for each flat patch that they touch
-/// in. The points of a manifold have equal normals.
+/// Two convex solids have at most one manifold; composites have one for each flat patch of contact.
+/// The points of a manifold have equal normals.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, ManifoldRows, OnePose, PairBatch, Shapes, Side};
@@ -37,25 +37,26 @@ use crate::shape::FeatureId;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ManifoldRows<N: Real, const D: usize> {
-    /// The first slot of each pair, and at last the number of points.
+    /// The first slot of each pair, followed by the number of points.
     pub starts: Vec<usize>,
-    /// The number of the manifold of each point within its pair.
+    /// The index, within the pair, of the manifold of each point.
     pub manifold: Vec<u32>,
     /// The point on the surface of the first shape, in the world frame.
     pub point1: Vec<[N; D]>,
     /// The point on the surface of the second shape, in the world frame.
     pub point2: Vec<[N; D]>,
-    /// The unit vector from the first shape to the second.
+    /// The unit vector from the first shape to the second, in the world frame.
     pub normal: Vec<[N; D]>,
-    /// The penetration at the point along the normal; minus the distance when apart.
+    /// The penetration at the point along the normal, or minus the distance if the shapes are
+    /// disjoint there.
     pub depth: Vec<N>,
-    /// The part of the first shape; 0 for a convex solid.
+    /// The index of the part of the first shape; 0 for a convex solid.
     pub part1: Vec<u32>,
-    /// The part of the second shape; 0 for a convex solid.
+    /// The index of the part of the second shape; 0 for a convex solid.
     pub part2: Vec<u32>,
-    /// The feature of that part of the first shape.
+    /// The feature of the first shape's part on which `point1` lies.
     pub feature1: Vec<FeatureId>,
-    /// The feature of that part of the second shape.
+    /// The feature of the second shape's part on which `point2` lies.
     pub feature2: Vec<FeatureId>,
 }
 
@@ -83,16 +84,16 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
         self.starts.len().saturating_sub(1)
     }
 
-    /// Returns the number of points of all pairs.
+    /// Returns the total number of points of all pairs.
     #[must_use]
     pub const fn num_points(&self) -> usize {
         self.depth.len()
     }
 
-    /// Returns the slots of the points of a pair.
+    /// Returns the slots of the points of pair `pair`.
     ///
     /// # Panics
-    /// If there is no such pair.
+    /// If `pair` is not less than [`Self::num_pairs`].
     #[must_use]
     pub fn points_of(&self, pair: usize) -> Range<usize> {
         self.starts[pair]..self.starts[pair + 1]
@@ -110,7 +111,7 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
         [&mut self.feature1, &mut self.feature2].into_iter().for_each(Vec::clear);
     }
 
-    /// Appends the points of one manifold to the present pair.
+    /// Appends the points of one manifold to the pair that has not ended yet.
     #[inline]
     pub(super) fn push(&mut self, manifold: u32, view: &ManifoldView<'_, N, D>)
     where
@@ -129,13 +130,13 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
         }
     }
 
-    /// Ends the present pair.
+    /// Ends a pair: later points belong to the next pair.
     #[inline]
     pub(super) fn end_pair(&mut self) {
         self.starts.push(self.depth.len());
     }
 
-    /// Moves the pairs of other rows behind these.
+    /// Moves all pairs of other rows to the end of these rows.
     pub(super) fn append(&mut self, other: &mut Self) {
         let before = self.depth.len();
         self.starts.extend(other.starts.iter().skip(1).map(|start| before + start));

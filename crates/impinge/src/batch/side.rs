@@ -25,19 +25,19 @@ use crate::shape::{Geometry, Shape, ShapeHandle};
 pub enum Shapes<'a, N: Real, const D: usize> {
     /// One shape for all elements.
     One(&'a dyn Shape<N, D>),
-    /// A shape for each element; a single one is for all.
+    /// A shape for each element; a single shape is used for all elements.
     Each(&'a [ShapeHandle<N, D>]),
-    /// For each element an index into `shapes`; a single index is for all.
+    /// For each element an index into `shapes`; a single index is used for all elements.
     Picked {
         /// The shapes to pick from.
         shapes: &'a [ShapeHandle<N, D>],
-        /// The index of the shape of each element.
+        /// For each element, the index of its shape.
         picks: &'a [u32],
     },
 }
 
 impl<'a, N: Real, const D: usize> Shapes<'a, N, D> {
-    /// Returns the number of elements with a shape of their own; 1 for a shape that all share.
+    /// Returns the number of elements with their own shape; 1 if all elements share a shape.
     #[must_use]
     pub const fn len(&self) -> usize {
         match self {
@@ -53,7 +53,7 @@ impl<'a, N: Real, const D: usize> Shapes<'a, N, D> {
         self.len() == 0
     }
 
-    /// Returns the shape at an index below the length.
+    /// Returns the shape of element `index`, which is less than the length.
     #[inline]
     fn at(&self, index: usize) -> &'a dyn Shape<N, D> {
         match *self {
@@ -75,8 +75,8 @@ impl<'a, N: Real, const D: usize> Shapes<'a, N, D> {
     }
 }
 
-/// Shapes and their poses: element `i` is shape `i` at pose `i`. A single shape or pose is that of
-/// every element.
+/// Shapes and their poses: element `i` is shape `i` at pose `i`. All elements share a single shape
+/// or a single pose.
 ///
 /// ```
 /// use impinge::dim3::batch::{OnePose, Shapes, Side};
@@ -98,11 +98,11 @@ pub struct Side<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Side<'a, N, D> {
-    /// Combines shapes and poses; as many of each, or one.
+    /// Combines shapes with poses: equally many of both, or a single shape or pose for all.
     ///
     /// # Errors
     /// [`BatchError::Length`] if the lengths differ and neither is one, [`BatchError::Pick`] for
-    /// the first element that picks a shape that does not exist.
+    /// the first element whose index of a shape is not in the list.
     pub fn try_new(
         shapes: Shapes<'a, N, D>,
         poses: &'a dyn PoseSource<N, D>,
@@ -112,7 +112,7 @@ impl<'a, N: Real, const D: usize> Side<'a, N, D> {
         Ok(Self { shapes, poses, len })
     }
 
-    /// Returns the number of elements; a side of one is paired with any number.
+    /// Returns the number of elements. A side of one element is paired with any number of elements.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.len
@@ -124,7 +124,7 @@ impl<'a, N: Real, const D: usize> Side<'a, N, D> {
         self.len == 0
     }
 
-    /// Returns the first element without preparing the side, for a single query.
+    /// Returns the first element, without preparing the side, for a single query.
     #[inline]
     pub(super) fn alone(&self) -> Element<'a, 'a, N, D> {
         Element { poses: self.poses, only: None, shape: self.shapes.at(0).geometry(), pose: 0 }
@@ -138,7 +138,8 @@ impl<N: Real, const D: usize> fmt::Debug for Side<'_, N, D> {
     }
 }
 
-/// Returns the common length of two lists; a list of one counts as long as the other.
+/// Returns the longer of two lengths if they are equal or one of them is 1; else
+/// [`BatchError::Length`].
 pub(super) fn common_length(
     needed: usize,
     (argument, given): (&'static str, usize),
@@ -150,20 +151,21 @@ pub(super) fn common_length(
     }
 }
 
-/// Returns the index of an element in a list with one entry for each element, or one for all.
+/// Returns the index of element `element` in a list of `len` entries: one for each element, or one
+/// for all.
 #[inline]
 pub(super) const fn index_in(len: usize, element: usize) -> usize {
     if len == 1 { 0 } else { element }
 }
 
-/// A side with the data that all of its elements share looked up once.
+/// A side, with the data that all of its elements share computed once.
 pub(super) struct PreparedSide<'a, N: Real, const D: usize> {
     side: Side<'a, N, D>,
     /// Number of poses.
     poses: usize,
-    /// The shape of all elements, if they share one.
+    /// The shape, if all elements share it.
     shape: Option<(&'a dyn Shape<N, D>, Geometry<'a, N, D>)>,
-    /// If all elements share shape and pose: the pose, and the placed shape.
+    /// The pose and the placed shape, if all elements share both.
     only: Option<(Pose<N, D>, Placed<'a, N, D>)>,
 }
 
@@ -182,12 +184,12 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         Self { side: *side, poses: side.poses.len(), shape, only }
     }
 
-    /// Returns shape and pose, if all elements share both.
+    /// Returns the shape and the pose if all elements share both; else `None`.
     pub(super) fn alone(&self) -> Option<(Geometry<'a, N, D>, Pose<N, D>)> {
         self.shape.zip(self.only.as_ref()).map(|((_, geometry), (pose, _))| (geometry, *pose))
     }
 
-    /// Returns the shape of an element.
+    /// Returns the shape of element `element`.
     #[inline]
     pub(super) fn shape(&self, element: usize) -> &'a dyn Shape<N, D> {
         match self.shape {
@@ -196,7 +198,7 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         }
     }
 
-    /// Returns the pose of an element, including the rotation of a ball.
+    /// Returns the pose of element `element`, including the rotation of a ball.
     #[inline]
     pub(super) fn pose(&self, element: usize) -> Pose<N, D> {
         match &self.only {
@@ -205,7 +207,7 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         }
     }
 
-    /// Returns the placed shapes of a range of elements.
+    /// Returns the placed shapes of the elements in a range.
     pub(super) fn placed(&self, range: Range<usize>) -> PlacedSide<'a, N, D> {
         let mut found = PlacedSide { shapes: Vec::new(), poses: Vec::new() };
         match (&self.only, &self.shape) {
@@ -223,7 +225,7 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         found
     }
 
-    /// Returns an element, whose pose is read only when it may be near.
+    /// Returns element `element`. Its pose is read only if a query does not reject it.
     #[inline]
     pub(super) fn element(&self, element: usize) -> Element<'_, 'a, N, D> {
         let shape = match self.shape {
@@ -235,16 +237,16 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
     }
 }
 
-/// Placed elements of a side, by number.
+/// The placed elements of a side, by index.
 pub(super) struct PlacedSide<'a, N: Real, const D: usize> {
-    /// One for each element, or one for all.
+    /// A shape for each element, or one for all.
     shapes: Vec<Geometry<'a, N, D>>,
-    /// One for each element, or one for all. The rotation of a ball is the identity.
+    /// A pose for each element, or one for all. The rotation of a ball is the identity.
     poses: Vec<Pose<N, D>>,
 }
 
 impl<'a, N: Real, const D: usize> PlacedSide<'a, N, D> {
-    /// Creates an empty list with room for `len` elements.
+    /// Creates an empty list with capacity for `len` elements.
     pub(super) fn with_capacity(len: usize) -> Self {
         Self { shapes: Vec::with_capacity(len), poses: Vec::with_capacity(len) }
     }
@@ -271,8 +273,8 @@ impl<'a, N: Real, const D: usize> PlacedSide<'a, N, D> {
     }
 }
 
-/// Returns the elements of a pair. Written out, because a closure over both sides is not always
-/// inlined.
+/// Returns the two elements of pair `index`. Written without a closure over both sides, which is
+/// not always inlined.
 #[inline]
 pub(super) fn pair_at<'s, 'a, N: Space<D>, const D: usize>(
     sides: &'s [PreparedSide<'a, N, D>; 2],
@@ -281,13 +283,13 @@ pub(super) fn pair_at<'s, 'a, N: Space<D>, const D: usize>(
     [sides[0].element(index), sides[1].element(index)]
 }
 
-/// An element of a side.
+/// An element of a side, whose pose has not been read yet.
 pub(super) struct Element<'s, 'a, N: Real, const D: usize> {
     poses: &'a dyn PoseSource<N, D>,
-    /// Pose and placed shape, if all elements of the side share both.
+    /// The pose and the placed shape, if all elements of the side share both.
     only: Option<&'s (Pose<N, D>, Placed<'a, N, D>)>,
     shape: Geometry<'a, N, D>,
-    /// Index of the pose.
+    /// Index in `poses` of the element's pose.
     pose: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Pairs among more objects than one machine holds: space is cut into tiles, and each tile computes its own pairs.
+//! Pairs among more objects than one machine can hold: space is cut into tiles, and each tile computes its own pairs.
 //!
 //! ```text
 //!   cut 0 ──── below ──── cut 1 ── tile 0       ┌────┬────────┐
@@ -9,13 +9,13 @@
 //! ```
 //!
 //! The tiles are the leaves of a k-d tree (Bentley, "Multidimensional binary search trees used for associative
-//! searching", 1975) over the boxes of a sample, so that each has about as many objects, even if their density varies.
-//! The grown boxes of two near objects overlap, and the pair belongs to the tile that contains the lowest corner of
-//! this overlap: the reference point of Dittrich and Seeger ("Data redundancy and duplicate detection in spatial join
-//! processing", 2000). Both boxes contain that point, so both objects are given to the tile.
+//! searching", 1975) over the boxes of a sample. So each tile has about equally many objects, even if their density
+//! varies. The grown boxes of two near objects overlap, and the pair belongs to the tile that contains the lowest
+//! corner of this overlap: the reference point of Dittrich and Seeger ("Data redundancy and duplicate detection in
+//! spatial join processing", 2000). Both boxes contain that point, so both objects are assigned to that tile.
 //!
-//! A [`Tiles`] consists of the clearance and the cuts in preorder: a subtree with n tiles has n - 1 cuts, first its
-//! own, then ⌊n/2⌋ - 1 of the ⌊n/2⌋ tiles below it, then the rest.
+//! A [`Tiles`] consists of the clearance and the cuts in preorder. A subtree of n tiles has n - 1 cuts: first its own
+//! cut, then the ⌊n/2⌋ - 1 cuts of the ⌊n/2⌋ tiles below it, then the cuts of the tiles above it.
 
 use super::entries;
 use super::within::{half_margin, is_distance};
@@ -24,10 +24,10 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::order::order_of;
 use crate::math::{Mapped, Point, Real, Space, max};
 
-/// A plane across an axis: coordinates less than `at` are below it.
+/// A plane perpendicular to an axis: a coordinate less than `at` is below the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileCut<N> {
-    /// The axis: 0 for x.
+    /// The index of the axis: 0 for x.
     pub axis: u32,
     /// The position on the axis.
     pub at: N,
@@ -35,29 +35,29 @@ pub struct TileCut<N> {
 
 /// A division of space into tiles, and the clearance up to which pairs are found.
 ///
-/// [`tiles()`] computes it. It is a plain value: from the numbers in [`Tiles::cuts`] and [`Tiles::clearance`]
-/// [`Tiles::try_from_cuts`] creates an equal one, on another machine.
+/// [`tiles()`] computes it. It is plain data: [`Tiles::try_from_cuts`] creates an equal value from [`Tiles::cuts`] and
+/// [`Tiles::clearance`], on another machine too.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tiles<N: Real, const D: usize> {
     clearance: N,
     cuts: Vec<TileCut<N>>,
 }
 
-/// The tiles of many objects: those of object `i` are `tiles[starts[i]..starts[i + 1]]`, ascending.
+/// The tiles of many objects: the tiles of object `i` are `tiles[starts[i]..starts[i + 1]]`, ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TileRows {
-    /// The index of each object's first tile in `tiles`, and at last the length of `tiles`.
+    /// The index in `tiles` of each object's first tile, followed by the length of `tiles`.
     pub starts: Vec<usize>,
-    /// Numbers of tiles.
+    /// Indices of tiles.
     pub tiles: Vec<u32>,
 }
 
-/// Cuts space into `number` tiles with about as many of the objects in each.
+/// Cuts space into `number` tiles, each with about equally many of the objects.
 ///
-/// `boxes` are those of the objects or of a sample of them, as [`boxes()`](super::boxes) computes them; `None` is
+/// `boxes` are the boxes of the objects or of a sample of them, as [`boxes()`](super::boxes) computes them; `None` is
 /// ignored. The tiles depend on the arguments alone. They need not fit the objects that are later assigned to them: any
-/// tiles lead to the same pairs, only the balance of work differs. There may be more tiles than objects, or no boxes at
-/// all; then some tiles are empty.
+/// tiles lead to the same pairs, and only the balance of work differs. If there are more tiles than objects, or no
+/// boxes at all, some tiles are empty.
 ///
 /// Cost: O(n log n log t) for n boxes and t tiles.
 ///
@@ -97,18 +97,19 @@ pub fn tiles<N: Real, const D: usize>(
     Ok(tiles)
 }
 
-/// Returns the pairs of a tile: the pairs of objects that touch, overlap, or are at most the clearance of the tiles
-/// apart, and that belong to the tile; as pairs of ids, the lower first, ascending.
+/// Returns the pairs of objects that belong to tile `tile` and that touch, overlap, or are apart by at most the
+/// clearance of the tiles. They are pairs of ids, the lower one first, ascending.
 ///
 /// `side` has the objects for which [`Tiles::meeting`] lists the tile, in any order; other objects cost time and change
-/// nothing. `ids` has a different id for each. The lists of all tiles together contain every pair once: the pairs that
-/// [`pairs_within_one`](super::pairs_within_one) finds among all objects, for any tiles.
+/// nothing. `ids` has a distinct id for each element of `side`. For any tiles, the lists of all tiles together contain
+/// exactly once each pair that [`pairs_within_one`](super::pairs_within_one) finds among all objects.
 ///
-/// Cost: that of `pairs_within_one` for the objects of the tile; pairs of other tiles get no exact test.
+/// Cost: that of `pairs_within_one` for the objects in `side`; pairs of other tiles get no exact test.
 ///
 /// # Errors
-/// [`BatchError::Length`] if `ids` is not as long as the side, [`BatchError::NoTile`] if there is no tile of this
-/// number, [`BatchError::TooMany`] if 32 bits cannot number the elements, [`BatchError::Cancelled`].
+/// [`BatchError::Length`] if `ids` is not as long as the side, [`BatchError::NoTile`] if `tile` is not less than
+/// [`Tiles::number`], [`BatchError::TooMany`] if the number of elements does not fit in 32 bits,
+/// [`BatchError::Cancelled`].
 pub fn pairs_in_tile<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     ids: &[u64],
@@ -133,17 +134,17 @@ pub fn pairs_in_tile<N: Space<D>, const D: usize>(
 }
 
 impl TileRows {
-    /// Returns the tiles of an object.
+    /// Returns the indices of the tiles of object `object`, ascending.
     ///
     /// # Panics
-    /// If there is no such object.
+    /// If there is no object with this index.
     #[must_use]
     pub fn tiles_of(&self, object: usize) -> &[u32] {
         &self.tiles[self.starts[object]..self.starts[object + 1]]
     }
 }
 
-/// A subtree: the index of its first cut, its first tile, and its number of tiles.
+/// A subtree: the index of its first cut, the index of its first tile, and its number of tiles.
 #[derive(Clone, Copy)]
 struct Subtree {
     cut: usize,
@@ -152,7 +153,7 @@ struct Subtree {
 }
 
 impl Subtree {
-    /// Returns the subtrees below and above the first cut.
+    /// Returns the subtrees below and above the first cut. There must be at least two tiles.
     const fn halves(self) -> [Self; 2] {
         let below = self.tiles / 2;
         let next = self.cut + below as usize;
@@ -164,13 +165,13 @@ impl Subtree {
 }
 
 impl<N: Real, const D: usize> Tiles<N, D> {
-    /// Creates the tiles with this clearance and these cuts, in the order of [`Tiles::cuts`]; a single tile without
-    /// cuts.
+    /// Creates the tiles with this clearance and these cuts, which must be in the order of [`Tiles::cuts`]. Without
+    /// cuts there is a single tile.
     ///
     /// # Errors
-    /// [`BatchError::Distance`] if the clearance is negative or NaN, [`BatchError::TileCut`] for the first cut that has
-    /// an axis that does not exist, is not finite, or lies outside the region that it cuts, [`BatchError::TooMany`] if
-    /// 32 bits cannot number the tiles.
+    /// [`BatchError::Distance`] if the clearance is negative or NaN, [`BatchError::TileCut`] for the first cut whose
+    /// axis does not exist or whose position is not finite or outside the region that it cuts, [`BatchError::TooMany`]
+    /// if the number of tiles does not fit in 32 bits.
     pub fn try_from_cuts(clearance: N, cuts: Vec<TileCut<N>>) -> Result<Self, BatchError> {
         is_distance(clearance)?;
         if u32::try_from(cuts.len() + 1).is_err() {
@@ -195,19 +196,21 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         self.root().tiles
     }
 
-    /// Returns the greatest distance of pairs.
+    /// Returns the greatest distance at which two objects are a pair.
     #[must_use]
     pub const fn clearance(&self) -> N {
         self.clearance
     }
 
-    /// Returns the cuts, one less than tiles, in preorder: each before the cuts of its subtree, below before above.
+    /// Returns the cuts, one less than there are tiles, in preorder: a cut comes before the cuts of its subtree, and
+    /// cuts below it before cuts above it.
     #[must_use]
     pub fn cuts(&self) -> &[TileCut<N>] {
         &self.cuts
     }
 
-    /// Returns the region of each tile; outer faces are infinite. A point on a cut lies in the tile above it.
+    /// Returns the region of each tile, by index; outer faces are infinite. A point on a cut lies in the tile above the
+    /// cut.
     #[must_use]
     pub fn bounds(&self) -> Vec<Aabb<N, D>> {
         let mut all = Vec::with_capacity(self.cuts.len() + 1);
@@ -215,7 +218,7 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         all
     }
 
-    /// Returns the tile that contains a point. A NaN coordinate counts as above every cut.
+    /// Returns the index of the tile that contains a point. A NaN coordinate is above every cut.
     #[must_use]
     pub fn owner(&self, point: &Point<N, D>) -> u32 {
         let mut subtree = self.root();
@@ -227,10 +230,11 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         subtree.tile
     }
 
-    /// Returns the tiles to which each object must be given: those that its box, grown by half the clearance, overlaps.
+    /// Returns the tiles to which each object must be assigned: those that its box, grown by half the clearance,
+    /// overlaps.
     ///
-    /// `boxes` are those of [`boxes()`](super::boxes), of all objects or any part of them. An object without a box has
-    /// no tile. An unbounded or huge box may overlap all tiles.
+    /// `boxes` are the boxes of all objects or of any part of them, as [`boxes()`](super::boxes) computes them. An
+    /// object without a box has no tile. An unbounded or huge box may overlap all tiles.
     ///
     /// Cost: O(log t + r) for t tiles and a box that overlaps r of them.
     #[must_use]
@@ -245,13 +249,13 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         rows
     }
 
-    /// Returns the tile that a pair with these boxes belongs to.
+    /// Returns the index of the tile to which a pair of objects with these boxes belongs.
     pub(super) fn owner_of_pair(&self, box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> u32 {
         let [low1, low2] = [box1, box2].mapped(|aabb| *self.grown(aabb).mins());
         self.owner(&Point::from(low1.coords.zip_map(&low2.coords, max)))
     }
 
-    /// Returns the box grown by half the clearance: two grown boxes overlap if their objects are near.
+    /// Returns the box grown by half the clearance, so that the grown boxes of two near objects overlap.
     fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         aabb.loosened(half_margin(self.clearance))
     }
@@ -261,7 +265,8 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         Subtree { cut: 0, tile: 0, tiles: cuts + 1 }
     }
 
-    /// Cuts a region with the boxes that overlap it into tiles. The recursion depth is the logarithm of `tiles`.
+    /// Cuts the region `bounds`, with the boxes that overlap it, into `tiles` tiles. The recursion depth is logarithmic
+    /// in `tiles`.
     fn divide(&mut self, boxes: Vec<Aabb<N, D>>, bounds: &Aabb<N, D>, tiles: u32) {
         if tiles == 1 {
             return;
@@ -303,7 +308,7 @@ impl<N: Real, const D: usize> Tiles<N, D> {
         }
     }
 
-    /// Returns the first cut that lies outside the region that it cuts.
+    /// Returns the index of the first cut that lies outside the region that it cuts; `None` if all lie inside.
     fn first_outside(&self, subtree: Subtree, bounds: &Aabb<N, D>) -> Option<usize> {
         if subtree.tiles == 1 {
             return None;
@@ -318,7 +323,7 @@ impl<N: Real, const D: usize> Tiles<N, D> {
     }
 }
 
-/// Returns the parts of a box below and above a cut.
+/// Returns the parts of a box below and above a cut that lies inside it.
 fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aabb<N, D>; 2] {
     let (mut below, mut above) = (*bounds.maxs(), *bounds.mins());
     below[cut.axis as usize] = cut.at;
@@ -326,12 +331,12 @@ fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aa
     [Aabb::new(*bounds.mins(), below), Aabb::new(above, *bounds.maxs())]
 }
 
-/// Cost of a cut, compared in this order: the number of objects in a tile of the fuller side, times a common factor,
-/// then the number of objects on both sides, which counts those cut twice.
+/// Cost of a cut, compared lexicographically: first the number of objects per tile on the fuller side, times a factor
+/// common to all cuts; then the number of objects on both sides, which includes twice each object that is cut.
 type CutLoad = (u64, usize);
 
-/// Returns the cut with the least cost. Any finite cut inside the bounds if no box and no bound has a finite lower
-/// face.
+/// Returns the cut with the least cost. If there is no candidate, because no box and no bound has a finite lower face,
+/// returns any finite cut inside the bounds.
 fn best_cut<N: Real, const D: usize>(
     boxes: &[Aabb<N, D>],
     bounds: &Aabb<N, D>,
@@ -353,7 +358,7 @@ fn best_cut<N: Real, const D: usize>(
     best.map_or(TileCut { axis: 0, at }, |(_, cut)| cut)
 }
 
-/// The faces of boxes on one axis, ascending.
+/// The coordinates of the boxes' faces on one axis, ascending.
 struct Faces<N> {
     lows: Vec<N>,
     highs: Vec<N>,
@@ -370,8 +375,8 @@ impl<N: Real> Faces<N> {
         Self { lows: sorted(lows.collect()), highs: sorted(highs.collect()) }
     }
 
-    /// Returns candidate cuts: the two lower faces between which both sides are balanced, the first lower face, and the
-    /// lower bound. With the last, no box is below the cut, which is best if all boxes overlap.
+    /// Returns candidate positions: the two lower faces between which both sides are balanced, the first lower face
+    /// inside, and the lower bound. At the lower bound no box is below the cut, which is best if all boxes overlap.
     fn even_cuts(&self, [low, high]: [N; 2], tiles: u32) -> impl Iterator<Item = N> {
         let begin = self.lows.partition_point(|&face| face <= low);
         let inside = &self.lows[begin..];
@@ -387,7 +392,7 @@ impl<N: Real> Faces<N> {
         cuts.into_iter().flatten()
     }
 
-    /// Returns the numbers of boxes that reach below the cut, and at or above it.
+    /// Returns the number of boxes that extend below the cut, and the number of boxes that extend to it or above it.
     fn counts(&self, at: N) -> [usize; 2] {
         let before = |faces: &[N]| faces.partition_point(|&face| face < at);
         [before(&self.lows), self.highs.len() - before(&self.highs)]

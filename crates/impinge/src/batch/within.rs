@@ -1,8 +1,8 @@
 //! All near pairs of two sets of placed shapes.
 //!
-//! A tree is built over the boxes of one set, and each element of the other searches it with its
-//! own box, grown by the distance. The proximity of the two shapes decides about each proposed
-//! pair.
+//! A tree is built over the boxes of one set. Each element of the other set searches it with its
+//! own box, grown by the distance. The proximity of the two shapes then accepts or rejects each
+//! proposed pair.
 //!
 //! ```text
 //!    +-------------+  the box of an element, rounded outwards and grown by the rounding errors of its pair
@@ -11,9 +11,9 @@
 //! ```
 //!
 //! The algorithms for pairs have errors of some hundred rounding errors of the pair's lengths (see
-//! [`crate::collide::far`]): the sizes of both solids about their origins, and the distance. So
-//! each box is grown by 2¹⁰ rounding errors of the extent of its own solid about its origin, and
-//! the searched volume by as many of the distance, before any pair is rejected.
+//! [`crate::collide::far`]): the extents of both solids about their origins, and the distance. So
+//! before any pair is rejected, each box is grown by 2¹⁰ rounding errors of its own solid's extent
+//! about its origin, and the searched volume by 2¹⁰ rounding errors of the distance.
 
 use super::entries;
 use core::ops::Range;
@@ -28,16 +28,16 @@ use crate::math::{Mapped, Real, Space, max};
 use crate::partitioning::BoxTree;
 use crate::query::distance_within;
 
-/// Boxes are grown by this number of rounding errors of their lengths.
+/// Number of rounding errors of its lengths by which a box is grown.
 const ROUNDING_ERRORS: f64 = 1024.0;
 
-/// Returns the pairs `[i, j]` of an element `i` of the first side and an element `j` of the second
-/// that touch, overlap, or are at most `distance` apart, ascending.
+/// Returns the pairs `[i, j]`, ascending, of an element `i` of the first side and an element `j` of
+/// the second that touch, overlap, or are at most `distance` apart.
 ///
-/// The test is [`proximity`](crate::query::proximity()): a distance equal to `distance` is within
-/// it. Elements with a pose that is not finite, and composites without parts, have no pairs.
+/// The test is [`proximity`](crate::query::proximity()), and `distance` is inclusive. Elements with
+/// a pose that is not finite, and composites without parts, have no pairs.
 ///
-/// The callback of `control` counts the elements of the larger side.
+/// The callback of `control` receives numbers of elements of the larger side.
 ///
 /// Cost: O((n + m) log n) for n and m elements, n ≤ m, and the proximity of each pair whose boxes
 /// are within the distance. Half-spaces that are not aligned with an axis are tested against every
@@ -57,8 +57,8 @@ const ROUNDING_ERRORS: f64 = 1024.0;
 /// ```
 ///
 /// # Errors
-/// [`BatchError::Distance`] if `distance` is negative or NaN, [`BatchError::TooMany`] if 32 bits cannot number the
-/// elements, [`BatchError::Cancelled`].
+/// [`BatchError::Distance`] if `distance` is negative or NaN, [`BatchError::TooMany`] if the number
+/// of elements does not fit in 32 bits, [`BatchError::Cancelled`].
 pub fn pairs_within<N: Space<D>, const D: usize>(
     side1: &Side<'_, N, D>,
     side2: &Side<'_, N, D>,
@@ -68,8 +68,8 @@ pub fn pairs_within<N: Space<D>, const D: usize>(
     entries::pairs_within(side1, Some(side2), distance, control)
 }
 
-/// Returns the pairs `[i, j]`, `i < j`, of elements of one side that touch, overlap, or are at most
-/// `distance` apart, ascending: [`pairs_within`] of a side and itself with each pair once and
+/// Returns the pairs `[i, j]`, `i < j`, ascending, of elements of one side that touch, overlap, or
+/// are at most `distance` apart: [`pairs_within`] for the side and itself, with each pair once and
 /// without self-pairs.
 ///
 /// ```
@@ -84,7 +84,8 @@ pub fn pairs_within<N: Space<D>, const D: usize>(
 /// ```
 ///
 /// # Errors
-/// As [`pairs_within`].
+/// [`BatchError::Distance`] if `distance` is negative or NaN, [`BatchError::TooMany`] if the number
+/// of elements does not fit in 32 bits, [`BatchError::Cancelled`].
 pub fn pairs_within_one<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     distance: N,
@@ -93,12 +94,11 @@ pub fn pairs_within_one<N: Space<D>, const D: usize>(
     entries::pairs_within(side, None, distance, control)
 }
 
-/// Returns the box of each element of a side, grown by the rounding errors of its pairs, as
-/// [`tiles()`](super::tiles()) and [`Tiles::meeting`] need them.
+/// Returns the box of each element of a side, grown by the rounding errors of its pairs, for
+/// [`tiles()`](super::tiles()) and [`Tiles::meeting`].
 ///
-/// `None` for an element with a pose that is not finite and for a composite without parts.
-/// Half-spaces and other unbounded shapes have infinite faces. The boxes depend on the shapes and
-/// poses alone.
+/// An element has `None` if its pose is not finite or it is a composite without parts. Half-spaces
+/// and other unbounded shapes have infinite faces. The boxes depend on the shapes and poses alone.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, boxes};
@@ -114,7 +114,8 @@ pub fn pairs_within_one<N: Space<D>, const D: usize>(
 /// ```
 ///
 /// # Errors
-/// [`BatchError::TooMany`] if 32 bits cannot number the elements, [`BatchError::Cancelled`].
+/// [`BatchError::TooMany`] if the number of elements does not fit in 32 bits,
+/// [`BatchError::Cancelled`].
 pub fn boxes<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     control: &Control<'_>,
@@ -125,11 +126,11 @@ pub fn boxes<N: Space<D>, const D: usize>(
 /// The elements of a side and their boxes.
 struct BoxedSide<'a, N: Real, const D: usize> {
     side: PreparedSide<'a, N, D>,
-    /// `None` for an element without a finite point.
+    /// By element, its grown box; `None` for an element without a finite point.
     boxes: Vec<Option<Aabb<N, D>>>,
 }
 
-/// See [`pairs_within`], and [`pairs_within_one`] without a second side.
+/// Implements [`pairs_within`], and without a second side [`pairs_within_one`].
 pub(super) fn pairs_of<N: Space<D>, const D: usize>(
     side1: &Side<'_, N, D>,
     side2: Option<&Side<'_, N, D>>,
@@ -155,7 +156,8 @@ pub(super) fn pairs_of<N: Space<D>, const D: usize>(
     Ok(pairs)
 }
 
-/// See [`pairs_in_tile`](super::pairs_in_tile); pairs `[i, j]` with i < j, in any order.
+/// Implements [`pairs_in_tile`](super::pairs_in_tile), but returns pairs of indices `[i, j]`, i <
+/// j, in no particular order.
 pub(super) fn pairs_of_tile<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     tiles: &Tiles<N, D>,
@@ -173,7 +175,7 @@ pub(super) fn pairs_of_tile<N: Space<D>, const D: usize>(
     })
 }
 
-/// See [`boxes()`].
+/// Implements [`boxes()`].
 pub(super) fn boxes_of<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     control: &Control<'_>,
@@ -181,19 +183,19 @@ pub(super) fn boxes_of<N: Space<D>, const D: usize>(
     Ok(BoxedSide::new(side, control)?.boxes)
 }
 
-/// Returns an error unless a distance limit is zero or more.
+/// Returns [`BatchError::Distance`] if a distance limit is negative or NaN.
 pub(super) fn is_distance<N: Real>(value: N) -> Result<(), BatchError> {
     let is_usable = value >= N::ZERO;
     if is_usable { Ok(()) } else { Err(BatchError::Distance { value: value.as_f64() }) }
 }
 
-/// Returns the distance grown by its rounding errors: the growth of one of two boxes.
+/// Returns the distance plus its rounding errors: the growth of one of two boxes.
 fn margin<N: Real>(distance: N) -> N {
     distance + distance * N::lit(ROUNDING_ERRORS) * N::EPSILON
 }
 
-/// Returns the growth of both boxes by which they overlap if they are within a distance. Twice the
-/// result is not less than [`margin`], even where half of the smallest number rounds to zero.
+/// Returns the growth of each of two boxes with which they overlap if they are within `distance`.
+/// Twice the result is at least [`margin`], even where half of the smallest number rounds to zero.
 pub(super) fn half_margin<N: Real>(distance: N) -> N {
     let whole = margin(distance);
     let half = whole * N::HALF;
@@ -203,7 +205,7 @@ pub(super) fn half_margin<N: Real>(distance: N) -> N {
 impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
     fn new(side: &Side<'a, N, D>, control: &Control<'_>) -> Result<Self, BatchError> {
         let given = side.len();
-        // `u32::MAX` is not the index of an element.
+        // An index is less than the length, so it is never `u32::MAX`.
         if u32::try_from(given).is_err() {
             return Err(BatchError::TooMany { given });
         }
@@ -217,8 +219,9 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         Ok(Self { side, boxes })
     }
 
-    /// Returns the near pairs of an element of this side, which searches, and one of the other
-    /// side, as `pair_of` maps them, in any order. `pair_of` returns `None` for pairs to be left out.
+    /// Returns the near pairs of an element of this side, which searches, and an element of the
+    /// other side, in no particular order. `pair_of` receives both indices and returns the pair to
+    /// report; `None` to leave it out.
     fn pairs_with(
         &self,
         other: &Self,
@@ -249,25 +252,26 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         Ok(all)
     }
 
-    /// Builds a tree over the existing boxes; returns it with the element of each box.
+    /// Builds a tree over the boxes that are not `None`; returns it with the element index of each
+    /// box.
     fn tree(&self) -> Result<(Vec<u32>, BoxTree<N, D>), BatchError> {
         let boxes = (0..).zip(&self.boxes);
         let (numbers, boxes): (Vec<u32>, Vec<_>) =
             boxes.filter_map(|(number, aabb)| Some((number, (*aabb)?))).unzip();
         let given = boxes.len();
-        // The boxes are neither inverted nor NaN, so only their number can be refused.
+        // The boxes are neither inverted nor NaN, so only their count can cause an error.
         let tree = BoxTree::try_from_vec(boxes).map_err(|_| BatchError::TooMany { given })?;
         Ok((numbers, tree))
     }
 }
 
-/// Converts an index of a side, whose length was checked.
+/// Converts the index of an element to `u32`. The length of the side has been checked.
 fn number_of(element: usize) -> u32 {
     u32::try_from(element).expect("32 bits can number the elements")
 }
 
-/// Returns the box of an element grown by its rounding errors; `None` if the element has no finite
-/// point.
+/// Returns the box of an element, grown by its rounding errors; `None` if the pose is not finite or
+/// the element has no finite point.
 fn grown_box<N: Space<D>, const D: usize>(
     side: &PreparedSide<'_, N, D>,
     element: usize,

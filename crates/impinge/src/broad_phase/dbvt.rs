@@ -1,4 +1,4 @@
-//! The default broad phase: the pair finder, with handles and the user's data.
+//! The default broad phase: the pair finder, with handles and data of the user.
 
 use crate::math::order::sort_few;
 use crate::tables::entries;
@@ -17,9 +17,9 @@ use crate::memory::{Recent, clone_fields};
 use crate::pairs::unpack;
 use crate::partitioning::Sweep;
 
-/// A bounding volume that [`DBVTBroadPhase`] can keep: every [`Aabb`]. Sealed.
+/// A bounding volume that [`DBVTBroadPhase`] accepts: [`Aabb`]. Sealed.
 pub trait TreeVolume<N: Real>: BoundingVolume<N> + sealed::Sealed {
-    /// The algorithm that finds the pairs of such volumes.
+    /// The algorithm that finds the pairs of these volumes.
     type Finder: Debug + Clone;
 
     /// Creates a finder without objects.
@@ -30,7 +30,7 @@ pub trait TreeVolume<N: Real>: BoundingVolume<N> + sealed::Sealed {
 }
 
 mod sealed {
-    /// Closes `TreeVolume` to other volumes.
+    /// Prevents implementations of `TreeVolume` for other volumes.
     #[expect(unnameable_types, reason = "that nobody can name it is its purpose")]
     pub trait Sealed {}
 }
@@ -48,16 +48,17 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 /// A dynamic tree over bounding volumes loosened by a margin.
 ///
 /// The tree changes only when an object's exact volume leaves its loosened one, so objects that
-/// move slowly or jitter cost almost nothing. Volumes are loosened at creation too. The pairs kept
-/// are those of overlapping loosened volumes; the searches (`interferences_with_*`, `visit_*`) use
+/// move slowly or jitter cost almost nothing. Volumes are loosened at creation too. Two objects are
+/// a pair if their loosened volumes overlap; the searches (`interferences_with_*`, `visit_*`) test
 /// exact volumes.
 ///
-/// Loosened volumes are stored as `f32`, rounded outwards, also for `f64`: a pair is never missed.
-/// Volumes with a face beyond the range of `f32` are unbounded. They are supported, but each is
-/// tested against every object that changes, so there should be few.
+/// Loosened volumes are stored as `f32`, rounded outwards, even for `f64`, so no pair is missed. A
+/// volume with a face beyond the range of `f32` is treated as unbounded: each is tested against
+/// every object that changes, so there should be few.
 ///
-/// Costs O(changed · log n) with temporal coherence. A still object without pairs takes about 60
-/// bytes besides its volume, the loosened one and the data. [`PairFinder`] describes the layout.
+/// An update costs O(changed · log n) with temporal coherence. A still object without pairs takes
+/// about 60 bytes in addition to its exact volume, its loosened volume and its data. [`PairFinder`]
+/// describes the layout.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -102,7 +103,7 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     /// 0.02 suits objects of size 1).
     ///
     /// # Panics
-    /// If the margin is negative, infinite or NaN; [`Self::try_new`] returns these.
+    /// If the margin is negative, infinite or NaN; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(margin: N) -> Self {
@@ -120,20 +121,20 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     }
 }
 
-/// Returns the data of an object, which must exist.
+/// Returns the data of an object, which must be in the broad phase.
 pub(super) fn data_of<T>(proxies: &[Option<T>], id: u32) -> &T {
     let data = proxies[id as usize].as_ref();
     data.expect("the finder knows only objects that are there")
 }
 
-/// Returns the id of the object in the finder.
+/// Returns the id by which the finder identifies the object.
 fn id_of(handle: ProxyHandle) -> u32 {
     u32::try_from(handle.uid()).expect("handles hold an index of 32 bits")
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
-    /// Creates a broad phase without objects that uses the given vector width, which does not
-    /// affect results. For tests.
+    /// Creates a broad phase without objects that uses vectors of the given width. The width does
+    /// not affect results. For tests.
     ///
     /// # Errors
     /// If the margin is negative, infinite or NaN.
@@ -147,15 +148,15 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         self.finder.margin()
     }
 
-    /// Returns the loosened volume; `None` for a stale handle or before the first update of the
-    /// object.
+    /// Returns the loosened volume of an object; `None` for a stale handle, and before the first
+    /// update of the object.
     pub fn loosened_volume(&self, handle: ProxyHandle) -> Option<&Bounds<D>> {
         self.check(handle).ok()?;
         self.finder.loosened(id_of(handle))
     }
 
-    /// Iterates over the pairs as of the last update without those removed since, each with the
-    /// smaller handle first, in unspecified order.
+    /// Iterates over the pairs of the last update, except those removed since. Each has the smaller
+    /// handle first; the order is unspecified.
     pub fn pairs(&self) -> impl Iterator<Item = (ProxyHandle, ProxyHandle)> + '_ {
         let handle = |id: u32| self.handles.at(id);
         self.finder.pairs().iter().map(move |&(a, b)| (handle(a), handle(b)))
@@ -164,7 +165,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     /// Checks every invariant; for tests.
     ///
     /// # Errors
-    /// A sentence that names the violated invariant.
+    /// Returns a sentence that names the violated invariant.
     pub fn validate(&self) -> Result<(), String> {
         self.finder.validate()
     }
@@ -174,7 +175,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         is_alive.then_some(()).ok_or(BroadPhaseError::StaleHandle(handle))
     }
 
-    /// Returns an error for a stale handle or one that occurs twice.
+    /// Returns an error for the first stale handle, or else for a handle that occurs twice.
     fn check_all(&self, handles: &[ProxyHandle]) -> Result<(), BroadPhaseError> {
         handles.iter().try_for_each(|&handle| self.check(handle))?;
         let mut sorted = handles.to_vec();
@@ -183,7 +184,8 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
         twice.map_or(Ok(()), |two| Err(BroadPhaseError::RemovedTwice(two[0])))
     }
 
-    /// Passes a group of found objects to `visit`: at least one, at most [`GROUP`].
+    /// Passes a group of found objects to `visit`, and returns the new limit. The group has 1 to
+    /// [`GROUP`] objects.
     #[inline]
     fn propose(&self, found: &[(u32, N)], visit: &mut VisitProposals<'_, N, T>) -> N {
         let mut proposals = [Proposal::kept(&self.proxies, found[0].0, found[0].1); GROUP];
@@ -198,7 +200,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     }
 }
 
-/// Returns an error for NaN and inverted boxes, which arithmetic on valid ones can yield.
+/// Returns an error for a NaN or inverted box. Arithmetic on valid boxes can produce these.
 fn check_volume<N: Real, const D: usize>(
     bv: &Aabb<N, D>,
     handle: Option<ProxyHandle>,

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::ProxyHandle;
 
-/// The reason why a call to a broad phase was refused. The broad phase is unchanged then.
+/// The reason why a call to a broad phase was refused. The call has changed nothing.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -16,13 +16,14 @@ use super::ProxyHandle;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BroadPhaseError {
-    /// The handle is that of a removed object, or of another broad phase.
+    /// The handle belongs to a removed object or to another broad phase.
     StaleHandle(ProxyHandle),
     /// The handle occurs twice in one list of removals.
     RemovedTwice(ProxyHandle),
-    /// The volume of this object (`None`: a new one) has a NaN face, or is inverted.
+    /// The volume is inverted or has a NaN face. The handle is that of the object, or `None` for a
+    /// new object.
     BadVolume(Option<ProxyHandle>),
-    /// The margin (given here as `f64`) is negative, infinite or NaN.
+    /// The margin, converted to `f64`, is negative, infinite or NaN.
     BadMargin(f64),
 }
 
@@ -46,7 +47,8 @@ impl fmt::Display for BroadPhaseError {
 
 impl std::error::Error for BroadPhaseError {}
 
-/// Returns the value, or panics with the text of the error: the end of every panicking method.
+/// Returns the value, or panics with the text of the error. Used by the panicking variants of
+/// methods.
 #[track_caller]
 pub(super) fn or_panic<S>(result: Result<S, BroadPhaseError>) -> S {
     match result {

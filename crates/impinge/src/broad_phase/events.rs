@@ -1,4 +1,4 @@
-//! One update of the broad phase: from waiting boxes to events in canonical order.
+//! An update of the broad phase: from waiting boxes to events in canonical order.
 
 use super::PairFinder;
 use super::finder::{AGAIN, CHANGED, Home};
@@ -7,23 +7,23 @@ use crate::math::Real;
 use crate::memory::Look;
 use crate::pairs::{PairTable, pack, unpack};
 
-/// Number of pairs whose table entries are prefetched together.
+/// Number of pairs whose table entries are prefetched at once.
 const AT_ONCE: usize = 16;
 
-/// Started and stopped pairs of an update, packed, in ascending order.
+/// Started and stopped pairs of an update, packed; each list is ascending.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PairEvents {
     /// Pairs that start.
     starting: Vec<u64>,
     /// Pairs that stop.
     stopped: Vec<u64>,
-    /// Both lists merged; `true` for pairs that start.
+    /// Both lists merged, ascending; the flag is `true` for a pair that starts.
     events: Vec<(u64, bool)>,
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
-    /// Applies the waiting changes; see `BroadPhase::update`. Arguments of both callbacks are ids,
-    /// the smaller one first.
+    /// Applies the waiting changes; see `BroadPhase::update`. Both callbacks receive ids, the
+    /// smaller one first.
     pub fn update(
         &mut self,
         filter: &mut dyn FnMut(u32, u32) -> bool,
@@ -56,8 +56,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.pair_events.events = events;
     }
 
-    /// Filters the pairs that began. Pairs that are filtered again and now refused are added to the
-    /// ended ones. Changes no pair.
+    /// Calls the filter for each pair that began, and lists the accepted new pairs as starting. A
+    /// pair in the table that is filtered again and refused is added to `found.ended`. The table
+    /// itself is not changed.
     fn filter(&mut self, found: &mut Changes, filter: &mut dyn FnMut(u32, u32) -> bool) {
         self.pair_events.starting.clear();
         found.began.sort_unstable();
@@ -76,7 +77,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         found.ended.dedup();
     }
 
-    /// Finds the pairs whose boxes began to overlap and those whose boxes ceased to.
+    /// Lists the pairs whose loosened boxes began to overlap or ceased to overlap since the last
+    /// update.
     fn find_changes(&mut self, found: &mut Changes) {
         found.clear();
         self.joiner.self_join(&self.moving, found);
@@ -91,7 +93,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Lists the pairs of an object whose boxes no longer overlap.
+    /// Appends the pairs of object `a` in the table whose loosened boxes no longer overlap.
     fn parted_from(&self, a: u32, ended: &mut Vec<u64>) {
         for (b, _) in self.pairs.partners(a) {
             if !self.loose[a as usize].overlaps(&self.loose[b as usize]) {
@@ -100,13 +102,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Finds the pairs of one unbounded object that began or ended: among all objects if it changed
-    /// itself, else among those that changed.
+    /// Lists the pairs of an unbounded object that began or ended. Tests all objects if this one
+    /// changed, else only the objects that changed.
     fn changes_of_unbounded(&self, u: u32, found: &mut Changes) {
         let is_changed = self.marks[u as usize] & CHANGED != 0;
         let mut test = |other: u32| {
             // A pair of two unbounded objects is reported once: by the one that changed, or by the
-            // smaller id.
+            // smaller id if both did.
             let is_reported_by_other = self.homes[other as usize] == Home::Unbounded
                 && self.marks[other as usize] & CHANGED != 0
                 && (!is_changed || other < u);
@@ -132,7 +134,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (before, self.loose[a as usize].overlaps(&self.loose[b as usize]))
     }
 
-    /// Updates the table of pairs, and prepares the trees for the next update. Both are
+    /// Updates the table of pairs, and prepares the trees for the next update. The two steps are
     /// independent.
     fn commit_and_settle(&mut self, ended: &[u64]) {
         let mut pairs = core::mem::take(&mut self.pairs);
@@ -153,7 +155,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (self.pairs, self.pair_events) = (pairs, pair_events);
     }
 
-    /// Makes the present boxes the old ones, and clears all marks.
+    /// Makes the present boxes the old ones for the next update, and clears all marks.
     fn settle(&mut self) {
         for &id in &self.changes {
             self.marks[id as usize] = 0;
@@ -165,7 +167,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 }
 
-/// Runs both closures, with the feature `parallel` possibly on two threads.
+/// Runs both closures; with the feature `parallel` possibly on two threads.
 fn join(one: impl FnOnce() + Send, other: impl FnOnce() + Send) {
     #[cfg(feature = "parallel")]
     rayon::join(one, other);
@@ -184,8 +186,8 @@ impl PairEvents {
         look.trim(&mut self.events);
     }
 
-    /// Updates the table of pairs and lists the events in canonical order. A pair that starts takes
-    /// the index of one that stops, so that no third one moves.
+    /// Updates the table of pairs, and lists the events in canonical order. A pair that starts
+    /// takes the index of a pair that stops, so that no other pair moves.
     fn commit(&mut self, pairs: &mut PairTable, ended: &[u64]) {
         let Self { starting, stopped, events } = self;
         let mut started = 0;
@@ -195,7 +197,7 @@ impl PairEvents {
             pairs.fetch(&starting[started..starting.len().min(started + AT_ONCE)]);
             for &key in chunk {
                 let (a, b) = unpack(key);
-                // A pair that the filter refused is not in the table.
+                // A pair that the filter refused when it began is not in the table.
                 let was_there = match starting.get(started) {
                     Some(&start) => pairs.replace((a, b), unpack(start)).is_some(),
                     None => pairs.remove(a, b).is_some(),
@@ -216,7 +218,8 @@ impl PairEvents {
     }
 }
 
-/// Merges two ascending lists into one: stopped pairs with `false`, started ones with `true`.
+/// Merges two ascending lists of pairs into one, with the flag `false` for stopped and `true` for
+/// started pairs.
 fn merge(stopped: &[u64], started: &[u64], events: &mut Vec<(u64, bool)>) {
     events.clear();
     let mut rest = started.iter().peekable();

@@ -1,4 +1,4 @@
-//! The broad phase without the users' data: ids and boxes in, started and stopped pairs out.
+//! The broad phase without data of the user: ids and boxes in, started and stopped pairs out.
 
 use core::fmt;
 
@@ -14,7 +14,7 @@ use crate::math::Real;
 use crate::memory::{Look, Recent, clone_fields};
 use crate::pairs::PairTable;
 
-/// The container of an object.
+/// The container in which the finder keeps an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Home {
@@ -22,51 +22,53 @@ pub(crate) enum Home {
     Nowhere,
     /// The tree of moving objects.
     Moving,
-    /// The tree of objects that have been still for some time.
+    /// The tree of still objects, which have not changed for some time.
     Still,
     /// The list of unbounded objects.
     Unbounded,
 }
 
-/// Mark: the loosened box changed since the last update.
+/// Mark of an object whose loosened box changed since the last update.
 pub(super) const CHANGED: u8 = 1;
-/// Mark: all pairs of the object must be filtered again.
+/// Mark of an object whose pairs must all be filtered again.
 pub(super) const AGAIN: u8 = 2;
 
-/// A box to be set at the next update; `id` is [`NONE`] if the object was removed since.
+/// A box to be set at the next update; `id` is [`NONE`] if the object has been removed since.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting<N: Real, const D: usize> {
     pub(super) id: u32,
     pub(super) aabb: Aabb<N, D>,
 }
 
-/// Keeps the pairs of objects whose loosened boxes overlap. Objects are small dense numbers (ids).
+/// Keeps the pairs of objects whose loosened boxes overlap. An object is identified by a small
+/// index, its id.
 ///
 /// The loosened box of an object is its exact box grown by the margin and rounded outwards to
 /// `f32`. It changes only when the exact box leaves it, or when an unbounded object becomes
-/// bounded, so objects that move little cost almost nothing. Boxes with a face beyond the range of
-/// `f32` count as unbounded: they are kept in a list and tested against every object that changed.
+/// bounded, so objects that move little cost almost nothing. A box with a face beyond the range of
+/// `f32` is unbounded: unbounded objects are in a list, and are tested against every object that
+/// changed.
 ///
 /// All arrays are indexed by id. Objects that have not changed for a while move to a second tree,
-/// which is joined only with what changed.
+/// which is joined only with changed objects.
 pub struct PairFinder<N: Real, const D: usize> {
     margin: N,
     /// Exact boxes at the last update.
     pub(super) exact: Vec<Aabb<N, D>>,
     pub(super) loose: Vec<Bounds<D>>,
-    /// Loosened boxes at the last update, for unbounded objects marked as changed; up to the last
-    /// of these.
+    /// Loosened boxes at the last update, valid for unbounded objects marked as changed. As long as
+    /// the largest id of these requires.
     previous: Vec<Bounds<D>>,
     pub(super) homes: Vec<Home>,
     pub(super) marks: Vec<u8>,
-    /// Update (`clock`) in which the loosened box last changed.
+    /// By id: the value of `clock` in the update in which the loosened box last changed.
     pub(super) last_change: Vec<u32>,
     pub(super) waiting: Vec<Waiting<N, D>>,
     /// Scratch: indices in `waiting`.
     leavers: Vec<u32>,
-    /// Index of each object in `waiting`, or [`NONE`].
+    /// By id: the object's index in `waiting`, or [`NONE`].
     pub(super) waiting_at: Vec<u32>,
-    /// Objects marked as changed, each once.
+    /// Objects that have a mark, each once.
     pub(super) changes: Vec<u32>,
     /// Objects whose pairs must be filtered again.
     pub(super) again: Vec<u32>,
@@ -76,15 +78,15 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) unbounded: Vec<u32>,
     pub(super) pairs: PairTable,
     pub(super) joiner: Joiner<D>,
-    /// Objects whose pairs are checked one by one for ends, because the join does not find all of
-    /// these.
+    /// Objects whose pairs are checked one by one for their end, because the join does not report
+    /// all of their ended pairs.
     pub(super) searched: Vec<u32>,
     /// Scratch of one update.
     pub(super) resting: Vec<u32>,
     pub(super) found: Changes,
     pub(super) pair_events: PairEvents,
     pub(super) lanes: Lanes,
-    /// Number of updates; wraps.
+    /// Number of updates so far; wraps.
     pub(super) clock: u32,
     pub(super) rest_pass: RestPass,
     pub(super) recent: Recent,
@@ -115,7 +117,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         Self::with_lanes(margin, Lanes::detect())
     }
 
-    /// As [`Self::try_new`], with the given vector width; for tests.
+    /// Creates a finder with the given vector width; see [`Self::try_new`]. For tests.
     pub(super) fn with_lanes(margin: N, lanes: Lanes) -> Result<Self, BroadPhaseError> {
         let is_usable = margin >= N::ZERO && margin.is_finite_number();
         if !is_usable {
@@ -152,36 +154,39 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         })
     }
 
-    /// Returns the margin.
+    /// Returns the margin by which boxes are loosened.
     pub const fn margin(&self) -> N {
         self.margin
     }
 
-    /// Returns the pairs as of the last update without those removed since, in unspecified order.
+    /// Returns the pairs of the last update, except those removed since, in unspecified order.
     pub fn pairs(&self) -> &[(u32, u32)] {
         self.pairs.pairs()
     }
 
-    /// Returns the exact box at the last update; before the first update of the object, the box
-    /// that it was added with. The object must exist.
+    /// Returns the exact box of the last update; before the first update of the object, its initial
+    /// box. The object must exist.
     pub fn exact(&self, id: u32) -> &Aabb<N, D> {
         &self.exact[id as usize]
     }
 
-    /// Returns the loosened box; `None` before the first update of the object.
+    /// Returns the loosened box of an object; `None` before its first update and if there is no
+    /// such object.
     pub fn loosened(&self, id: u32) -> Option<&Bounds<D>> {
         let is_known = *self.homes.get(id as usize)? != Home::Nowhere;
         is_known.then(|| &self.loose[id as usize])
     }
 
-    /// Calls `visit` with the bounds of each node of both trees, that of moving objects first.
+    /// Calls `visit` with the bounds of each node of both trees: first of the tree of moving
+    /// objects.
     #[cfg(feature = "debug_render")]
     pub(super) fn each_node(&self, visit: &mut dyn FnMut(&Bounds<D>)) {
         self.moving.each_node(visit);
         self.still.each_node(visit);
     }
 
-    /// Adds an object at the next update. The id must be unused; ids should be dense.
+    /// Adds an object, which takes part from the next update on. The id must be unused; ids should
+    /// be dense.
     pub fn insert(&mut self, id: u32, aabb: Aabb<N, D>) {
         let needed = id as usize + 1;
         if self.homes.len() < needed {
@@ -197,7 +202,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.set(id, aabb);
     }
 
-    /// Sets the box of an object at the next update; the last of several calls counts.
+    /// Sets the box of an object at the next update; only the last of several calls has an effect.
     #[inline]
     pub fn set(&mut self, id: u32, aabb: Aabb<N, D>) {
         let at = self.waiting_at[id as usize];
@@ -219,7 +224,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.is_all_again = true;
     }
 
-    /// Returns the pairs that involve one of the objects, packed, each once, in ascending order.
+    /// Returns the packed pairs that contain at least one of the objects, each once, ascending.
     pub(super) fn pairs_of(&self, ids: &[u32]) -> Vec<u64> {
         let of_one = |&a: &u32| self.pairs.partners(a).map(move |(b, _)| crate::pairs::pack(a, b));
         let mut keys: Vec<u64> = ids.iter().flat_map(of_one).collect();
@@ -228,7 +233,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         keys
     }
 
-    /// Removes an object and its pairs at once.
+    /// Removes an object and its pairs at once, without waiting for an update.
     pub fn remove(&mut self, id: u32) {
         self.note(id);
         while let Some(pair) = self.pairs.any_pair_of(id) {
@@ -240,8 +245,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         if at != NONE {
             self.waiting[at as usize].id = NONE;
         }
-        // Not empty only after a filter panicked. `again` may keep the id: an object that reuses it
-        // is new, and all its pairs are filtered in any case.
+        // `changes` is not empty here only after a filter panicked. `again` may keep the id: an
+        // object that reuses it is new, and all its pairs are filtered in any case.
         self.changes.retain(|&other| other != id);
         self.marks[index] = 0;
     }
@@ -273,8 +278,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         (self.waiting, self.leavers) = (waiting, leavers);
     }
 
-    /// Stores the exact boxes, and lists in `leavers`, by index in `waiting`, the objects that
-    /// leave their loosened boxes or are in no tree.
+    /// Stores the exact boxes. Lists in `leavers` the objects that leave their loosened boxes or
+    /// are in no tree, by their index in `waiting`.
     fn list_leavers(&mut self, waiting: &[Waiting<N, D>], leavers: &mut Vec<u32>) {
         leavers.clear();
         leavers.resize(waiting.len(), 0);
@@ -284,13 +289,14 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         leavers.truncate(count);
     }
 
-    /// Computes a new loosened box for an object that left its old one.
+    /// Computes a new loosened box for an object whose exact box left the old one or that is in no
+    /// tree.
     #[inline]
     fn leave_loose(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let index = id as usize;
         let loose = Bounds::enclosing(&aabb.loosened(self.margin));
         if self.homes[index] == Home::Moving && loose.is_finite() {
-            // The tree keeps the old box, and reads the new one in its refit.
+            // The tree keeps its old box now, and reads the new one in its refit.
             self.last_change[index] = self.clock;
             self.mark(id, CHANGED);
             self.loose[index] = loose;
@@ -304,7 +310,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Moves an object to the tree of moving objects or to the list of unbounded ones.
+    /// Moves an object from its container to the tree of moving objects, or to the list of
+    /// unbounded ones.
     #[inline(never)]
     fn move_home(&mut self, id: u32, loose: Bounds<D>) {
         let index = id as usize;
@@ -333,8 +340,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.previous[id as usize] = before;
     }
 
-    /// Returns the loosened box at the last update; [`Bounds::NOWHERE`] if it must not overlap any
-    /// box.
+    /// Returns the loosened box at the last update; [`Bounds::NOWHERE`] if the object had none, or
+    /// all its pairs must begin anew.
     pub(super) fn before(&self, id: u32) -> Bounds<D> {
         let index = id as usize;
         let in_tree = match self.homes[index] {
@@ -344,7 +351,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             Home::Unbounded if self.marks[index] & CHANGED != 0 => Some(self.previous[index]),
             Home::Unbounded => Some(self.loose[index]),
         };
-        // The tree stores an empty box there, which an unbounded box would overlap.
+        // For such an object the tree stores an empty box, which an unbounded box would overlap.
         in_tree.filter(|before| *before != Bounds::EMPTY).unwrap_or(Bounds::NOWHERE)
     }
 
@@ -378,13 +385,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.again = again;
     }
 
-    /// Returns the number of boxes to be applied.
+    /// Returns the number of boxes that the next update applies.
     pub(super) fn waiting(&self) -> usize {
         self.waiting.len()
     }
 
-    /// Releases the memory of lists that have been short for some time, and surplus memory of
-    /// arrays by id. The tree of moving objects releases its own when it is empty.
+    /// Releases memory: of lists that have been short for some time, and surplus capacity of arrays
+    /// by id. The tree of moving objects releases its own memory when it is empty.
     pub(super) fn give_back(&mut self, look: Look) {
         look.trim(&mut self.waiting);
         for list in [&mut self.leavers, &mut self.changes, &mut self.again] {
@@ -406,7 +413,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.pairs.fit(look);
     }
 
-    /// Returns `true` if nothing is left for the next update.
+    /// Returns `true` if the next update has nothing to do.
     pub(super) fn is_idle(&self) -> bool {
         let asked = self.is_all_again || !self.again.is_empty();
         self.waiting.is_empty() && self.changes.is_empty() && !asked
@@ -415,7 +422,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// Checks every invariant; for tests.
     ///
     /// # Errors
-    /// A sentence that names the violated invariant.
+    /// Returns a sentence that names the violated invariant.
     pub fn validate(&self) -> Result<(), String> {
         self.moving.validate()?;
         self.still.validate()?;
@@ -446,7 +453,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 }
 
-/// Converts a count to an id.
+/// Converts an index or count to an id; panics if it does not fit.
 #[inline]
 pub(super) fn small(value: usize) -> u32 {
     u32::try_from(value).expect("fewer than 2^32 objects")

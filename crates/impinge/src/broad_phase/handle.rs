@@ -1,13 +1,14 @@
-//! Handles of objects, which stay distinguishable after the object is removed.
+//! Handles of objects, which remain distinct after their objects are removed.
 
 use crate::generation::Generation;
 use crate::memory::{Look, clone_fields};
 
 /// The handle of an object in a broad phase.
 ///
-/// A handle is never given out twice: that of a removed object stays distinct from those of all
-/// later objects. A [`DBVTBroadPhase`](super::DBVTBroadPhase) refuses the handles of another one like
-/// stale ones, unless one is a clone of the other. Ordered by [`Self::uid`], then by age.
+/// A handle is never issued twice: the handle of a removed object differs from those of all later
+/// objects. A [`DBVTBroadPhase`](super::DBVTBroadPhase) refuses a handle of another broad phase
+/// like a stale one, unless one of them is a clone of the other. Handles are ordered by
+/// [`Self::uid`], then by age.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -30,8 +31,8 @@ pub struct ProxyHandle {
 }
 
 impl ProxyHandle {
-    /// Creates the handle of the `generation`-th object at an index, for a custom broad phase,
-    /// which must give each pair of numbers once.
+    /// Creates a handle, for a custom broad phase: `generation` is the number of objects that had
+    /// this index before. The broad phase must use each pair of arguments only once.
     #[must_use]
     pub const fn new(index: u32, generation: u16) -> Self {
         Self { index, generation: Generation::of_no_table(generation) }
@@ -43,10 +44,10 @@ impl ProxyHandle {
         self.generation.count()
     }
 
-    /// Returns the index in the table of handles: dense, and in order of creation until the first
-    /// removal.
+    /// Returns the index in the table of handles. Indices are dense, and in order of creation until
+    /// the first removal.
     ///
-    /// Unique among the objects present at one time, but used again after a removal.
+    /// An index is unique among the objects present at one time, but is reused after a removal.
     #[inline]
     #[must_use]
     pub const fn uid(&self) -> usize {
@@ -54,7 +55,7 @@ impl ProxyHandle {
     }
 }
 
-/// Table of handles, which gives them out and recognises stale ones.
+/// A table that issues handles and recognises stale ones.
 #[derive(Debug)]
 pub(super) struct Handles {
     /// Generation of the first object at each index.
@@ -85,7 +86,7 @@ impl Handles {
         self.at(index)
     }
 
-    /// Returns the handle of the present or the next object at an index.
+    /// Returns the handle of the present object at an index, or of the next one if there is none.
     pub(super) fn at(&self, index: u32) -> ProxyHandle {
         ProxyHandle { index, generation: self.generations[index as usize] }
     }
@@ -101,7 +102,7 @@ impl Handles {
             && self.is_present[handle.uid()]
     }
 
-    /// Undoes the last [`Self::create`].
+    /// Undoes the last [`Self::create`], which returned `handle`.
     pub(super) fn uncreate(&mut self, handle: ProxyHandle) {
         self.is_present[handle.uid()] = false;
         if handle.generation == self.first {
@@ -112,7 +113,7 @@ impl Handles {
         }
     }
 
-    /// Undoes the last [`Self::remove`].
+    /// Undoes the last [`Self::remove`], which received `handle`.
     pub(super) fn unremove(&mut self, handle: ProxyHandle) {
         self.is_present[handle.uid()] = true;
         self.generations[handle.uid()] = handle.generation;
@@ -121,7 +122,7 @@ impl Handles {
         }
     }
 
-    /// Ends the handle. An index whose generations are exhausted is never used again.
+    /// Makes the handle stale. An index whose generations are exhausted is not reused.
     pub(super) fn remove(&mut self, handle: ProxyHandle) {
         self.is_present[handle.uid()] = false;
         if let Some(next) = handle.generation.next() {

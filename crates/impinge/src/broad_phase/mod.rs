@@ -1,7 +1,8 @@
 //! The broad phase: pairs of objects whose bounding volumes overlap, kept up to date as they move.
 //!
 //! [`BroadPhase`] is the interface; [`DBVTBroadPhase`] implements it with a packed tree over
-//! loosened boxes. A broad phase may report pairs that do not touch; it never misses one that does.
+//! loosened boxes. A broad phase may report pairs that do not touch, but it never misses a pair
+//! that does.
 //!
 //! ```text
 //! DBVTBroadPhase   handles, users' data          by index of the handle
@@ -12,8 +13,8 @@
 //! ```
 //!
 //! `deferred_*` calls collect changes, which take effect at the next update: many moves cost one
-//! update. Events come in canonical order, equal on every run, on every machine and for any number
-//! of threads.
+//! update. Events come in canonical order. They are equal on every run, on every machine and for
+//! any number of threads.
 
 mod dbvt;
 mod error;

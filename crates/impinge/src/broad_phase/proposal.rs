@@ -1,12 +1,12 @@
-//! Objects proposed by a search.
+//! Objects that a search proposes to its caller.
 
 use super::dbvt::data_of;
 use crate::math::Real;
 
-/// Users' data by index of the handle; `None` where there is no object.
+/// Data of the user, by index of the handle; `None` where there is no object.
 pub(super) type Proxies<T> = Vec<Option<T>>;
 
-/// An object proposed by a search. Its data are loaded only on access.
+/// An object that a search proposes. Its data are loaded only on access.
 #[derive(Debug)]
 pub struct Proposal<'a, N, T> {
     source: Source<'a, T>,
@@ -36,13 +36,13 @@ impl<T> Clone for Source<'_, T> {
 }
 
 impl<'a, N: Real, T> Proposal<'a, N, T> {
-    /// Creates a proposal from data at hand; see [`Self::key`] for `key`.
+    /// Creates a proposal from a reference to the data; see [`Self::key`] for `key`.
     #[must_use]
     pub const fn of(data: &'a T, key: N) -> Self {
         Self { source: Source::Data(data), key }
     }
 
-    /// Creates a proposal for an object that exists.
+    /// Creates a proposal for object `id`, which must exist, without loading its data.
     pub(super) const fn kept(proxies: &'a [Option<T>], id: u32, key: N) -> Self {
         Self { source: Source::Kept(proxies, id), key }
     }
@@ -56,15 +56,15 @@ impl<'a, N: Real, T> Proposal<'a, N, T> {
         }
     }
 
-    /// Returns the time at which the volume of the object is met, or its distance, or a lower bound
-    /// of these.
+    /// Returns a time or a distance, depending on the search, or a lower bound of it: the time at
+    /// which the object's volume is met, or the distance of the volume.
     #[must_use]
     pub const fn key(&self) -> N {
         self.key
     }
 
-    /// Returns [`ProxyHandle::uid`](super::ProxyHandle::uid) of the object, if it is known without
-    /// loading its data.
+    /// Returns [`ProxyHandle::uid`](super::ProxyHandle::uid) of the object; `None` if it is not
+    /// known without loading the object's data.
     #[must_use]
     pub const fn uid(&self) -> Option<usize> {
         match self.source {

@@ -1,44 +1,46 @@
-//! Moving objects at rest to the tree of still ones, and keeping the trees in order.
+//! Moves objects at rest to the tree of still objects, and keeps both trees in order.
 
 use super::PairFinder;
 use super::finder::Home;
 use crate::bvh::NONE;
 use crate::math::Real;
 
-/// Number of updates without a change after which an object counts as still.
+/// Number of updates without a change after which an object is at rest.
 const REST: u32 = 32;
-/// An update scans `1 / WINDOW` of the slots of the tree of moving objects, but at most [`LOOKED_AT`], or one for each
-/// [`CHANGED_FOR_ONE`] changed objects if these are more.
+/// An update scans at most `1 / WINDOW` of the slots of the tree of moving objects (plus one), and at most
+/// [`LOOKED_AT`], but at least one slot for every [`CHANGED_FOR_ONE`] changed objects.
 const WINDOW: usize = 32;
 const LOOKED_AT: usize = 512;
 const CHANGED_FOR_ONE: usize = 16;
-/// An update moves at most `TAKEN` objects at rest, or two for each changed object: more than can come to rest.
+/// An update moves at most `TAKEN` objects at rest, or two for each changed object if that is more: so objects leave
+/// faster than others can come to rest.
 const TAKEN: usize = 64;
-/// The trees are swapped only if there are at most `FEW` still objects, which then count as moving ...
+/// The trees are swapped only if there are at most `FEW` still objects, which then become moving ones ...
 const FEW: usize = 64;
 /// ... and at least `MANY` moving ones.
 const MANY: usize = 1024;
 
-/// A pass over the slots of the tree of moving objects, from the last to the first, spread over updates.
+/// A pass over the slots of the tree of moving objects, from the last slot to the first, over many updates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RestPass {
-    /// The slots before this one are still to be scanned.
+    /// The slots before this one have not been scanned yet.
     end: usize,
     resting: usize,
-    /// Number of updates since one in which many objects changed.
+    /// Number of updates since the last one in which at least a quarter of the moving objects changed.
     calm: u32,
-    /// The pass moves objects at rest to the other tree instead of only counting them.
+    /// Whether the pass moves objects at rest to the other tree, instead of only counting them.
     takes: bool,
 }
 
 impl RestPass {
-    /// No pass has begun.
+    /// The state before the first pass.
     pub(super) const NONE: Self = Self { end: 0, resting: 0, calm: 0, takes: true };
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
-    /// Moves objects at rest to the tree of still ones and does this update's share of keeping both trees in order. The
-    /// work is bounded by a constant and a share of the changes. The result depends only on the calls made.
+    /// Moves objects at rest to the tree of still ones, and does this update's share of keeping both trees in order.
+    /// The work is bounded by a constant plus a multiple of `changed`, the number of changed objects. The result
+    /// depends only on the calls.
     pub(super) fn keep_order(&mut self, changed: usize) {
         let mut resting = core::mem::take(&mut self.resting);
         resting.clear();
@@ -59,9 +61,10 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Continues the pass and lists objects at rest. Scanning from the last slot to the first lets the tree shrink, and
-    /// slots are in spatial order. If nearly all objects are in the tree of moving ones, as after a bulk insertion,
-    /// every other pass only counts: if at least three quarters rest, the trees are swapped.
+    /// Continues the pass, and lists objects at rest in `resting`. The pass goes from the last slot to the first, so
+    /// that the tree can shrink; slots are in spatial order. If nearly all objects are in the tree of moving ones, as
+    /// after a bulk insertion, every other pass only counts. If such a pass finds at least three quarters of the
+    /// objects at rest, the trees are swapped.
     fn list_resting(&mut self, changed: usize, resting: &mut Vec<u32>) {
         let slots = self.moving.slots_in_order();
         let most = TAKEN.max(2 * changed);
@@ -94,7 +97,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
     }
 
-    /// Swaps the trees of moving and still objects. Objects that do move leave the tree of still ones when they do.
+    /// Swaps the trees of moving and still objects. Objects that do move then leave the tree of still ones as they
+    /// move.
     fn exchange_trees(&mut self) {
         core::mem::swap(&mut self.moving, &mut self.still);
         self.moving.spend();

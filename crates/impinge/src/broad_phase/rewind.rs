@@ -1,8 +1,8 @@
-//! Rewinding the broad phase to a mark.
+//! Rewinds the broad phase to a mark.
 //!
-//! The state that determines pairs is restored: exact and loosened boxes, the set of objects,
-//! waiting changes, and the pairs. The position of an object in the trees affects time alone, and
-//! stays.
+//! A rewind restores the state that determines pairs: exact and loosened boxes, the set of objects,
+//! waiting changes, and the pairs. The positions of objects in the trees affect only time, and are
+//! not restored.
 
 use super::finder::{Home, Waiting, small};
 use super::{DBVTBroadPhase, PairFinder, ProxyHandle};
@@ -10,7 +10,7 @@ use crate::bounding_volume::Aabb;
 use crate::bvh::{Bounds, NONE};
 use crate::math::{Real, Space};
 
-/// One undoable change of the set of objects.
+/// A change of the set of objects, which can be undone.
 #[derive(Clone, Debug)]
 pub(super) enum ProxyNote<T> {
     Created(ProxyHandle),
@@ -18,7 +18,7 @@ pub(super) enum ProxyNote<T> {
     Removed(ProxyHandle, Option<T>),
 }
 
-/// An object before its first change since a mark.
+/// The state of an object before its first change since a mark.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BoxNote<N: Real, const D: usize> {
     id: u32,
@@ -27,7 +27,7 @@ pub(super) struct BoxNote<N: Real, const D: usize> {
     home: Home,
 }
 
-/// Changes that wait for the next update when a mark is set.
+/// The changes that waited for the next update when a mark was set.
 #[derive(Clone, Debug)]
 pub(super) struct FinderHead<N: Real, const D: usize> {
     waiting: Vec<Waiting<N, D>>,
@@ -36,20 +36,20 @@ pub(super) struct FinderHead<N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
-    /// Sets a mark; see [`Journal`](crate::journal::Journal).
+    /// Sets a mark with this number; see [`Journal`](crate::journal::Journal).
     pub(crate) fn mark(&mut self, number: u64) {
         self.journal.mark(number, ());
         self.finder.add_mark(number);
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks with a number less than `number`.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
         self.finder.journal.forget_before(number);
         self.finder.pairs.forget_before(number);
     }
 
-    /// Undoes all changes since a mark. Costs O(changed · log n).
+    /// Undoes all changes since the mark `number`. Costs O(changed · log n).
     pub(crate) fn rewind(&mut self, number: u64) {
         while let Some(note) = self.journal.undo(number) {
             match note {
@@ -69,14 +69,14 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
     fn add_mark(&mut self, number: u64) {
-        // `changes` is not empty only after a filter panicked.
+        // `changes` is not empty here only after a filter panicked.
         let again = self.again.iter().chain(&self.changes).copied().collect();
         let (waiting, is_all_again) = (self.waiting.clone(), self.is_all_again);
         self.journal.mark(number, FinderHead { waiting, again, is_all_again });
         self.pairs.mark(number);
     }
 
-    /// Notes an object before it changes.
+    /// Records the state of an object before it changes, once for each mark.
     pub(super) fn note(&mut self, id: u32) {
         let index = id as usize;
         if self.journal.is_first(index) {
@@ -124,7 +124,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.is_all_again = head.is_all_again;
     }
 
-    /// Restores the boxes of an object. If it was and is bounded, it stays in its present tree.
+    /// Restores the boxes of an object. If it was bounded then and is now, it stays in its present
+    /// tree.
     fn bring_back(&mut self, &BoxNote { id, exact, loose, home }: &BoxNote<N, D>) {
         let index = id as usize;
         (self.exact[index], self.loose[index]) = (exact, loose);

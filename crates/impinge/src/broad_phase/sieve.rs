@@ -1,17 +1,17 @@
-//! The sieve: which moved objects leave their loosened boxes.
+//! The sieve: finds the moved objects whose exact boxes leave their loosened boxes.
 
 use super::finder::{Home, Waiting};
 use crate::bounding_volume::Aabb;
 use crate::bvh::{Bounds, NONE};
 use crate::math::Real;
 
-/// Read-only input, by id.
+/// Read-only input of the sieve, indexed by id.
 pub(super) struct KeptBounds<'a, const D: usize> {
     pub(super) homes: &'a [Home],
     pub(super) loose: &'a [Bounds<D>],
 }
 
-/// Output besides the list of leavers, by `id - first`.
+/// Output of the sieve except the list of leavers, indexed by `id - first`.
 pub(super) struct Sieve<'a, N: Real, const D: usize> {
     pub(super) first: usize,
     pub(super) exact: &'a mut [Aabb<N, D>],
@@ -20,8 +20,9 @@ pub(super) struct Sieve<'a, N: Real, const D: usize> {
 
 impl<N: Real, const D: usize> Sieve<'_, N, D> {
     /// Stores the exact boxes, and lists in `leavers` the objects that leave their loosened boxes
-    /// or are in no tree, by their index in the whole list of waiting boxes; `waiting` is its part
-    /// from `first_at` on. `leavers` must be as long as `waiting`. Returns the number of leavers.
+    /// or are in no tree. An object is listed by its index in the whole list of waiting boxes, of
+    /// which `waiting` is a part that begins at index `first_at`. `leavers` must be as long as
+    /// `waiting`. Returns the number of leavers.
     pub(super) fn run(
         self,
         kept: &KeptBounds<'_, D>,
@@ -36,8 +37,8 @@ impl<N: Real, const D: usize> Sieve<'_, N, D> {
         self.run_serial(kept, waiting, first_at, leavers)
     }
 
-    /// Whether an object leaves its box is unpredictable, so the loop is branch-free: each index is
-    /// written, and overwritten by the next if the object stays.
+    /// Runs on one thread. Whether an object leaves its box is unpredictable, so the loop has no
+    /// such branch: each index is written, and overwritten by the next one if the object stays.
     fn run_serial(
         self,
         kept: &KeptBounds<'_, D>,
@@ -68,11 +69,11 @@ mod parallel {
     use super::{KeptBounds, NONE, Sieve, Waiting};
     use crate::math::Real;
 
-    /// Greatest number of objects for one task.
+    /// Greatest number of waiting boxes in one task.
     const PIECE: usize = 4096;
 
-    /// Returns `true` if there are enough objects, and ids ascend, so that halves of the list write
-    /// to disjoint slices.
+    /// Returns `true` if the list is long enough and its ids ascend, so that its halves write to
+    /// disjoint slices.
     pub(super) fn can_be_cut<N: Real, const D: usize>(waiting: &[Waiting<N, D>]) -> bool {
         waiting.len() > PIECE
             && rayon::current_num_threads() > 1
@@ -82,7 +83,8 @@ mod parallel {
     }
 
     impl<N: Real, const D: usize> Sieve<'_, N, D> {
-        /// Splits the list in halves down to [`PIECE`]; [`can_be_cut`] must hold.
+        /// Splits the list in halves of at most [`PIECE`] boxes, which may run on several threads;
+        /// [`can_be_cut`] must hold.
         pub(super) fn run_parallel(
             self,
             kept: &KeptBounds<'_, D>,
@@ -108,7 +110,7 @@ mod parallel {
     }
 
     impl<'a, N: Real, const D: usize> Sieve<'a, N, D> {
-        /// Splits the output before `id`.
+        /// Splits the output into the ids below `id` and the others.
         fn cut(self, id: usize) -> (Self, Self) {
             let (exact1, exact2) = self.exact.split_at_mut(id - self.first);
             let (at1, at2) = self.waiting_at.split_at_mut(id - self.first);

@@ -27,7 +27,7 @@ impl<const D: usize> Block<D> {
     pub(crate) const EMPTY: Self =
         Self { lo: [[f32::INFINITY; LANES]; D], hi: [[f32::NEG_INFINITY; LANES]; D] };
 
-    /// Returns the box in a lane.
+    /// Returns the box in lane `lane`; [`Bounds::EMPTY`] if the lane is unused.
     #[inline]
     #[must_use]
     pub(crate) fn lane(&self, lane: usize) -> Bounds<D> {
@@ -52,7 +52,7 @@ impl<const D: usize> Block<D> {
         nearest
     }
 
-    /// Returns the least coordinate of each box along a direction.
+    /// Returns, by lane, the least dot product of `along` with a point of the box.
     #[inline]
     pub(crate) fn lowest_along(&self, along: &[f32; D]) -> [f32; LANES] {
         let mut lowest = [0.0; LANES];

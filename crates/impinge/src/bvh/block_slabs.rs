@@ -80,7 +80,8 @@ impl<const D: usize> SlabBox<'_, D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Computes slabs around the contents of all blocks; objects have normals and three corners.
+    /// Stores a slab around the contents of each block, or `None` where the slab would not be thin.
+    /// `normals` are indexed by object id; `corners` returns the three corners of an object.
     pub(crate) fn add_slabs<N: Real>(
         &mut self,
         normals: &[Vector<N, D>],
@@ -135,7 +136,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Iterates over the objects of a leaf block.
+/// Iterates over the ids in a leaf block; skips [`NONE`].
 pub(super) fn in_use(ids: &[u32; LANES]) -> impl Iterator<Item = u32> {
     ids.iter().copied().filter(|&id| id != NONE)
 }

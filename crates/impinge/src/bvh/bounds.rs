@@ -22,7 +22,7 @@ impl<const D: usize> Bounds<D> {
     /// A box that overlaps nothing, not even an unbounded box: the old box of a new object.
     pub const NOWHERE: Self = Self { lo: [f32::NAN; D], hi: [f32::NAN; D] };
 
-    /// Returns the smallest such box around a box of `N`s. Zeros lose their sign.
+    /// Returns the smallest `f32` box around a box of `N`s. Zeros lose their sign.
     #[inline]
     #[must_use]
     pub fn enclosing<N: Real>(aabb: &Aabb<N, D>) -> Self {
@@ -32,7 +32,7 @@ impl<const D: usize> Bounds<D> {
         }
     }
 
-    /// Returns the smallest such box around a point.
+    /// Returns the smallest `f32` box around a point.
     #[must_use]
     pub fn enclosing_point<N: Real>(point: &Point<N, D>) -> Self {
         Self {
@@ -41,15 +41,16 @@ impl<const D: usize> Bounds<D> {
         }
     }
 
-    /// Returns the box with coordinates in `N`; `None` if it is empty or NaN.
+    /// Returns the box with coordinates in `N`; `None` if a coordinate is NaN or `lo > hi` on an
+    /// axis.
     #[cfg(feature = "debug_render")]
     pub(crate) fn to_aabb<N: Real>(self) -> Option<Aabb<N, D>> {
         let [lo, hi] = [self.lo, self.hi].mapped(|side| side.mapped(|x| N::lit(f64::from(x))));
         Aabb::try_new(lo.into(), hi.into()).ok()
     }
 
-    /// Returns `true` if the two have a common point. It must not be that one is empty and the
-    /// other unbounded.
+    /// Returns `true` if the boxes have a common point; touching counts. Wrongly `true` for an
+    /// empty and an unbounded box, whose infinities compare equal: callers clamp the unbounded one.
     #[inline]
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
@@ -102,8 +103,8 @@ impl<const D: usize> Bounds<D> {
         if self.is_finite() { most } else { 0.0 }
     }
 
-    /// Returns the box clamped to finite coordinates: an equivalent query to a tree, whose boxes
-    /// are finite.
+    /// Returns the box with infinite faces replaced by `±f32::MAX`. As a query it is equivalent,
+    /// since boxes in a tree are finite.
     ///
     /// A NaN or inverted box becomes empty.
     #[must_use]
@@ -138,7 +139,7 @@ impl<const D: usize> Bounds<D> {
         Aabb::new(corner(&self.lo), corner(&self.hi))
     }
 
-    /// Returns the greatest coordinate of the box along a direction.
+    /// Returns the greatest dot product of `along` with a point of the box.
     pub(super) fn extent<N: Real>(&self, along: &Vector<N, D>) -> N {
         (0..D).fold(N::ZERO, |sum, axis| {
             let corner = if along[axis] < N::ZERO { self.lo[axis] } else { self.hi[axis] };
@@ -146,7 +147,8 @@ impl<const D: usize> Bounds<D> {
         })
     }
 
-    /// Returns the centre; halves are added, so that no finite box overflows.
+    /// Returns the centre. Coordinates are halved before they are added, so the sum does not
+    /// overflow.
     #[inline]
     #[must_use]
     pub fn center(&self) -> [f32; D] {

@@ -13,9 +13,10 @@ struct ExtentSearch<'a, N: Real, const D: usize> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Returns the extent of the objects along `direction`, rounded up: it exceeds the exact one by
-    /// at most a few `f32` rounding units of the coordinates. `extent_of` returns the extent of one
-    /// object, which must not exceed that of its box. Minus infinity for an empty tree.
+    /// Returns an upper bound of the objects' extent along `direction`, above the exact extent by
+    /// at most a few `f32` rounding units of the coordinates; minus infinity for an empty tree.
+    /// `extent_of` returns the extent of one object, which must not exceed the extent of the
+    /// object's box.
     ///
     /// Branch and bound, the farthest box of each block first. The tree must be refitted.
     pub(crate) fn extent_along<N: Real>(
@@ -26,7 +27,7 @@ impl<const D: usize> Tree<D> {
         let top = self.layers.len() - 1;
         let farthest = self.layers[top].bounds.iter().filter(|bounds| bounds.is_finite());
         let size = farthest.map(|bounds| size_along(bounds, &direction)).fold(N::ZERO, max);
-        // Without the tolerance a flat floor would open all boxes, since they are equally extreme.
+        // Without the tolerance a flat floor would open all boxes, since all have the same extent.
         let tolerance = N::lit(4.0 * f64::from(f32::EPSILON)) * size;
         let mut search = ExtentSearch { direction, tolerance, best: -N::INFINITY, extent_of };
         for block in 0..self.layers[top].blocks.len() {
@@ -46,7 +47,8 @@ impl<const D: usize> Tree<D> {
         });
         farthest.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(core::cmp::Ordering::Equal));
         for (far, lane) in farthest {
-            // False for NaN. An infinite extent ends the search.
+            // A NaN extent fails the comparison. Once an infinite extent is the best, nothing
+            // exceeds it.
             let is_farther = far > search.best + search.tolerance;
             if !is_farther {
                 break;
@@ -61,8 +63,8 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Returns the scale of rounding errors: the sum of the largest coordinates, weighted by the
-/// direction.
+/// Returns the scale of rounding errors of a box's extent: the sum over the axes of `|direction|`
+/// times the largest magnitude of a coordinate.
 fn size_along<N: Real, const D: usize>(bounds: &Bounds<D>, direction: &Vector<N, D>) -> N {
     let along = |axis: usize| {
         let largest = bounds.lo[axis].abs().max(bounds.hi[axis].abs());

@@ -7,16 +7,16 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Real, f32_above, f32_below};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16};
 
-/// Coordinates from 2¹²⁵ on are too large for differences in `f32`.
+/// From this magnitude on, 2¹²⁵, differences of coordinates may overflow `f32`.
 const LARGEST: f32 = f32::from_bits((125 + 127) << 23);
 
-/// Coordinates below 2⁻¹²⁰ count as this, so that the unit has a finite reciprocal.
+/// Largest coordinates below 2⁻¹²⁰ are replaced by it, so that the unit has a finite reciprocal.
 const SMALLEST: f32 = f32::from_bits((127 - 120) << 23);
 
-/// Error bound of squares in rounding units of `f32`, here and in the exact test.
+/// Error bound of a squared distance, in rounding units of `f32`, both here and in the exact test.
 const SQUARE: f32 = 16.0;
 
-/// A box in the representation for distances to blocks.
+/// A box for tests of its squared distances to the boxes of a block.
 ///
 /// Distances are in units of a power of two near the largest coordinate, so that squares stay in
 /// range at any scale.
@@ -24,17 +24,17 @@ const SQUARE: f32 = 16.0;
 pub(crate) struct Gaps<const D: usize> {
     lo: [f32; D],
     hi: [f32; D],
-    /// Reciprocal of the unit.
+    /// Reciprocal of the unit of distance.
     scale: f32,
-    /// Absolute error of the caller's squared distances by underflow.
+    /// Absolute error that underflow may cause in the caller's squared distances.
     lost: f64,
 }
 
 impl<const D: usize> Gaps<D> {
-    /// Converts a box with a finite point, for trees with coordinates up to `size`.
+    /// Converts a box that contains a finite point, for trees with coordinates up to `size`.
     ///
-    /// If coordinates are beyond the range in which `f32` differences are finite, the box is near
-    /// everything.
+    /// If a finite coordinate is 2¹²⁵ or more, `f32` differences may overflow: the result then
+    /// covers all of space, so that every box is at distance zero.
     pub(crate) fn new<N: Real>(aabb: &Aabb<N, D>, size: f32) -> Self {
         let mut largest = size;
         for axis in 0..D {
@@ -52,8 +52,8 @@ impl<const D: usize> Gaps<D> {
         Self { lo: [-f32::MAX; D], hi: [f32::MAX; D], scale: 1.0, lost }
     }
 
-    /// Returns the gaps to boxes that overlap by at least `depth` along each axis: boxes that
-    /// overlap less are at a distance.
+    /// Shrinks the box by `depth` on each side, so that only boxes that overlap it by at least
+    /// `depth` along each axis have distance zero. Unchanged if `depth` is not positive.
     pub(super) fn within<N: Real>(mut self, depth: N) -> Self {
         let depth = depth.as_f64();
         if depth > 0.0 {
@@ -63,8 +63,8 @@ impl<const D: usize> Gaps<D> {
         self
     }
 
-    /// Returns an upper bound of the square of the caller's distance in the units of the gaps;
-    /// finite, and negative for NaN.
+    /// Converts a distance of the caller to an upper bound of its square, in squared units of the
+    /// gaps. The result is finite; -1 for a negative or NaN distance.
     #[expect(clippy::cast_possible_truncation, reason = "the slack is more than the rounding")]
     pub(crate) fn limit<N: Real>(&self, distance: N) -> f32 {
         let (distance, scale) = (distance.as_f64(), f64::from(self.scale));
@@ -77,7 +77,8 @@ impl<const D: usize> Gaps<D> {
         f32::min((squared + squared * slack) as f32 + f32::MIN_POSITIVE, f32::MAX)
     }
 
-    /// Returns a lower bound of the caller's distance for the key of a block.
+    /// Returns a lower bound of the caller's distance for a key that
+    /// [`Kernel::apart`](super::kernel::Kernel::apart) wrote.
     pub(crate) fn distance<N: Real>(&self, key: f32) -> N {
         let (key, scale) = (f64::from(key), f64::from(self.scale));
         let slack = f64::from(2.0 * SQUARE * f32::EPSILON);
@@ -87,7 +88,7 @@ impl<const D: usize> Gaps<D> {
 }
 
 impl Scalar {
-    /// One lane after another; see [`Kernel::apart`](super::kernel::Kernel::apart).
+    /// Tests one lane after another; see [`Kernel::apart`](super::kernel::Kernel::apart).
     #[inline(always)]
     pub(super) fn apart_from_block<const D: usize>(
         self,
@@ -121,7 +122,7 @@ impl Scalar {
 }
 
 impl<S: Simd> WideBlock<S> {
-    /// All lanes at once; see [`Kernel::apart`](super::kernel::Kernel::apart).
+    /// Tests all lanes at once; see [`Kernel::apart`](super::kernel::Kernel::apart).
     #[inline(always)]
     pub(super) fn apart_from_block<const D: usize>(
         self,
@@ -148,7 +149,7 @@ impl<S: Simd> WideBlock<S> {
     pub(super) fn least_key(self, keys: &[f32; LANES], mask: u32) -> usize {
         let (first, last) = (mask.trailing_zeros() as usize, 31 - mask.leading_zeros() as usize);
         if mask.count_ones() <= 2 {
-            // Instead of an unpredictable branch.
+            // With at most two lanes, selects by index, which needs no unpredictable branch.
             return [first, last][usize::from(keys[last] < keys[first])];
         }
         let simd = self.0;
@@ -166,7 +167,8 @@ mod tests {
     use super::*;
     use crate::math::{Point, Vector};
 
-    /// Returns numbers of all magnitudes up to `largest`, with repeats.
+    /// Returns a random number: zero, tiny, moderate, or of magnitude up to `largest`. Values
+    /// repeat.
     fn number(state: &mut u64, largest: f32) -> f32 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040);
         let small = f32::from(i16::try_from(*state >> 56).expect("eight bits")) - 128.0;

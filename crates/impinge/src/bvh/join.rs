@@ -1,4 +1,4 @@
-//! The join: pairs that began and ended since trees were settled.
+//! The join: finds pairs that began or ended since the last [`Tree::commit_boxes`].
 //!
 //! Two algorithms with the same result, chosen by the number of changes:
 //! * many changes: a join of a tree with itself, or of two trees, layer by layer. The tasks of a
@@ -18,21 +18,22 @@ use super::{Block, Bounds, LANES, Tree};
 use crate::memory::Look;
 use crate::pairs::pack;
 
-/// Tasks in a chunk: for the upper layers, and block pairs in the lowest.
+/// Tasks in a chunk: of the upper layers, and of the leaf layer.
 const UPPER_CHUNK: usize = 256;
 const LEAF_CHUNK: usize = 512;
 /// If fewer than one object in `QUERIES_BELOW` changed, queries are faster than the join.
 const QUERIES_BELOW: usize = 4;
 
-/// Flag beside the slot of the first of two boxes: the overlap ended.
+/// Flag in the first slot of a pair: the overlap ended.
 const ENDED: u32 = 1 << 31;
 
-/// The trees of a join: `first` with `second`, or one tree with itself.
+/// The two trees of a join, or one tree twice.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JoinSides<'a, const D: usize> {
     pub(super) first: &'a Tree<D>,
     pub(super) second: &'a Tree<D>,
-    /// Both are the same tree: each pair of blocks or slots is then considered once.
+    /// Whether `first` and `second` are the same tree. Each pair of blocks or slots is then visited
+    /// once.
     pub(super) is_self: bool,
 }
 
@@ -56,13 +57,13 @@ impl Changes {
 /// Finds the pairs that began and ended; keeps the memory of task lists from call to call.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Joiner<const D: usize> {
-    /// Tasks of the present layer: pairs of blocks.
+    /// Tasks of the current layer: pairs of blocks, one index for each tree.
     tasks: TaskList,
     /// Tasks of the layer below.
     next: TaskList,
-    /// Pairs of slots that began or, with [`ENDED`], ended.
+    /// Pairs of slots. The first slot has the flag [`ENDED`] if the overlap ended.
     found: TaskList,
-    /// Scratch: changed slots.
+    /// Scratch: the slots of changed lanes.
     slots: Vec<u32>,
     desks: Desks<D>,
 }
@@ -70,11 +71,11 @@ pub(crate) struct Joiner<const D: usize> {
 /// Scratch lists for one chunk.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch<const D: usize> {
-    /// Pairs of a query and a block, or of a leaf block and a slot.
+    /// Pairs of a query and a block, or of a block of `second` and a slot of `first`.
     pub(super) tasks: TaskList,
     /// Pairs of a query and a block of the layer below.
     pub(super) next: TaskList,
-    /// Query boxes of a chunk.
+    /// Swept box of each query of the chunk.
     pub(super) swept_slots: Vec<Bounds<D>>,
 }
 
@@ -110,9 +111,9 @@ impl<const D: usize> Joiner<D> {
         }
     }
 
-    /// Appends the pairs within the tree that began or ended, each once, in an order that is
-    /// unspecified but always the same. Some ended pairs of [`Tree::escaped`] objects may be
-    /// missing. The tree must be refitted.
+    /// Appends the pairs within the tree that began or ended since the last [`Tree::commit_boxes`],
+    /// each once. The order depends on the calls alone. Some ended pairs of [`Tree::escaped`]
+    /// objects may be missing. The tree must be refitted.
     pub(crate) fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first: tree, second: tree, is_self: true };
         if tree.changed * QUERIES_BELOW < tree.live {
@@ -123,8 +124,9 @@ impl<const D: usize> Joiner<D> {
         self.report(sides, changes);
     }
 
-    /// Appends the pairs of an object of `first` and one of `second` that began or ended, as
-    /// [`Self::self_join`] does.
+    /// Appends the pairs of an object of `first` and an object of `second` that began or ended,
+    /// each once. Some ended pairs of [`Tree::escaped`] objects may be missing. Both trees must be
+    /// refitted.
     pub(crate) fn cross_join(&mut self, first: &Tree<D>, second: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first, second, is_self: false };
         let flipped = JoinSides { first: second, second: first, is_self: false };
@@ -141,7 +143,8 @@ impl<const D: usize> Joiner<D> {
         }
     }
 
-    /// Finds the pairs of the changed objects of the first tree by queries, and reports them.
+    /// Finds the pairs of the changed objects of the first tree by queries, and appends them to
+    /// `changes`.
     fn search_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         self.search_changed(sides);
         self.report(sides, changes);
@@ -161,8 +164,8 @@ impl<const D: usize> Joiner<D> {
         self.found.clear();
     }
 
-    /// Queries the second tree with each changed box of the first. The second tree must be
-    /// unchanged, unless both are the same.
+    /// Queries the second tree with each changed box of the first. The second tree must have no
+    /// changes, unless it is the first.
     fn search_changed(&mut self, sides: JoinSides<'_, D>) {
         let mut slots = core::mem::take(&mut self.slots);
         sides.first.list_changed_slots(&mut slots);
@@ -210,8 +213,8 @@ impl<const D: usize> Joiner<D> {
         chunks.run(&mut self.found, &mut self.desks, run);
     }
 
-    /// Lists the first tasks: all pairs of blocks at the highest layer that both trees have. One of
-    /// the trees has a single block there.
+    /// Lists the first tasks: all pairs of blocks at layer `top`, the highest layer that both trees
+    /// have. One of the trees has a single block there.
     fn seed(&mut self, sides: JoinSides<'_, D>, top: usize) {
         self.tasks.clear();
         for a in 0..sides.first.layers[top].blocks.len() {
@@ -243,7 +246,7 @@ impl Chunks {
         }
     }
 
-    /// Returns the tasks of a chunk.
+    /// Returns the range of task indices in chunk `chunk`.
     fn range(&self, chunk: usize) -> Range<usize> {
         chunk * self.size..self.count.min((chunk + 1) * self.size)
     }
@@ -270,7 +273,8 @@ impl Chunks {
     }
 }
 
-/// Expands tasks of one layer to tasks of the layer below.
+/// Appends, for each pair of blocks in a layer, the pairs of their children whose swept boxes
+/// overlap and of which at least one has changed.
 #[inline(always)]
 fn expand<K: Kernel, const D: usize>(
     kernel: K,
@@ -288,7 +292,7 @@ fn expand<K: Kernel, const D: usize>(
         let changed_a = u32::from(changed_a[a as usize]);
         let changed_b = u32::from(changed_b[b as usize]);
         let mut lanes = kernel.overlaps(&blocks_a[a as usize], &bounds_b[b as usize]);
-        // One of the two children must have changed.
+        // If no lane of `b` has changed, the child of `a` must have.
         if changed_b == 0 {
             lanes &= changed_a;
         }
@@ -301,14 +305,14 @@ fn expand<K: Kernel, const D: usize>(
             // On the diagonal only lanes from `lane` on: each pair of children once, and each child
             // with itself.
             let upper = u32::MAX << lane | u32::from(is_diagonal).wrapping_sub(1);
-            // All lanes of `b` if child `lane` changed, else the changed ones.
+            // All lanes of `b` if child `lane` of `a` changed, else the changed lanes of `b`.
             let changed = changed_b | 0_u32.wrapping_sub(changed_a >> lane & 1);
             kernel.push(out, child, b * small(LANES), mask & upper & changed);
         }
     }
 }
 
-/// Expands pairs of leaf blocks to pairs of slots that began or ended.
+/// Appends the pairs of slots that began or ended between the leaf blocks of each pair.
 #[inline(always)]
 fn join_leaves<K: Kernel, const D: usize>(
     kernel: K,
@@ -326,7 +330,7 @@ fn join_leaves<K: Kernel, const D: usize>(
     for (&a, &b) in first.iter().zip(second) {
         let swept = &swept_b[b as usize];
         let changed = u32::from(changed_a[a as usize]);
-        // Lanes of `a` whose boxes, now or before, overlap the reach of `b`.
+        // Lanes of `a` whose boxes, now or before, overlap the swept bounds of `b`.
         let mut mask = kernel.overlaps(&blocks_a[a as usize], swept);
         if changed != 0 {
             mask |= kernel.overlaps(&before_a[a as usize], swept);
@@ -338,8 +342,8 @@ fn join_leaves<K: Kernel, const D: usize>(
     }
     let [blocks, slots] = lanes.parts();
     for (&b, &slot) in blocks.iter().zip(slots) {
-        // On the diagonal only lanes above that of the slot: each pair once. Arithmetic instead of an
-        // unpredictable branch.
+        // On the diagonal, only lanes above the slot's own: each pair once. Bit arithmetic replaces
+        // an unpredictable branch.
         let is_diagonal = sides.is_self & (slot / small(LANES) == b);
         let upper = 0xfffe << (slot % small(LANES)) | u32::from(is_diagonal).wrapping_sub(1);
         let masks = boxes.differing(kernel, slot, b);
@@ -347,7 +351,7 @@ fn join_leaves<K: Kernel, const D: usize>(
     }
 }
 
-/// Leaf boxes of both sides, now and before.
+/// Leaf boxes of both trees, now and at the last [`Tree::commit_boxes`].
 #[derive(Clone, Copy)]
 pub(super) struct JoinBoxes<'a, const D: usize> {
     now_a: &'a [Block<D>],
@@ -356,7 +360,7 @@ pub(super) struct JoinBoxes<'a, const D: usize> {
     before_b: &'a [Block<D>],
 }
 
-/// Lanes of a block that a box overlaps, now and before.
+/// Lanes of a block that overlap a box: by the boxes now, and by the boxes before.
 #[derive(Clone, Copy)]
 pub(super) struct Overlaps {
     now: u32,
@@ -364,7 +368,8 @@ pub(super) struct Overlaps {
 }
 
 impl Overlaps {
-    /// Appends the pairs of the slot with those `lanes` of block `b` whose overlap began or ended.
+    /// Appends the pairs of `slot` with the lanes of block `b`, among `lanes`, whose overlap began
+    /// or ended.
     #[inline(always)]
     pub(super) fn push<K: Kernel>(
         self,
@@ -383,7 +388,7 @@ impl Overlaps {
 }
 
 impl<'a, const D: usize> JoinBoxes<'a, D> {
-    /// Borrows the leaf blocks of both trees, now and at the last settle.
+    /// Borrows the leaf blocks of both trees, now and at the last [`Tree::commit_boxes`].
     #[inline(always)]
     pub(super) fn of(sides: JoinSides<'a, D>) -> Self {
         let (first, second) = (sides.first, sides.second);
@@ -394,8 +399,8 @@ impl<'a, const D: usize> JoinBoxes<'a, D> {
         Self { now_a, before_a, now_b, before_b }
     }
 
-    /// Returns the lanes of block `b` of the second tree that overlap the box in the slot of the
-    /// first, now and before. Both masks are equal if neither changed.
+    /// Returns the lanes of block `b` of the second tree that overlap the box in slot `slot` of the
+    /// first tree, now and before. Both masks are equal if neither the slot nor the block changed.
     #[inline(always)]
     pub(super) fn differing<K: Kernel>(&self, kernel: K, slot: u32, b: u32) -> Overlaps {
         let (block, lane, b) = (slot as usize / LANES, slot as usize % LANES, b as usize);
@@ -409,13 +414,13 @@ impl<'a, const D: usize> JoinBoxes<'a, D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Returns the union of an object's boxes now and before; the present box alone if the object
-    /// moved far.
+    /// Returns the union of the boxes in `slot` now and before; the present box alone if the old
+    /// box is outside the swept bounds of an escaped block.
     #[inline]
     pub(super) fn swept_of_slot(&self, slot: u32) -> Bounds<D> {
         let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
         let (now, before) = (self.lane(slot as usize), self.was()[block].lane(lane));
-        // The reach of an escaped block covers the present boxes alone.
+        // The swept bounds of an escaped block cover the present boxes alone.
         let is_near = self.layers[0].swept[block].contains(&before);
         if is_near { now.merged(&before) } else { now }
     }

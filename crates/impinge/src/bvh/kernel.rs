@@ -1,8 +1,8 @@
 //! The elementary operations on blocks, scalar and with SIMD vectors.
 //!
 //! [`Scalar`] defines the results; [`WideBlock`] computes the same bits with the vectors of the machine. The join uses
-//! comparisons, minima and maxima alone, so equality is exact. Callers choose once for each batch with `with_kernel!`,
-//! which compiles its body for every instruction set.
+//! comparisons, minima and maxima alone, so equality is exact. `with_kernel!` selects the kernel once for a batch, and
+//! compiles its body for every instruction set.
 
 use crate::math::filled;
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
@@ -18,13 +18,13 @@ use crate::math::simd::{Level, ON_ARRAYS};
 pub struct Lanes(pub(super) Level);
 
 impl Lanes {
-    /// Returns the widest vectors of this machine.
+    /// Detects the widest vectors of this machine.
     #[must_use]
     pub fn detect() -> Self {
         Self(Level::new())
     }
 
-    /// Returns AVX-512, if the machine has it and these are its widest vectors.
+    /// Returns the AVX-512 token if AVX-512 is the widest instruction set of the machine; else `None`.
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
     pub(super) fn avx512(self) -> Option<fearless_simd::Avx512> {
         let is_best = matches!(self.0, Level::Wide(_));
@@ -74,7 +74,8 @@ macro_rules! with_kernel {
         }
     };
 }
-/// As [`with_kernel!`], but with AVX-512 where the machine has it, for code that gains from masks and wide registers.
+/// Runs `$body` as `with_kernel!` does, but with AVX-512 where the machine has it. Worthwhile for code that gains from
+/// mask registers and 512-bit vectors.
 macro_rules! with_widest_kernel {
     ($lanes:expr, $kernel:ident => $body:expr) => {{
         #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
@@ -91,15 +92,15 @@ macro_rules! with_widest_kernel {
 }
 pub(super) use {with_kernel, with_widest_kernel};
 
-/// A list of pairs of numbers, in two arrays, so that sixteen entries can be stored at once.
+/// A list of pairs of `u32`, in two arrays, so that sixteen pairs can be stored at once.
 ///
-/// Entries beyond `len` are meaningless.
+/// Elements at indices from `len` on are meaningless.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TaskList {
     first: Vec<u32>,
     second: Vec<u32>,
     len: usize,
-    /// The greatest length at a call of `clear` since memory was last released.
+    /// The greatest length at a call of `clear` since the last call of `give_back`.
     longest: usize,
 }
 
@@ -109,7 +110,8 @@ impl TaskList {
         self.len = 0;
     }
 
-    /// Clears the list and releases the memory of one that has been short for some time.
+    /// Clears the list. Shrinks the arrays if they are more than four times as long as the longest list since the last
+    /// call.
     pub(super) fn give_back(&mut self) {
         self.clear();
         let needed = (2 * self.longest).max(64 * LANES);
@@ -139,7 +141,7 @@ impl TaskList {
         [&first[range.clone()], &second[range]]
     }
 
-    /// Makes room for sixteen more pairs.
+    /// Grows the arrays so that sixteen more pairs can be written after `len`.
     #[inline]
     fn reserve(&mut self) {
         if self.len + LANES > self.first.len() {
@@ -177,8 +179,8 @@ pub(super) trait Kernel: Copy {
     /// Returns the smallest box around all lanes.
     fn bounds<const D: usize>(self, block: &Block<D>) -> Bounds<D>;
 
-    /// Returns the lanes that the moving box may enter by `limit`, and writes lower bounds of the times to `keys`. The
-    /// mask contains every lane that the box does enter.
+    /// Returns the lanes that the moving box may enter between time 0 and `limit`, and writes lower bounds of the entry
+    /// times to `keys`. The mask contains every lane that the box does enter.
     fn enter<const D: usize>(
         self,
         block: &Block<D>,
@@ -187,8 +189,8 @@ pub(super) trait Kernel: Copy {
         keys: &mut [f32; LANES],
     ) -> u32;
 
-    /// Returns the lanes of [`Self::enter`] and the least of their keys. The lowest four bits of a key are its lane,
-    /// which makes the time no later. The key of a lane that is not entered is `u32::MAX`.
+    /// Returns the mask of [`Self::enter`] and the least key. The lowest four bits of a key are the lane index, and the
+    /// other bits are those of the time, rounded down. The key of a lane that is not entered is `u32::MAX`.
     fn enter_nearest<const D: usize>(
         self,
         block: &Block<D>,
@@ -201,8 +203,8 @@ pub(super) trait Kernel: Copy {
     fn least_lane_key(self, keys: &[u32; LANES]) -> u32;
 
     /// Returns the lanes whose squared distance may be at most `limit`, and writes lower bounds of the squares to
-    /// `keys`, in the units of the gaps. The mask contains every lane that is so near; a finite limit excludes empty
-    /// lanes.
+    /// `keys`, in squared units of the gaps. The mask contains every lane within the limit; a finite limit excludes
+    /// empty lanes.
     fn apart<const D: usize>(
         self,
         block: &Block<D>,
@@ -211,12 +213,12 @@ pub(super) trait Kernel: Copy {
         keys: &mut [f32; LANES],
     ) -> u32;
 
-    /// Returns the lane of the mask with the least key; the lowest of equal ones. The mask must not be empty, and keys
-    /// must be finite.
+    /// Returns the lane in `mask` with the least key; the lowest lane if several keys are equal. The mask must not be
+    /// empty, and the keys of its lanes must be finite.
     fn least(self, keys: &[f32; LANES], mask: u32) -> usize;
 
-    /// Returns the triangles that the line may cross between zero and `limit`; contains every triangle that an exact
-    /// test may accept.
+    /// Returns the triangles that the line may cross between times zero and `limit`. The mask contains every triangle
+    /// that an exact test may accept.
     fn crossed(self, triangles: &Triangles, line: &ShearedLine, limit: f32) -> u32;
 
     /// Appends `(first, base + lane)` for every lane of the mask, in ascending order.
@@ -289,7 +291,7 @@ impl Kernel for Scalar {
     }
 }
 
-/// Appends the bits of the mask one by one: faster than packing vectors without AVX2.
+/// Appends the lanes of the mask one by one: without AVX2, faster than packing a vector.
 #[inline(always)]
 fn push_bits(list: &mut TaskList, first: u32, base: u32, mut mask: u32) {
     while mask != 0 {
@@ -298,11 +300,11 @@ fn push_bits(list: &mut TaskList, first: u32, base: u32, mut mask: u32) {
     }
 }
 
-/// Implementation with vectors of sixteen lanes (one to four registers).
+/// Kernel on vectors of sixteen lanes, in one to four registers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WideBlock<S>(pub(super) S);
 
-/// The lane numbers.
+/// The indices of the lanes.
 pub(super) const IOTA: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 impl<S: Simd> Kernel for WideBlock<S> {
@@ -394,7 +396,7 @@ impl<S: Simd> Kernel for WideBlock<S> {
     }
 }
 
-/// Returns the lanes whose intervals on one axis overlap the query's.
+/// Returns the lanes whose intervals on axis `axis` overlap the interval of the query.
 #[inline(always)]
 fn overlaps_on<S: Simd, const D: usize>(
     simd: S,
@@ -420,7 +422,7 @@ fn packs_lanes(level: fearless_simd::Level) -> bool {
     }
 }
 
-/// Returns the lower half of a mask of sixteen lanes.
+/// Returns a mask of at most 32 lanes as `u32`.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "sixteen lanes make sixteen bits")]
 pub(super) const fn low_half(mask: u64) -> u32 {

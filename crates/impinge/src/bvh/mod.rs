@@ -22,8 +22,9 @@
 //! then the [`Joiner`] for the pairs that began and ended, then [`Tree::commit_boxes`] and
 //! [`Tree::maintain`].
 //!
-//! **No set of pairs is stored.** A pair began exactly if the boxes overlap and the old ones did
-//! not, and ended in the opposite case; so the join compares both and reports the differences.
+//! **No set of pairs is stored.** A pair began if the present boxes overlap and the boxes at the
+//! last commit did not. It ended in the opposite case. The join evaluates both overlaps and reports
+//! differences.
 //!
 //! The tree has no shapes and no user data. Its boxes are always `f32`; [`Bounds::enclosing`]
 //! rounds outwards. Every result depends only on the calls made, not on the instruction set or the

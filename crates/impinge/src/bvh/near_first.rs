@@ -1,4 +1,4 @@
-//! Depth-first searches along a moving box or ray, and around a box at rest: near boxes before far ones.
+//! Depth-first searches that visit near boxes first: along a moving box or ray, or around a box at rest.
 //!
 //! In each block the nearest child comes next (as in all ray tracers; Roussopoulos, Kelley and Vincent, "Nearest
 //! neighbor queries", 1995), as long as it is within the limit, which shrinks with each result. One block for each
@@ -16,14 +16,14 @@ use super::{Block, Bounds, LANES, Lanes, NONE, Tree};
 /// Greatest number of layers: 2^32 objects need 8.
 pub(super) const LAYERS: usize = 8;
 
-/// Greatest number of objects passed on at once: their data are scattered in memory, and loads for several objects
-/// overlap.
+/// Greatest number of objects passed to `found` at once. Their data are scattered in memory, so loads for several
+/// objects should overlap.
 pub(crate) const GROUP: usize = 4;
 
-/// A test of the lanes of a block.
+/// A query that computes keys for the lanes of a block, and rejects lanes beyond a limit.
 pub(super) trait Probe<const D: usize> {
-    /// Returns the lanes that may have a key of at most `limit`, and writes lower bounds of the keys. The mask contains
-    /// every lane with such a key. Keys are zero or more.
+    /// Returns the lanes whose key may be at most `limit`, and writes lower bounds of the keys, which are zero or more.
+    /// The mask contains every lane whose exact key is at most `limit`.
     fn test<K: Kernel>(
         &self,
         kernel: K,
@@ -33,7 +33,7 @@ pub(super) trait Probe<const D: usize> {
     ) -> u32;
 }
 
-/// The key is the time of entry.
+/// The key of a lane is the time at which the moving box enters it.
 impl<const D: usize> Probe<D> for Slabs<D> {
     #[inline(always)]
     fn test<K: Kernel>(
@@ -47,7 +47,7 @@ impl<const D: usize> Probe<D> for Slabs<D> {
     }
 }
 
-/// The key is the squared distance.
+/// The key of a lane is its squared distance.
 impl<const D: usize> Probe<D> for Gaps<D> {
     #[inline(always)]
     fn test<K: Kernel>(
@@ -73,10 +73,11 @@ pub(super) struct Open {
 }
 
 impl Open {
-    /// A block without children left to visit.
+    /// A block without unvisited children.
     const NOTHING: Self = Self { keys: [0.0; LANES], mask: 0, first: 0 };
 
-    /// Removes and returns the child with the least key, unless that is beyond the limit.
+    /// Removes the unvisited child with the least key and returns its index; `None` if there is none, or if the key
+    /// exceeds `limit` (the child is removed nevertheless).
     #[inline(always)]
     fn next<K: Kernel>(&mut self, kernel: K, limit: f32) -> Option<u32> {
         if self.mask == 0 {
@@ -90,9 +91,9 @@ impl Open {
 }
 
 impl Lanes {
-    /// Calls `found` with the objects of the trees that the moving box may touch by `limit`, in groups with their keys,
-    /// near ones roughly first. `found` returns the new limit, which must not increase. Limits are in the units of the
-    /// slabs. A negative limit ends the search.
+    /// Calls `found` with groups of at most [`GROUP`] objects, and their keys, that the moving box may touch by
+    /// `limit`; roughly near ones first. `found` returns the new limit, which must not increase. Limits are in the
+    /// units of the slabs. A negative limit ends the search.
     pub(crate) fn visit_along<const D: usize>(
         self,
         trees: &[&Tree<D>],
@@ -103,7 +104,8 @@ impl Lanes {
         self.visit_near_first(trees, slabs, limit, found);
     }
 
-    /// As [`Self::visit_along`], for the objects that may be as near as `limit`, a square in the units of the gaps.
+    /// Calls `found` with groups of objects, and their keys, whose squared distance may be at most `limit`, in squared
+    /// units of the gaps; roughly near ones first. `found` returns the new limit, which must not increase.
     pub(crate) fn visit_around<const D: usize>(
         self,
         trees: &[&Tree<D>],
@@ -114,7 +116,7 @@ impl Lanes {
         self.visit_near_first(trees, gaps, limit, found);
     }
 
-    /// Searches the trees one after the other; the limit that one search leaves bounds the next.
+    /// Searches the trees one after another. The limit after one search is the first limit of the next.
     #[inline(always)]
     fn visit_near_first<const D: usize>(
         self,
@@ -157,8 +159,9 @@ impl<const D: usize> Tree<D> {
         )
     }
 
-    /// Calls `leaf` with leaf blocks in which a key may be at most the limit; `leaf` returns the new limit. Opens each
-    /// block at most once. Calls `touch` with leaf blocks that may come next, which prefetches them.
+    /// Calls `leaf` with each leaf block in which a key may be at most the limit; `leaf` returns the new limit. Opens
+    /// each block at most once. Calls `touch`, which prefetches, with leaf blocks that may be visited soon. Returns the
+    /// last limit.
     #[inline(always)]
     fn descend<K: Kernel>(
         &self,
@@ -177,7 +180,7 @@ impl<const D: usize> Tree<D> {
         path[top] = self.opened(kernel, probe, top, 0, limit);
         loop {
             match path[layer].next(kernel, limit) {
-                // No child within the limit is left: the search goes on in the parent, or ends.
+                // No child within the limit is left: the search continues in the parent, or ends.
                 None if layer == top => return limit,
                 None => layer += 1,
                 Some(block) if layer == 1 => {
@@ -195,8 +198,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Opens block `number` of a layer: computes the keys of its lanes, and marks those whose child exists and may have
-    /// a key of at most `limit`.
+    /// Opens the block with index `number` in a layer: computes the keys of its lanes, and sets the mask of lanes that
+    /// have a child and whose key may be at most `limit`.
     #[inline(always)]
     fn opened<K: Kernel>(
         &self,
@@ -213,7 +216,7 @@ impl<const D: usize> Tree<D> {
         Open { keys, mask, first }
     }
 
-    /// Opens a block for the children that may be as near as `limit`; see [`Lanes::visit_around`].
+    /// Opens a block for the children whose squared distance may be at most `limit`, in squared units of the gaps.
     pub(super) fn opened_around(
         &self,
         gaps: &Gaps<D>,
@@ -236,7 +239,7 @@ impl<const D: usize> Tree<D> {
         core::hint::black_box(self.ids[block * LANES]);
     }
 
-    /// Clears the lanes without a block below them.
+    /// Clears the lanes that have no child block. Lanes of layer 0 stay.
     #[inline(always)]
     fn lanes_in_use(&self, layer: usize, first: u32, mask: u32) -> u32 {
         let Some(below) = layer.checked_sub(1) else { return mask };
@@ -244,7 +247,7 @@ impl<const D: usize> Tree<D> {
         if left < LANES { mask & ((1 << left) - 1) } else { mask }
     }
 
-    /// Returns the largest magnitude of a coordinate of the boxes. Valid right after a refit.
+    /// Returns the largest magnitude of a coordinate of the boxes. Exact after a refit, until a box changes.
     pub(crate) fn size(&self) -> f32 {
         let top = &self.layers[self.layers.len() - 1].bounds;
         top.iter().map(Bounds::size).fold(0.0, |most, x| if x > most { x } else { most })
@@ -256,7 +259,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Passes the objects of a leaf block to `found`, in groups; returns the new limit.
+/// Passes the objects of a leaf block to `found`, in groups by ascending key; returns the new limit.
 #[inline(always)]
 fn hand_out<K: Kernel>(
     kernel: K,
@@ -267,7 +270,7 @@ fn hand_out<K: Kernel>(
 ) -> f32 {
     while open.mask != 0 {
         let (mut group, mut count) = ([(NONE, 0.0); GROUP], 0);
-        // Collects the nearest lanes left. `None` means that all others are beyond the limit.
+        // Collects the nearest remaining lanes. `None`: all remaining lanes are beyond the limit.
         while count < GROUP {
             let Some(slot) = open.next(kernel, limit) else {
                 open.mask = 0;
@@ -275,7 +278,7 @@ fn hand_out<K: Kernel>(
             };
             let lane = (slot - open.first) as usize % LANES;
             group[count] = (ids[lane], open.keys[lane]);
-            // An empty slot is overwritten by the next object.
+            // If the slot is free, the next object overwrites this entry.
             count += usize::from(ids[lane] != NONE);
         }
         if count > 0 {
@@ -285,7 +288,7 @@ fn hand_out<K: Kernel>(
     limit
 }
 
-/// A ray in the representations for boxes and for triangles, as [`Tree::visit_triangles`] needs it.
+/// A ray, prepared for tests against boxes and against triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayProbe {
     pub(crate) slabs: Slabs<3>,
@@ -293,8 +296,8 @@ pub(crate) struct RayProbe {
 }
 
 impl Tree<3> {
-    /// Calls `found` with each object whose triangle the ray may cross by `limit`, in the order of
-    /// [`Lanes::visit_along`]. `triangles` are those of the leaf blocks.
+    /// Calls `found` with each object whose triangle the ray may cross by `limit`, near leaf blocks roughly first.
+    /// `found` returns the new limit, which must not increase. `triangles[i]` has the triangles of leaf block `i`.
     pub(crate) fn visit_triangles(
         &self,
         triangles: &[Triangles],
@@ -309,8 +312,8 @@ impl Tree<3> {
         }
     }
 
-    /// Searches the tree; see [`Self::visit_triangles`]. In a leaf block the triangles themselves are tested, not their
-    /// boxes, and reported by ascending lane.
+    /// Searches a tree that is not empty. In a leaf block the triangles themselves are tested, not their boxes, and
+    /// reported by ascending lane.
     #[inline(always)]
     fn near_triangles<K: Kernel>(
         &self,

@@ -7,11 +7,11 @@
 use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 
-/// Number of items from which both parts are sorted on two threads.
+/// Number of items from which both parts are sorted in parallel.
 #[cfg(feature = "parallel")]
 const PARALLEL_SORT: usize = 4096;
 
-/// An object to be sorted.
+/// An object to be sorted by its centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item<const D: usize> {
     center: [f32; D],
@@ -19,15 +19,15 @@ pub(super) struct Item<const D: usize> {
 }
 
 impl<const D: usize> Item<D> {
-    /// Returns the sort key on an axis, ties by id: a total order, so that the result is unique up
-    /// to the order within blocks.
+    /// Returns the sort key: the centre on an axis, then the id. It is a total order, so that the
+    /// result is unique up to the order within blocks.
     #[inline]
     fn key(&self, axis: usize) -> u64 {
         key(self.center[axis], self.id)
     }
 }
 
-/// Returns a number that orders by coordinate, ties by id.
+/// Returns an integer with the order of (coordinate, id).
 #[inline]
 pub(super) fn key(coordinate: f32, id: u32) -> u64 {
     let bits = coordinate.to_bits();
@@ -35,8 +35,8 @@ pub(super) fn key(coordinate: f32, id: u32) -> u64 {
     u64::from(ordered) << 32 | u64::from(id)
 }
 
-/// Returns the number of items on the left: the largest power of two of blocks that leaves some for
-/// the right.
+/// Returns the number of items in the left part: the largest power of two of whole blocks that
+/// leaves at least one item for the right part. There must be more than 16 items.
 fn left_count(items: usize) -> usize {
     items.div_ceil(LANES).next_power_of_two() / 2 * LANES
 }
@@ -55,7 +55,8 @@ fn longest_axis<const D: usize>(items: &[Item<D>]) -> usize {
     (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best })
 }
 
-/// Partitions the items once; returns the number on the left, or `None` if they fit in one block.
+/// Partitions the items into two parts; returns the number in the left part, or `None` if all fit
+/// in one block.
 pub(super) fn split<const D: usize>(items: &mut [Item<D>]) -> Option<usize> {
     if items.len() <= LANES {
         return None;
@@ -65,16 +66,16 @@ pub(super) fn split<const D: usize>(items: &mut [Item<D>]) -> Option<usize> {
     Some(left)
 }
 
-/// A plane across an axis, as the sort key of the first item beyond it.
+/// A plane perpendicular to an axis, stored as the sort key of the first item on its far side.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cut {
     axis: usize,
-    /// Key of the first item beyond the plane.
+    /// Sort key of the first item on the far side.
     key: u64,
 }
 
 impl Cut {
-    /// Returns `true` if the item is beyond the plane.
+    /// Returns `true` if the item is on the far side of the plane.
     #[inline]
     pub(super) fn is_beyond<const D: usize>(self, item: &Item<D>) -> bool {
         item.key(self.axis) >= self.key
@@ -82,7 +83,7 @@ impl Cut {
 }
 
 /// Partitions items in half along the axis with the largest spread; returns the cut and the number
-/// of items on the near side.
+/// of items on the near side. An empty slice has a default cut.
 pub(super) fn cut_in_half<const D: usize>(items: &mut [Item<D>]) -> (Cut, usize) {
     let (axis, half) = (longest_axis(items), items.len() / 2);
     if items.is_empty() {
@@ -92,7 +93,7 @@ pub(super) fn cut_in_half<const D: usize>(items: &mut [Item<D>]) -> (Cut, usize)
     (Cut { axis, key: first.key(axis) }, half)
 }
 
-/// Sorts the items in k-d order. Ends, since each level halves the items.
+/// Sorts the items in k-d order. The recursion ends, since both parts of a split are smaller.
 pub(super) fn sort<const D: usize>(items: &mut [Item<D>]) {
     let Some(left) = split(items) else { return };
     let (first, second) = items.split_at_mut(left);
@@ -105,7 +106,7 @@ pub(super) fn sort<const D: usize>(items: &mut [Item<D>]) {
     sort(second);
 }
 
-/// The data of an object that move with it from slot to slot.
+/// An object's data, taken from its old slot to be written to a new one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Load<const D: usize> {
     bounds: Bounds<D>,
@@ -121,15 +122,15 @@ impl<const D: usize> Tree<D> {
         items.extend((start..self.end).filter_map(|slot| self.item(self.ids[slot])));
     }
 
-    /// Returns the centre of an object, if it is in the tree.
+    /// Returns the centre and id of an object; `None` if it is not in the tree.
     #[inline]
     pub(super) fn item(&self, id: u32) -> Option<Item<D>> {
         let center = self.lane(self.slot(id)?).center();
         Some(Item { center, id })
     }
 
-    /// Assigns the slots from `start` (a block boundary) on to the listed ids, in that order, and
-    /// drops surplus blocks. Every object in those slots must be listed once.
+    /// Assigns slots from `start` (a multiple of 16) on to the listed objects, in order, and drops
+    /// surplus blocks. `ids` must list every object at or after `start` exactly once.
     pub(super) fn rearrange(&mut self, start: usize, ids: &[u32]) {
         let mut loads = core::mem::take(&mut self.loads);
         loads.clear();
@@ -173,7 +174,7 @@ impl<const D: usize> Tree<D> {
         self.layers[0].changed[block] |= u16::from(load.is_changed) << lane;
     }
 
-    /// Drops the last slots if they are free.
+    /// Drops the free slots after the last object, and the blocks without any other slot.
     pub(crate) fn drop_free_end(&mut self) {
         while self.end > 0 && self.ids[self.end - 1] == NONE {
             self.end -= 1;
@@ -182,7 +183,7 @@ impl<const D: usize> Tree<D> {
         self.drop_blocks_after_end();
     }
 
-    /// Empties the lanes of the last block beyond the end, and drops later blocks.
+    /// Empties the lanes at and after `end` in the last block, and drops later blocks.
     fn drop_blocks_after_end(&mut self) {
         let blocks = self.end.div_ceil(LANES);
         for slot in self.end..blocks * LANES {

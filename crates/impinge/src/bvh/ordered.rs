@@ -18,9 +18,9 @@ use crate::math::{Real, Vector, max, min};
 /// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 64;
 
-/// Entries of the queue: blocks and candidates by the key of their lane, objects by their own key,
-/// which is computed only when a candidate comes up. At equal keys objects come last, so that they
-/// leave by ascending id.
+/// Entries of the queue: blocks and candidates by a lower bound, objects by their own key. A
+/// candidate is an object whose own key is computed only when it reaches the front. At equal keys
+/// objects come last, by ascending id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Entry {
     Block { tree: u8, layer: u8, block: u32 },
@@ -28,19 +28,19 @@ enum Entry {
     Object { id: u32 },
 }
 
-/// Functions that compute the keys of a search, which are zero or more.
+/// The two functions that compute keys, which must be zero or more.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Keys<B, O> {
-    /// Returns the mask of the lanes of a block that count, and keys that are not above those of
-    /// their contents.
+    /// Returns the mask of the lanes to visit, and by lane a lower bound of the keys of the lane's
+    /// contents.
     pub block: B,
     /// Returns the key of an object; `None` to skip it.
     pub object: O,
 }
 
-/// The queue of blocks and objects that a search has still to visit.
+/// The queue of blocks and objects that a search has not visited yet.
 ///
-/// Keys are zero or more, so the order of their bits is that of their values.
+/// Keys are zero or more, so their bits have the same order as their values.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Frontier {
     queue: BinaryHeap<Reverse<(u64, Entry)>>,
@@ -64,7 +64,7 @@ impl Frontier {
     }
 
     /// Passes objects to `found` in ascending order of (key, id) until the key exceeds `limit`.
-    /// `found` returns the new limit.
+    /// `found` returns the new limit; a negative or NaN limit ends the search.
     pub(crate) fn search<N: Real, const D: usize>(
         mut self,
         trees: &[&Tree<D>],
@@ -86,7 +86,7 @@ impl Frontier {
             }
             match entry {
                 Entry::Object { id } => {
-                    // The key is the queued one exactly, since the same expression computes it.
+                    // The queued key is exactly this one, since the same expression computed it.
                     let Some(key) = (keys.object)(id) else { continue };
                     limit = found(id, key);
                 }
@@ -106,7 +106,7 @@ impl Frontier {
         }
     }
 
-    /// Queues the lanes of a block that count and are within the limit.
+    /// Queues the lanes of `mask` whose key is at most `limit`.
     fn push_lanes<N: Real, const D: usize>(&mut self, lanes: &BlockLanes<'_, N, D>, limit: N) {
         let &BlockLanes { tree, index, layer, block, mut mask, ref keys } = lanes;
         while mask != 0 {
@@ -132,19 +132,19 @@ impl Frontier {
 /// A block of one of the trees, with the keys of its lanes.
 struct BlockLanes<'t, N, const D: usize> {
     tree: &'t Tree<D>,
-    /// Index of the tree.
+    /// Index of the tree in the list of trees.
     index: u8,
     layer: u8,
     block: u32,
-    /// Lanes that count.
+    /// Lanes to visit.
     mask: u32,
     keys: [N; LANES],
 }
 
 impl Lanes {
-    /// Returns the times at which a moving box touches the boxes of a block, and the mask of those
-    /// that it touches: for [`Frontier::search`], and by the mask alone for [`Tree::visit`]. A ray
-    /// is a box of a single point.
+    /// Returns, by lane, the time at which the moving box first touches the lane's box, and the
+    /// mask of the lanes that it does touch: for [`Frontier::search`], and the mask alone for
+    /// [`Tree::visit`]. A ray is a box of a single point.
     pub(crate) fn times_of_block<N: Real, const D: usize>(
         self,
         block: &Block<D>,
@@ -154,8 +154,8 @@ impl Lanes {
         with_kernel!(self, _kernel => times_of_block(block, moving, velocity))
     }
 
-    /// Returns the distances of a box from the boxes of a block, and the mask of lanes in use, for
-    /// [`Frontier::search`].
+    /// Returns, by lane, the distance between `aabb` and the lane's box, and the mask of lanes in
+    /// use, for [`Frontier::search`].
     pub(crate) fn distance_of_block<N: Real, const D: usize>(
         self,
         block: &Block<D>,
@@ -165,11 +165,11 @@ impl Lanes {
     }
 }
 
-/// Returns the times at which a moving box touches the boxes of a block, and the mask of those that
-/// it touches.
+/// Returns, by lane, the time at which the moving box first touches the lane's box, and the mask of
+/// the lanes that it does touch.
 ///
 /// The slab test of `Aabb::sweep_interval`, operation for operation. Rounding is monotone, so if a
-/// box is hit, a box that encloses it is hit too, and entered no later.
+/// box is hit, an enclosing box is hit too, and entered no later.
 #[inline(always)]
 fn times_of_block<N: Real, const D: usize>(
     block: &Block<D>,
@@ -199,9 +199,10 @@ fn times_of_block<N: Real, const D: usize>(
     (mask, enter)
 }
 
-/// Returns the distances of a box from the boxes of a block, and the mask of lanes in use.
+/// Returns, by lane, the distance between `aabb` and the lane's box, and the mask of lanes in use.
 ///
-/// The operations of `Aabb::distance_to_aabb`, with the same monotonicity.
+/// The operations of `Aabb::distance_to_aabb`. Rounding is monotone, so an enclosing box is no
+/// farther.
 #[inline(always)]
 fn distance_of_block<N: Real, const D: usize>(
     block: &Block<D>,

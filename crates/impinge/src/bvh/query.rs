@@ -1,4 +1,4 @@
-//! Queries of many boxes against a tree together, breadth first.
+//! Queries of many boxes against a tree, all together, breadth first.
 //!
 //! A single search waits for memory at every block; with a few hundred queries together the tests
 //! of one layer are independent, so their loads overlap.
@@ -8,9 +8,9 @@ use super::join::{JoinBoxes, JoinSides, Scratch};
 use super::kernel::Kernel;
 use super::tree::small;
 
-/// Appends `(slot of the first tree, slot of the second)` for each pair of one of the listed
-/// changed slots that began or ended. If both trees are the same, a pair of two changed slots is
-/// reported by the lower one.
+/// Appends `(slot of the first tree, slot of the second)` for each pair that began or ended and
+/// contains one of `slots`, which are changed slots of the first tree. If both trees are the same,
+/// a pair of two changed slots is reported only for its lower slot.
 #[inline(always)]
 pub(super) fn search<K: Kernel, const D: usize>(
     kernel: K,
@@ -23,7 +23,7 @@ pub(super) fn search<K: Kernel, const D: usize>(
     let Scratch { tasks, next, swept_slots } = scratch;
     tasks.clear();
     swept_slots.clear();
-    // Each query starts at the top block, with the reach of its slot.
+    // Each query starts at the top block, with the swept box of its slot.
     for (query, &slot) in (0..).zip(slots) {
         tasks.push(query, 0);
         swept_slots.push(sides.first.swept_of_slot(slot));
@@ -43,7 +43,7 @@ pub(super) fn search<K: Kernel, const D: usize>(
     let [queries, blocks] = tasks.parts();
     for (&query, &block) in queries.iter().zip(blocks) {
         let slot = slots[query as usize];
-        // A changed partner is left to the query with the lower slot.
+        // A pair of two changed slots is left to the query with the lower slot.
         let mut lanes = 0xffff;
         if sides.is_self {
             lanes = !u32::from(leaves.changed[block as usize]) | later_lanes(slot, block);
@@ -52,7 +52,7 @@ pub(super) fn search<K: Kernel, const D: usize>(
     }
 }
 
-/// Returns the lanes of the block whose slots are above `slot`.
+/// Returns the lanes of block `block` whose slots are above `slot`.
 #[inline(always)]
 fn later_lanes(slot: u32, block: u32) -> u32 {
     let own = slot / small(LANES);

@@ -1,9 +1,9 @@
 //! Best-first search with lower bounds computed by the caller.
 //!
 //! Objects leave the queue by ascending bound (Hjaltason and Samet, "Distance browsing in spatial databases", 1999).
-//! Bounds may be negative, which ranks overlaps. They are expensive, so each is computed when its entry comes up; most
-//! never do. Until then the rank is the larger of the distance of the boxes and the gap along one direction, which is
-//! computed for all children of a block at once.
+//! Bounds may be negative, which ranks overlaps by depth. A bound is expensive, so it is computed only when its entry
+//! reaches the front of the queue; most entries never do. Until then the rank is the larger of two rough bounds: the
+//! distance of the boxes and the gap along one direction. Both are computed for all children of a block at once.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -21,20 +21,21 @@ const EXPECTED: usize = 128;
 /// Error bound of heights, in `f32` rounding units of the coordinates.
 const ROUNDING: f32 = 16.0;
 
-/// A search, as the caller defines it.
+/// A search, as the caller defines it. Each object has a rank: its distance, or negative for an overlap.
 pub(crate) trait BoxRanking<N: Real, const D: usize> {
-    /// Returns a unit vector along which the contents of a box are probably separated from the query's solid, and an
-    /// upper bound of that solid's extent along it. A rank is not below the gap. `None` if no such direction is known.
+    /// Returns a unit vector along which the contents of `aabb` are probably separated from the query's solid, and an
+    /// upper bound of that solid's extent along the vector. The gap along it must be a lower bound of the ranks in the
+    /// box. `None` if no such direction is known.
     fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)>;
 
     /// Returns a lower bound of the rank of the object.
     fn of_object(&self, id: u32) -> N;
 
-    /// Returns the largest rank that matters, which must not increase. `None` ends the search.
+    /// Returns the largest rank of interest, which must not increase during the search. `None` ends the search.
     fn limit(&self) -> Option<N>;
 
-    /// Returns a point near which a single object may settle the search. That object is visited first, and may be
-    /// visited again.
+    /// Returns a point near which a single object may end the search early. The object nearest to it is visited first,
+    /// and may be visited again. `None` to skip this.
     fn guess_near(&self) -> Option<Point<N, D>> {
         None
     }
@@ -43,16 +44,16 @@ pub(crate) trait BoxRanking<N: Real, const D: usize> {
     fn visit(&mut self, id: u32);
 }
 
-/// A block or an object with its bound. At equal bounds objects come first.
+/// A block or an object in the queue, with a lower bound of its rank. At equal bounds objects come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct RankedNode {
-    /// The bound, as an integer in the same order.
+    /// The bound as an integer; see [`rank_of`].
     rank: i64,
     /// Zero for an object; for a block, its layer plus one.
     height: u8,
     /// Index of the block, or slot of the object.
     at: u32,
-    /// The bound is a rough one: the caller has not computed its own yet.
+    /// Whether the bound is only a rough one, because the caller's own bound has not been computed yet.
     is_rough: bool,
 }
 
@@ -64,8 +65,9 @@ struct RankedSearch<'a, 'q, N: Real, const D: usize> {
     question: &'q mut dyn BoxRanking<N, D>,
 }
 
-/// Visits the objects of a tree whose ranks may be within the limit of the question, by ascending bound. `around` is a
-/// box of the query's solid: a positive rank must not be below the distance of an object's box from it.
+/// Visits the objects of a tree whose ranks may be within the limit of `question`, by ascending bound. `around` is a
+/// box around the query's solid: a positive rank must not be below the distance between an object's box and `around`.
+/// Visits nothing if `around` has no finite point.
 pub(crate) fn visit_ranked<N: Real, const D: usize>(
     tree: &Tree<D>,
     around: &Aabb<N, D>,
@@ -83,7 +85,7 @@ pub(crate) fn visit_ranked<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
-    /// Runs the search. It ends, since each block is opened once and each entry refined once.
+    /// Runs the search. It ends, since each block is opened at most once and each entry is refined at most once.
     fn run(&mut self) {
         while let Some(Reverse(entry)) = self.queue.pop() {
             let Some(limit) = self.question.limit() else { return };
@@ -98,8 +100,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits the object that may settle the search, if its box is within the distance `within`, in the units of the
-    /// gaps.
+    /// Visits the object near [`BoxRanking::guess_near`] if the square of its box's distance, in squared units of the
+    /// gaps, is at most `within`.
     fn guess(&mut self, within: f32) {
         let likely = self
             .question
@@ -113,14 +115,14 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
-    /// Passes the object in a slot to the question, if there is one.
+    /// Passes the object in a slot to the question; does nothing for a free slot.
     fn visit(&mut self, slot: u32) {
         if let Some(id) = self.tree.id_in(slot) {
             self.question.visit(id);
         }
     }
 
-    /// Queues an object by the caller's bound.
+    /// Queues an object again, now with the caller's bound, unless that exceeds `limit`.
     fn refine(&mut self, entry: RankedNode, limit: N) {
         let Some(id) = self.tree.id_in(entry.at) else { return };
         let bound = self.question.of_object(id);
@@ -130,7 +132,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
-    /// Queues the children of a block, or the block again if other entries come before its refined bound.
+    /// Opens a block: queues its children. If other entries come before the block's refined bound, queues the block
+    /// again instead.
     fn open(&mut self, mut entry: RankedNode, limit: N) {
         let (layer, block) = (usize::from(entry.height - 1), entry.at);
         let within = self.gaps.limit(max(limit, N::ZERO));
@@ -155,8 +158,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         self.push_all(&entry, open, &gaps, limit);
     }
 
-    /// Refines the bound of a block. Returns the block if the bound is within the limit and no other entry comes before
-    /// it; queues it again if one does.
+    /// Refines the bound of a block and returns it if it comes first. `None` if the bound exceeds `limit`, or if
+    /// another entry comes first: then the block is queued again.
     fn first(&mut self, entry: RankedNode, bound: N, limit: N) -> Option<RankedNode> {
         let (entry, is_beyond) = (entry.refined(bound), bound > limit);
         let is_first = self.queue.peek().is_none_or(|Reverse(other)| entry <= *other);
@@ -166,7 +169,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         (!is_beyond && is_first).then_some(entry)
     }
 
-    /// Returns lower bounds of the gaps along a direction between the query's solid and the children of a block.
+    /// Returns, by lane, a lower bound of the gap along `along` between the query's solid and the child. `extent` is an
+    /// upper bound of the solid's extent.
     fn gaps_along(&self, layer: usize, block: u32, along: &Vector<N, D>, extent: N) -> [N; LANES] {
         let along = filled(|axis| along[axis].as_f32());
         let extent = extent + N::lit(f64::from(self.tree.size() * f32::EPSILON * ROUNDING));
@@ -177,7 +181,7 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         })
     }
 
-    /// Queues the children of an open block, by distances and gaps.
+    /// Queues those children of an open block whose rough bound, from distance and gap, is at most `limit`.
     fn push_all(&mut self, above: &RankedNode, open: Open, gaps: &[N; LANES], limit: N) {
         let Open { keys, mut mask, first } = open;
         while mask != 0 {
@@ -196,15 +200,16 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
 }
 
 impl RankedNode {
-    /// Returns the entry with a refined bound, which is not less than its old one.
+    /// Returns the entry with the larger of `bound` and its own bound, marked as not rough.
     fn refined<N: Real>(self, bound: N) -> Self {
         Self { rank: rank_of(bound).max(self.rank), is_rough: false, ..self }
     }
 }
 
-/// Returns an integer that orders as the values do; the greatest for a positive NaN.
+/// Returns an integer with the order of the values; the greatest for a positive NaN.
 fn rank_of<N: Real>(value: N) -> i64 {
-    // Adding zero removes the sign of a negative zero. In negative numbers the bits below the sign are inverted.
+    // Adding zero removes the sign of a negative zero. The bits of negative numbers are in descending order, so all but
+    // the sign are inverted.
     let bits = (value.as_f64() + 0.0).to_bits().cast_signed();
     if bits < 0 { bits ^ i64::MAX } else { bits }
 }

@@ -1,31 +1,31 @@
 //! The refit of the upper layers, and the end of a step.
 //!
-//! A leaf block with an object that moved far is listed as escaped: the join may miss its ended
-//! pairs, which are then read from the table of pairs.
+//! A leaf block with an object that moved far is listed as escaped. The join may miss its ended
+//! pairs; the owner finds them in the table of pairs.
 
 use super::kernel::{Kernel, with_kernel};
 use super::tree::{Layer, small};
 use super::{Block, Bounds, LANES, Lanes, Tree};
 
-/// Greatest ratio by which old boxes may enlarge the surface of a leaf block. Beyond it an object
-/// was teleported, and a reach from its old to its new box would overlap everything in between.
+/// Greatest ratio by which the old boxes may enlarge the surface of a leaf block. Beyond it an
+/// object was teleported, and swept bounds around its old and its new box would overlap everything
+/// between.
 const FAR_MOVED: f64 = 2.0;
 /// Number of leaf blocks up to which a single thread refits.
 #[cfg(feature = "parallel")]
 const PARALLEL_LEAVES: usize = 256;
 
 impl<const D: usize> Tree<D> {
-    /// Sorts new objects into place and updates the upper layers, which then enclose the lower ones
-    /// exactly.
+    /// Sorts new objects and updates the upper layers, which then enclose the lower ones exactly.
     pub(crate) fn refit(&mut self) {
         self.refit_from(&[]);
     }
 
-    /// As [`Self::refit`], after reading the boxes of changed objects from `by_id`; an empty list
-    /// if the tree has the boxes already.
+    /// Refits the tree as [`Self::refit`] does, but first reads the boxes of changed objects from
+    /// `by_id`, which is indexed by id. `by_id` is empty if the tree already has the boxes.
     ///
-    /// Objects come in no spatial order. Reading the box of each slot causes independent loads,
-    /// which overlap; writing each box to its slot would not.
+    /// Ids have no spatial order. Reading the box of each slot causes independent loads, which
+    /// overlap; writing each box to its slot would not.
     pub(crate) fn refit_from(&mut self, mut by_id: &[Bounds<D>]) {
         if self.has_new() {
             self.fetch_boxes(by_id);
@@ -36,7 +36,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Refits the touched leaf blocks and the layers above them, and lists the escaped blocks.
-    /// Reads changed boxes from `by_id`, unless that is empty or the tree has them already.
+    /// Reads changed boxes from `by_id`, unless it is empty or no box is stale.
     pub(super) fn refit_layers(&mut self, by_id: &[Bounds<D>]) {
         self.escaped.clear();
         if !self.touched.is_empty() || self.is_restructured {
@@ -62,7 +62,8 @@ impl<const D: usize> Tree<D> {
         if self.touched.is_sorted() {
             return;
         }
-        // If many blocks are touched, a pass over the flags replaces the sort.
+        // If more than a quarter of the blocks are touched, a pass over the flags replaces the
+        // sort.
         let are_many = self.touched.len() * 4 > self.leaf_count();
         if are_many {
             self.touched.clear();
@@ -73,8 +74,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Reads the changed boxes of the touched blocks from `by_id`, unless that is empty or the tree
-    /// has them already.
+    /// Reads the changed boxes of the touched blocks from `by_id`, unless it is empty or no box is
+    /// stale.
     fn fetch_boxes(&mut self, by_id: &[Bounds<D>]) {
         if by_id.is_empty() || !self.is_stale {
             return;
@@ -86,9 +87,9 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Resizes the upper layers to the number of leaf blocks. The path above the first and the last
-    /// block must then be refitted ([`Self::add_ends`]): for a new top layer, and for lanes of
-    /// blocks that no longer exist.
+    /// Resizes the upper layers to the number of leaf blocks. The paths above the first and the
+    /// last leaf block must then be refitted ([`Self::add_ends`]): the first for a new top layer,
+    /// the last for lanes of removed blocks.
     pub(super) fn shape_layers(&mut self) {
         let (mut layer, mut blocks) = (0, self.leaf_count());
         while blocks > 1 {
@@ -113,7 +114,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Reads the changed boxes of the listed leaf blocks, and computes bounds and reach.
+    /// Reads the changed boxes of the listed leaf blocks, and computes their bounds and swept
+    /// bounds.
     fn refit_leaves(&mut self, blocks: &[u32], by_id: &[Bounds<D>]) {
         let Layer { blocks: leaves, bounds, swept, changed, .. } = &mut self.layers[0];
         let (before, ids) = (&self.before[..], &self.ids[..]);
@@ -136,7 +138,7 @@ impl<const D: usize> Tree<D> {
                 parent.swept_blocks[above].set_lane(lane, &layer.swept[block]);
                 parent.changed[above] |= u16::from(layer.changed[block] != 0) << lane;
             }
-            // Bounds of parents are computed once all their lanes are written.
+            // Bounds of a parent are computed once all its lanes are written.
             to_parents(blocks);
             for &block in blocks.iter() {
                 let block = block as usize;
@@ -146,7 +148,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Makes the present boxes the old ones, and clears all change bits.
+    /// Makes the present boxes the old ones for the next join, and clears all change bits and lists
+    /// of the step.
     pub(crate) fn commit_boxes(&mut self) {
         if self.touched.is_empty() {
             return;
@@ -179,7 +182,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// A run of leaf blocks with their bounds and reach, to be written.
+/// Consecutive leaf blocks with their bounds and swept bounds, to be written.
 struct Leaves<'a, const D: usize> {
     /// Index of the first block.
     first: usize,
@@ -190,20 +193,20 @@ struct Leaves<'a, const D: usize> {
 
 /// Read-only input of the refit of leaf blocks.
 struct RefitSource<'a, const D: usize> {
-    /// Boxes at the last settle.
+    /// Leaf boxes at the last [`Tree::commit_boxes`].
     before: &'a [Block<D>],
     ids: &'a [u32],
     /// Change bits by block.
     changed: &'a [u16],
-    /// Present boxes by id; empty if the blocks have them already.
+    /// Present boxes by id; empty if the blocks have these already.
     by_id: &'a [Bounds<D>],
     is_stale: bool,
     lanes: Lanes,
 }
 
 impl<const D: usize> Leaves<'_, D> {
-    /// Refits the listed blocks, ascending and all in this run. Appends those with objects that
-    /// moved far to `escaped`.
+    /// Refits the listed blocks, which must be ascending and all in this range. Appends the blocks
+    /// with an object that moved far to `escaped`.
     fn refit(mut self, source: &RefitSource<'_, D>, listed: &[u32], escaped: &mut Vec<u32>) {
         #[cfg(feature = "parallel")]
         if listed.len() > PARALLEL_LEAVES && rayon::current_num_threads() > 1 {
@@ -223,8 +226,8 @@ impl<const D: usize> Leaves<'_, D> {
         });
     }
 
-    /// Refits one leaf block: its bounds enclose the present boxes, and its reach also the old
-    /// ones, unless the block is escaped.
+    /// Refits one leaf block: its bounds enclose the present boxes. Its swept bounds enclose the
+    /// old boxes too, unless the block is escaped.
     #[inline(always)]
     fn refit_block<K: Kernel>(
         &mut self,
@@ -251,7 +254,7 @@ impl<const D: usize> Leaves<'_, D> {
         }
     }
 
-    /// Splits the run before `block`.
+    /// Splits the range before leaf block `block`.
     #[cfg(feature = "parallel")]
     fn split(&mut self, block: usize) -> (Leaves<'_, D>, Leaves<'_, D>) {
         let (first, count) = (self.first, block - self.first);
@@ -275,7 +278,7 @@ fn fetch<const D: usize>(mut changed: u16, ids: &[u32], block: &mut Block<D>, by
 }
 
 impl<const D: usize> Layer<D> {
-    /// Clears the change bits of a block; its reach becomes its bounds.
+    /// Clears the change bits of a block; its swept bounds become its bounds.
     fn commit_boxes(&mut self, block: usize) {
         self.changed[block] = 0;
         self.swept[block] = self.bounds[block];
@@ -285,7 +288,7 @@ impl<const D: usize> Layer<D> {
     }
 }
 
-/// Replaces ascending block indices by those of their parents, each once.
+/// Replaces ascending block indices by the indices of the parents, without repeats.
 fn to_parents(blocks: &mut Vec<u32>) {
     for block in blocks.iter_mut() {
         *block /= small(LANES);

@@ -1,7 +1,8 @@
-//! Renewal of a sparing tree: its boxes are copied in order to another tree, a bounded number in each step.
+//! Renewal of a sparing tree: its boxes are copied, in a new spatial order, to another tree, a bounded number in each
+//! step.
 //!
-//! Objects that came since the last renewal are at the end, or in lanes that others left. A renewal fills another tree
-//! with the same objects, which then replaces the first:
+//! Objects inserted since the last renewal are at the end, or in lanes of removed objects, so the order degrades. A
+//! renewal fills another tree with the same objects, which then replaces this one:
 //!
 //! ```text
 //!   this tree        | all slots, in any order                       |
@@ -13,43 +14,44 @@
 //!   the other tree   | sorted                              | late    |  3. Follow: objects that came in the meantime
 //! ```
 //!
-//! The regions are those of a k-d tree over a sample (a sample sort), so that the order is nearly that of [`sort`],
-//! whatever it was before. Removals and changed boxes are applied to both trees at once. The result depends only on the
-//! calls, never on measured time.
+//! The regions are the leaves of a k-d tree over a sample (a sample sort), so the new order is close to that of
+//! [`sort`]. Removals and changed boxes are applied to both trees at once. The result depends only on the calls, never
+//! on measured time.
 
 use super::order::{Cut, Item, cut_in_half, sort};
 use super::tree::{Layer, small};
 use super::{Bounds, LANES, NONE, Tree};
 
-/// Slots that one step routes, and objects that it sorts and copies.
+/// Slots routed in one step, and objects sorted and copied in one step.
 const ROUTED: usize = 1024;
 const COPIED: usize = 512;
-/// Late objects that one step adds: at least [`FOLLOWED`], and at least one in [`FOLLOWED_OF`], so that the stage ends
-/// however many come.
+/// Late objects added in one step: at least [`FOLLOWED`], and at least one in [`FOLLOWED_OF`], so that this stage ends
+/// however many objects are inserted.
 const FOLLOWED: usize = 128;
 const FOLLOWED_OF: usize = 16;
-/// Work units that a new object and a changed one add to the next call, and units for each further step of that call.
+/// Work units for a new object and for a changed one, and units for each additional step of the next call.
 const OF_INSERT: usize = 64;
 const OF_SET: usize = 1;
 const OF_STEP: usize = 4096;
-/// Greatest depth of the k-d tree, and sampled objects for each region.
+/// Greatest depth of the k-d tree, and number of sampled objects for each region.
 const MAX_DEPTH: u32 = 10;
 const SAMPLES: usize = 4;
 
-/// A renewal under way.
+/// The state of a renewal that has begun.
 #[derive(Clone, Debug)]
 pub(super) struct Renewal<const D: usize> {
     stage: Stage,
-    /// A binary tree of cuts: the children of cut `n` are `2 n + 1` and `2 n + 2`; regions follow the cuts in the same
-    /// numbering.
+    /// A binary tree of cuts: the children of cut `n` have indices `2 n + 1` and `2 n + 2`. An index `i ≥ cuts.len()`
+    /// is region `i - cuts.len()`.
     cuts: Vec<Cut>,
-    /// Linked lists as indices in `ids`: by region the last object routed to it, and by object the previous one.
+    /// Linked lists, with entries as indices in `ids`: `last_of` has the last entry of each region, and `before` the
+    /// previous entry of each entry.
     last_of: Vec<u32>,
     before: Vec<u32>,
     ids: Vec<u32>,
     /// The tree being filled.
     other: Tree<D>,
-    /// Objects that came since the renewal began. Some may be gone.
+    /// Objects inserted since the renewal began. Some may have been removed.
     late: Vec<u32>,
     /// Work units added by changes since the last call.
     owed_units: usize,
@@ -58,16 +60,17 @@ pub(super) struct Renewal<const D: usize> {
 /// A stage, with its progress.
 #[derive(Clone, Copy, Debug)]
 enum Stage {
-    /// Route the slots from the first number up to the second.
+    /// Route the slots from the first value up to the second, exclusive.
     Route(usize, usize),
-    /// Copy the list that ends with this object ([`NONE`]: empty), then the regions from this one on.
+    /// Copy the rest of a region's list, which ends with this entry ([`NONE`]: empty), then the regions from this index
+    /// on.
     Copy(u32, usize),
-    /// Add the objects that came in the meantime.
+    /// Add the objects inserted since the renewal began.
     Follow,
 }
 
 impl<const D: usize> Renewal<D> {
-    /// Begins a renewal: chooses the regions by a sample of the objects.
+    /// Begins a renewal of `tree`: chooses the regions by a sample of its objects.
     pub(super) fn begin(tree: &Tree<D>) -> Self {
         let wanted = tree.live.div_ceil(COPIED).next_power_of_two();
         let depth = wanted.trailing_zeros().min(MAX_DEPTH);
@@ -88,13 +91,13 @@ impl<const D: usize> Renewal<D> {
         }
     }
 
-    /// Notes that an object was inserted in this tree.
+    /// Records that an object was inserted in the old tree; it is added in the last stage.
     pub(super) fn insert(&mut self, id: u32) {
         self.late.push(id);
         self.owed_units += OF_INSERT;
     }
 
-    /// Notes that an object of this tree has another box.
+    /// Records that a box of the old tree has changed; also sets it in the other tree.
     pub(super) fn set(&mut self, id: u32, bounds: &Bounds<D>) {
         if self.other.contains(id) {
             self.other.set_still(id, bounds);
@@ -102,20 +105,21 @@ impl<const D: usize> Renewal<D> {
         self.owed_units += OF_SET;
     }
 
-    /// Notes that an object was removed from this tree.
+    /// Removes from the other tree an object that was removed from the old one.
     pub(super) fn remove(&mut self, id: u32) {
         if self.other.contains(id) {
             self.other.remove(id);
         }
     }
 
-    /// Does the next step, and more if many objects came or changed. Returns `true` if the other tree is complete.
+    /// Performs the next step, and additional ones if many objects were inserted or changed. Returns `true` if the
+    /// other tree is complete.
     pub(super) fn proceed(&mut self, tree: &Tree<D>) -> bool {
         let steps = 1 + core::mem::take(&mut self.owed_units) / OF_STEP;
         (0..steps).any(|_| self.step(tree))
     }
 
-    /// Does one step of the present stage; the other tree is settled afterwards. Returns `true` if it is complete.
+    /// Performs one step of the current stage, then commits the other tree. Returns `true` if it is complete.
     fn step(&mut self, tree: &Tree<D>) -> bool {
         match self.stage {
             Stage::Route(slot, end) => self.route(tree, slot, end),
@@ -127,17 +131,17 @@ impl<const D: usize> Renewal<D> {
         false
     }
 
-    /// Returns the other tree once it is complete; settled, as it is after each step.
+    /// Returns the other tree, which is refitted and committed. Call it once [`Self::proceed`] has returned `true`.
     pub(super) fn into_tree(self) -> Tree<D> {
         self.other
     }
 
-    /// Routes the objects in the next slots, from `slot` on, to their regions.
+    /// Routes the objects in the next slots, from `slot` up to `end`, to their regions.
     fn route(&mut self, tree: &Tree<D>, slot: usize, end: usize) {
         let next = end.min(slot + ROUTED);
         for item in tree.ids[slot..next].iter().filter_map(|&id| tree.item(id)) {
             let mut at = 0;
-            // Down the tree of cuts: an index beyond the cuts is that of a region.
+            // Descends the tree of cuts; an index beyond the cuts is a region.
             while let Some(cut) = self.cuts.get(at) {
                 at = 2 * at + 1 + usize::from(cut.is_beyond(&item));
             }
@@ -148,7 +152,7 @@ impl<const D: usize> Renewal<D> {
         self.stage = if next < end { Stage::Route(next, end) } else { Stage::Copy(NONE, 0) };
     }
 
-    /// Copies the next objects of a region, sorted, to the end of the other tree.
+    /// Copies the next objects of a region, up to [`COPIED`] and sorted, to the end of the other tree.
     fn copy(&mut self, tree: &Tree<D>, mut object: u32, mut region: usize) {
         if object == NONE {
             object = self.last_of[region];
@@ -171,7 +175,7 @@ impl<const D: usize> Renewal<D> {
         };
     }
 
-    /// Adds late objects; returns `true` if there are no more.
+    /// Adds late objects; returns `true` if none are left.
     fn follow(&mut self, tree: &Tree<D>) -> bool {
         let count = FOLLOWED.max(self.late.len() / FOLLOWED_OF);
         let rest = self.late.len().saturating_sub(count);
@@ -183,7 +187,8 @@ impl<const D: usize> Renewal<D> {
         rest == 0
     }
 
-    /// Adds an object to the other tree, at the end or where it fits, unless it is gone or there already.
+    /// Adds an object to the other tree: at the end if `at_end`, else in the best slot. Skips an object that is gone or
+    /// that the other tree already contains.
     fn add(&mut self, tree: &Tree<D>, id: u32, at_end: bool) {
         let bounds = tree.bounds(id).filter(|_| !self.other.contains(id));
         if let Some(bounds) = bounds {
@@ -196,7 +201,7 @@ impl<const D: usize> Renewal<D> {
     }
 }
 
-/// Cuts a sample in half, and both halves recursively. Ends, since each call is one level deeper.
+/// Cuts a sample in half, and both halves recursively. Ends, since each call goes one level deeper in `cuts`.
 fn fill<const D: usize>(cuts: &mut [Cut], at: usize, sample: &mut [Item<D>]) {
     if at >= cuts.len() {
         return;
@@ -209,7 +214,7 @@ fn fill<const D: usize>(cuts: &mut [Cut], at: usize, sample: &mut [Item<D>]) {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Creates a sparing tree without objects and with memory for as many as this one.
+    /// Creates a sparing tree without objects, with memory for as many as this one contains.
     fn empty_twin(&self) -> Self {
         let (mut twin, blocks) = (Self::sparing(self.lanes), self.live.div_ceil(LANES) + 1);
         let Layer { blocks: leaves, bounds, swept, changed, .. } = &mut twin.layers[0];
@@ -233,7 +238,7 @@ mod tests {
     /// Expected content of a tree, by id.
     type List = Vec<Option<Bounds<3>>>;
 
-    /// Adds, removes and changes objects in one step of a tree.
+    /// Inserts `came` objects, and removes or changes up to 20, in one step of a tree.
     fn play(state: &mut u64, tree: &mut Tree<3>, list: &mut List, came: u32) {
         for _ in 0..came {
             list.push(Some(random_box(state, 60)));

@@ -1,11 +1,11 @@
 //! The schedule of renewals: when the order of slots is renewed, and how much of that work one step
 //! does.
 //!
-//! Moving objects spoil the order: the leaf blocks grow. When their surface for each object is a
-//! fifth above that after the last renewal (or many objects came or went), a snapshot of all
-//! centres is sorted over several steps and then applied: work proportional to the number of
-//! objects, which move anyway. A sparing tree is renewed in a copy ([`super::renewal`]), with a
-//! constant amount of work in each step. No step depends on measured time, so results are equal on
+//! Moving objects spoil the order: the leaf blocks grow. A renewal starts when the leaf surface per
+//! object is a fifth above its value after the last renewal, or when many objects came or went.
+//! Then a snapshot of all centres is sorted over several steps and applied: work proportional to
+//! the number of objects. A sparing tree is instead renewed in a copy ([`super::renewal`]), with a
+//! bounded amount of work in each step. No step depends on measured time, so results are equal on
 //! every machine.
 
 use super::order::{Item, sort, split};
@@ -14,46 +14,46 @@ use super::{LANES, Tree};
 
 /// Growth of the leaf surface per object at which a renewal starts.
 const WORN: f64 = 1.2;
-/// Period, in calls, of the check whether the order is worn.
+/// Calls of `wants_order` between two measurements of the leaf surface.
 const LOOK_EVERY: u32 = 4;
-/// Size up to which a part of the snapshot is sorted at once.
+/// Greatest number of items of the snapshot that are sorted at once.
 const SORTED_AT_ONCE: usize = 1024;
-/// Least number of items that a step handles, so that small trees renew in few steps.
+/// Least number of items for one step to handle, so that small trees are renewed in few steps.
 const MIN_BUDGET: usize = 2048;
-/// If more than one object in `LATE` came or moved far while the snapshot was sorted, the snapshot
-/// is discarded.
+/// If more than one object in `LATE` came or moved far while the snapshot was being sorted, the
+/// snapshot is discarded and all objects are sorted at once.
 const LATE: usize = 4;
-/// Number of objects that may always come or go before the order is renewed.
+/// Number of objects that may come or go in a tree of any size before the order is renewed.
 const SLACK: usize = 64;
-/// A sparing tree of at most `SMALL` objects is sorted at once; newcomers are sorted in runs of at
-/// most as many.
+/// A sparing tree of at most `SMALL` objects is sorted at once. In a larger one, new objects are
+/// sorted in runs of at most about `SMALL` slots.
 const SMALL: usize = 1024;
 
 /// The state of the renewal.
 #[derive(Clone, Debug)]
 pub(super) struct Schedule<const D: usize> {
-    /// Leaf surface per object after the last renewal; `None` if it must be measured.
+    /// Leaf surface per object, first measured after the last renewal; `None` until then.
     base: Option<f64>,
-    /// First slot that came since the last renewal.
+    /// First slot in use since the last renewal only: slots before it were sorted then.
     ordered: usize,
-    /// First slot that came since the last [`Tree::refit`].
+    /// First slot whose object has not been sorted yet.
     fresh: usize,
-    /// First slots of the runs sorted since the last renewal, ascending: each run is longer than
-    /// twice the next.
+    /// First slots of the runs sorted since the last renewal, ascending. Each run is more than
+    /// twice as long as the next, except where the limit for a sparing tree kept them apart.
     runs: Vec<usize>,
     /// The centres being sorted, and the parts not yet sorted.
     snapshot: Vec<Item<D>>,
     parts: Vec<(usize, usize)>,
-    /// Calls since the last renewal; wraps.
+    /// Calls of `wants_order` since the last renewal; wraps.
     calls: u32,
-    /// Blocks were written since the last check of the surface.
+    /// Whether blocks were written since the last measurement of the surface.
     is_used: bool,
-    /// Objects that came or moved far since the snapshot was taken, whose positions in it are
-    /// wrong. May have repeats and removed objects.
+    /// Objects that came or moved far since the snapshot was taken, which it lacks or has at wrong
+    /// positions. May have repeats and removed objects.
     late: Vec<u32>,
     /// Scratch: new objects.
     newcomers: Vec<Item<D>>,
-    /// Scratch: a new order, and by id whether an object has a position in it.
+    /// Scratch: a new order of ids, and by id whether the object has a position in that order.
     order: Vec<u32>,
     is_placed: Vec<bool>,
 }
@@ -78,22 +78,22 @@ impl<const D: usize> Default for Schedule<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Returns `true` if objects came since the last refit.
+    /// Returns `true` if there are slots at the end whose objects have not been sorted yet.
     pub(super) const fn has_new(&self) -> bool {
         self.end > self.schedule.fresh
     }
 
-    /// Sorts the objects that came since the last refit among themselves, or all objects if the new
-    /// ones are a third. Earlier runs are merged in if they are not much longer, so that there are
-    /// few runs and each object is sorted again only a few times (the logarithmic method of Bentley
-    /// and Saxe 1980).
+    /// Sorts the objects that came since the last sort among themselves, or all objects if more
+    /// than a third are new. Earlier runs are merged in while they are short, so that there are few
+    /// runs and each object is sorted again only a few times (the logarithmic method of Bentley and
+    /// Saxe 1980). In a sparing tree up to 16 new objects wait for more.
     pub(super) fn sort_new(&mut self) {
         let new = self.end - self.schedule.fresh.min(self.end);
         if new * 3 > self.live {
             self.rebuild();
         } else if self.is_sparing && (new <= LANES || self.renewal.is_some()) {
-            // These wait for more objects, since a few single ones are not neighbours, or for the
-            // renewal.
+            // In a sparing tree few new objects wait: for more of them, since a few are not
+            // neighbours, or for the renewal, which sorts them.
             return;
         } else if new > LANES {
             let most = if self.is_sparing { SMALL } else { usize::MAX };
@@ -103,7 +103,7 @@ impl<const D: usize> Tree<D> {
         self.schedule.fresh = self.end;
     }
 
-    /// Sorts the objects in the slots from `start` (a block boundary) on.
+    /// Sorts the objects in the slots from `start`, a multiple of 16, to the end.
     fn sort_from(&mut self, start: usize) {
         let mut items = core::mem::take(&mut self.schedule.newcomers);
         let mut ids = core::mem::take(&mut self.schedule.order);
@@ -117,12 +117,12 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Notes that boxes changed, so that the surface must be checked.
+    /// Records that boxes changed, so that the surface must be measured again.
     pub(super) fn note_use(&mut self) {
         self.schedule.is_used = true;
     }
 
-    /// Sorts all objects at once.
+    /// Sorts all objects at once, and drops a renewal or snapshot in progress. A refit must follow.
     pub(crate) fn rebuild(&mut self) {
         let mut items = core::mem::take(&mut self.schedule.snapshot);
         self.list_items(0, &mut items);
@@ -137,7 +137,7 @@ impl<const D: usize> Tree<D> {
         self.give_back();
     }
 
-    /// Notes a new object that a snapshot or a renewal under way does not contain.
+    /// Records a new object, which a snapshot or a renewal in progress lacks.
     #[inline]
     pub(super) fn note_late(&mut self, id: u32) {
         if !self.schedule.snapshot.is_empty() {
@@ -148,7 +148,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Notes the changed objects of escaped blocks, whose positions in a snapshot are wrong.
+    /// Records the changed objects of escaped blocks, whose positions in a snapshot are wrong.
     pub(super) fn note_strayed(&mut self) {
         if !self.schedule.snapshot.is_empty() {
             let mut late = core::mem::take(&mut self.schedule.late);
@@ -157,12 +157,13 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Declares the objects in the slots before `end` sorted; later ones count as new.
+    /// Declares the slots before `end` sorted; objects in later slots are new.
     pub(super) fn declare_ordered(&mut self, end: usize) {
         self.schedule.begin(end, end);
     }
 
-    /// Does this step's share of keeping the order; must be called after [`Self::commit_boxes`].
+    /// Performs this step's share of the renewal of the order. Must be called after
+    /// [`Self::commit_boxes`].
     pub(crate) fn maintain(&mut self) {
         debug_assert_eq!(self.changed, 0, "maintenance comes after settling");
         if self.live == 0 {
@@ -184,7 +185,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Continues a renewal in a copy, or begins one if the order is worn.
+    /// Continues the renewal of a sparing tree. Begins one if [`Self::wants_order`]; a small tree
+    /// is sorted at once.
     fn renew_aside(&mut self) {
         if let Some(mut renewal) = self.renewal.take() {
             if renewal.proceed(self) {
@@ -201,14 +203,14 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Sorts all objects, and settles the tree again.
+    /// Sorts all objects, then refits and commits the tree.
     fn rebuild_at_once(&mut self) {
         self.rebuild();
         self.refit_layers(&[]);
         self.commit_boxes();
     }
 
-    /// Takes a snapshot of all objects, to be sorted in steps, if the order should be renewed.
+    /// Takes a snapshot of all objects, to be sorted over several steps, if [`Self::wants_order`].
     fn start_if_worn(&mut self) {
         if self.wants_order() {
             let mut snapshot = core::mem::take(&mut self.schedule.snapshot);
@@ -218,8 +220,9 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Returns `true` if the order should be renewed. Checks the surface in some calls only,
-    /// because the sum over all blocks would dominate an otherwise idle step.
+    /// Counts the call, and returns `true` if the order should be renewed. Measures the surface in
+    /// one of [`LOOK_EVERY`] calls, because the sum over all blocks would dominate an otherwise
+    /// idle step.
     fn wants_order(&mut self) -> bool {
         self.schedule.calls = self.schedule.calls.wrapping_add(1);
         let is_due = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
@@ -227,8 +230,8 @@ impl<const D: usize> Tree<D> {
         self.is_spoilt() || (looks && self.is_worn())
     }
 
-    /// Returns `true` if the surface of leaf blocks for each object exceeds [`WORN`] times that of
-    /// the first check since the renewal.
+    /// Returns `true` if the leaf surface per object exceeds [`WORN`] times its first measurement
+    /// since the renewal. The first call stores that measurement.
     #[expect(clippy::cast_precision_loss, reason = "a count that weighs a heuristic")]
     fn is_worn(&mut self) -> bool {
         let surface = self.leaf_surface() / self.live as f64;
@@ -236,14 +239,15 @@ impl<const D: usize> Tree<D> {
         surface > WORN * base
     }
 
-    /// Returns `true` if too many objects came or went since the last renewal.
+    /// Returns `true` if too many objects came, or left free slots, since the last renewal.
     fn is_spoilt(&self) -> bool {
         let (came, holes) = (self.end - self.schedule.ordered.min(self.end), self.end - self.live);
         came > self.live / 16 + SLACK || holes > self.live / 4 + SLACK
     }
 
-    /// Moves the objects to their sorted positions. Objects removed since are skipped; those
-    /// missing in the snapshot follow at the end, sorted among themselves.
+    /// Moves the objects to their sorted positions, then refits and commits the tree. Skips objects
+    /// that were removed since the snapshot. Objects that it lacks, and late ones, follow at the
+    /// end, sorted among themselves.
     fn apply_snapshot(&mut self) {
         let mut ids = core::mem::take(&mut self.schedule.order);
         let mut is_placed = core::mem::take(&mut self.schedule.is_placed);
@@ -271,7 +275,7 @@ impl<const D: usize> Tree<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Releases the scratch memory of a sparing tree.
+    /// Releases the scratch memory of a sparing tree; does nothing for another tree.
     pub(super) fn give_back(&mut self) {
         if self.is_sparing {
             let Schedule { base, ordered, fresh, calls, is_used, .. } = self.schedule;
@@ -284,7 +288,8 @@ impl<const D: usize> Tree<D> {
 }
 
 impl<const D: usize> Schedule<D> {
-    /// Begins a new period after the order was renewed; keeps the memory.
+    /// Resets the schedule after the order was renewed; keeps the memory. Slots before `ordered`
+    /// are sorted as a whole, and slots from there to `fresh` as a run.
     fn begin(&mut self, ordered: usize, fresh: usize) {
         (self.base, self.ordered, self.fresh) = (None, ordered, fresh);
         self.runs.clear();
@@ -297,13 +302,13 @@ impl<const D: usize> Schedule<D> {
         self.late.clear();
     }
 
-    /// Notes that there are no slots from `end` on.
+    /// Clamps the slot indices to `end`, when there are no slots from `end` on.
     pub(super) fn forget_slots_from(&mut self, end: usize) {
         (self.ordered, self.fresh) = (self.ordered.min(end), self.fresh.min(end));
     }
 
-    /// Returns the first slot of the run to be sorted up to `end`: the newcomers, merged with
-    /// earlier runs while these are short and the total is at most `most`.
+    /// Records a new run that ends at `end`, and returns its first slot. The run has the new
+    /// objects and the earlier runs that are short, as long as it has at most `most` slots.
     fn next_run(&mut self, end: usize, most: usize) -> usize {
         let mut start = self.fresh / LANES * LANES;
         self.runs.retain(|&run| run < start);
@@ -316,7 +321,7 @@ impl<const D: usize> Schedule<D> {
         start
     }
 
-    /// Sorts parts of the snapshot until `budget` items have been handled; always at least one
+    /// Sorts parts of the snapshot until `budget` items have been handled. Handles at least one
     /// part.
     fn sort_some(&mut self, budget: usize) {
         let mut done = 0;
@@ -325,7 +330,7 @@ impl<const D: usize> Schedule<D> {
             let items = &mut self.snapshot[start..end];
             if items.len() <= SORTED_AT_ONCE {
                 sort(items);
-                // The number of levels is that of halvings down to one block.
+                // Sorting halves the items this many times, down to one block.
                 let levels = items.len().div_ceil(LANES).next_power_of_two().trailing_zeros();
                 done += items.len() * (levels.max(1) as usize);
             } else if let Some(left) = split(items) {

@@ -1,4 +1,4 @@
-//! A moving box for slab tests against blocks: in `f32`, and never too strict.
+//! A moving box for slab tests against blocks, in `f32`. Rounding errors only enlarge the result.
 
 use super::kernel::{IOTA, Scalar, WideBlock, low_half};
 use super::{Block, LANES};
@@ -6,45 +6,46 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Real, Vector, filled, max_component};
 use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdMask, f32x16, u32x16};
 
-/// Least speed on an axis, in units of the fastest component. On the way past a tree the deviation
-/// of a slower component is less than the padding.
+/// Least speed on an axis, as a fraction of the fastest component's power of two. Raising a slower
+/// component to it displaces the box, along the way past a tree, by less than the padding.
 const SLOWEST: f32 = f32::from_bits(27 << 23);
 
-/// Padding of the moving box, in rounding units of `f32` of the largest coordinate.
+/// Padding of the moving box, in `f32` rounding units of the largest coordinate.
 const PADDING: f32 = 5.0;
 
-/// Error bound of quotients in rounding units of `f32`.
+/// Error bound of quotients, in `f32` rounding units.
 const QUOTIENT: f32 = 8.0;
 
-/// Returns the smaller of a number and a limit; NaN stays.
+/// Returns the smaller of `x` and `limit`; NaN if `x` is NaN.
 #[inline(always)]
 fn at_most(x: f32, limit: f32) -> f32 {
     if x > limit { limit } else { x }
 }
 
-/// Returns the larger of a number and a limit; NaN stays.
+/// Returns the larger of `x` and `limit`; NaN if `x` is NaN.
 #[inline(always)]
 fn at_least(x: f32, limit: f32) -> f32 {
     if x < limit { limit } else { x }
 }
 
-/// A moving box in the representation for slab tests. A ray is a box of a single point.
+/// A moving box, prepared for slab tests. A ray is a box of a single point.
 ///
-/// The velocity is divided by a power of two, which brings its largest component between 1 and 2,
-/// so that quotients stay in range at any scale; times are in the corresponding unit.
+/// The velocity is divided by a power of two, so that its largest component is between 1 and 2 and
+/// quotients stay in range at any scale. Times are multiplied by that power of two.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slabs<const D: usize> {
-    /// By axis: the face that meets a box first, and the opposite face.
+    /// By axis: the face of the moving box that meets other boxes first, and the opposite face.
     front: [f32; D],
     back: [f32; D],
     /// Reciprocal of the velocity, never zero and never infinite.
     inverse: [f32; D],
-    /// The power of two.
+    /// The power of two by which the velocity is divided.
     unit: f64,
 }
 
 impl<const D: usize> Slabs<D> {
-    /// Converts the box `moving` with a finite velocity, for trees with coordinates up to `size`.
+    /// Converts the box `moving` with a finite velocity, for trees with coordinates of magnitude up
+    /// to `size`.
     #[inline(always)]
     pub(crate) fn new<N: Real>(moving: &Aabb<N, D>, velocity: &Vector<N, D>, size: f32) -> Self {
         let speed = max_component(velocity);
@@ -76,7 +77,8 @@ impl<const D: usize> Slabs<D> {
         }
     }
 
-    /// Returns an upper bound of the caller's time in the units of the slabs; negative for NaN.
+    /// Converts a time of the caller to an upper bound in the units of the slabs; -1 for a negative
+    /// or NaN time.
     #[expect(clippy::cast_possible_truncation, reason = "the slack is more than the rounding")]
     pub(crate) fn limit<N: Real>(&self, time: N) -> f32 {
         let scaled = time.as_f64() * self.unit;
@@ -85,14 +87,16 @@ impl<const D: usize> Slabs<D> {
         if is_time { (scaled + scaled * slack) as f32 + f32::MIN_POSITIVE } else { -1.0 }
     }
 
-    /// Returns a lower bound of the caller's time for the key of a block.
+    /// Returns a lower bound of the caller's time for a key that
+    /// [`Kernel::enter`](super::kernel::Kernel::enter) wrote.
     pub(crate) fn time<N: Real>(&self, key: f32) -> N {
         let slack = f64::from(2.0 * QUOTIENT * f32::EPSILON);
         let exact = f64::from(key) / self.unit;
         N::lit(exact - exact * slack)
     }
 
-    /// Returns the faces of a block that the box meets first on an axis, and the opposite ones.
+    /// Returns, by lane, the faces that the moving box meets first on an axis, and the opposite
+    /// faces.
     #[inline(always)]
     fn faces<'a>(&self, block: &'a Block<D>, axis: usize) -> [&'a [f32; LANES]; 2] {
         let (lo, hi) = (&block.lo[axis], &block.hi[axis]);
@@ -100,11 +104,11 @@ impl<const D: usize> Slabs<D> {
     }
 }
 
-/// Factor by which times of leaving are enlarged, since times of entering and leaving are rounded.
+/// Factor that enlarges exit times, since entry and exit times are rounded.
 const STRETCH: f32 = 1.0 + QUOTIENT * f32::EPSILON;
 
 impl Scalar {
-    /// One lane after another; see [`Kernel::enter`](super::kernel::Kernel::enter).
+    /// Tests one lane after another; see [`Kernel::enter`](super::kernel::Kernel::enter).
     #[inline(always)]
     pub(super) fn enter_block<const D: usize>(
         self,
@@ -131,7 +135,7 @@ impl Scalar {
 }
 
 impl<S: Simd> WideBlock<S> {
-    /// All lanes at once; see [`Kernel::enter`](super::kernel::Kernel::enter).
+    /// Tests all lanes at once; see [`Kernel::enter`](super::kernel::Kernel::enter).
     #[inline(always)]
     pub(super) fn enter_block<const D: usize>(
         self,
@@ -145,7 +149,8 @@ impl<S: Simd> WideBlock<S> {
         low_half(enter.simd_le(leave).to_bitmask())
     }
 
-    /// See [`Kernel::enter_nearest`](super::kernel::Kernel::enter_nearest).
+    /// Tests all lanes at once; see
+    /// [`Kernel::enter_nearest`](super::kernel::Kernel::enter_nearest).
     #[inline(always)]
     pub(super) fn enter_block_nearest<const D: usize>(
         self,
@@ -158,16 +163,18 @@ impl<S: Simd> WideBlock<S> {
         let (enter, leave) = self.times(block, slabs, limit);
         let is_entered = enter.simd_le(leave);
         let lanes = u32x16::load_array_ref(simd, &IOTA);
-        // The lowest four bits of each time are replaced by the lane, so that one minimum gives the
-        // nearest lane. Times are not negative: their bits have the order of the times.
+        // The lowest four bits of each time are replaced by the lane index, so that one minimum
+        // gives the nearest lane. Times are not negative, so their bits are in the order of the
+        // times.
         let with_lane = enter.bitcast::<u32x16<S>>() & u32x16::splat(simd, !15) | lanes;
         let all = is_entered.select(with_lane, u32x16::splat(simd, u32::MAX));
         all.store_slice(keys);
         (low_half(is_entered.to_bitmask()), all.reduce_min())
     }
 
-    /// Returns the times at which the box enters and leaves those of the block, between zero and
-    /// `limit`.
+    /// Returns, by lane, the times at which the moving box enters and leaves the lane's box,
+    /// clamped to zero below and to `limit` above. A lane is missed if it is entered after it is
+    /// left.
     #[inline(always)]
     fn times<const D: usize>(
         self,
@@ -197,7 +204,7 @@ mod tests {
     use super::*;
     use crate::math::Point;
 
-    /// Returns numbers of all magnitudes, with repeats.
+    /// Returns a random number: zero, tiny, huge or moderate. Values repeat.
     fn number(state: &mut u64) -> f32 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040);
         let small = f32::from(i16::try_from(*state >> 56).expect("eight bits")) - 128.0;

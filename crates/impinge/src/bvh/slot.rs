@@ -2,21 +2,22 @@
 
 use super::{Bounds, LANES, NONE, Tree};
 
-/// Greatest relative growth of a leaf block's surface by an object that is added or moves.
+/// Greatest growth of a leaf block's surface by an added or moved object, relative to the surface.
 const MAX_GROWTH: f64 = 0.3;
 
 impl<const D: usize> Tree<D> {
-    /// Returns a free slot near the box if there is one, else the slot at the end.
+    /// Returns a free slot near the box if there is one, else the slot after the last one in use,
+    /// for which it may add a leaf block.
     pub(super) fn find_slot(&mut self, bounds: &Bounds<D>) -> usize {
         let has_holes = self.live < self.end;
         let hole = if has_holes { self.hole_near(bounds) } else { None };
         hole.unwrap_or_else(|| self.append_slot())
     }
 
-    /// Returns a free slot in the block at which a descent by least growth ends: among its last
-    /// sixteen blocks, the one with a free lane that grows least. `None` if that grows much: a
-    /// large block makes every join expensive, whereas newcomers at the end are sorted among
-    /// themselves.
+    /// Returns a free slot near a box: descends to the child that grows least in each layer, in the
+    /// lowest one only among leaf blocks with a free lane. `None` if there is no such block or its
+    /// surface would grow by more than [`MAX_GROWTH`]: a large block makes every join expensive,
+    /// whereas new objects at the end are sorted among themselves.
     fn hole_near(&self, bounds: &Bounds<D>) -> Option<usize> {
         let mut block = 0;
         for layer in (1..self.layers.len()).rev() {
@@ -38,8 +39,8 @@ impl<const D: usize> Tree<D> {
         Some(block * LANES + slots.iter().position(|&id| id == NONE)?)
     }
 
-    /// Returns `true` if the surface of a leaf block hardly grows by a box; `false` if there is no
-    /// such block.
+    /// Returns `true` if the surface of leaf block `block` would grow by at most [`MAX_GROWTH`]
+    /// through the box, or is zero; `false` if the block is not there.
     pub(super) fn hardly_grows_by(&self, block: usize, bounds: &Bounds<D>) -> bool {
         self.layers[0].bounds.get(block).is_some_and(|block| {
             let own = block.half_surface();
@@ -47,14 +48,15 @@ impl<const D: usize> Tree<D> {
         })
     }
 
-    /// Returns `true` if a lane of the leaf block is free. There is no counter, since the scan is
-    /// short.
+    /// Returns `true` if a lane of leaf block `block` is free. A scan is short enough to need no
+    /// counter.
     fn has_hole(&self, block: usize) -> bool {
         let slots = &self.ids[block * LANES..(block + 1) * LANES];
         slots.iter().fold(false, |found, &id| found | (id == NONE))
     }
 
-    /// Returns the slot after the last one in use, in a new block if necessary.
+    /// Returns the slot after the last one in use; adds an empty leaf block if the last one is
+    /// full.
     pub(super) fn append_slot(&mut self) -> usize {
         if self.end == self.ids.len() {
             self.resize_leaves(self.leaf_count() + 1);

@@ -1,5 +1,5 @@
 //! Trees of static boxes: built at once, in an order that costs more to compute and less to search, and then changed
-//! box by box.
+//! one box at a time.
 //!
 //! Ranges of slots are cut by the surface area heuristic (Goldsmith and Salmon 1987; binned as by Wald, "On fast
 //! construction of SAH-based bounding volume hierarchies", 2007), but only between whole blocks of the layer: so all
@@ -13,9 +13,9 @@ use crate::math::filled;
 
 /// Number of bins along each axis.
 const BINS: usize = 16;
-/// Greatest number of boxes by which a cut is chosen.
+/// Greatest number of boxes that are sampled to choose a cut.
 const SAMPLE: usize = 512;
-/// Number of boxes from which both parts are sorted on two threads.
+/// Number of boxes from which both parts are sorted in parallel.
 #[cfg(feature = "parallel")]
 const PARALLEL_SORT: usize = 4096;
 
@@ -41,7 +41,7 @@ impl<const D: usize> StillItem<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// Builds the tree of boxes with different ids, settled.
+    /// Builds a tree from boxes with distinct ids. It is refitted and committed.
     pub(crate) fn of_still(lanes: Lanes, boxes: impl Iterator<Item = (u32, Bounds<D>)>) -> Self {
         let mut items: Vec<_> = boxes.map(|(id, bounds)| StillItem { bounds, id }).collect();
         arrange(&mut items);
@@ -64,10 +64,10 @@ impl<const D: usize> Tree<D> {
         tree
     }
 
-    /// Sets the box of an object, new or known, as if it had always had it. Searches are valid at once: the path from
-    /// its block to the top is refitted.
+    /// Sets the box of an object, which is inserted if it is new. No pairs begin. The path from its block to the top is
+    /// refitted, so searches are valid at once.
     ///
-    /// An object that would enlarge its block much moves to another one.
+    /// An object that would enlarge its block much moves to another slot.
     pub(crate) fn put(&mut self, id: u32, bounds: &Bounds<D>) {
         let slot = self.slot(id);
         if slot.is_some_and(|slot| self.hardly_grows_by(slot / LANES, bounds)) {
@@ -83,9 +83,9 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Sorts items that start at the boundary of a whole subtree. Ends, since each call has fewer or smaller children.
+/// Sorts items whose first slot is the first of a whole subtree. The recursion ends, since both parts are smaller.
 fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
-    // The boxes in one child: the least power of 16 with which at most 16 children hold all items.
+    // The boxes in one child: the least power of 16 such that at most 16 children hold all items.
     let mut child = LANES;
     while child * LANES < items.len() {
         child *= LANES;
@@ -107,8 +107,8 @@ fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     arrange(second);
 }
 
-/// Returns the axis to cut and the number of children on the left. If no cut has a finite cost, halves the longest
-/// axis, the first of equals.
+/// Returns the axis to cut and the number of whole children on the left. If no cut has a finite cost, halves the
+/// children along the axis with the largest spread of centres, the first of equals.
 fn best_cut<const D: usize>(
     items: &[StillItem<D>],
     child: usize,
@@ -146,7 +146,7 @@ struct Bins<const D: usize> {
 }
 
 impl<const D: usize> Bins<D> {
-    /// Sorts boxes into bins of equal width on an axis; `middles` are the bounds of their centres.
+    /// Sorts boxes into bins of equal width on an axis; `middles` are the bounds of the boxes' centres.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -168,8 +168,8 @@ impl<const D: usize> Bins<D> {
         bins
     }
 
-    /// Calls `visit` with the number of children on the left and the cost of each cut. A cut within a bin counts that
-    /// bin on both sides.
+    /// Calls `visit` with the number of children on the left and the cost of each cut. For a cut within a bin, the bin
+    /// is counted on both sides.
     #[expect(clippy::cast_precision_loss, reason = "counts that weigh a heuristic")]
     fn each_cut(
         &self,
@@ -178,7 +178,7 @@ impl<const D: usize> Bins<D> {
         children: usize,
         mut visit: impl FnMut(usize, f64),
     ) {
-        // `right[bin]` becomes the half surface of the boxes in `bin` and all later bins.
+        // `right[bin]` becomes the half surface of the union of the boxes in `bin` and all later bins.
         let mut right = [0.0; BINS];
         let mut all = Bounds::EMPTY;
         for bin in (0..BINS).rev() {
@@ -195,7 +195,7 @@ impl<const D: usize> Bins<D> {
             }
             let left = all.half_surface();
             while next < children && next * child <= count {
-                // A cut at the end of this bin; one within it counts the bin on the right too.
+                // A cut at the end of this bin excludes it from the right side; a cut within it does not.
                 let is_even = next * child == count && bin + 1 < BINS;
                 let rest = right[if is_even { bin + 1 } else { bin }];
                 // The heuristic: surface times number of children, summed over both sides.
@@ -210,7 +210,7 @@ impl<const D: usize> Bins<D> {
 mod tests {
     use super::*;
 
-    /// Returns unit boxes at scattered places, and every tenth a thousand times as large.
+    /// Returns `count` scattered boxes of size 1, but size 1000 for every tenth.
     fn boxes(count: u32) -> Vec<Bounds<3>> {
         let box_at = |id: u32| {
             let x = f32::from(u16::try_from(id * 7919 % 1000).expect("small"));

@@ -1,9 +1,9 @@
-//! Many rays among triangles together, in lockstep.
+//! Rays against triangles, many together, in lockstep.
 //!
-//! The next step of a ray depends on data that arrive late from memory and on unpredictable branches. So all rays that
-//! open a block do so one after the other, then all rays at leaves test triangles, then all others return to an open
-//! block. Within such a phase no ray depends on the one before, there is no unpredictable branch, and loads of several
-//! blocks overlap. The order of each single ray is that of [`near_first`](super::near_first).
+//! The next step of a ray depends on late loads and on unpredictable branches. So all rays that open a block do so one
+//! after another, then all rays at leaf blocks test triangles, then all others return to an open block. Within such a
+//! phase no ray depends on the one before, no branch is unpredictable, and loads of several blocks overlap. Each single
+//! ray visits blocks in the order of [`near_first`](super::near_first).
 //!
 //! ```text
 //! to_open   ── open_blocks ────> to_open | at_leaf | to_return
@@ -22,10 +22,11 @@ pub(crate) const RAYS: usize = 64;
 
 /// Receives the triangles that rays may cross.
 pub(crate) trait RayVisitor {
-    /// Prefetches an object that [`Self::visit`] will read soon.
+    /// Prefetches an object that [`Self::visit`] may read soon.
     fn touch(&self, id: u32);
 
-    /// Tests a triangle that the ray may cross by its limit; returns the new limit, in the units of the slabs.
+    /// Tests a triangle that the ray with index `ray` may cross by its limit. Returns the new limit, in the units of
+    /// the slabs, which must not increase.
     fn visit(&mut self, ray: usize, slabs: &Slabs<3>, at: TriangleAt<'_>) -> f32;
 }
 
@@ -34,26 +35,26 @@ pub(crate) trait RayVisitor {
 pub(crate) struct Walk {
     probe: RayProbe,
     limit: f32,
-    /// Bit mask of the layers with an open block that has children left.
+    /// Bit mask of the layers with an open block that has unvisited children.
     open: u32,
-    /// Next block and its layer. At a leaf the layer is wrapped and unused.
+    /// Next block and its layer.
     layer: usize,
     block: u32,
-    /// Triangles of the leaf block that the ray may cross.
+    /// Lanes of the leaf block whose triangles the ray may cross.
     crossed: u32,
     /// By layer: index of the first child of the open block.
     first: [u32; LAYERS],
 }
 
 impl Walk {
-    /// Creates the state of a ray at its start.
+    /// Creates the state of a ray before its first step.
     #[inline(always)]
     pub(crate) const fn new(probe: RayProbe, limit: f32) -> Self {
         Self { probe, limit, open: 0, layer: 0, block: 0, crossed: 0, first: [0; LAYERS] }
     }
 }
 
-/// A list of ray numbers.
+/// A list of ray indices, with spare capacity for writes past `len`.
 #[derive(Clone, Copy)]
 struct List {
     rays: [u8; 2 * RAYS],
@@ -64,23 +65,24 @@ impl List {
     /// A list without rays.
     const EMPTY: Self = Self { rays: [0; 2 * RAYS], len: 0 };
 
-    /// Appends a ray if `is_in`, without a branch.
+    /// Appends a ray if `is_in`. Writes it in any case, which needs no branch.
     #[inline(always)]
     fn push_if(&mut self, ray: u8, is_in: bool) {
         self.rays[self.len % (2 * RAYS)] = ray;
         self.len += usize::from(is_in);
     }
 
-    /// Returns the rays in the list.
+    /// Returns the ray indices in the list.
     fn rays(&self) -> &[u8] {
         &self.rays[..self.len]
     }
 }
 
-/// Keys of the children of a block, with lanes in the lowest bits; `u32::MAX` for children that are done.
+/// Keys of the children of a block, with the lane in the lowest four bits; `u32::MAX` for a child that is visited or
+/// missed.
 type LaneKeys = [u32; LANES];
 
-/// The rays, and the next action of each: a ray is in at most one list.
+/// The rays of one search. A ray is in at most one list, which says what it does next.
 struct Stream<'a> {
     walks: &'a mut [Walk],
     /// Keys by ray, then by layer.
@@ -92,7 +94,8 @@ struct Stream<'a> {
 }
 
 impl Tree<3> {
-    /// As [`Self::visit_triangles`], for at most [`RAYS`] rays together.
+    /// Reports to `visitor` each object whose triangle a ray may cross by its limit, for at most [`RAYS`] rays.
+    /// `triangles[i]` has the triangles of leaf block `i`. The tree must not be empty.
     pub(crate) fn visit_triangles_of_many(
         &self,
         triangles: &[Triangles],
@@ -116,7 +119,7 @@ impl Tree<3> {
         with_widest_kernel!(self.lanes, kernel => self.run(kernel, triangles, &mut stream, visitor));
     }
 
-    /// Advances all rays until every list is empty.
+    /// Advances the rays until every list is empty.
     #[inline(always)]
     fn run<K: Kernel>(
         &self,
@@ -132,7 +135,8 @@ impl Tree<3> {
         }
     }
 
-    /// Opens the block of each ray, which continues with the nearest child.
+    /// Opens the next block of each ray in `to_open`, repeatedly, until every ray is at a leaf or has no child to
+    /// visit.
     #[inline(always)]
     fn open_blocks<K: Kernel>(&self, kernel: K, stream: &mut Stream<'_>) {
         while stream.to_open.len > 0 {
@@ -146,7 +150,7 @@ impl Tree<3> {
                     kernel.enter_nearest(block, &walk.probe.slabs, walk.limit, keys);
                 let (first, lane) = (walk.block * small(LANES), least % small(LANES));
                 keys[lane as usize] = u32::MAX;
-                // With a second lane to visit, the ray will return to this block.
+                // If a second lane is entered, the ray returns to this block later.
                 let (is_any, has_more) = (mask != 0, mask & mask.wrapping_sub(1) != 0);
                 walk.open |= u32::from(has_more) << layer;
                 walk.first[layer] = first;
@@ -158,7 +162,7 @@ impl Tree<3> {
         }
     }
 
-    /// Tests the triangles of the leaf block of each ray at a leaf.
+    /// Tests the triangles of the leaf block of each ray in `at_leaf`.
     #[inline(always)]
     fn look_at_leaves<K: Kernel>(
         &self,
@@ -201,8 +205,8 @@ impl Tree<3> {
 }
 
 impl Stream<'_> {
-    /// Moves each ray to the next child of its lowest open block, if that is within its limit. Otherwise the rest of
-    /// the block is skipped, and the ray looks for another open block in the next round.
+    /// Moves each ray to the next child of its lowest open block, if that child is within the ray's limit. Otherwise
+    /// closes the block, and the ray looks for another open block in the next round.
     #[inline(always)]
     fn go_back<K: Kernel>(&mut self, kernel: K) {
         let rays = core::mem::replace(&mut self.to_return, List::EMPTY);
@@ -213,7 +217,7 @@ impl Stream<'_> {
             let least = kernel.least_lane_key(keys);
             let lane = least % small(LANES);
             keys[lane as usize] = u32::MAX;
-            // `u32::MAX` as a key is NaN, so the comparison is false.
+            // The key `u32::MAX` becomes NaN, so the comparison is false.
             let is_within = f32::from_bits(least - lane) <= walk.limit;
             walk.open &= !(u32::from(!is_within) << layer);
             (walk.block, walk.layer) = (walk.first[layer] + lane, layer.wrapping_sub(1));

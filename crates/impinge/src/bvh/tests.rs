@@ -1,5 +1,5 @@
-//! Tests of trees against lists: joins with few and many changes, searches, and the order of the
-//! nearest.
+//! Tests of trees against brute-force lists: joins with few and many changes, searches, and the
+//! order of nearest objects.
 
 use core::cell::Cell;
 
@@ -12,17 +12,17 @@ thread_local! {
     static PLACED: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Counts objects that get a slot on this thread, to bound the work of a step.
+/// Adds to the number of objects placed in slots on this thread, which bounds the work of a step.
 pub(super) fn count_placed(count: usize) {
     PLACED.set(PLACED.get() + count);
 }
 
-/// Returns the number of objects that got a slot on this thread since the last call.
+/// Returns and resets the number of objects placed in slots on this thread.
 pub(crate) fn take_placed() -> usize {
     PLACED.take()
 }
 
-/// Returns a number below `bound` from a linear congruential generator.
+/// Returns a pseudorandom number below `bound`, from a linear congruential generator.
 pub(super) fn next(state: &mut u64, bound: u32) -> u32 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     u32::try_from((*state >> 33) % u64::from(bound)).expect("below a u32")
@@ -32,13 +32,13 @@ fn small_float(value: u32) -> f32 {
     f32::from(u16::try_from(value).expect("small"))
 }
 
-/// Returns a box of up to two units on a grid of halves, exact in `f32`.
+/// Returns a random box with corners at multiples of 0.5 and sides of 0 to 2, exact in `f32`.
 pub(super) fn random_box<const D: usize>(state: &mut u64, side: u32) -> Bounds<D> {
     let lo: [f32; D] = filled(|_| small_float(next(state, 2 * side)) / 2.0);
     Bounds { lo, hi: lo.map(|x| x + small_float(next(state, 5)) / 2.0) }
 }
 
-/// Returns the box shifted by up to `max_move` halves along each axis.
+/// Returns the box shifted along each axis by a random multiple of 0.5, up to `max_move / 2`.
 fn near<const D: usize>(old: &Bounds<D>, state: &mut u64, max_move: u32) -> Bounds<D> {
     let shift: [f32; D] =
         filled(|_| small_float(next(state, 2 * max_move + 1)) / 2.0 - small_float(max_move) / 2.0);
@@ -48,7 +48,7 @@ fn near<const D: usize>(old: &Bounds<D>, state: &mut u64, max_move: u32) -> Boun
     }
 }
 
-/// A tree and its expected content: by id, the box now and the box at the last settling.
+/// A tree and its expected content: by id, the box now and the box at the last commit.
 struct Twin<const D: usize> {
     tree: Tree<D>,
     list: Vec<Option<(Bounds<D>, Bounds<D>)>>,
@@ -69,8 +69,9 @@ impl<const D: usize> Twin<D> {
         twin
     }
 
-    /// Moves, removes or adds about one object in `rarity`; moves go up to `max_move` halves along
-    /// each axis, or anywhere if `max_move` is at least `2 * side`.
+    /// Moves, removes or inserts about one object in `rarity`. Moves go up to `max_move / 2` along
+    /// each axis, or anywhere if `max_move` is at least `2 * side`. Then refits and validates the
+    /// tree.
     fn change(&mut self, state: &mut u64, side: u32, max_move: u32, rarity: u32) {
         for id in self.first..self.list.len() {
             let number = u32::try_from(id).expect("small");
@@ -114,7 +115,7 @@ impl<const D: usize> Twin<D> {
     }
 }
 
-/// Returns by brute force the pairs of different objects that began and ended to overlap.
+/// Returns, by brute force, the pairs of distinct objects that began or ended.
 fn differences<const D: usize>(first: &Twin<D>, second: &Twin<D>) -> Changes {
     let mut changes = Changes::default();
     for (a, (now1, before1)) in first.objects() {
@@ -138,8 +139,8 @@ fn sorted(mut keys: Vec<u64>) -> Vec<u64> {
     keys
 }
 
-/// Asserts that a join found all began pairs, and all ended pairs but those of escaped objects;
-/// returns the numbers of both.
+/// Asserts that a join found all began pairs, and all ended pairs except pairs of escaped objects.
+/// Returns the numbers of began and ended pairs that it found.
 fn check_changes<const D: usize>(
     found: Changes,
     (first, second): (&Twin<D>, &Twin<D>),
@@ -158,8 +159,8 @@ fn check_changes<const D: usize>(
     counts
 }
 
-/// Checks joins over 25 steps in which about one object in `rarity1` and `rarity2` of both trees
-/// changes, and moves go up to `max_move` halves.
+/// Checks joins of two trees over 25 steps. In each step about one object in `rarity1` of the first
+/// tree and in `rarity2` of the second changes; moves go up to `max_move / 2` along each axis.
 fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, max_move: u32) {
     let mut state = u64::from(side * 100 + rarity1 * 10 + rarity2);
     let mut first = Twin::<D>::new(&mut state, 0, 700, side);
@@ -244,7 +245,7 @@ fn the_nearest_come_first() {
     }
 }
 
-/// A tree that is emptied and filled again three times keeps its invariants.
+/// A tree that is emptied and filled again three times keeps its invariants, and has no leftovers.
 #[test]
 fn emptied_and_filled() {
     let mut state = 5;

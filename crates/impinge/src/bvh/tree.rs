@@ -7,31 +7,32 @@ use super::schedule::Schedule;
 use super::{Block, Bounds, LANES, Lanes};
 use crate::memory::{Look, clone_fields};
 
-/// No id, or no slot.
+/// Stands for a missing id or a missing slot.
 pub(crate) const NONE: u32 = u32::MAX;
 /// Number of leaf blocks above which an empty tree releases its memory.
 const KEPT_LEAVES: usize = 256;
 
 /// One layer: blocks, and for each block its bounds and the mask of changed lanes.
 ///
-/// A join searches old and present overlaps, so each block also has a `swept`: the union of its
-/// boxes now and before. Where nothing changed, bounds and reach are equal.
+/// A join searches old and present overlaps, so each block also has `swept`: the union of its boxes
+/// now and before. Where nothing changed, `swept` equals `bounds`.
 #[derive(Debug)]
 pub(super) struct Layer<const D: usize> {
     pub(super) blocks: Vec<Block<D>>,
     pub(super) bounds: Vec<Bounds<D>>,
-    /// By block: union of its boxes now and before.
+    /// By block: union of its boxes now and before. For an escaped block, of the present boxes
+    /// alone.
     pub(super) swept: Vec<Bounds<D>>,
-    /// Above the lowest layer: the reach of the blocks below, as blocks.
+    /// Above the lowest layer: the swept bounds of the blocks below, as lanes.
     pub(super) swept_blocks: Vec<Block<D>>,
-    /// By block: the lanes with a change in or below them.
+    /// By block: mask of the lanes with a change in the lane or below it.
     pub(super) changed: Vec<u16>,
 }
 
 clone_fields!([const D: usize] Layer<D> { blocks, bounds, swept, swept_blocks, changed });
 
 impl<const D: usize> Layer<D> {
-    /// Creates a layer without blocks.
+    /// Creates a layer of zero blocks.
     pub(super) const fn new() -> Self {
         Self {
             blocks: Vec::new(),
@@ -42,7 +43,7 @@ impl<const D: usize> Layer<D> {
         }
     }
 
-    /// Sets the number of blocks of the lowest layer; new ones are empty.
+    /// Sets the number of blocks of a layer; new blocks are empty.
     pub(super) fn resize(&mut self, blocks: usize) {
         self.blocks.resize(blocks, Block::EMPTY);
         self.bounds.resize(blocks, Bounds::EMPTY);
@@ -50,8 +51,8 @@ impl<const D: usize> Layer<D> {
         self.changed.resize(blocks, 0);
     }
 
-    /// Resizes a layer above the lowest one for `children` blocks below; lanes without a child are
-    /// empty.
+    /// Resizes a layer above the lowest one for `children` blocks in the layer below, at least one.
+    /// Lanes without a child become empty.
     pub(super) fn fit_above(&mut self, children: usize) {
         let blocks = children.div_ceil(LANES);
         self.resize(blocks);
@@ -67,24 +68,26 @@ impl<const D: usize> Layer<D> {
 
 /// A packed tree over boxes with ids; see the module for the layout.
 ///
-/// Ids are dense small numbers of the caller. Boxes must be finite and not inverted.
+/// Ids are small numbers of the caller, and index arrays of the tree. Boxes must be finite with `lo
+/// ≤ hi`.
 #[derive(Debug)]
 pub(crate) struct Tree<const D: usize> {
     pub(super) lanes: Lanes,
     /// Layer 0 first; at least one layer, the last one with at most one block.
     pub(super) layers: Vec<Layer<D>>,
-    /// By leaf block: the boxes at the last [`Self::commit_boxes`]; see [`Self::was`].
+    /// By leaf block: the boxes at the last [`Self::commit_boxes`], if `remembers`; see
+    /// [`Self::was`].
     pub(super) before: Vec<Block<D>>,
-    /// `before` is stored only while a box has changed since the last settling. Saves memory in a
-    /// tree whose objects seldom change.
+    /// Whether `before` is stored only while some box differs from the last commit. Saves memory in
+    /// a tree whose objects seldom change.
     pub(super) is_sparing: bool,
-    /// By layer and block, if the owner added slabs; valid until the boxes change.
+    /// Slabs by layer and block, if the owner added them; valid until the boxes change.
     pub(super) slabs: Vec<Vec<Option<BlockSlab<D>>>>,
-    /// [`Self::before`] is in use: always, unless the tree is sparing.
+    /// Whether [`Self::before`] is stored: always, unless the tree is sparing.
     pub(super) remembers: bool,
-    /// Slot to id.
+    /// By slot: the object's id, or [`NONE`].
     pub(super) ids: Vec<u32>,
-    /// Id to slot.
+    /// By id: the object's slot, or [`NONE`].
     pub(super) slots: Vec<u32>,
     /// One more than the last slot in use.
     pub(super) end: usize,
@@ -93,7 +96,7 @@ pub(crate) struct Tree<const D: usize> {
     /// Leaf blocks written since the last [`Self::commit_boxes`], as a list and as flags.
     pub(super) touched: Vec<u32>,
     pub(super) is_touched: Vec<bool>,
-    /// Leaf blocks whose reach does not contain the old boxes; see [`Self::escaped`].
+    /// Leaf blocks whose swept bounds leave out old boxes; see [`Self::escaped`].
     pub(super) escaped: Vec<u32>,
     /// Scratch: boxes of objects that move between slots.
     pub(super) loads: Vec<Load<D>>,
@@ -101,12 +104,12 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) dirty: Vec<u32>,
     /// Number of lanes with their change bit set.
     pub(super) changed: usize,
-    /// The number of leaf blocks has changed, so that the upper layers must be resized.
+    /// Whether the number of leaf blocks has changed, so that the upper layers must be resized.
     pub(super) is_restructured: bool,
-    /// A box was written since the last [`Self::refit`], so that searches would be wrong.
+    /// Whether a box was written since the last [`Self::refit`], so that searches would be wrong.
     pub(super) is_stale: bool,
     pub(super) schedule: Schedule<D>,
-    /// The renewal of a sparing tree, while one is under way.
+    /// The renewal of a sparing tree, while one is in progress.
     pub(super) renewal: Option<Box<Renewal<D>>>,
 }
 
@@ -121,7 +124,7 @@ impl<const D: usize> Default for Tree<D> {
     }
 }
 
-/// Converts an index to `u32`.
+/// Converts an index to `u32`; panics if it does not fit.
 #[inline]
 pub(super) fn small(value: usize) -> u32 {
     u32::try_from(value).expect("a tree holds fewer than 2^32 objects")
@@ -155,12 +158,12 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Creates a tree without objects, for objects that seldom change: it saves memory.
+    /// Creates a sparing tree without objects: it uses less memory, for objects that seldom change.
     pub(crate) fn sparing(lanes: Lanes) -> Self {
         Self { is_sparing: true, remembers: false, ..Self::new(lanes) }
     }
 
-    /// Makes the tree a sparing one, for objects that seldom change. It must be settled.
+    /// Makes the tree a sparing one, for objects that seldom change. Its boxes must be committed.
     pub(crate) fn spare(&mut self) {
         debug_assert_eq!(self.changed, 0, "a tree with committed boxes");
         (self.is_sparing, self.remembers, self.before) = (true, false, Vec::new());
@@ -168,7 +171,8 @@ impl<const D: usize> Tree<D> {
         self.give_back();
     }
 
-    /// Makes the tree one for objects that change often.
+    /// Makes a sparing tree an ordinary one, for objects that change often. Drops a renewal in
+    /// progress.
     pub(crate) fn spend(&mut self) {
         (self.is_sparing, self.renewal) = (false, None);
         self.remember();
@@ -192,7 +196,7 @@ impl<const D: usize> Tree<D> {
         self.slot(id).is_some()
     }
 
-    /// Returns the box of the object, if it is in the tree.
+    /// Returns the box of the object; `None` if it is not in the tree.
     #[must_use]
     pub(crate) fn bounds(&self, id: u32) -> Option<Bounds<D>> {
         self.slot(id).map(|slot| self.lane(slot))
@@ -204,9 +208,8 @@ impl<const D: usize> Tree<D> {
         self.layers[0].blocks[slot / LANES].lane(slot % LANES)
     }
 
-    /// Returns the slot of an object that is probably near a point: descends to the child with the
-    /// nearest centre, one block in each layer. `None` if no box is finite, or squared distances
-    /// overflow `f32`.
+    /// Returns a slot that is probably near a point: descends in each layer to the child with the
+    /// nearest centre. `None` if no box is finite, or squared distances overflow `f32`.
     pub(super) fn slot_near(&self, point: &[f32; D]) -> Option<u32> {
         self.layers.iter().rev().try_fold(0, |at, layer| {
             let lane = layer.blocks[at as usize].nearest_lane(point)?;
@@ -232,8 +235,8 @@ impl<const D: usize> Tree<D> {
         if self.remembers { &self.before } else { &self.layers[0].blocks }
     }
 
-    /// Stores the present boxes as `before`, because they are about to differ from those at the
-    /// last settling.
+    /// Copies the present leaf boxes to `before`, if it is not stored, because the present ones are
+    /// about to change.
     #[inline]
     fn remember(&mut self) {
         if !self.remembers {
@@ -242,24 +245,25 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Returns the box of the object at the last [`Self::commit_boxes`]: empty for a new object.
+    /// Returns the box of the object at the last [`Self::commit_boxes`], which is empty for a new
+    /// object; `None` if the object is not in the tree.
     pub(crate) fn before(&self, id: u32) -> Option<Bounds<D>> {
         self.slot(id).map(|slot| self.was()[slot / LANES].lane(slot % LANES))
     }
 
-    /// Returns the slot of an object; `None` if the tree does not have it.
+    /// Returns the slot of the object; `None` if it is not in the tree.
     pub(super) fn slot(&self, id: u32) -> Option<usize> {
         let slot = self.slots.get(id as usize).copied().filter(|&slot| slot != NONE)?;
         Some(slot as usize)
     }
 
-    /// Returns the slot of an object that the tree must have.
+    /// Returns the slot of the object; panics if it is not in the tree.
     fn expect_slot(&self, id: u32) -> usize {
         self.slot(id).expect("the object is in the tree")
     }
 
-    /// Adds an object. `before` is its box at the last [`Self::commit_boxes`]: pairs that overlapped then
-    /// do not begin now. It is [`Bounds::NOWHERE`] for a new object.
+    /// Inserts an object. `before` is its box at the last [`Self::commit_boxes`]: pairs that
+    /// overlapped then do not begin now. Pass [`Bounds::NOWHERE`] for a new object.
     ///
     /// # Panics
     /// If the object is in the tree already.
@@ -270,8 +274,9 @@ impl<const D: usize> Tree<D> {
         self.mark_changed(slot);
     }
 
-    /// Adds an object that has had this box, in another tree, since before the last
-    /// [`Self::commit_boxes`]: no pairs begin. Returns its slot.
+    /// Inserts an object whose box counts as unchanged since the last [`Self::commit_boxes`], such
+    /// as one from another tree: none of its pairs begin. Returns its slot. Panics if the object is
+    /// in the tree already.
     pub(crate) fn insert_still(&mut self, id: u32, bounds: &Bounds<D>) -> usize {
         assert!(!self.contains(id), "object {id} is in the tree already");
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
@@ -280,13 +285,13 @@ impl<const D: usize> Tree<D> {
         slot
     }
 
-    /// Adds an object behind all others, as if it had always been there.
+    /// Inserts an object after all others. Its box counts as unchanged: no pairs begin.
     pub(super) fn append(&mut self, id: u32, bounds: &Bounds<D>) {
         let slot = self.append_slot();
         self.put_at(slot, id, bounds);
     }
 
-    /// Adds an object in a free slot, as if it had always been there.
+    /// Writes an object to a free slot. Its box counts as unchanged: no pairs begin.
     fn put_at(&mut self, slot: usize, id: u32, bounds: &Bounds<D>) {
         #[cfg(test)]
         super::tests::count_placed(1);
@@ -304,7 +309,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Sets the box of an object as if it had always had it: no pairs begin.
+    /// Sets the box of an object, which then counts as unchanged: no pairs begin or end.
     ///
     /// # Panics
     /// If the object is not in the tree.
@@ -320,7 +325,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Marks an object whose box has changed; the next [`Self::refit_from`] reads the new box.
+    /// Marks an object as changed; the next [`Self::refit_from`] reads its new box.
     ///
     /// # Panics
     /// If the object is not in the tree.
@@ -340,7 +345,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Makes all pairs of the object begin anew, as if it had not been there before.
+    /// Empties the old box of the object, so that each of its present overlaps begins anew.
     ///
     /// # Panics
     /// If the object is not in the tree.
@@ -352,7 +357,7 @@ impl<const D: usize> Tree<D> {
         self.mark_changed(slot);
     }
 
-    /// Removes the object. Searches do not find it from now on.
+    /// Removes the object. Its ended pairs are not reported, and searches no longer find it.
     ///
     /// # Panics
     /// If the object is not in the tree.
@@ -375,7 +380,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Writes the box; the next refit updates the layers above.
+    /// Writes the box in a slot; the next refit updates the layers above.
     #[inline]
     fn write(&mut self, slot: usize, bounds: &Bounds<D>) {
         self.layers[0].blocks[slot / LANES].set_lane(slot % LANES, bounds);
@@ -399,7 +404,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Sets the number of leaf blocks; new ones are empty.
+    /// Sets the number of leaf blocks; new blocks are empty. The next refit resizes the upper
+    /// layers.
     pub(super) fn resize_leaves(&mut self, blocks: usize) {
         self.layers[0].resize(blocks);
         if self.remembers {
@@ -410,7 +416,7 @@ impl<const D: usize> Tree<D> {
         self.is_restructured = true;
     }
 
-    /// Removes all objects. Keeps the memory if it is little.
+    /// Removes all objects. Keeps the memory of a tree of at most [`KEPT_LEAVES`] leaf blocks.
     pub(crate) fn clear(&mut self) {
         if self.leaf_count() > KEPT_LEAVES {
             let empty = if self.is_sparing { Self::sparing } else { Self::new };
@@ -442,18 +448,18 @@ impl<const D: usize> Tree<D> {
         look.trim(&mut self.dirty);
     }
 
-    /// Returns the sum of the half surfaces of all leaf blocks, in their order: proportional to the
-    /// cost of a search.
+    /// Returns the sum of the half surfaces of all leaf blocks, added in block order: a measure of
+    /// the cost of searches.
     pub(crate) fn leaf_surface(&self) -> f64 {
         self.layers[0].bounds.iter().map(Bounds::half_surface).sum()
     }
 
-    /// Returns the ids by slot, which is a spatial order; [`NONE`] for free slots.
+    /// Returns the ids by slot, which is a spatial order; [`NONE`] for a free slot.
     pub(crate) fn slots_in_order(&self) -> &[u32] {
         &self.ids[..self.end]
     }
 
-    /// Lists the slots of changed lanes, ascending if the touched blocks are.
+    /// Lists the slots of changed lanes; ascending if `touched` is.
     pub(super) fn list_changed_slots(&self, slots: &mut Vec<u32>) {
         slots.clear();
         for &block in &self.touched {
@@ -465,9 +471,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Iterates over the ids of changed objects whose ended pairs the [`super::Joiner`] may not
-    /// have reported: objects that moved far, and changed objects in their blocks. As of the last
-    /// refit.
+    /// Iterates over the changed objects in escaped blocks, as of the last refit. The
+    /// [`super::Joiner`] may not have reported ended pairs of these.
     pub(crate) fn escaped(&self) -> impl Iterator<Item = u32> + '_ {
         let changed = move |&block: &u32| {
             let mask = self.layers[0].changed[block as usize];

@@ -1,4 +1,4 @@
-//! Sixteen triangles side by side, and the test which of them a line may cross.
+//! Blocks of sixteen triangles, and the test of which triangles a line may cross.
 //!
 //! The test uses the signs of areas around the line (Woop, Benthin and Wald, "Watertight
 //! Ray/Triangle Intersection", 2013), in `f32`, with a bound for all rounding errors here and in
@@ -10,9 +10,10 @@ use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Mapped, Real, max_component};
 use fearless_simd::{Simd, SimdBase, f32x16};
 
-/// Sixteen triangles in 3D as a structure of arrays: by corner, then by axis, rounded to nearest.
+/// Sixteen triangles in 3D as a structure of arrays: by corner, then by axis. Coordinates are
+/// rounded to the nearest `f32`.
 ///
-/// 576 bytes. Lanes without a triangle are zero, and may be proposed.
+/// 576 bytes. The corners of an unused lane are zero, and the test may propose the lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct Triangles {
@@ -20,7 +21,7 @@ pub(crate) struct Triangles {
 }
 
 impl Triangles {
-    /// Sixteen triangles at the origin.
+    /// Sixteen triangles whose corners are all at the origin.
     pub(crate) const EMPTY: Self = Self { corners: [[[0.0; LANES]; 3]; 3] };
 
     /// Writes the triangle of a lane.
@@ -33,7 +34,7 @@ impl Triangles {
         }
     }
 
-    /// Touches each row, so that all are prefetched.
+    /// Reads one value of each row, which prefetches all rows.
     #[inline(always)]
     pub(super) fn touch(&self) {
         for axis in self.corners.as_flattened() {
@@ -48,7 +49,7 @@ impl Triangles {
     }
 }
 
-/// A triangle, by its id and its lane of a block.
+/// A triangle: its object's id, and its block and lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TriangleAt<'a> {
     pub(crate) id: u32,
@@ -59,33 +60,35 @@ pub(crate) struct TriangleAt<'a> {
 /// Error bound of a corner's position relative to the line, in `f32` rounding units of the corner's
 /// distance from the line's origin along and across the line.
 ///
-/// In halves of that unit: 12 here and 16 in the exact test, for differences, shears and sums,
-/// which make 112 in an area of two such positions; and 83 within which the sides of a triangle
-/// seen edge on are hit, which make 235. The rest is reserve.
+/// In half units: 12 here and 16 in the exact test, for differences, shears and sums. Together they
+/// make 112 in the area of two such positions. Another 83 are the distance within which the exact
+/// test accepts the sides of a triangle seen edge on; they make 235. The rest is reserve.
 const NEAR: f32 = 256.0;
 
 /// Error bound in `f32` rounding units of the largest coordinate: 8 for the conversion from `f64`,
-/// and 40 because a ray that starts within 8 units of a triangle starts on it.
+/// and 40 because the exact test lets a ray that starts within 8 units of a triangle start on it.
 const FAR: f32 = 64.0;
 
-/// A line, sheared so that it runs along the third of its axes.
+/// A line, prepared for tests after a shear that makes it parallel to its main axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShearedLine {
-    /// Two axes across the line, and the one with the largest component of its direction.
+    /// The two axes across the line, then the main axis: the one with the largest component of the
+    /// line's direction.
     axes: [usize; 3],
     origin: [f32; 3],
-    /// Displacement of the line along the first two axes for a unit of the third.
+    /// Displacement of the line along the first two axes per unit of length along the main axis.
     shear: [f32; 2],
-    /// Time for a unit of length along the third axis, at most 1, in the units of
+    /// Time per unit of length along the main axis, of magnitude at most 1, in the units of
     /// [`Slabs`](super::Slabs).
     inverse: f32,
-    /// Absolute part of the error bound.
+    /// Absolute part of the error bound, as a length.
     slack: f32,
 }
 
 impl ShearedLine {
-    /// Converts the line of a ray that is finite and has a direction, for corners with coordinates
-    /// up to `size`. `around` is a box around its origin that covers earlier rounding errors.
+    /// Prepares the line of a ray, which must be finite with a nonzero direction, for corners with
+    /// coordinates of magnitude up to `size`. `around` is a box around the ray's origin that covers
+    /// earlier rounding errors.
     #[inline(always)]
     pub(crate) fn new<N: Real>(ray: &Ray<N, 3>, around: &Aabb<N, 3>, size: f32) -> Self {
         let along = ray.dir.iamax();
@@ -106,7 +109,7 @@ impl ShearedLine {
 }
 
 impl Scalar {
-    /// One lane after another; see [`Kernel::crossed`](super::kernel::Kernel::crossed).
+    /// Tests one lane after another; see [`Kernel::crossed`](super::kernel::Kernel::crossed).
     pub(super) fn crossed_triangles(
         self,
         triangles: &Triangles,
@@ -135,7 +138,7 @@ impl Scalar {
             let times = sheared.mapped(|corner| corner[2] * line.inverse);
             let first = smaller(smaller(times[0], times[1]), times[2]);
             let last = larger(larger(times[0], times[1]), times[2]);
-            // Areas of both signs, by more than rounding: the line passes beside the triangle.
+            // Areas of both signs, beyond the error bound: the line passes beside the triangle.
             let beside = (most > margin) & (least < -margin);
             // All corners lie beyond the limit, or all behind the origin.
             let outside = (first - slack > limit) | (last + slack < 0.0);
@@ -146,7 +149,7 @@ impl Scalar {
 }
 
 impl<S: Simd> WideBlock<S> {
-    /// All lanes at once; see [`Kernel::crossed`](super::kernel::Kernel::crossed).
+    /// Tests all lanes at once; see [`Kernel::crossed`](super::kernel::Kernel::crossed).
     #[inline(always)]
     pub(super) fn crossed_triangles(
         self,
@@ -173,8 +176,8 @@ impl<S: Simd> WideBlock<S> {
     }
 }
 
-/// Returns a corner of each triangle in the coordinates of the line: two across it and one along
-/// it.
+/// Returns, by lane, a corner in sheared coordinates relative to the line's origin: two across the
+/// line, and one along the main axis.
 #[inline(always)]
 fn sheared<S: Simd>(simd: S, corner: &[[f32; LANES]; 3], line: &ShearedLine) -> [f32x16<S>; 3] {
     let [x, y, along] = line.axes;
@@ -184,13 +187,13 @@ fn sheared<S: Simd>(simd: S, corner: &[[f32; LANES]; 3], line: &ShearedLine) -> 
     [x - depth * line.shear[0], y - depth * line.shear[1], depth]
 }
 
-/// Returns the cross product of two corners across the line.
+/// Returns, by lane, the 2D cross product of two corners in the plane across the line.
 #[inline(always)]
 fn area<S: Simd>(p: [f32x16<S>; 3], q: [f32x16<S>; 3]) -> f32x16<S> {
     p[0] * q[1] - p[1] * q[0]
 }
 
-/// Returns the larger of the distances of a corner from the line on the two axes across it.
+/// Returns, by lane, the larger of a corner's two distances from the line along the axes across it.
 #[inline(always)]
 fn wide<S: Simd>(p: [f32x16<S>; 3]) -> f32x16<S> {
     p[0].abs().max(p[1].abs())

@@ -3,11 +3,12 @@
 use super::{Block, Bounds, LANES, NONE, Tree};
 
 impl<const D: usize> Tree<D> {
-    /// Checks every invariant. After a removal, until the next refit, bounds may be too large;
-    /// otherwise they are exact, unless something was added or moved since.
+    /// Checks every invariant. Bounds are exact after a refit; after a removal they may be too
+    /// large until the next refit, and after an insertion or a move they are not checked until
+    /// then.
     ///
     /// # Errors
-    /// A sentence that names the violated invariant.
+    /// Returns a sentence that names the violated invariant.
     pub(crate) fn validate(&self) -> Result<(), String> {
         self.validate_maps()?;
         self.validate_leaves()?;
@@ -18,7 +19,7 @@ impl<const D: usize> Tree<D> {
         self.validate_changes()
     }
 
-    /// Checks that slots and ids are inverse to each other, and their counts.
+    /// Checks that `ids` and `slots` are inverse maps, and that their counts are right.
     fn validate_maps(&self) -> Result<(), String> {
         let live = self.ids.iter().filter(|&&id| id != NONE).count();
         let mapped = self.slots.iter().filter(|&&slot| slot != NONE).count();
@@ -38,8 +39,8 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// Checks that boxes are bounded, that free lanes are empty now and before, and that changes
-    /// are marked.
+    /// Checks that boxes are finite and not inverted, that free lanes are empty now and before, and
+    /// that changed lanes are marked.
     fn validate_leaves(&self) -> Result<(), String> {
         for (slot, &id) in self.ids.iter().enumerate() {
             let (block, lane) = (slot / LANES, slot % LANES);
@@ -61,7 +62,8 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// Checks that every layer has the bounds of the one below, up to one block.
+    /// Checks that every layer has the bounds of the layer below, and that the top layer has at
+    /// most one block.
     fn validate_layers(&self) -> Result<(), String> {
         // Until the next refit, bounds above a touched block may be too large.
         let is_exact = self.touched.is_empty();
@@ -103,8 +105,8 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// Checks that the reach of each leaf block contains its boxes now and, unless it is listed as
-    /// escaped, before.
+    /// Checks that the swept bounds of each leaf block contain its present boxes and, unless the
+    /// block is escaped, its old boxes.
     fn validate_swept(&self) -> Result<(), String> {
         for (block, swept) in self.layers[0].swept.iter().enumerate() {
             let has_left = self.escaped.iter().any(|&other| other as usize == block);
@@ -118,8 +120,8 @@ impl<const D: usize> Tree<D> {
         Ok(())
     }
 
-    /// Checks that change marks are counted and in touched blocks, and that none is left in upper
-    /// layers without changes.
+    /// Checks that change marks are counted, that their blocks are in `touched`, and that upper
+    /// layers have no marks if no lane is changed.
     fn validate_changes(&self) -> Result<(), String> {
         let marked: u32 = self.layers[0].changed.iter().map(|mask| mask.count_ones()).sum();
         if marked as usize != self.changed {

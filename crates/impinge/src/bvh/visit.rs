@@ -1,19 +1,20 @@
-//! Searches with a test of boxes, without an order.
+//! Searches without an order, by a test of boxes.
 
 use super::kernel::{Kernel, with_kernel};
 use super::tree::small;
 use super::{Block, Bounds, LANES, NONE, Tree};
 
-/// Capacity of the stack of blocks to be opened: each of at most seven layers below the top leaves
-/// at most fifteen siblings, and the lowest expansion all sixteen.
+/// Capacity of the stack of unopened blocks. Each of at most seven layers below the top leaves at
+/// most fifteen siblings, and the last expansion writes all sixteen children.
 const STACK: usize = 128;
 
 impl<const D: usize> Tree<D> {
-    /// Calls `leaf` with the id of each object whose lane passes `test`, in an order that is
-    /// unspecified but always the same.
+    /// Calls `leaf` with the id of each object whose lane passes `test`. The order depends on the
+    /// tree alone.
     ///
-    /// `test` receives a block and returns the mask of lanes that pass. It must be monotone: a lane
-    /// whose box encloses one that passes must pass too. Empty lanes may pass; they are skipped.
+    /// `test` receives a block and returns the mask of lanes that pass. It must be monotone: if a
+    /// box passes, every box that encloses it must pass too. Empty lanes may pass; they are
+    /// skipped.
     #[inline(always)]
     pub(crate) fn visit(&self, mut test: impl FnMut(&Block<D>) -> u32, mut leaf: impl FnMut(u32)) {
         debug_assert!(!self.is_stale, "searches need a refitted tree");
@@ -44,20 +45,20 @@ impl<const D: usize> Tree<D> {
         u8::try_from(self.layers.len() - 1).expect("2^32 objects make eight layers")
     }
 
-    /// Returns the object in the slot, if there is one.
+    /// Returns the id of the object in a slot; `None` if the slot is free.
     #[inline]
     pub(super) fn id_in(&self, slot: u32) -> Option<u32> {
         let id = self.ids[slot as usize];
         (id != NONE).then_some(id)
     }
 
-    /// Returns `true` if the layer has such a block; upper lanes beyond the last one have none.
+    /// Returns `true` if `block` is an index in the layer; the last lanes of the layer above may
+    /// have no block below.
     pub(super) fn is_block(&self, layer: u8, block: u32) -> bool {
         (block as usize) < self.layers[usize::from(layer)].blocks.len()
     }
 
-    /// Calls `leaf` with the id of each object whose box overlaps the query, which may be
-    /// unbounded.
+    /// Calls `leaf` with the id of each object whose box overlaps `query`, which may be unbounded.
     pub(crate) fn visit_overlapping(&self, query: &Bounds<D>, leaf: impl FnMut(u32)) {
         let query = query.clamped();
         with_kernel!(self.lanes, kernel => {

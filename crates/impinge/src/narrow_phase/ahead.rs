@@ -13,10 +13,11 @@ use crate::math::{Mapped, Real, Space, max};
 use crate::query::ContactManifold;
 use crate::shape::{Geometry, Kind};
 
-/// Number of pairs whose loads are issued before the first of them is updated: about as many as a core keeps in flight.
+/// Number of pairs that are prefetched before the first of them is updated: about as many loads as
+/// a core keeps in flight.
 const PAIRS: usize = 8;
 
-/// Contacts of some pairs with composites.
+/// Rows of some pairs with composites.
 pub(super) type CompositeRows<'a, N, const D: usize> = Rows<
     'a,
     ContactEntry<N, CompositeState<N, D>>,
@@ -24,7 +25,7 @@ pub(super) type CompositeRows<'a, N, const D: usize> = Rows<
     Reference<N, D>,
 >;
 
-/// Updates the due pairs of a chunk one by one, in blocks of [`PAIRS`] that are prefetched.
+/// Updates the pairs `due` of a chunk one by one, in blocks of [`PAIRS`] that are prefetched.
 pub(super) fn update_due<N: Space<D>, const D: usize>(
     rows: &mut CompositeRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -47,7 +48,7 @@ pub(super) fn update_due<N: Space<D>, const D: usize>(
     }
 }
 
-/// Touches the cache lines that the updates of some pairs will read. Changes nothing.
+/// Reads the cache lines that the updates of some pairs will need. Changes nothing.
 fn prefetch<N: Space<D>, const D: usize>(
     rows: &CompositeRows<'_, N, D>,
     table: &ObjectTable<N, D>,
@@ -61,7 +62,8 @@ fn prefetch<N: Space<D>, const D: usize>(
     core::hint::black_box(seen);
 }
 
-/// Touches the cache lines of a small solid; the returned value is meaningless.
+/// Reads a cache line of a small solid; the returned value is meaningless, and only keeps the load
+/// alive.
 #[inline]
 fn solid<N: Real, const D: usize>(shape: Geometry<'_, N, D>) -> N {
     match shape.0 {

@@ -8,16 +8,17 @@ use super::lanes::CompositeGroup;
 use super::view::{Composite, View};
 use crate::math::{Space, max};
 
-/// Iterator over the manifolds that hold a contact, in memory order.
+/// Iterates over the manifolds with at least one contact, in memory order.
 pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
     group: &'a CompositeGroup<N, D>,
     /// Touching flags, 64 in a word.
     touching: &'a [u64],
-    /// The next word of flags, and the flags that are left of the word before.
+    /// Index of the next word of flags, and the remaining flags of the word before it.
     word: usize,
     flags: u64,
-    /// Index of the current pair, and its next patch; `usize::MAX` if there is none.
+    /// Index of the current pair, and its next patch; the patch is `usize::MAX` if there is no
+    /// current pair.
     place: usize,
     patch: usize,
 }
@@ -33,7 +34,7 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         Self { touching: &self.touching[..words.end], word: words.start, ..self }
     }
 
-    /// Advances to the next touching pair; `None` after the last.
+    /// Advances to the next touching pair; `None` after the last pair.
     #[inline(never)]
     fn next_pair(&mut self) -> Option<()> {
         while self.flags == 0 {
@@ -46,7 +47,8 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         Some(())
     }
 
-    /// Returns the index of the pair with the lowest of `flags`, in the word before `word`.
+    /// Returns the index of the pair that the lowest bit of `flags` stands for, in the word before
+    /// `word`.
     const fn lowest(&self, flags: u64) -> usize {
         (self.word - 1) * 64 + flags.trailing_zeros() as usize
     }
@@ -65,8 +67,8 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         core::hint::black_box(seen);
     }
 
-    /// Iterates over the same contacts if some pairs are particular: these get manifolds built for
-    /// the reader.
+    /// Iterates over the same contacts when some pairs are particular: manifolds of these pairs are
+    /// built for the reader.
     pub(super) fn particular(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
             self.next_pair()?;

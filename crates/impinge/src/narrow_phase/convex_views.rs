@@ -9,15 +9,15 @@ use super::state::KeptPoints;
 use super::view::{BuiltIn, View};
 use crate::math::Space;
 
-/// Iterator over the manifolds that hold a contact, group by group in memory order.
+/// Iterates over the manifolds with at least one contact, group by group in memory order.
 pub(super) struct ConvexViews<'a, N: Space<D>, const D: usize> {
     table: &'a ObjectTable<N, D>,
     groups: slice::Iter<'a, ContactGroup<N, D>>,
     group: Option<&'a ContactGroup<N, D>>,
-    /// One past the current word of flags, and its flags that are left.
+    /// Index of the next word of flags in the group, and the remaining flags of the word before it.
     word: usize,
     flags: u64,
-    /// Number of words that follow.
+    /// Number of words that have not been read yet.
     left: usize,
 }
 
@@ -27,12 +27,12 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         Self { table, groups, group: None, word: 0, flags: 0, left: usize::MAX }
     }
 
-    /// Returns the number of words of flags.
+    /// Returns the number of words of flags of all groups.
     pub(super) fn num_words(groups: &[ContactGroup<N, D>]) -> usize {
         groups.iter().map(|group| group.touching().len()).sum()
     }
 
-    /// Restricts the iterator to a range of words of flags, counted over all groups.
+    /// Restricts the iterator to a range of words of flags, numbered over all groups.
     pub(super) fn of_words(mut self, words: Range<usize>) -> Self {
         (self.left, self.word) = (words.len(), words.start);
         self.group = self.groups.next();
@@ -43,7 +43,7 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         self
     }
 
-    /// Advances to the next word of flags that is not zero; `None` after the last.
+    /// Advances to the next word of flags that is not zero; `None` after the last word.
     #[inline(never)]
     fn next_word(&mut self) -> Option<&'a ContactGroup<N, D>> {
         loop {
@@ -76,15 +76,15 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         core::hint::black_box(sum);
     }
 
-    /// Advances to the next touching pair.
+    /// Advances to the next touching pair; `None` after the last pair.
     #[inline]
     fn next_pair(&mut self) -> Option<(&'a ContactGroup<N, D>, usize)> {
         let group = if self.flags == 0 { self.next_word()? } else { self.group? };
         Some((group, place(self.word, &mut self.flags)))
     }
 
-    /// Iterates over the same contacts if some pairs are particular: these get manifolds built for
-    /// the reader.
+    /// Iterates over the same contacts when some pairs are particular: manifolds of these pairs are
+    /// built for the reader.
     pub(super) fn particular(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
             let (group, place) = self.next_pair()?;
@@ -95,7 +95,7 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
     }
 }
 
-/// Clears the lowest flag of the word before `word` and returns the index of its pair.
+/// Clears the lowest flag of the word before `word`, and returns the index of its pair.
 #[inline]
 const fn place(word: usize, flags: &mut u64) -> usize {
     let place = (word - 1) * 64 + flags.trailing_zeros() as usize;

@@ -1,4 +1,4 @@
-//! The narrow phase of a world: its pairs, and the algorithm and state of each.
+//! The narrow phase of a world: its pairs, with the algorithm and the state of each.
 
 use core::fmt;
 use std::sync::{Arc, OnceLock};
@@ -26,8 +26,9 @@ use crate::shape::Shape;
 /// Contacts and proximities of the pairs of a world, kept from update to update.
 ///
 /// Pairs of the library's own algorithms are stored in dense arrays, one for each pair of shape
-/// kinds, and updated as a batch, without a virtual call or an allocation for each pair. Pairs of a
-/// custom dispatcher are updated one by one. Pairs without a changed object are skipped.
+/// kinds. They are updated in batches, without a virtual call or an allocation for each pair. Pairs
+/// of a custom dispatcher are updated one by one. A pair is skipped if neither of its objects
+/// changed.
 ///
 /// ```
 /// use impinge::dim3::narrow_phase::DefaultNarrowPhase;
@@ -47,20 +48,20 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     /// Location of the state of each pair; parallel to `pairs`.
     pub(super) locations: Vec<Location>,
     pub(super) lanes: PairLanes<N, D>,
-    /// Greatest motion at which pairs keep their contacts; unused if groups have no references.
+    /// Greatest motion with which a pair keeps its contacts; unused without contact reuse.
     pub(super) tolerance: N,
     pub(crate) ids: IdAllocator,
-    /// Keys of pairs marked due since the last update; some may be gone again.
+    /// Keys of pairs that were marked due since the last update; some of the pairs may be gone.
     pub(super) due: Vec<PairKey>,
     /// Scratch: changes of one update.
     pub(super) changes: PairChanges,
     pub(super) picked: Vec<Location>,
-    /// Indices in `pairs`, sorted by pair; built on first use after a change of the pairs.
+    /// Indices in `pairs`, sorted by pair; computed on first use after the pairs changed.
     pub(super) order: OnceLock<Vec<u32>>,
-    /// Recent lengths of the lists of an update, by which memory is released.
+    /// Recent lengths of the lists of an update, which decide when memory is released.
     recent: Recent,
-    /// Indices in `pairs` of the touching ones, sorted by pair; built on first use after a change
-    /// of either.
+    /// Indices in `pairs` of the touching pairs, sorted by pair; computed on first use after the
+    /// pairs or their contacts changed.
     pub(super) touching: OnceLock<Vec<u32>>,
     pub(super) journal: Journal<(), NarrowHead>,
 }
@@ -85,7 +86,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for DefaultNarrowPhase<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Creates a narrow phase without pairs that uses the library's own algorithms.
+    /// Creates a narrow phase without pairs, with the library's own algorithms.
     #[must_use]
     pub fn new() -> Self {
         Self::with_dispatchers(
@@ -94,7 +95,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         )
     }
 
-    /// Creates a narrow phase without pairs that takes its algorithms from the given dispatchers.
+    /// Creates a narrow phase without pairs, whose algorithms come from the given dispatchers.
     #[must_use]
     pub fn with_dispatchers(
         contacts: Box<dyn ContactDispatcher<N, D>>,
@@ -121,7 +122,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Enables contact reuse with this tolerance; see [`Self::try_reusing`].
     ///
     /// # Panics
-    /// If the tolerance is negative or not finite; [`Self::try_reusing`] returns that.
+    /// If the tolerance is negative or not finite; [`Self::try_reusing`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn reusing(self, tolerance: N) -> Self {
@@ -169,7 +170,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         Ok(Self { contact_dispatcher, proximity_dispatcher, lanes, tolerance, ..Self::new() })
     }
 
-    /// Updates all pairs, and releases memory now and then.
+    /// Updates all pairs, and occasionally releases memory.
     pub(crate) fn step(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
         self.recent.note(self.due.len());
         self.update_pairs(table, events);
@@ -184,7 +185,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// Adds a pair and chooses its algorithm, without a geometric query. Does nothing if the pair
-    /// is known.
+    /// is already there.
     pub(crate) fn pair_started(&mut self, table: &ObjectTable<N, D>, first: u32, second: u32) {
         if !self.pairs.insert(first, second).is_new {
             return;
@@ -194,7 +195,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.locations.push(location);
     }
 
-    /// Removes a pair, with a final event if it was touching or near.
+    /// Removes a pair, with a final event if it was touching or near. Does nothing if there is no
+    /// such pair.
     pub(crate) fn pair_stopped(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -210,7 +212,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.forget_order();
     }
 
-    /// Returns `true` if there is a pair of the object.
+    /// Returns `true` if the object has at least one pair.
     pub(crate) fn has_pairs(&self, object: u32) -> bool {
         self.pairs.count(object) > 0
     }
@@ -230,7 +232,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         events: &mut Events,
     ) {
         let mut partners: Vec<(u32, usize)> = self.pairs.partners(object).collect();
-        // Sorted, since a rewind restores the pairs but not the table's order of partners.
+        // Sorted, because a rewind restores the pairs, but not the order of partners in the table.
         partners.sort_unstable();
         for (_, index) in partners {
             let key = PairKey::from(self.pairs.pairs()[index]);
@@ -243,8 +245,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Returns the group of the library's own algorithm for a pair, and the maximum number of
-    /// points of a manifold; `None` if a custom algorithm serves the pair.
+    /// Returns the group and the maximum number of points of a manifold if the library's own
+    /// algorithm serves a pair; `None` if a custom algorithm does.
     pub(super) fn built_in_lane(
         &self,
         table: &ObjectTable<N, D>,
@@ -263,9 +265,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Keeps the state of a pair if a built-in algorithm for the same query still serves it: sets
-    /// the new request and moves the state to the group of the new kinds. Returns `false` if that
-    /// is not so.
+    /// Keeps the state of a pair if it had a built-in algorithm and still has one, for the same
+    /// kind of query: updates the request, and moves the state to the group of the new kinds.
+    /// Returns `false`, without a change, otherwise.
     fn adjust(&mut self, table: &ObjectTable<N, D>, key: PairKey, index: usize) -> bool {
         let Some((new_lane, max_points)) = self.built_in_lane(table, key) else { return false };
         let Location { lane, place } = self.locations[index];
@@ -302,7 +304,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         true
     }
 
-    /// Finds an algorithm for a pair and adds its state to a group, continuing from `carried`.
+    /// Chooses an algorithm for a pair and adds the pair's state to a group, which continues from
+    /// `carried`. Returns its location, and the change of its status if there is one.
     fn enter(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -380,7 +383,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         (Location { lane: Lane::CustomProximity, place }, change)
     }
 
-    /// Removes the state of a pair from its group.
+    /// Removes the state of the pair at `index` in `pairs` from its group, and returns the status
+    /// to carry over.
     fn leave(&mut self, index: usize) -> Carried {
         let location = self.locations[index];
         let (carried, moved) = self.lanes.take(location);
@@ -388,7 +392,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         carried
     }
 
-    /// Updates the location of the pair that filled the gap after a removal from a group.
+    /// Updates the location of the pair that moved to index `place` when another pair was removed
+    /// from its group.
     fn note_move(&mut self, moved: Option<PairKey>, place: u32) {
         let Some([first, second]) = moved else { return };
         let index = self.pairs.index_of(first, second).expect("every state belongs to a pair");

@@ -10,7 +10,7 @@ use crate::collide::{KeptPairs, PairQuestion, RawManifold, Solid, update_pairs2,
 use crate::math::Space;
 use crate::query::ContactManifold;
 
-/// Contacts of some pairs of convex solids.
+/// Rows of some pairs of convex solids.
 pub(super) type ContactRows<'a, N, const D: usize> = Rows<
     'a,
     ContactEntry<N, ContactState<N, D>>,
@@ -18,7 +18,7 @@ pub(super) type ContactRows<'a, N, const D: usize> = Rows<
     Reference<N, D>,
 >;
 
-/// Due pairs that have copies of their solids.
+/// The pairs of a chunk that must be computed, all of which have copies of their solids.
 pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
     pub(super) rows: ContactRows<'r, N, D>,
     /// Indices of the due pairs in `rows`.
@@ -27,7 +27,8 @@ pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
     pub(super) changes: &'t mut PairChanges,
 }
 
-/// [`update_pairs2`], for pairs of the narrow phase.
+/// Computes pairs of the narrow phase in 2D by [`update_pairs2`]; `false` if the kinds have no
+/// kernel.
 pub(crate) fn update_lanes2<N: Space<2>>(
     solids: [&Solid<N, 2>; 2],
     due: &mut DueContacts<'_, '_, N, 2>,
@@ -35,7 +36,8 @@ pub(crate) fn update_lanes2<N: Space<2>>(
     update_pairs2(solids, due)
 }
 
-/// [`update_pairs3`], for pairs of the narrow phase.
+/// Computes pairs of the narrow phase in 3D by [`update_pairs3`]; `false` if the kinds have no
+/// kernel.
 pub(crate) fn update_lanes3<N: Space<3>>(
     solids: [&Solid<N, 3>; 2],
     due: &mut DueContacts<'_, '_, N, 3>,

@@ -1,7 +1,7 @@
 //! Entries: the state of a pair for each combination of algorithm (built-in or custom) and query.
 //!
-//! A public manifold is built on first access, in the memory of its predecessor, and expires at the
-//! next update.
+//! The public manifold of a pair is built on first access, in the memory of the previous one, and
+//! becomes out of date at the next update.
 
 use core::fmt;
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -17,16 +17,16 @@ use crate::math::{Real, Space};
 use crate::memory::clone_fields;
 use crate::query::Proximity;
 
-/// The event that follows from an update or the end of a pair.
+/// The change for which an update, or the end of a pair, reports an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Change {
     /// The pair got its first contact point or lost its last.
     Contact { touching: bool },
-    /// The proximity changed from the first to the second.
+    /// The proximity changed from the first value to the second.
     Proximity(Proximity, Proximity),
 }
 
-/// Returns the two solids of a pair as of the last update.
+/// Returns the two solids of a pair, as of the last update.
 pub(crate) fn posed<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     [first, second]: PairKey,
@@ -41,7 +41,7 @@ pub(crate) fn posed<N: Space<D>, const D: usize>(
     }
 }
 
-/// The last proximity of a pair; a change of it is an event.
+/// The last proximity of a pair. Each change of it is reported as an event.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Status(pub(crate) Proximity);
 
@@ -51,18 +51,18 @@ impl Status {
         (old != new).then_some(Change::Proximity(old, new))
     }
 
-    /// Returns the change at the end of the pair.
+    /// Returns the change to `Disjoint` when the pair ends; `None` if it was disjoint.
     pub(crate) fn end(mut self) -> Option<Change> {
         self.set(Proximity::Disjoint)
     }
 }
 
-/// Contacts by the library's own algorithm. The fields that readers need come first: for a pair
-/// with few contacts they load only the first cache lines.
+/// Contacts of a pair, computed by the library's own algorithm. Fields that readers need come
+/// first, so that a reader of few contacts loads only the first cache lines.
 #[derive(Debug)]
 #[repr(C)]
 pub(crate) struct ContactEntry<N: Real, S> {
-    /// Number of the pair, the first half of its contact ids.
+    /// Identifier of the pair: the first half of its contact ids.
     pub(crate) number: u64,
     pub(crate) state: S,
     pub(crate) request: ManifoldRequest<N>,
@@ -74,7 +74,7 @@ clone_fields!([N: Real, S: Clone] ContactEntry<N, S> { number, state, request })
 #[derive(Debug)]
 pub(crate) struct ContactView<M> {
     manifolds: OnceLock<M>,
-    /// The manifolds of an earlier update, kept for their memory. Locked once, while new ones are
+    /// The manifolds of an earlier update, kept for their memory. Locked only while new ones are
     /// built.
     old: Mutex<M>,
 }
@@ -92,14 +92,15 @@ impl<M: Clone + Default> Clone for ContactView<M> {
 }
 
 impl<M: Default> ContactView<M> {
-    /// Marks the manifolds as out of date, but keeps their memory.
+    /// Marks the manifolds as out of date; keeps their memory.
     pub(super) fn expire(&mut self) {
         if let Some(manifolds) = self.manifolds.take() {
             *self.old.get_mut().unwrap_or_else(PoisonError::into_inner) = manifolds;
         }
     }
 
-    /// Returns the manifolds; on first access `make` builds them in the memory of the old ones.
+    /// Returns the manifolds. On first access after an update, `make` builds them in the memory of
+    /// the old ones.
     pub(crate) fn manifolds(&self, make: impl FnOnce(M) -> M) -> &M {
         self.manifolds.get_or_init(|| {
             let mut old = self.old.lock().unwrap_or_else(PoisonError::into_inner);
@@ -109,7 +110,7 @@ impl<M: Default> ContactView<M> {
 }
 
 impl<M: Default> ContactView<M> {
-    /// As [`Self::expire`], if the group has views at all.
+    /// Marks the manifolds of a view as out of date; does nothing for a group without views.
     #[inline]
     pub(crate) fn expire_any(view: Option<&mut Self>) {
         if let Some(view) = view {
@@ -126,7 +127,8 @@ impl<N: Real, S> ContactEntry<N, S> {
         Self { request, number, state: S::default() }
     }
 
-    /// Updates the contacts; returns `true` if there are any.
+    /// Updates the contacts, and marks the view as out of date; returns `true` if there are
+    /// contacts.
     pub(crate) fn update<const D: usize>(
         &mut self,
         view: Option<&mut ContactView<S::Manifolds>>,
@@ -140,7 +142,7 @@ impl<N: Real, S> ContactEntry<N, S> {
         self.is_touching()
     }
 
-    /// Returns `true` if there are contacts.
+    /// Returns `true` if there is at least one contact.
     #[inline]
     pub(crate) fn is_touching<const D: usize>(&self) -> bool
     where
@@ -150,7 +152,7 @@ impl<N: Real, S> ContactEntry<N, S> {
     }
 }
 
-/// Proximity by the library's own algorithm.
+/// Proximity of a pair, computed by the library's own algorithm.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProximityEntry<N: Real> {
     pub(crate) margin: N,
@@ -158,7 +160,7 @@ pub(crate) struct ProximityEntry<N: Real> {
 }
 
 impl<N: Real> ProximityEntry<N> {
-    /// Updates the status; returns the change, if any.
+    /// Updates the status; returns the change, or `None` if it stays.
     pub(crate) fn update<const D: usize>(&mut self, posed: &Posed<'_, N, D>) -> Option<Change>
     where
         N: Space<D>,
@@ -167,7 +169,7 @@ impl<N: Real> ProximityEntry<N> {
     }
 }
 
-/// Contacts by a custom algorithm.
+/// Contacts of a pair, computed by a custom algorithm.
 #[derive(Clone)]
 pub(crate) struct CustomContactEntry<N: Space<D>, const D: usize> {
     pub(crate) algorithm: ContactAlgorithm<N, D>,
@@ -175,7 +177,7 @@ pub(crate) struct CustomContactEntry<N: Space<D>, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> CustomContactEntry<N, D> {
-    /// Updates the contacts; returns `true` if there are any.
+    /// Updates the contacts; returns `true` if there are contacts.
     pub(crate) fn update(
         &mut self,
         dispatcher: &dyn ContactDispatcher<N, D>,
@@ -202,7 +204,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for CustomContactEntry<N, D> {
     }
 }
 
-/// Proximity by a custom algorithm.
+/// Proximity of a pair, computed by a custom algorithm.
 #[derive(Clone)]
 pub(crate) struct CustomProximityEntry<N: Space<D>, const D: usize> {
     pub(crate) algorithm: ProximityAlgorithm<N, D>,
@@ -211,7 +213,7 @@ pub(crate) struct CustomProximityEntry<N: Space<D>, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> CustomProximityEntry<N, D> {
-    /// Updates the status; returns the change, if any.
+    /// Updates the status; returns the change, or `None` if it stays.
     pub(crate) fn update(
         &mut self,
         dispatcher: &dyn ProximityDispatcher<N, D>,

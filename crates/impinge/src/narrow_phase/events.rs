@@ -1,6 +1,6 @@
-//! Events: changes between two updates.
+//! Events: changes of pairs between two updates.
 //!
-//! Each `Started` has exactly one `Stopped`, whatever ends the contact.
+//! Each `Started` is followed by exactly one `Stopped`, whatever ends the contact.
 
 use core::fmt;
 
@@ -38,7 +38,7 @@ pub enum ContactEvent {
 }
 
 impl ContactEvent {
-    /// Returns the two objects in order.
+    /// Returns the two objects, the smaller handle first.
     #[must_use]
     pub const fn handles(&self) -> (CollisionObjectHandle, CollisionObjectHandle) {
         match *self {
@@ -71,19 +71,19 @@ impl ContactEvent {
 pub struct ProximityEvent {
     /// The object with the smaller handle.
     pub collider1: CollisionObjectHandle,
-    /// The other object.
+    /// The object with the larger handle.
     pub collider2: CollisionObjectHandle,
-    /// Proximity at the update before.
+    /// Proximity at the update before this one.
     pub prev_status: Proximity,
-    /// Proximity now; never equal to `prev_status`.
+    /// Proximity at this update; never equal to `prev_status`.
     pub new_status: Proximity,
 }
 
-/// Events of one update, or of several if the world keeps events, and events that removals and
-/// updates of single pairs queue for the next update.
+/// Events of an update, or of several if the world keeps events. Removals and updates of single
+/// pairs queue events for the next update.
 ///
-/// Order within the batch of an update: queued events first, then all others. Each part is sorted
-/// by handles; events of one pair are in the order in which they happened.
+/// Order within the batch of an update: first the queued events, then all others. Each part is
+/// sorted by handles. Events of the same pair are in the order in which they occurred.
 ///
 /// ```
 /// use impinge::dim2::events::Events;
@@ -96,8 +96,8 @@ pub struct ProximityEvent {
 pub struct Events {
     contacts: Vec<ContactEvent>,
     proximities: Vec<ProximityEvent>,
-    /// Numbers of contact and proximity events at the front that are in order already: kept and
-    /// queued ones.
+    /// Number of contact and of proximity events at the front that are already in order: kept and
+    /// queued events.
     sorted: (usize, usize),
 }
 
@@ -119,8 +119,8 @@ impl Events {
         self.proximities.clear();
     }
 
-    /// Begins the next batch, behind the present events, with those of `queued`, sorted by handles;
-    /// events of one pair keep their order.
+    /// Begins the next batch behind the present events. It starts with the events of `queued`,
+    /// sorted by handles; events of the same pair keep their order. Empties `queued`.
     pub(crate) fn begin_batch(&mut self, queued: &mut Self) {
         queued.contacts.sort_by_key(ContactEvent::handles);
         queued.proximities.sort_by_key(|event| (event.collider1, event.collider2));
@@ -129,8 +129,8 @@ impl Events {
         self.sorted = (self.contacts.len(), self.proximities.len());
     }
 
-    /// Sorts the events of the update into canonical order. Of two events of a pair in
-    /// one list, the one that ends the old status comes first.
+    /// Sorts the events of the update into canonical order. If one list has two events of a pair,
+    /// the one that ends the old status comes first.
     pub(crate) fn sort(&mut self) {
         let begins = |event: &ContactEvent| matches!(event, ContactEvent::Started(..));
         self.contacts[self.sorted.0..].sort_unstable_by_key(|e| (e.handles(), begins(e)));
@@ -139,8 +139,8 @@ impl Events {
             .sort_unstable_by_key(|e| (e.collider1, e.collider2, begins(e)));
     }
 
-    /// Iterates over the handles that events name, from the given index of each list on; handles
-    /// may repeat.
+    /// Iterates over the handles in events, from the given index of each list on; handles may
+    /// repeat.
     pub(crate) fn named_from(
         &self,
         (contacts, proximities): (usize, usize),
@@ -151,12 +151,12 @@ impl Events {
         contacts.chain(proximities).flat_map(|(first, second)| [first, second])
     }
 
-    /// Returns the numbers of contact and proximity events.
+    /// Returns the number of contact events and the number of proximity events.
     pub(crate) const fn counts(&self) -> (usize, usize) {
         (self.contacts.len(), self.proximities.len())
     }
 
-    /// Returns the number of events.
+    /// Returns the number of events of both kinds.
     pub(crate) fn len(&self) -> usize {
         self.contacts.len() + self.proximities.len()
     }

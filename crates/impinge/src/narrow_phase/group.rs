@@ -1,7 +1,7 @@
-//! A group: pairs that share one algorithm, in parallel dense arrays.
+//! A group: pairs with the same algorithm, in parallel dense arrays.
 //!
-//! Chunks have a constant size that does not depend on the number of threads. Prefetching changes
-//! no result.
+//! Chunks have a constant size, which does not depend on the number of threads. Prefetching does
+//! not change results.
 //!
 //! ```text
 //! place        0      1      2     ...            swap_remove(1): the last pair moves to place 1
@@ -21,8 +21,8 @@ use crate::journal::Journal;
 use crate::math::Space;
 use crate::memory::Look;
 
-/// Pairs in a task: many enough to outweigh the cost of a task, few enough to balance the load. A
-/// constant, so that the order of results never depends on the number of threads.
+/// Number of pairs in a task: enough to outweigh the cost of a task, and few enough to balance the
+/// load. It is a constant, so that the order of results does not depend on the number of threads.
 pub(super) const CHUNK: usize = 128;
 
 /// Number of flags in a word.
@@ -35,33 +35,33 @@ pub(crate) type PairKey = [u32; 2];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Chosen([u64; CHUNK / WORD]);
 
-/// The states of some pairs in no particular order, without gaps.
+/// The states of some pairs, in no particular order and without gaps.
 ///
 /// A pair's index (`place`) changes when another pair of the group is removed; [`Taken::moved`]
 /// reports it. The flags that are read for every pair, due and touching, are stored apart from the
 /// states, so that skipping a pair does not load its state.
 ///
-/// Each state has a view, the form in which users read it. The views are created all together on
-/// first access, so they cost nothing without readers. With contact reuse
+/// Each state has a view: the form in which users read it. All views are created together on first
+/// access, so they cost nothing without readers. With contact reuse
 /// ([`Reuse`](super::reuse::Reuse)) each state also has a reference.
 #[derive(Debug)]
 pub(crate) struct Group<S: Parts, V = (), R = ()> {
     pub(super) keys: Vec<PairKey>,
-    /// By index: must be updated even if both objects stand still.
+    /// By index: whether the pair must be updated even if neither object moves.
     pub(super) due: Vec<bool>,
-    /// By index, as bits, surplus bits zero: the pair has contact points.
+    /// By index, as bits: whether the pair has contact points. Surplus bits are zero.
     pub(super) touching: Vec<u64>,
     pub(super) states: Vec<S>,
-    /// One for each state, or none.
+    /// A view for each state; not created before the first access.
     pub(super) views: OnceLock<Vec<V>>,
-    /// One for each state; `None` without contact reuse.
+    /// A reference for each state; `None` without contact reuse.
     pub(super) references: Option<Vec<R>>,
     pub(super) journal: Journal<GroupNote<S, R>>,
-    /// References of the pairs that [`GroupNote::Written`] notes.
+    /// References of the pairs in [`GroupNote::Written`] notes.
     pub(super) reference_journal: Journal<R>,
-    /// By index, if there are marks: the period in which the pair was noted or added.
+    /// By index, if there are marks: the period in which the pair was last noted, or added.
     pub(super) noted: Vec<u8>,
-    /// The present period; each mark begins a new one.
+    /// The current period. Each mark begins a new one.
     pub(super) period: u8,
 }
 
@@ -93,9 +93,9 @@ pub(crate) struct Rows<'a, S, V, R = ()> {
     due: &'a mut [bool],
     touching: &'a mut [u64],
     pub(crate) states: &'a mut [S],
-    /// As many as states, or empty.
+    /// A view for each state; empty if there are no views.
     pub(crate) views: &'a mut [V],
-    /// As many as states, or empty.
+    /// A reference for each state; empty without contact reuse.
     pub(crate) references: &'a mut [R],
 }
 
@@ -104,7 +104,7 @@ pub(crate) struct Rows<'a, S, V, R = ()> {
 pub(crate) struct Taken<S> {
     pub(crate) state: S,
     pub(crate) is_touching: bool,
-    /// The pair that moved to its index, if any.
+    /// The pair that moved to the index of the removed one; `None` if that was the last.
     pub(crate) moved: Option<PairKey>,
 }
 
@@ -132,7 +132,7 @@ const fn flag(place: usize) -> (usize, u64) {
     (place / WORD, 1 << (place % WORD))
 }
 
-/// Sets whether a pair touches; returns `true` if that is a change.
+/// Sets whether a pair touches; returns `true` if this changes its flag.
 #[inline]
 pub(super) fn set_touching(words: &mut [u64], place: usize, is_touching: bool) -> bool {
     let (word, bit) = flag(place);
@@ -147,7 +147,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         Self { references: Some(Vec::new()), ..Self::default() }
     }
 
-    /// Adds a pair, marks it due and returns its index.
+    /// Adds a pair, marks it as due, and returns its index.
     pub(crate) fn push(&mut self, key: PairKey, state: S, is_touching: bool) -> u32 {
         let place = self.keys.len();
         if self.journal.is_on() {
@@ -168,7 +168,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         u32::try_from(place).expect("fewer than 2^32 pairs fit in memory")
     }
 
-    /// Removes a pair; the last one moves to its index.
+    /// Removes the pair at an index; the last pair moves to that index.
     pub(crate) fn swap_remove(&mut self, place: u32) -> Taken<S> {
         self.note_removed(place);
         let (is_touching, place) = (self.is_touching(place), place as usize);
@@ -190,8 +190,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         Taken { state, is_touching, moved }
     }
 
-    /// Replaces the pair at an index by another, which is due and does not touch. Returns `true` if
-    /// the old pair was touching.
+    /// Replaces the pair at an index by another one, which is due and not touching. Returns `true`
+    /// if the old pair was touching.
     pub(crate) fn replace(&mut self, place: u32, key: PairKey, state: S) -> bool {
         self.note_whole(place);
         let at = place as usize;
@@ -222,7 +222,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         self.touching[word] & bit != 0
     }
 
-    /// Marks a pair as due even if both objects stand still, and drops its reference.
+    /// Marks a pair as due even if neither object moves, and drops its reference.
     pub(crate) fn make_due(&mut self, place: u32) {
         self.note_whole(place);
         self.due[place as usize] = true;
@@ -236,7 +236,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         &self.states[place as usize]
     }
 
-    /// Returns the state of the pair at an index, to change it.
+    /// Returns the state of the pair at an index, for changes; records its old value if there are
+    /// marks.
     pub(crate) fn state_mut(&mut self, place: u32) -> &mut S {
         self.note_whole(place);
         &mut self.states[place as usize]
@@ -263,7 +264,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         &self.states
     }
 
-    /// Returns the touching flags, 64 in a word.
+    /// Returns the touching flags, 64 in a word; the lowest bit is the lowest index.
     pub(crate) fn touching(&self) -> &[u64] {
         &self.touching
     }
@@ -290,7 +291,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
 }
 
 impl Chosen {
-    /// Removes the indices for which `stays` is false.
+    /// Removes the indices for which `stays` returns `false`.
     pub(super) fn retain(&mut self, mut stays: impl FnMut(usize) -> bool) {
         for index in self.indices() {
             let (word, bit) = flag(index);
@@ -339,14 +340,14 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
         })
     }
 
-    /// Returns a pair with its state and its view.
+    /// Returns the key of a pair, its state, and its view if the group has views.
     #[inline]
     pub(crate) fn row(&mut self, index: usize) -> (PairKey, &mut S, Option<&mut V>) {
         (self.keys[index], &mut self.states[index], self.views.get_mut(index))
     }
 
-    /// Returns `true` if the pair needs a new query: it is due, or one of its objects changed.
-    /// Clears the mark.
+    /// Returns `true` if the pair needs a new query: it is marked as due, or one of its objects
+    /// changed. Clears the mark.
     #[inline]
     pub(crate) fn take_due<N: Space<D>, const D: usize>(
         &mut self,
@@ -365,7 +366,8 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
 
     /// Returns the pairs of a chunk that need a new query, and clears their marks.
     ///
-    /// Branch-free over flags and change bits, so that nothing waits for the memory of the pairs.
+    /// The loop over flags and change bits has no branches, so nothing waits for the memory of the
+    /// pairs.
     pub(super) fn take_all_due<N: Space<D>, const D: usize>(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -378,7 +380,7 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
         chosen
     }
 
-    /// Sets whether the pair has contact points; returns `true` if that is a change.
+    /// Sets whether the pair has contact points; returns `true` if this changes its flag.
     #[inline]
     pub(crate) fn set_touching(&mut self, index: usize, is_touching: bool) -> bool {
         set_touching(self.touching, index, is_touching)

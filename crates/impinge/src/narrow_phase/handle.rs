@@ -2,16 +2,16 @@
 
 use crate::generation::Generation;
 
-/// The handle of a collision object; within its world it never refers to another object.
+/// The handle of a collision object. Within its world it never refers to another object.
 ///
-/// A world accepts only its own handles: it refuses one of another world like a stale one, even if
-/// both were filled alike. (Worlds are distinguished by a tag of 16 bits, which is used again after
-/// 65535 other worlds.) Handles of two worlds are never equal; [`CollisionWorld::counterpart`]
-/// translates them. It also translates deserialized handles, which belong to no world: the
-/// serialized form is index and generation.
+/// A world accepts only its own handles: it refuses a handle of another world like a stale one,
+/// even if both worlds were filled in the same way. (Worlds are distinguished by a tag of 16 bits,
+/// which is reused after 65535 other worlds.) Handles of two worlds are never equal;
+/// [`CollisionWorld::counterpart`] translates them. It also translates deserialized handles, which
+/// belong to no world: the serialized form is the index and the generation.
 ///
-/// Ordered by the index in the handle table, then by generation: this is the canonical order of
-/// pairs, events and query results.
+/// Handles are ordered by the index in the handle table, then by generation. This is the canonical
+/// order of pairs, events and query results.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -38,14 +38,14 @@ pub struct CollisionObjectHandle {
 }
 
 impl CollisionObjectHandle {
-    /// Creates the handle of the object with this generation at an index of the table.
+    /// Creates the handle of the object with this index in the table and this generation.
     #[inline]
     pub(crate) const fn new(index: u32, generation: Generation) -> Self {
         Self { index, generation }
     }
 
-    /// Returns the index in the handle table: dense, and in order of creation until the first
-    /// removal.
+    /// Returns the index in the handle table. Indices are dense, and in order of creation until the
+    /// first removal.
     #[inline]
     #[must_use]
     pub const fn uid(&self) -> usize {
@@ -58,7 +58,8 @@ impl CollisionObjectHandle {
         self.index
     }
 
-    /// Returns the generation, which identifies the world and the object among those at this index.
+    /// Returns the generation, which identifies the world and, among all objects with this index,
+    /// the object.
     #[inline]
     pub(crate) const fn generation(self) -> Generation {
         self.generation

@@ -1,11 +1,11 @@
 //! Allocation of contact ids.
 //!
-//! No id is given twice, even when phases are replaced: the counter moves on to the new phase.
+//! No id is issued twice, even when phases are replaced: the counter moves on to the new phase.
 
-/// Gives each pair a number that no other pair of the same world has or had.
+/// Issues identifiers of pairs that no other pair of the same world has or had.
 ///
-/// A contact id consists of its pair's number and a number within the pair, so that pairs updated
-/// at the same time need no coordination.
+/// A contact id consists of the identifier of its pair and a number within the pair. So pairs that
+/// are updated at the same time need no coordination.
 ///
 /// ```
 /// use impinge::dim2::narrow_phase::IdAllocator;
@@ -20,13 +20,13 @@ pub struct IdAllocator {
 }
 
 impl IdAllocator {
-    /// Creates an allocator that has given no number yet.
+    /// Creates an allocator that has not issued any identifier.
     #[must_use]
     pub const fn new() -> Self {
         Self { next: 0 }
     }
 
-    /// Returns the next number. It is never `u64::MAX`, the number of
+    /// Issues the next identifier. It is never `u64::MAX`, which belongs to
     /// [`ContactId::NULL`](crate::query::ContactId::NULL): no program creates 2⁶⁴ pairs.
     pub fn allocate(&mut self) -> u64 {
         self.next += 1;

@@ -12,18 +12,19 @@ use crate::memory::{Look, clone_fields};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::{Shape, ShapeKind};
 
-/// Number of ordered pairs of shape kinds: the number of built-in groups for contacts, and for
-/// proximity.
+/// Number of ordered pairs of shape kinds, and so of built-in groups for contacts, and of built-in
+/// groups for proximity.
 const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 
-/// The group of a pair: which algorithm serves it.
+/// The group of a pair, which defines the algorithm that serves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Lane {
-    /// Built-in contacts of this pair of kinds.
+    /// Built-in contacts of two convex solids; the value is the index of their kinds
+    /// ([`kind_pair`]).
     Contacts(u8),
     /// Built-in contacts with a composite.
     Composites,
-    /// Built-in proximity of this pair of kinds.
+    /// Built-in proximity; the value is the index of the kinds ([`kind_pair`]).
     Proximity(u8),
     CustomContacts,
     CustomProximity,
@@ -38,7 +39,7 @@ pub(crate) struct Location {
     pub(crate) place: u32,
 }
 
-/// The status of a pair that outlives a change of its algorithm; events follow from it.
+/// The status of a pair while its algorithm is replaced, from which events follow.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Carried {
     Contacts { is_touching: bool },
@@ -47,7 +48,7 @@ pub(crate) enum Carried {
 }
 
 impl Carried {
-    /// Returns the change at the end of the pair.
+    /// Returns the change that ends the status; `None` if there is nothing to end.
     pub(crate) fn end(self) -> Option<Change> {
         match self {
             Self::Contacts { is_touching } => {
@@ -58,7 +59,8 @@ impl Carried {
         }
     }
 
-    /// Returns whether the pair goes on touching, and the final change of another kind of query.
+    /// Returns whether the pair was touching, and the change that ends the status of another kind
+    /// of query.
     pub(crate) fn into_touching(self) -> (bool, Option<Change>) {
         match self {
             Self::Contacts { is_touching } => (is_touching, None),
@@ -66,7 +68,8 @@ impl Carried {
         }
     }
 
-    /// Returns the status to continue with, and the final change of another kind of query.
+    /// Returns the proximity to continue with, and the change that ends the status of another kind
+    /// of query.
     pub(crate) fn into_status(self) -> (Status, Option<Change>) {
         match self {
             Self::Proximity(status) => (status, None),
@@ -112,7 +115,7 @@ impl<N: Space<D>, const D: usize> Default for PairLanes<N, D> {
     }
 }
 
-/// Returns the number of the unordered pair of kinds.
+/// Returns the index of the unordered pair of kinds of two shapes.
 pub(crate) fn kind_pair<N: Real, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,
@@ -123,7 +126,7 @@ pub(crate) fn kind_pair<N: Real, const D: usize>(
     u8::try_from(number).expect("there are fewer than 16 kinds")
 }
 
-/// Returns the group of built-in contacts of two shapes.
+/// Returns the group of the built-in contacts of two shapes.
 pub(crate) fn contact_lane<N: Real, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,
@@ -141,7 +144,7 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
         Self { contacts, composites: Group::with_references(), ..Self::default() }
     }
 
-    /// Removes the state of a pair; also returns the pair that moved to its index.
+    /// Removes the state of a pair. Returns its status, and the pair that moved to its index.
     pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<PairKey>) {
         let place = location.place;
         match location.lane {
@@ -180,7 +183,7 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
         self.proximity.iter_mut().for_each(|group| group.fit(look));
     }
 
-    /// Marks a pair as due even if both objects stand still.
+    /// Marks a pair as due even if neither object moves.
     pub(crate) fn make_due(&mut self, location: Location) {
         let place = location.place;
         match location.lane {
@@ -194,7 +197,8 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
     }
 }
 
-/// Returns the status of a removed pair, and the pair that moved to its index.
+/// Returns the status of a removed pair, and the pair that moved to its index; `None` if there is
+/// none.
 fn contacts_of<S>(taken: Taken<S>) -> (Carried, Option<PairKey>) {
     (Carried::Contacts { is_touching: taken.is_touching }, taken.moved)
 }

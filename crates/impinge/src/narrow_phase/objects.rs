@@ -26,12 +26,12 @@ const NONE: u32 = u32::MAX;
 /// Poses, shapes and query types of the objects that have pairs, as of the last update, by
 /// [`CollisionObjectHandle::uid`].
 ///
-/// The world writes an object's row when its first pair starts, and again when an update begins if
-/// the object changed since the one before. Between updates the rows are constant, so that
-/// manifolds read then are those of the last update. When the last pair of the object stops, its
-/// row is free for another object.
+/// The world writes an object's row when the object's first pair starts. It writes the row again at
+/// the start of an update if the object changed since the previous one. Between updates the rows
+/// are constant, so manifolds that are read then are those of the last update. When the last pair
+/// of the object stops, its row becomes free for another object.
 ///
-/// The table also records which rows were written in the update under way: pairs of unchanged rows
+/// The table also records which rows were written in the current update: pairs of unchanged rows
 /// need no new query.
 ///
 /// ```
@@ -57,27 +57,27 @@ const NONE: u32 = u32::MAX;
 pub struct ObjectTable<N: Space<D>, const D: usize> {
     /// By handle index: the row of the object, or [`NONE`].
     rows: Vec<u32>,
-    /// By row, as all arrays up to `is_written`.
+    /// The handle of each row's object. This array and all up to `is_written` are indexed by row.
     handles: Vec<CollisionObjectHandle>,
     solids: Vec<ObjectSolid<N, D>>,
-    /// Bounding balls and boxes of the shapes: they reject most distant pairs without loading the
+    /// Bounding balls and boxes of the shapes, which reject most distant pairs without loading the
     /// shapes.
     bounds: Vec<ReachBounds<N, D>>,
     queries: Vec<GeometricQueryType<N>>,
     /// The poses as the user gave them, for custom algorithms.
     isometries: Vec<N::Isometry>,
-    /// The row was written in the update under way.
+    /// Whether the row was written in the current update.
     is_written: Vec<bool>,
-    /// Rows without an object; the last one is used next.
+    /// Rows without an object; the last one in the list is used next.
     free: Vec<u32>,
-    /// Handle indices of the objects whose rows were written in the update under way, in order of
-    /// writing. An object that has lost its row since may still be listed, or listed again.
+    /// Handle indices of the objects whose rows were written in the current update, in order of
+    /// writing. An object that has lost its row since may still be listed, or be listed again.
     changed: Vec<u32>,
     /// Number of rows taken since they were last sorted.
     lent: usize,
-    /// Pairs computed since the last update, sorted by key, with the poses used.
+    /// Pairs computed since the last update, sorted by key, with the poses of their computation.
     pub(super) substeps: Vec<PairSolids<N, D>>,
-    /// Skins by handle index, up to the last object with one.
+    /// By handle index, up to the last object with a skin: the skin, as of the last update.
     pub(super) skins: Vec<N>,
     journal: Journal<RowNote<N, D>, Vec<PairSolids<N, D>>>,
 }
@@ -89,9 +89,10 @@ clone_fields!([N: Space<D>, const D: usize] ObjectTable<N, D> {
 /// The state of an object before a change.
 #[derive(Clone, Debug)]
 enum RowNote<N: Space<D>, const D: usize> {
-    /// The isometry before a move.
+    /// The handle index of an object, and its isometry before a move.
     Moved(u32, N::Isometry),
-    /// The row, if any, and the skin.
+    /// The handle index of an object, and its row (`None` if it had no row) and its skin before a
+    /// change.
     Whole(u32, Option<ObjectRow<N, D>>, N),
 }
 
@@ -128,7 +129,7 @@ impl<N: Space<D>, const D: usize> PlacedSolids<N, D> for ObjectTable<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
-    /// A table without rows.
+    /// Creates a table without rows.
     pub(crate) fn new() -> Self {
         Self {
             rows: Vec::new(),
@@ -147,7 +148,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Begins an update: clears the list of written rows and the poses of single computed pairs.
+    /// Begins an update: clears the list of written rows, and the poses of pairs that were computed
+    /// alone.
     pub(crate) fn begin_update(&mut self) {
         self.substeps.clear();
         for index in self.changed.drain(..) {
@@ -162,7 +164,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.rows.get(index as usize).is_some_and(|&row| row != NONE)
     }
 
-    /// Writes a row for an object that has none.
+    /// Assigns a row to an object and writes it; does nothing if the object has a row.
     pub(crate) fn lend(&mut self, index: u32, row: impl FnOnce() -> ObjectRow<N, D>) {
         if self.has_row(index) {
             return;
@@ -217,7 +219,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.queries.push(row.query);
     }
 
-    /// Writes the position of an object, if it has a row, and leaves the rest of the row.
+    /// Writes the position of an object, if it has a row; does not change the rest of the row.
     pub(crate) fn set_position(&mut self, index: u32, isometry: &N::Isometry) {
         if !self.has_row(index) {
             return;
@@ -258,7 +260,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Returns the skin of an object as of the last update.
+    /// Returns the skin of an object as of the last update; 0 if it has none.
     pub(crate) fn skin(&self, index: u32) -> N {
         self.skins.get(index as usize).copied().unwrap_or(N::ZERO)
     }
@@ -268,33 +270,33 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         key.mapped(|object| self.skin(object))
     }
 
-    /// Returns the prediction of a pair for its unexpanded shapes: `linear` plus both skins.
+    /// Returns the prediction that a pair needs for its shapes without skins: `linear` plus both
+    /// skins.
     pub(super) fn beyond_skins(&self, key: PairKey, linear: N) -> N {
         let [first, second] = self.skins_of(key);
         linear + (first + second)
     }
 
-    /// Returns the handle indices of the objects whose rows were written since the last update
-    /// began.
+    /// Returns the handle indices of the objects whose rows were written in the current update.
     pub(crate) fn changed(&self) -> &[u32] {
         &self.changed
     }
 
-    /// Returns `true` if the object's row was written since the last update began; `false`
-    /// for an object without one.
+    /// Returns `true` if the object's row was written in the current update; `false` for an object
+    /// without a row.
     #[inline]
     pub(crate) fn has_changed(&self, index: u32) -> bool {
         self.is_written.get(self.row(index)).is_some_and(|&is_written| is_written)
     }
 
-    /// Returns the row of an object, which must have one.
+    /// Returns the row of an object. An object without one gives an index beyond all rows.
     #[inline]
     fn row(&self, index: u32) -> usize {
         self.rows[index as usize] as usize
     }
 
-    /// Sorts the rows by handle index and drops free ones, if more than a quarter have been taken
-    /// since the last time: a pass over the objects then accesses memory in order.
+    /// Sorts the rows by handle index and drops free ones, if more than a quarter have been
+    /// assigned since the last time. A pass over the objects then accesses memory in order.
     pub(crate) fn tidy(&mut self) {
         if self.lent * 4 <= self.handles.len() {
             return;
@@ -316,7 +318,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.free.clear();
     }
 
-    /// Swaps a row in use with another, which may be free.
+    /// Swaps a row in use with another row, which may be free.
     fn exchange(&mut self, row: usize, other: usize) {
         let (owner, other_owner) = (self.handles[row].uid(), self.handles[other].uid());
         if self.rows[other_owner] as usize == other {
@@ -376,7 +378,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.journal = journal;
     }
 
-    /// Notes the row and skin of an object before they change.
+    /// Records the row and skin of an object before they change, once for each mark.
     fn note(&mut self, index: u32) {
         if self.journal.is_first_whole(index as usize) {
             let row = self.has_row(index).then(|| ObjectRow {
@@ -390,7 +392,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Checks that each row belongs to one object or is free; the error says what is wrong.
+    /// Checks that each row either belongs to one object or is free; the error describes the
+    /// violation.
     pub(crate) fn validate(&self) -> Result<(), String> {
         let mut owners = vec![0_u8; self.handles.len()];
         let used = self.rows.iter().filter(|&&row| row != NONE);
@@ -401,7 +404,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// Returns the handle of the object that the row was written for.
+    /// Returns the handle of the object for which the row was written.
     pub(crate) fn handle(&self, index: u32) -> CollisionObjectHandle {
         self.handles[self.row(index)]
     }

@@ -13,7 +13,7 @@ use crate::collide::ManifoldRequest;
 use crate::math::Space;
 use crate::pairs::pack;
 
-/// Number of started and of stopped pairs whose memory is prefetched together.
+/// Number of started and of stopped pairs that are prefetched at once.
 const AT_ONCE: usize = 16;
 
 /// Keys of some pairs.
@@ -23,8 +23,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Adds the pairs that began and removes those that ended, as [`pair_started`](Self::pair_started) and
     /// [`pair_stopped`](Self::pair_stopped) do.
     ///
-    /// Pairs are scattered in memory, so several are prefetched at once. A pair that begins gets the place of one that
-    /// ends, if both are in the same group, so that no third one moves.
+    /// Pairs are scattered in memory, so several are prefetched at once. A pair that begins takes
+    /// the index of a pair that ends, if both are in the same group, so that no other pair moves.
     pub(crate) fn begin_and_end_pairs(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -47,7 +47,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Adds some pairs and removes others, pairwise where possible.
+    /// Adds some pairs and removes others; where possible, an added pair replaces a removed one.
     fn begin_and_end_some_pairs(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -100,7 +100,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
     }
 
-    /// Puts a new pair in the place of an old one; `None` if they are not in the same group of built-in contacts.
+    /// Writes a new pair at the index of an old one; `None`, without a change, unless both belong
+    /// to the same group of built-in contacts.
     fn replace(
         &mut self,
         table: &ObjectTable<N, D>,

@@ -1,4 +1,4 @@
-//! Query types: whether contacts or proximity are computed for an object's pairs.
+//! Query types: whether contacts or proximity are computed for the pairs of an object.
 
 use crate::math::Real;
 
@@ -20,10 +20,10 @@ use crate::math::Real;
 pub enum GeometricQueryType<N: Real> {
     /// Contacts, with the linear prediction and the angular one in radians.
     ///
-    /// Contact points exist while the solids penetrate or are no farther apart than the *sum* of
-    /// the linear predictions of both objects. The sum of the angular predictions adds the points
-    /// that would come that near if the solids rotated by up to that angle; a sum above a right
-    /// angle counts as a right angle.
+    /// There are contact points while the solids penetrate, or are no farther apart than the *sum*
+    /// of the linear predictions of both objects. The sum of the angular predictions adds points
+    /// that would come within that distance if the solids rotated by up to that angle; a sum above
+    /// a right angle is treated as a right angle.
     Contacts(N, N),
     /// Proximity, with the margin: solids farther apart than the *sum* of the margins are disjoint.
     ///
@@ -49,14 +49,15 @@ pub enum GeometricQueryType<N: Real> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactQuery<N: Real> {
-    /// The object's share of the distance up to which contact points exist.
+    /// The object's contribution to the distance up to which there are contact points.
     pub prediction: N,
-    /// The object's share of the angle, in radians, by which the solids may rotate until they are
-    /// that near.
+    /// The object's contribution, in radians, to the angle by which the solids may rotate to come
+    /// within that distance.
     pub angular_prediction: N,
 }
 
-/// [`GeometricQueryType::Proximity`] with a named field: whether solids are near, without contact points.
+/// [`GeometricQueryType::Proximity`] with a named field: reports whether solids are near, without
+/// contact points.
 ///
 /// The default has no margin: a pair is [`WithinMargin`](crate::query::Proximity::WithinMargin) by the
 /// other object's margin alone.
@@ -75,7 +76,7 @@ pub struct ContactQuery<N: Real> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ProximityQuery<N: Real> {
-    /// The object's share of the distance up to which others are within the margin.
+    /// The object's contribution to the distance up to which a pair is within the margin.
     pub margin: N,
 }
 
@@ -114,7 +115,7 @@ impl<N: Real> From<ProximityQuery<N>> for GeometricQueryType<N> {
     }
 }
 
-/// Query of a pair: the sums over its two objects.
+/// The query of a pair: predictions or margins summed over its two objects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PairQuery<N: Real> {
     Contacts { linear: N, angular: N },
@@ -122,8 +123,8 @@ pub(crate) enum PairQuery<N: Real> {
 }
 
 impl<N: Real> GeometricQueryType<N> {
-    /// Returns the prediction or margin, the distance at which the object has pairs; the broad
-    /// phase grows its box by it.
+    /// Returns the linear prediction or the margin, by which the broad phase grows the object's
+    /// box.
     #[must_use]
     pub fn query_limit(&self) -> N {
         match *self {
@@ -176,8 +177,8 @@ impl<N: Real> GeometricQueryType<N> {
     }
 }
 
-/// A query type in less memory: both predictions, or the margin and −1. Numbers of a query type are
-/// never negative.
+/// A query type in less memory: both predictions, or the margin and −1. The numbers of a query type
+/// are never negative.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PackedQuery<N: Real>([N; 2]);
 

@@ -1,14 +1,14 @@
-//! Contact reuse: contacts kept while a pair hardly moves, as an option.
+//! Contact reuse, which is optional: a pair keeps its contacts while it hardly moves.
 //!
 //! In a scene that comes to rest, most pairs move by a thousandth of their size in a step, and a new query would find
-//! the old points, moved along. So the relative pose of a pair at its last query is kept (its *reference*). While no
-//! point of the smaller solid has moved farther than a tolerance from there, relative to the other solid, the points
+//! the old points, moved along. So the relative pose of a pair at its last query is kept, as its *reference*. While no
+//! point of the smaller solid has moved farther than a tolerance since then, relative to the other solid, the points
 //! stay fixed to both solids, and their distances are measured again along the normal. This is the contact recycling of
-//! Box2D and Box3D (E. Catto), but with motion measured from the last query rather than from step to step, so that
+//! Box2D and Box3D (E. Catto), but with motion measured from the last query instead of from step to step, so that
 //! errors do not accumulate.
 //!
-//! A signed distance changes by no more than its solids move. So reused distances differ from those of a query by at
-//! most twice the tolerance, and may exceed the prediction by as much; the nearest is within it.
+//! A signed distance changes by no more than the motion of its solids. So reused distances differ from those of a query
+//! by at most twice the tolerance, and may exceed the prediction by as much; the least one is within it.
 
 use core::fmt;
 
@@ -30,7 +30,7 @@ use crate::math::{Mapped, Pose, Real, Space, max, min};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReuseError {
-    /// The tolerance, exactly.
+    /// The refused tolerance, converted to `f64`.
     pub value: f64,
 }
 
@@ -42,7 +42,7 @@ impl fmt::Display for ReuseError {
 
 impl std::error::Error for ReuseError {}
 
-/// Returns the tolerance, if it is finite and not negative.
+/// Returns the tolerance if it is finite and not negative, else an error.
 pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
     if tolerance < N::ZERO || !tolerance.is_finite_number() {
         return Err(ReuseError { value: tolerance.as_f64() });
@@ -50,7 +50,7 @@ pub(super) fn usable_tolerance<N: Real>(tolerance: N) -> Result<N, ReuseError> {
     Ok(tolerance)
 }
 
-/// Relative pose and distances of a pair at the computation of its contacts.
+/// Relative pose and distances of a pair when its contacts were last computed.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference<N: Real, const D: usize> {
     /// Pose of the solid in whose frame contacts are stored, relative to the other solid.
@@ -78,7 +78,7 @@ impl<N: Real, const D: usize> Default for Reference<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Reference<N, D> {
-    /// Moves the contacts of a pair along and returns `true`, if the pair has moved by less than the limit and a
+    /// Returns `true`, and moves the contacts of a pair along, if the pair has moved by less than the limit and a
     /// contact is still near. `pose21` returns the present relative pose.
     ///
     /// The limit is the smaller of tolerance and prediction, so that no contact of overlapping solids is missed.
@@ -104,8 +104,8 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
         motion < limit && self.measure(&pose21, state, prediction)
     }
 
-    /// Stores the contacts, which were just computed, and the relative pose as the reference. `reaches` returns the
-    /// bounding radii, first of the solid in whose frame contacts are stored.
+    /// Stores the relative pose and the distances of the contacts, which were just computed, as the reference.
+    /// `reaches` returns the bounding radii, first of the solid in whose frame contacts are stored.
     #[inline]
     pub(super) fn note<S: KeptPoints<N, D>>(
         &mut self,
@@ -124,17 +124,17 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
         state.each_point(|_, distance, _| self.distances.push(*distance));
     }
 
-    /// Returns an upper bound of the distance that a point of the first solid has moved relative to the second; NaN or
-    /// infinite if there is no bound.
+    /// Returns an upper bound of the motion of a point of the first solid relative to the second; NaN or infinite if
+    /// there is no bound.
     fn motion(&self, pose21: &Pose<N, D>) -> N {
         // The Frobenius norm of a difference of rotations bounds its spectral norm.
         let turn = (pose21.rotation - self.pose21.rotation).norm();
         (pose21.translation - self.pose21.translation).norm() + turn * self.reach
     }
 
-    /// Measures the distance of each contact, with both points fixed to their solids, along its normal fixed to the
-    /// first solid. Returns `true` if a contact is within `limit` or its old distance, or if there is no contact. Of
-    /// many contacts some leave the prediction at every step; that alone does not end the reuse.
+    /// Measures the distance of each contact along its normal, which is fixed to the first solid; both points are fixed
+    /// to their solids. Returns `true` if a contact is within `limit` or within its old distance, or if there is no
+    /// contact. If there are many contacts, some leave the prediction at every step; that alone does not end the reuse.
     ///
     /// `pose21` maps x to R x + t, the reference to R' x + t'. A point p of the first solid and its opposite point, at
     /// distance d along n, were at R' p + t' and R' (p + d n) + t'. The distance is the component along R n of the
@@ -169,8 +169,8 @@ type KeptRows<'a, N, S, V, const D: usize> =
     Rows<'a, ContactEntry<N, S>, ContactView<V>, Reference<N, D>>;
 
 impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
-    /// Moves the contacts of a pair along and returns `true`, if the pair has moved little enough. The number of
-    /// contacts stays, so there are no events.
+    /// Returns `true`, and moves the contacts of a pair along, if the pair has moved little enough. The number of
+    /// contacts does not change, so there are no events.
     #[inline]
     pub(super) fn keeps<S: KeptContacts<N, D>>(
         &self,
@@ -180,7 +180,7 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         !rows.references.is_empty() && self.moves_along(rows, place)
     }
 
-    /// As [`Self::keeps`], for groups that have references.
+    /// Implements [`Self::keeps`] for groups that have references.
     fn moves_along<S: KeptContacts<N, D>>(
         &self,
         rows: &mut KeptRows<'_, N, S, S::Manifolds, D>,
@@ -197,7 +197,7 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         is_kept
     }
 
-    /// Makes the present poses and contacts of a pair, which were just computed, its reference.
+    /// Stores the present poses and contacts of a pair, which were just computed, as its reference.
     #[inline]
     pub(super) fn note<S: KeptContacts<N, D>>(
         &self,
@@ -219,7 +219,7 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
     }
 }
 
-/// Returns the object in whose frame contacts are stored, then the other.
+/// Returns the object in whose frame contacts are stored, then the other object.
 const fn home_first([first, second]: PairKey, is_swapped: bool) -> [u32; 2] {
     if is_swapped { [second, first] } else { [first, second] }
 }

@@ -1,7 +1,7 @@
 //! Rewinding the narrow phase to a mark.
 //!
-//! Pairs in groups return to their former indices, since contacts are read in that order. The order
-//! of the pair table affects no result, so its pairs are simply inserted and removed.
+//! Pairs return to their former indices in their groups, because contacts are read in that order.
+//! The order of the pair table affects no result, so its pairs are simply inserted and removed.
 
 use super::default_narrow_phase::NOWHERE;
 use super::entry::{ContactEntry, CustomContactEntry, CustomProximityEntry, ProximityEntry};
@@ -24,15 +24,15 @@ pub(crate) struct GroupRow<S, R> {
     reference: Option<R>,
 }
 
-/// A state that can be noted in pieces of constant size: the note of a pair with one contact then
-/// takes less memory than one of four.
+/// A state that is recorded in pieces of constant size, so that the note of a pair with one contact
+/// takes less memory than the note of a pair with four.
 pub(crate) trait Parts: Clone {
     type Part;
 
     /// Calls `each` with each piece of the data that an update may change.
     fn each_part(&self, each: impl FnMut(Self::Part));
 
-    /// Restores the data from the pieces, which come in the order of [`Self::each_part`].
+    /// Restores the data from the pieces, which arrive in the order of [`Self::each_part`].
     fn put_together(&mut self, parts: impl Iterator<Item = Self::Part>);
 }
 
@@ -70,7 +70,7 @@ impl<N: Space<D>, const D: usize> Parts for ContactEntry<N, ContactState<N, D>> 
     }
 }
 
-/// States that are noted in one piece.
+/// Implements [`Parts`] for states that are recorded in a single piece.
 macro_rules! in_one_part {
     ($([$($generics:tt)*] $type:ty;)*) => {
         $(impl<$($generics)*> Parts for $type {
@@ -99,15 +99,15 @@ in_one_part! {
     [] u32;
 }
 
-/// One undoable change of a group.
+/// A change of a group, which can be undone.
 pub(crate) enum GroupNote<S: Parts, R> {
     /// A pair was added at the end.
     Pushed,
     /// A pair was removed, and the last one moved to its index.
     Removed(u32, Box<GroupRow<S, R>>),
-    /// A pair before a change other than an update, or before its replacement.
+    /// A pair before a change other than an update, or before it was replaced.
     Replaced(u32, Box<GroupRow<S, R>>),
-    /// A pair before its computation in an update; its parts follow.
+    /// A pair before an update computed it; its parts are in the notes that follow.
     Written {
         place: u32,
         due: bool,
@@ -128,8 +128,8 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         })
     }
 
-    /// Notes a pair before an update computes it, if there are marks and it was not noted since the
-    /// last.
+    /// Records a pair before an update computes it, if there are marks and the pair has not been
+    /// recorded since the last mark.
     pub(super) fn note(&mut self, place: u32) {
         let at = place as usize;
         if !self.journal.is_on()
@@ -145,7 +145,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Notes a pair before a change other than an update, if there are marks.
+    /// Records a pair before a change other than an update, if there are marks.
     pub(super) fn note_whole(&mut self, place: u32) {
         if self.journal.is_on() {
             self.journal.note(GroupNote::Replaced(place, self.row(place)));
@@ -153,7 +153,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Notes a pair before its removal, if there are marks.
+    /// Records a pair before its removal, if there are marks.
     pub(super) fn note_removed(&mut self, place: u32) {
         if self.journal.is_on() {
             self.journal.note(GroupNote::Removed(place, self.row(place)));
@@ -161,7 +161,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Notes the pairs that an update will compute.
+    /// Records the pairs that the update is about to compute.
     fn note_due<N: Space<D>, const D: usize>(&mut self, table: &ObjectTable<N, D>) {
         for place in 0..self.keys.len() {
             let [first, second] = self.keys[place];
@@ -171,7 +171,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Sets a mark. A group that is empty and has no older mark needs none.
+    /// Sets a mark, unless the group is empty and has no older mark.
     fn mark(&mut self, number: u64) {
         if !self.is_empty() || self.journal.is_on() {
             self.journal.mark(number, ());
@@ -199,12 +199,12 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         }
     }
 
-    /// Undoes all changes since a mark. Calls `changed` with each index whose pair may be another
-    /// now.
+    /// Undoes all changes since a mark. Calls `changed` with each index whose pair may have
+    /// changed.
     fn rewind(&mut self, number: u64, mut changed: impl FnMut(u32)) {
         let mut journal = core::mem::take(&mut self.journal);
         if !journal.has(number) {
-            // Without this mark the group was empty at that time.
+            // A group without this mark was empty when the mark was set.
             while !self.is_empty() {
                 self.pop();
             }
@@ -298,7 +298,7 @@ macro_rules! each_group {
 }
 
 impl<N: Space<D>, const D: usize> PairLanes<N, D> {
-    /// Notes the pairs at some locations before they are computed.
+    /// Records the pairs at some locations before they are computed.
     pub(super) fn note(&mut self, picked: &[Location]) {
         for &Location { lane, place } in picked {
             match lane {
@@ -312,13 +312,13 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
         }
     }
 
-    /// Notes the pairs that an update will compute.
+    /// Records the pairs that the update is about to compute.
     pub(super) fn note_due(&mut self, table: &ObjectTable<N, D>) {
         each_group!(self, |_, group| group.note_due(table));
     }
 }
 
-/// State that is copied whole with a mark.
+/// State of the narrow phase that a mark copies as a whole.
 #[derive(Clone, Debug)]
 pub(crate) struct NarrowHead {
     ids: IdAllocator,
@@ -341,7 +341,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         each_group!(&mut self.lanes, |_, group| group.forget_before(number));
     }
 
-    /// Undoes all changes since a mark. The cost is proportional to their number.
+    /// Undoes all changes since a mark. The cost is proportional to the number of changes.
     pub(crate) fn rewind(&mut self, number: u64) {
         let locations = &mut self.locations;
         self.pairs.rewind(number, |undone| match undone {

@@ -1,6 +1,6 @@
-//! State of one built-in pair between updates, and its update.
+//! State of a built-in pair between updates, and its update.
 //!
-//! A world computes the same bits for a pair as a generator that follows that pair alone.
+//! A world computes the same bits for a pair as a generator for that pair alone.
 
 use super::ObjectTable;
 use super::group::PairKey;
@@ -28,12 +28,13 @@ pub(crate) struct Posed<'a, N: Real, const D: usize> {
     pub(crate) shape2: &'a dyn Shape<N, D>,
     /// Bounding balls and boxes of the shapes.
     pub(crate) bounds: [&'a ReachBounds<N, D>; 2],
-    /// Both solids are the same object, which is tested against itself.
+    /// Whether both solids are the same object, which is tested against itself.
     pub(crate) is_self: bool,
 }
 
 impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
-    /// Returns the pair in canonical order, and whether that is the reverse of its own.
+    /// Returns the pair in canonical order, and whether that order is the reverse of the pair's
+    /// own.
     fn canonical(&self) -> (Pair<'a, N, D>, bool) {
         canonical(self.pose1, self.shape1.geometry(), self.pose2, self.shape2.geometry())
     }
@@ -50,19 +51,20 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
         self.bounds[0].is_clear_of(self.bounds[1], &between, limit)
     }
 
-    /// As [`Self::are_beyond`], by boxes. `pose12` is the relative pose in canonical order.
+    /// Returns `true` if the bounding boxes prove that the solids are farther apart than `limit`.
+    /// `pose12` is the relative pose in canonical order.
     fn have_boxes_beyond(&self, pose12: &Pose<N, D>, is_swapped: bool, limit: N) -> bool {
         let [first, second] = [usize::from(is_swapped), usize::from(!is_swapped)];
         self.bounds[first].has_box_clear_of(self.bounds[second], pose12, limit)
     }
 
-    /// Returns `true` if one of the two is a composite.
+    /// Returns `true` if at least one of the two shapes is a composite.
     pub(crate) fn has_composite(&self) -> bool {
         has_composite(self.shape1, self.shape2)
     }
 }
 
-/// Returns two placed solids as a pair, in the order in which its contacts are kept.
+/// Returns two placed solids as a pair, in the order in which contacts are stored.
 fn in_order<'a, N: Real, const D: usize>(
     placed: &[Placed<'a, N, D>; 2],
     is_swapped: bool,
@@ -95,14 +97,14 @@ pub(crate) trait KeptPoints<N: Real, const D: usize> {
 
 /// Contacts of a pair, kept from update to update.
 pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Default {
-    /// The contacts in the public form.
+    /// The representation of the contacts in the public interface.
     type Manifolds: Default;
 
-    /// Computes the contacts for new poses; points that moved keep their ids.
+    /// Computes the contacts for new poses; a contact that only moved keeps its id.
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>);
 
-    /// Returns the contacts in the public form. `placed` are the solids at the last update,
-    /// `pair_number` is the first half of contact ids, and the memory of `old` is reused.
+    /// Returns the contacts in the public representation. `placed` has the solids at the last
+    /// update, `pair_number` is the first half of contact ids, and the memory of `old` is reused.
     fn manifolds(
         &self,
         placed: &[Placed<'_, N, D>; 2],
@@ -111,7 +113,7 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Defau
     ) -> Self::Manifolds;
 }
 
-/// Contacts in the frame of the solid that is first in canonical order.
+/// Contacts in the frame of the solid that comes first in canonical order.
 #[derive(Debug, Default)]
 #[repr(C)]
 pub(crate) struct InOrder<C> {
@@ -122,7 +124,7 @@ pub(crate) struct InOrder<C> {
 
 clone_fields!([C: Clone] InOrder<C> { swapped, contacts });
 
-/// Contacts of two convex solids. The fields that readers need come first.
+/// Contacts of two convex solids. Fields that readers need come first.
 #[derive(Debug, Default)]
 #[repr(C)]
 pub(crate) struct ContactState<N: Real, const D: usize> {
@@ -138,7 +140,7 @@ pub(crate) type CompositeState<N, const D: usize> = InOrder<CompositeContacts<N,
 
 impl<N: Real, const D: usize> InOrder<RawManifold<N, D>> {
     /// Brings the stored contacts into the canonical order of two solids of these kinds. Returns
-    /// the indices of the solids that come first and second.
+    /// the indices of the first and the second solid.
     #[inline(always)]
     fn order(
         &mut self,
@@ -197,7 +199,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
             return self.clear();
         }
         let (pair, swapped) = posed.canonical();
-        // Only for pairs without contacts: boxes rarely reject a pair that had some.
+        // Only for pairs without contacts: boxes rarely reject a pair that had contacts.
         if self.kept.contacts.points.is_empty()
             && posed.have_boxes_beyond(&pair.pose12, swapped, request.prediction)
         {
@@ -241,8 +243,8 @@ impl<N: Real, const D: usize> ContactState<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> ContactState<N, D> {
-    /// Computes the contacts of two solids without bounds, perhaps with copies; points that moved
-    /// keep their ids.
+    /// Computes the contacts of two solids that have no bounds, with copies where given; a contact
+    /// that only moved keeps its id.
     pub(super) fn update_alone(
         &mut self,
         ([pose1, pose2], [one, other]): (&[Pose<N, D>; 2], [Geometry<'_, N, D>; 2]),
@@ -262,25 +264,25 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         <N::Algorithms>::contacts_of_separation(&pair, request, raw);
     }
 
-    /// Stores copies of the solids, if both are small enough.
+    /// Stores copies of the solids if both are small enough, else none.
     pub(super) fn set_solids(&mut self, shapes: [&dyn Shape<N, D>; 2]) {
         let [one, other] = shapes.mapped(Shape::geometry);
         self.solids = Solid::of(one).zip(Solid::of(other)).map(<[_; 2]>::from);
     }
 
-    /// Returns the copies of the solids in the pair's own order.
+    /// Returns the copies of the solids, in the pair's own order; `None` if there are none.
     pub(super) const fn solids(&self) -> Option<&[Solid<N, D>; 2]> {
         self.solids.as_ref()
     }
 
-    /// Returns the manifold, in canonical order.
+    /// Returns the manifold, in canonical order, for changes.
     #[inline]
     pub(super) const fn raw_mut(&mut self) -> &mut RawManifold<N, D> {
         &mut self.kept.contacts
     }
 
-    /// Returns the solids in canonical order and the manifold, flipped to that order; `None`
-    /// without copies of the solids.
+    /// Flips the manifold to the present canonical order, and returns it with the solids in that
+    /// order; `None` without copies of the solids.
     #[inline(always)]
     pub(super) fn turned<'a>(
         &'a mut self,
@@ -300,7 +302,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         if self.kept.swapped { second } else { first }
     }
 
-    /// Touches every cache line of the contacts that [`Self::view`] reads; the returned value is
+    /// Reads every cache line of the contacts that [`Self::view`] needs; the returned value is
     /// meaningless and only keeps the loads alive.
     #[inline]
     pub(super) fn fetch(&self) -> u32 {
@@ -323,8 +325,8 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
 }
 
 impl<N: Real, const D: usize> CompositeState<N, D> {
-    /// Touches the cache lines that an update reads first; the returned value is meaningless and
-    /// only keeps the loads alive.
+    /// Reads the cache lines that an update needs first; the returned value is meaningless and only
+    /// keeps the loads alive.
     #[inline]
     pub(super) fn prefetch(&self) -> N {
         self.contacts.prefetch()
@@ -336,15 +338,15 @@ impl<N: Real, const D: usize> CompositeState<N, D> {
         if self.swapped { second } else { first }
     }
 
-    /// Drops cached facts about the shapes, one of which may have been replaced.
+    /// Drops cached data of the shapes, of which one may have been replaced.
     pub(crate) fn forget_shapes(&mut self) {
         self.contacts.forget_shapes();
     }
 }
 
 impl<N: Space<D>, const D: usize> CompositeState<N, D> {
-    /// Computes the contacts of two shapes, or with `is_self` of one shape with itself; points that
-    /// moved keep their ids.
+    /// Computes the contacts of two shapes, or of a shape with itself if `is_self`; a contact that
+    /// only moved keeps its id.
     pub(crate) fn update_between(
         &mut self,
         [one, other]: &[Placed<'_, N, D>; 2],
@@ -356,8 +358,8 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         self.contacts.update(&Between::of_ordered(&ordered), is_self, request);
     }
 
-    /// Calls `each` with the solids that each contact lies on, in the order of contacts; `placed`
-    /// are the solids at the last update.
+    /// Calls `each` with the solids on which each contact lies, in the order of contacts. `placed`
+    /// has the solids at the last update.
     pub(super) fn each_touched(
         &self,
         placed: &[Placed<'_, N, D>; 2],
@@ -369,8 +371,8 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         }
     }
 
-    /// Returns the contacts in the public form. `next` returns the solids that a contact lies on,
-    /// once for each in order.
+    /// Returns the contacts in the public representation. `next` is called once for each contact,
+    /// in order, and returns the solids on which it lies.
     pub(super) fn manifolds_on<'a>(
         &self,
         poses: &[Pose<N, D>; 2],
@@ -384,7 +386,7 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         self.contacts.manifolds_on([pose1, pose2], &placement, next, old)
     }
 
-    /// As [`ContactState::view`], for one patch; `None` if there are not that many.
+    /// Returns a view of the contacts of patch `patch`; `None` if there are not that many patches.
     #[inline]
     pub(super) fn view<'a>(
         &'a self,
@@ -432,7 +434,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
     }
 }
 
-/// Returns the proximity of two solids, derived from the same distance as contacts are.
+/// Returns the proximity of two solids, derived from the same distance as their contacts.
 pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
     posed: &Posed<'_, N, D>,
     margin: N,

@@ -1,8 +1,8 @@
 //! Pairs computed between two updates.
 //!
-//! The rows of the table keep the poses of the last update, by which all other pairs are read. A
-//! pair computed since then is read at its own poses, which the table keeps until the next update
-//! begins.
+//! The rows of the table keep the poses of the last update, at which all other pairs are read. A
+//! pair that was computed since then is read at its own poses, which the table keeps until the next
+//! update begins.
 
 use super::ObjectTable;
 use super::entry::posed;
@@ -18,7 +18,7 @@ pub(super) struct PairSolids<N: Real, const D: usize> {
     pub(super) solids: [ObjectSolid<N, D>; 2],
 }
 
-/// The poses of the last update, while the rows of a pair hold other ones.
+/// The poses of the last update, while the rows of a pair have other poses.
 #[derive(Debug)]
 pub(crate) struct Substep<N: Space<D>, const D: usize> {
     key: PairKey,
@@ -27,8 +27,8 @@ pub(crate) struct Substep<N: Space<D>, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
-    /// Puts other poses into the rows of a pair's objects until [`Self::end_substep`]; `None` if an
-    /// object has no row, and so no pair.
+    /// Writes other poses to the rows of a pair's objects, until [`Self::end_substep`]. `None` if
+    /// an object has no row, and so no pair.
     pub(crate) fn begin_substep(
         &mut self,
         key: PairKey,
@@ -44,8 +44,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         Some(Substep { key, replaced: [first, second] })
     }
 
-    /// Restores the poses of the last update. With `is_computed` the pair is read at the other
-    /// poses until the next update.
+    /// Restores the poses of the last update. If `is_computed`, the pair is read at the other poses
+    /// until the next update.
     pub(crate) fn end_substep(&mut self, substep: &Substep<N, D>, is_computed: bool) {
         let Substep { key, replaced: [first, second] } = *substep;
         if is_computed {
@@ -61,7 +61,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.replace_pose(key[0], first);
     }
 
-    /// Returns the two solids of a pair at the poses by which it is read.
+    /// Returns the two solids of a pair at the poses at which it is read.
     pub(super) fn placed_pair(&self, key: PairKey) -> [Placed<'_, N, D>; 2] {
         match self.solids_between(key) {
             None => posed(self, key).placed(),
@@ -74,8 +74,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     }
 
     /// Returns `true` if the contacts of a pair cannot be read in place at the poses of the rows:
-    /// the pair was computed since the last update, or an object has a skin. Readers then get
-    /// manifolds built for it.
+    /// the pair was computed since the last update, or an object has a skin. Manifolds are then
+    /// built for its readers.
     pub(super) fn is_particular(&self, key: PairKey) -> bool {
         self.solids_between(key).is_some() || self.skins_of(key) != [N::ZERO; 2]
     }
@@ -85,7 +85,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         self.substeps.is_empty() && self.skins.is_empty()
     }
 
-    /// Returns the solids of a pair that was computed since the last update.
+    /// Returns the solids of a pair if it was computed since the last update; else `None`.
     fn solids_between(&self, key: PairKey) -> Option<&PairSolids<N, D>> {
         let place = self.substeps.binary_search_by_key(&key, |pair| pair.key).ok()?;
         Some(&self.substeps[place])

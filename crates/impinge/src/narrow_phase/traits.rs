@@ -1,4 +1,4 @@
-//! Traits for the algorithm of one pair: to use a pair without a world, and to plug in custom
+//! Traits for the algorithm of a pair, to use a pair without a world and to plug in custom
 //! algorithms.
 
 use super::IdAllocator;
@@ -24,7 +24,7 @@ pub struct ContactPrediction<N: Real> {
 }
 
 impl<N: Real> ContactPrediction<N> {
-    /// Requests contacts up to the distance `linear`, and those that would come that near if the
+    /// Requests contacts up to the distance `linear`, and contacts that would come within it if the
     /// first solid rotated by up to `angular1` radians and the second by up to `angular2`.
     #[must_use]
     pub const fn new(linear: N, angular1: N, angular2: N) -> Self {
@@ -49,13 +49,14 @@ impl<N: Real> ContactPrediction<N> {
         self.angular2
     }
 
-    /// Returns the request for manifolds of at most `max_points` points. Both angles are added.
+    /// Returns the request for manifolds of at most `max_points` points, with the sum of both
+    /// angles.
     pub(crate) fn request(&self, max_points: usize) -> ManifoldRequest<N> {
         ManifoldRequest::new(self.linear, self.angular1 + self.angular2, max_points)
     }
 }
 
-/// Contacts of one pair of solids, kept from update to update.
+/// Contacts of a pair of solids, kept from update to update.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -78,9 +79,9 @@ impl<N: Real> ContactPrediction<N> {
 pub trait ContactManifoldGenerator<N: Space<D>, const D: usize>: Send + Sync {
     /// Computes the contacts of `a` placed at `ma` with `b` placed at `mb`.
     ///
-    /// `dispatcher` serves composite solids, whose parts need algorithms of their own. New contacts
-    /// take their ids from `ids`; contacts that only moved keep theirs. Returns `false` if this
-    /// algorithm does not support the two solids; it then holds no contact.
+    /// `dispatcher` serves composites, whose parts need their own algorithms. New contacts take
+    /// their ids from `ids`; contacts that only moved keep their ids. Returns `false` if this
+    /// algorithm does not support the two solids; there are then no contacts.
     #[expect(clippy::too_many_arguments, reason = "the two posed solids and what is asked")]
     fn update(
         &mut self,
@@ -96,11 +97,10 @@ pub trait ContactManifoldGenerator<N: Space<D>, const D: usize>: Send + Sync {
     /// Returns the number of contact points over all manifolds.
     fn num_contacts(&self) -> usize;
 
-    /// Appends the manifolds that hold a contact to `out`.
+    /// Appends the manifolds with at least one contact to `out`.
     fn contacts<'a>(&'a self, out: &mut Vec<&'a ContactManifold<N, D>>);
 
-    /// Returns a clone that behaves as this one does from then on: `Box::new(self.clone())`. For
-    /// cloned worlds.
+    /// Returns a clone with the same future behaviour: `Box::new(self.clone())`. For cloned worlds.
     fn boxed_clone(&self) -> ContactAlgorithm<N, D>;
 }
 
@@ -147,7 +147,7 @@ pub trait ContactDispatcher<N: Space<D>, const D: usize>: Send + Sync {
     }
 }
 
-/// Proximity of one pair of solids, kept from update to update.
+/// Proximity of a pair of solids, kept from update to update.
 ///
 /// ```
 /// use impinge::dim2::events::Proximity;
@@ -167,7 +167,7 @@ pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
     /// Computes the proximity of `a` placed at `ma` and `b` placed at `mb`. Solids that do not
     /// overlap are within the margin if their distance is at most `margin`.
     ///
-    /// Returns `false` if this algorithm does not support the two solids; they then count as
+    /// Returns `false` if this algorithm does not support the two solids, which are then treated as
     /// disjoint.
     fn update(
         &mut self,
@@ -182,8 +182,7 @@ pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
     /// Returns the proximity at the last update.
     fn proximity(&self) -> Proximity;
 
-    /// Returns a clone that behaves as this one does from then on: `Box::new(self.clone())`. For
-    /// cloned worlds.
+    /// Returns a clone with the same future behaviour: `Box::new(self.clone())`. For cloned worlds.
     fn boxed_clone(&self) -> ProximityAlgorithm<N, D>;
 }
 

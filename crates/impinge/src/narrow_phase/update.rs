@@ -1,4 +1,4 @@
-//! The update of all pairs: selects those that need a new query and computes them in batches.
+//! The update of all pairs: selects the pairs that need a new query, and computes them in batches.
 
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -17,18 +17,18 @@ use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::collide::Solid;
 use crate::math::Space;
 
-/// If fewer than one in `SPARSE` pairs must be updated, they are found from the changed objects
-/// instead of by scanning all pairs.
+/// If fewer than one in `SPARSE` pairs must be updated, they are found by their changed objects
+/// instead of by a scan of all pairs.
 const SPARSE: usize = 8;
 
 /// Indices of pairs within a chunk.
 type LanePlaces = SmallVec<[usize; CHUNK]>;
 
-/// Changes of an update by pair.
+/// Changes of an update, with their pairs.
 pub(super) type PairChanges = Vec<(PairKey, Change)>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// Updates all pairs to the rows of the table and pushes the events.
+    /// Updates all pairs to the rows of the table, and pushes the events.
     pub(crate) fn update_pairs(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
         entries::update_pairs(self, table, events);
     }
@@ -47,7 +47,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.due.clear();
     }
 
-    /// Updates one pair to the rows of the table and pushes its event; returns `false` if there is
+    /// Updates one pair to the rows of the table, and pushes its event. Returns `false` if there is
     /// no such pair.
     pub(crate) fn update_pair(
         &mut self,
@@ -62,7 +62,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         true
     }
 
-    /// Pushes the events of `changes`, whose memory is kept.
+    /// Pushes the events of `changes`, and keeps the memory of the list.
     fn report(&mut self, table: &ObjectTable<N, D>, mut changes: PairChanges, events: &mut Events) {
         if changes.iter().any(|(_, change)| matches!(change, Change::Contact { .. })) {
             self.touching.take();
@@ -73,7 +73,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.changes = changes;
     }
 
-    /// Returns `true` if few pairs need an update: those of changed objects, and `more` others.
+    /// Returns `true` if few pairs need an update: the pairs of changed objects, and `more` others.
     fn is_sparse(&self, table: &ObjectTable<N, D>, more: usize) -> bool {
         let mut affected = more;
         table.changed().iter().all(|&row| {
@@ -151,7 +151,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         changes.extend(change.map(|change| (key, change)));
     }
 
-    /// Updates the pairs of changed objects, and those marked due.
+    /// Updates the pairs of changed objects, and the pairs marked as due.
     fn update_some(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -167,11 +167,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.picked = picked;
     }
 
-    /// Lists the locations of the pairs of changed objects and of those marked due: each once,
+    /// Lists the locations of the pairs of changed objects and of pairs marked as due, each once,
     /// sorted by group and index.
     fn pick(&self, table: &ObjectTable<N, D>, due: &[PairKey], picked: &mut Vec<Location>) {
         for &row in table.changed() {
-            // A pair of two changed objects is taken from the one with the smaller index.
+            // A pair of two changed objects is listed for the smaller index only.
             let mine = |partner: u32| !(table.has_changed(partner) && partner < row);
             let partners = self.pairs.partners(row).filter(|(partner, _)| mine(*partner));
             picked.extend(partners.map(|(_, index)| self.locations[index]));
@@ -183,7 +183,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         picked.dedup();
     }
 
-    /// Updates some pairs of one group.
+    /// Updates some pairs, which are all in the same group.
     fn update_picked(
         &mut self,
         table: &ObjectTable<N, D>,
@@ -241,8 +241,9 @@ pub(super) fn note_touching<S, V, R>(
     }
 }
 
-/// Updates the contacts of a chunk of pairs of convex solids, in SIMD lanes if their kinds allow
-/// it. `solids` are the copies in one of the pairs; if one pair of a group has copies, all do.
+/// Updates the contacts of a chunk of pairs of convex solids, in SIMD lanes if their kinds have a
+/// kernel. `solids` are the copies in one of the pairs; if one pair of a group has copies, all
+/// have.
 fn update_convex<N: Space<D>, const D: usize>(
     mut rows: ContactRows<'_, N, D>,
     reuse: Reuse<'_, N, D>,
@@ -261,8 +262,8 @@ fn update_convex<N: Space<D>, const D: usize>(
     }
 }
 
-/// Returns `true` if a solid is a ball. Such pairs do not reuse contacts: their closed forms are as
-/// fast.
+/// Returns `true` if a solid is a ball. Pairs with a ball do not reuse contacts, because their
+/// closed forms are as fast.
 fn has_ball<N: Space<D>, const D: usize>(solids: Option<&[Solid<N, D>; 2]>) -> bool {
     solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))))
 }
@@ -308,7 +309,7 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     }
 }
 
-/// Updates the picked pairs of another group, one by one.
+/// Updates the picked pairs of any other group, one by one.
 fn update_places<S, V, R>(
     rows: &mut Rows<'_, S, V, R>,
     picked: &[Location],
@@ -357,8 +358,8 @@ fn update_status<N: Space<D>, const D: usize>(
     changes.extend(change.map(|change| (key, change)));
 }
 
-/// Updates the pairs of a group chunk by chunk, with the feature `parallel` on several threads.
-/// Changes are listed in the order of the group in either case.
+/// Updates the pairs of a group chunk by chunk; with the feature `parallel` on several threads. In
+/// either case changes are listed in the order of the group.
 fn update_group<
     S: Parts + Send + Sync,
     V: Default + Send + Sync,
@@ -387,7 +388,7 @@ fn update_group<
     }
 }
 
-/// Updates the pairs of a chunk that need it, one by one.
+/// Updates the pairs of a chunk that need a new query, one by one.
 fn update_each<N: Space<D>, S, V, R, const D: usize>(
     mut rows: Rows<'_, S, V, R>,
     table: &ObjectTable<N, D>,

@@ -1,4 +1,5 @@
-//! Reading pairs: one pair, all pairs in canonical order, or all manifolds in memory order.
+//! Access to pairs: to one pair, to all pairs in canonical order, or to all manifolds in memory
+//! order.
 
 use crate::tables::entries;
 use core::fmt;
@@ -14,9 +15,10 @@ use crate::math::Space;
 use crate::pairs::PairTable;
 use crate::query::{ContactManifold, ManifoldView, Proximity};
 
-/// Manifolds that hold a contact: of convex solids, then of composites, then of custom algorithms.
+/// The manifolds with at least one contact: of convex solids, then of composites, then of custom
+/// algorithms.
 pub(crate) struct Views<'a, N: Space<D>, const D: usize> {
-    /// Every pair can be read in place.
+    /// Whether every pair can be read in place.
     pub(crate) is_plain: bool,
     convex: ConvexViews<'a, N, D>,
     composites: CompositeViews<'a, N, D>,
@@ -24,8 +26,8 @@ pub(crate) struct Views<'a, N: Space<D>, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
-    /// Iterates over all of them, read in place and mapped by `name`. The sources are mapped before
-    /// they are chained, because the result of a chain is copied.
+    /// Iterates over all manifolds, read in place and mapped by `name`. The sources are mapped
+    /// before they are chained, because a chain copies its items.
     pub(crate) fn plain<R>(
         self,
         name: impl Fn(View<'a, N, D>) -> R + Copy,
@@ -35,8 +37,8 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
         Behind { first: self.convex.map(name), others }
     }
 
-    /// Iterates over all of them; manifolds of [particular](ObjectTable::is_particular) pairs are
-    /// built for the reader.
+    /// Iterates over all manifolds, mapped by `name`. Manifolds of
+    /// [particular](ObjectTable::is_particular) pairs are built for the reader.
     pub(crate) fn particular<R>(
         self,
         name: impl Fn(View<'a, N, D>) -> R,
@@ -46,11 +48,11 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
     }
 }
 
-/// Two handle indices and a manifold.
+/// The handle indices of two objects, and a manifold.
 pub(crate) type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>);
 
-/// Chains two iterators. Unlike `chain`, it does not fuse the first, and leaves the second alone
-/// until then.
+/// Chains two iterators. Unlike `chain`, it does not fuse the first one, and does not touch the
+/// second one before the first has ended.
 struct Behind<A, B> {
     first: A,
     others: B,
@@ -117,7 +119,7 @@ pub(super) struct Composite<'a, N: Space<D>, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
-    /// Returns the manifold, if it holds a contact.
+    /// Returns the manifold; `None` if it has no contact.
     fn manifold(&self) -> Option<&'a ContactManifold<N, D>> {
         if !self.group.is_touching(self.place) {
             return None;
@@ -131,7 +133,8 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
         Some(group.view(place).manifolds(make))
     }
 
-    /// Returns a view of the manifold, read in place unless the pair is particular.
+    /// Returns a view of the manifold, in place unless the pair is particular; `None` if it has no
+    /// contact.
     pub(super) fn view(&self) -> Option<ManifoldView<'a, N, D>> {
         let (group, place, key) = (self.group, self.place, self.group.key(self.place));
         if self.table.is_particular(key) {
@@ -143,7 +146,7 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
-    /// Returns the manifolds, each of which holds a contact.
+    /// Returns the manifolds, each of which has at least one contact.
     fn manifolds(&self) -> &'a [ContactManifold<N, D>] {
         let (group, place) = (self.group, self.place);
         let placed = || self.table.placed_pair(group.key(place));
@@ -185,7 +188,7 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         }
     }
 
-    /// Iterates over the manifolds that hold a contact.
+    /// Iterates over the manifolds with at least one contact.
     pub(crate) fn manifolds(self) -> impl Iterator<Item = &'a ContactManifold<N, D>> {
         let (mut own, mut parts, mut others) = (None, &[][..], Vec::new());
         match self.0 {
@@ -197,8 +200,8 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         own.into_iter().chain(parts).chain(others)
     }
 
-    /// Iterates over the manifolds that hold a contact, read in place: the contacts of
-    /// [`Self::contacts`] in the same order.
+    /// Iterates over the manifolds with at least one contact, read in place, in the order of
+    /// [`Self::contacts`].
     pub fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
         let (mut own, mut patches, mut others) = (None, None, Vec::new());
         match self.0 {
@@ -210,7 +213,7 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
         own.into_iter().chain(patches.into_iter().flatten()).chain(others)
     }
 
-    /// Appends the manifolds that hold a contact to `out`.
+    /// Appends the manifolds with at least one contact to `out`.
     pub fn contacts(&self, out: &mut Vec<&'a ContactManifold<N, D>>) {
         match self.0 {
             ViewedContacts::BuiltIn(pair) => out.extend(pair.manifold()),
@@ -262,8 +265,8 @@ impl ProximityPair {
     }
 }
 
-/// Returns the indices of the wanted pairs, sorted by pair: object by object, each with its
-/// partners in order.
+/// Returns the indices of the pairs for which `is_wanted` returns `true`, sorted by pair: object by
+/// object, each with its partners in order.
 fn sorted(pairs: &PairTable, is_wanted: impl Fn(usize) -> bool) -> Vec<u32> {
     let objects = pairs.pairs().iter().map(|&(_, second)| second + 1).max().unwrap_or(0);
     let (mut order, mut partners) = (Vec::new(), Vec::new());
@@ -309,7 +312,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
-    /// Iterates over all manifolds that hold a contact, sorted by the handle indices of their
+    /// Iterates over all manifolds with at least one contact, sorted by the handle indices of their
     /// pairs.
     pub(crate) fn contact_manifolds<'a>(
         &'a self,
@@ -325,15 +328,15 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
-    /// Returns all manifolds that hold a contact, in memory order.
+    /// Returns all manifolds with at least one contact, in memory order.
     pub(crate) fn contact_views<'a>(&'a self, table: &'a ObjectTable<N, D>) -> Views<'a, N, D> {
         let convex = ConvexViews::new(&self.lanes.contacts, table);
         let composites = CompositeViews::new(&self.lanes.composites, table);
         Views { is_plain: table.is_plain(), convex, composites, custom: Some(self) }
     }
 
-    /// Splits [`Self::contact_views`] into at most `pieces` consecutive parts of about as many
-    /// pairs each.
+    /// Splits [`Self::contact_views`] into at most `pieces` consecutive parts with about equally
+    /// many pairs.
     pub(crate) fn contact_view_pieces<'a>(
         &'a self,
         table: &'a ObjectTable<N, D>,
@@ -358,7 +361,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
-    /// Iterates over the manifolds of custom algorithms that hold a contact.
+    /// Iterates over the manifolds of custom algorithms with at least one contact.
     fn custom_views<'a>(&'a self) -> impl Iterator<Item = View<'a, N, D>> + Send + 'a {
         self.lanes.custom_contacts.iter_touching().flat_map(|(key, entry)| {
             let manifolds = ContactPair::from_algorithm(&*entry.algorithm).manifolds();
@@ -417,7 +420,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         order.iter().map(|&index| index as usize)
     }
 
-    /// Returns the objects that have a pair with this one, sorted by handle index.
+    /// Returns the objects that have a pair with `object`, sorted by handle index.
     pub(crate) fn partners(&self, object: u32) -> Vec<u32> {
         let mut partners: Vec<_> =
             self.pairs.partners(object).map(|(partner, _)| partner).collect();
@@ -434,7 +437,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Checks that pairs, locations and groups agree.
     ///
     /// # Errors
-    /// A sentence that names the mismatch.
+    /// Returns a sentence that names the mismatch.
     pub fn validate(&self) -> Result<(), String> {
         self.pairs.validate()?;
         if self.locations.len() != self.pairs.len() {

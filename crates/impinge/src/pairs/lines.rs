@@ -1,5 +1,5 @@
-//! The links of all objects: one cache line for each object with links, and a run of further lines
-//! for objects with many.
+//! The links of all objects: a cache line for each object with links, and additional lines for
+//! objects with many links.
 //!
 //! ```text
 //! object   owned ──> head (64 bytes): link 0 … link 6 | start | count and class
@@ -11,9 +11,9 @@
 use super::places::Places;
 use crate::memory::{Look, clone_fields};
 
-/// Links in one line.
+/// Number of links in a line.
 const PER_LINE: usize = 8;
-/// Links in a head, which uses the rest of its line to describe the run.
+/// Number of links in a head, which uses the rest of its line to describe the run.
 const INLINE: usize = PER_LINE - 1;
 /// Idle heads are dropped when they exceed half of all heads by more than `MAX_IDLE`.
 const MAX_IDLE: usize = 256;
@@ -21,12 +21,13 @@ const MAX_IDLE: usize = 256;
 const NO_HEAD: u32 = u32::MAX;
 /// The class of a head without a run.
 const NO_RUN: u32 = 31;
-/// The class from which on an object is heavy: it has had more than 135 links. It stays heavy until
-/// its run is released, so that objects do not alternate between both states. Searching the
-/// seventeen lines of the largest light object costs about as much as a look-up in the table.
+/// Class from which on an object is heavy: it has had more than 135 links since its run began. It
+/// stays heavy until its run is released, so that objects do not alternate between both states.
+/// Searching the 17 lines of the largest object that is not heavy costs about as much as a look-up
+/// in the table.
 const HEAVY: u32 = 5;
 
-/// One end of a pair, stored with the object at the other end.
+/// An end of a pair: object A has a link to its partner B, and B a link to A.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Link {
     /// The object at the other end.
@@ -35,22 +36,22 @@ pub(super) struct Link {
     pub(super) pair: u32,
 }
 
-/// The first links of an object, and the position of the others.
+/// The first links of an object, and the position of its other links.
 ///
-/// Most objects have few partners, and so nothing but this line.
+/// Most objects have few partners, so they need only this line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 struct Head {
     links: [Link; INLINE],
     /// The first line of the run, `2^class` lines long.
     start: u32,
-    /// The class of the run in the lowest five bits, [`NO_RUN`] if there is none; the number of
-    /// links above them.
+    /// The class of the run in the lowest five bits ([`NO_RUN`] if there is none), and the number
+    /// of links in the bits above.
     count_and_class: u32,
 }
 
 impl Head {
-    /// The line of an object without links.
+    /// The head of an object without links.
     const EMPTY: Self =
         Self { links: [Link { partner: 0, pair: 0 }; INLINE], start: 0, count_and_class: NO_RUN };
 
@@ -64,19 +65,19 @@ impl Head {
         self.count_and_class & 31
     }
 
-    /// Sets the number of links; the class stays.
+    /// Sets the number of links; keeps the class.
     fn set_count(&mut self, count: u32) {
         assert!(count < 1 << 27, "an object has fewer than 2^27 partners");
         self.count_and_class = count << 5 | self.class();
     }
 
-    /// Sets the first line and the class of the run; the number of links stays.
+    /// Sets the first line and the class of the run; keeps the number of links.
     fn set_run(&mut self, start: u32, class: u32) {
         self.start = start;
         self.count_and_class = self.count_and_class & !31 | class;
     }
 
-    /// Returns the number of links that fit.
+    /// Returns the number of links for which head and run have memory.
     const fn capacity(&self) -> usize {
         if self.class() == NO_RUN { INLINE } else { INLINE + (PER_LINE << self.class()) }
     }
@@ -99,16 +100,17 @@ pub(super) struct Lines {
     idle: Vec<u32>,
     /// The lines of all runs.
     pool: Vec<Line>,
-    /// Starts of released runs, by class.
+    /// By class: the first lines of released runs.
     free: Vec<Vec<u32>>,
-    /// Places of the links of heavy objects.
+    /// The places of the links of heavy objects. The place of a link is its index among the links
+    /// of its object.
     places: Places,
 }
 
 clone_fields!([] Lines { owned, heads, idle, pool, free, places });
 
-/// Returns the place of the link to the partner among the first `count` links. Compares all links,
-/// since the end of a search is unpredictable for the branch predictor.
+/// Returns the index of the link to `partner` among the first `count` of `links`; `None` if there
+/// is none. Compares all links, since the branch predictor cannot predict where a search ends.
 #[inline]
 fn place_in(links: &[Link], count: usize, partner: u32) -> Option<u32> {
     let hit = |at: usize| u32::from(links[at].partner == partner) << at;
@@ -117,7 +119,7 @@ fn place_in(links: &[Link], count: usize, partner: u32) -> Option<u32> {
     ((place as usize) < count.min(links.len())).then_some(place)
 }
 
-/// Returns the link from an object to a partner as a key.
+/// Returns the key of the link from an object to a partner.
 #[inline]
 fn directed(object: u32, partner: u32) -> u64 {
     u64::from(object) << 32 | u64::from(partner)
@@ -129,7 +131,7 @@ pub(super) fn small(value: usize) -> u32 {
 }
 
 impl Lines {
-    /// Makes room for the object.
+    /// Extends `owned` to contain the object.
     pub(super) fn reach(&mut self, object: u32) {
         let needed = object as usize + 1;
         if self.owned.len() < needed {
@@ -137,31 +139,31 @@ impl Lines {
         }
     }
 
-    /// Returns one more than the largest object number seen.
+    /// Returns one more than the largest object index that has had a link.
     pub(super) fn objects(&self) -> usize {
         self.owned.len()
     }
 
-    /// Returns the index of the object's head.
+    /// Returns the index of the object's head; `None` if the object has no links.
     #[inline]
     fn at(&self, object: u32) -> Option<usize> {
         let at = *self.owned.get(object as usize)? as usize;
         (at < self.heads.len()).then_some(at)
     }
 
-    /// Returns the head of the object.
+    /// Returns the head of the object; [`Head::EMPTY`] if it has no links.
     #[inline]
     fn head(&self, object: u32) -> &Head {
         self.at(object).map_or(&Head::EMPTY, |at| &self.heads[at])
     }
 
-    /// Returns the number of links of the object; 0 for one never seen.
+    /// Returns the number of links of the object; 0 for an object that has never had any.
     #[inline]
     pub(super) fn count(&self, object: u32) -> usize {
         self.head(object).count() as usize
     }
 
-    /// Iterates over the links of the object, by place.
+    /// Iterates over the links of the object, in order of their places.
     pub(super) fn links(&self, object: u32) -> impl Iterator<Item = Link> + '_ {
         let head = self.head(object);
         let count = head.count() as usize;
@@ -171,13 +173,13 @@ impl Lines {
         head.links.iter().chain(rest).take(count).copied()
     }
 
-    /// Returns the last link of the object, if it has any.
+    /// Returns the last link of the object; `None` if it has no links.
     pub(super) fn last_link(&self, object: u32) -> Option<Link> {
         let at = self.at(object)?;
         Some(self.link(at, self.heads[at].count() - 1))
     }
 
-    /// Returns the link at `place` among those of a head.
+    /// Returns link `place` of the object with head `at`; `place` must be less than its count.
     #[inline]
     fn link(&self, at: usize, place: u32) -> Link {
         let head = &self.heads[at];
@@ -188,7 +190,8 @@ impl Lines {
         self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// Returns the link at `place` among those of a head, to write it.
+    /// Returns link `place` of the object with head `at`, for writing; `place` must be within its
+    /// capacity.
     #[inline]
     fn link_mut(&mut self, at: usize, place: u32) -> &mut Link {
         let head = &mut self.heads[at];
@@ -200,14 +203,14 @@ impl Lines {
         &mut self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// Returns `true` if the object of a head is heavy, so that its links are looked up in
-    /// `places`.
+    /// Returns `true` if the object with head `at` is heavy, so that its links are in `places`.
     #[inline]
     fn is_heavy(&self, at: usize) -> bool {
         (HEAVY..NO_RUN).contains(&self.heads[at].class())
     }
 
-    /// Returns the index of the object's head, and the place of the link to the partner.
+    /// Returns the index of the object's head and the place of its link to the partner; `None` if
+    /// there is no such link.
     #[inline]
     fn find(&self, object: u32, partner: u32) -> Option<(usize, u32)> {
         let at = self.at(object)?;
@@ -228,8 +231,8 @@ impl Lines {
         })
     }
 
-    /// Returns the index of the pair in the dense array, if there is one; searches the object with
-    /// fewer links.
+    /// Returns the index of the pair in the dense array; `None` if there is none. Searches the
+    /// object with fewer links.
     #[inline]
     pub(super) fn pair_of(&self, a: u32, b: u32) -> Option<usize> {
         let a_is_lighter = self.count(a) <= self.count(b);
@@ -238,7 +241,7 @@ impl Lines {
         Some(self.link(at, place).pair as usize)
     }
 
-    /// Writes the index of the pair to the link from the object to the partner, which must exist.
+    /// Replaces the link of the object to `link.partner`, which must exist.
     #[inline]
     pub(super) fn set_pair(&mut self, object: u32, link: Link) {
         let found = self.find(object, link.partner);
@@ -246,7 +249,7 @@ impl Lines {
         *self.link_mut(at, place) = link;
     }
 
-    /// Adds a link.
+    /// Adds a link to the object. Its partner must be new to the object.
     #[inline]
     pub(super) fn push(&mut self, object: u32, link: Link) {
         let at = self.at(object).unwrap_or_else(|| self.take_head(object));
@@ -262,7 +265,7 @@ impl Lines {
         }
     }
 
-    /// Gives the object a head.
+    /// Assigns an idle or a new head to the object, and returns the head's index.
     fn take_head(&mut self, object: u32) -> usize {
         let at = self.idle.pop().unwrap_or_else(|| {
             self.heads.push(Head::EMPTY);
@@ -272,8 +275,8 @@ impl Lines {
         at as usize
     }
 
-    /// Removes the link to the partner, if there is one, and returns the index of the pair. The
-    /// last link of the object moves to its place.
+    /// Removes the link to the partner and returns the index of the pair; `None` if there is no
+    /// such link. The last link of the object moves to the place of the removed one.
     #[inline]
     pub(super) fn remove(&mut self, object: u32, partner: u32) -> Option<usize> {
         let (at, place) = self.find(object, partner)?;
@@ -294,7 +297,7 @@ impl Lines {
         Some(taken.pair as usize)
     }
 
-    /// Gives the object a run, or moves its run to one of twice the size.
+    /// Assigns a run to the object, or moves its run to one of twice the size.
     fn enlarge(&mut self, object: u32, at: usize) {
         let (old_start, old_class) = self.run(at);
         if old_class == NO_RUN {
@@ -311,7 +314,7 @@ impl Lines {
         }
     }
 
-    /// Enters the links of an object that became heavy into `places`.
+    /// Enters the links of an object that has become heavy into `places`.
     #[cold]
     fn enter_places(&mut self, object: u32, at: usize) {
         for place in 0..self.heads[at].count() {
@@ -320,13 +323,14 @@ impl Lines {
         }
     }
 
-    /// Returns the first line and the class of an object's run.
+    /// Returns the first line and the class of the run of the object with head `at`.
     fn run(&self, at: usize) -> (u32, u32) {
         let head = &self.heads[at];
         (head.start, head.class())
     }
 
-    /// Returns a run of `2^class` lines: a released one, or new lines at the end of the pool.
+    /// Takes a run of `2^class` lines: a released one, or new lines at the end of the pool. Returns
+    /// its first line.
     fn take_run(&mut self, class: u32) -> u32 {
         let class = class as usize;
         if self.free.len() <= class {
@@ -339,7 +343,7 @@ impl Lines {
         })
     }
 
-    /// Releases the run of an object, whose remaining links fit in its head.
+    /// Releases the run of an object whose remaining links fit in its head.
     fn release(&mut self, object: u32, at: usize) {
         let (start, class) = self.run(at);
         if class >= HEAVY {
@@ -350,7 +354,7 @@ impl Lines {
         self.heads[at].set_run(0, NO_RUN);
     }
 
-    /// Releases surplus memory.
+    /// Releases memory: idle heads if there are many, and surplus capacity.
     pub(super) fn fit(&mut self, look: Look) {
         if self.idle.len() > self.heads.len() / 2 + MAX_IDLE {
             self.drop_idle();
@@ -360,7 +364,7 @@ impl Lines {
         look.fit(&mut self.pool);
     }
 
-    /// Removes the heads without an owner, and sorts the others by object.
+    /// Removes the idle heads, and sorts the others by object.
     fn drop_idle(&mut self) {
         let used = self.heads.len() - self.idle.len();
         let mut heads = Vec::with_capacity(used + used / 8);
@@ -372,8 +376,8 @@ impl Lines {
         self.idle = Vec::new();
     }
 
-    /// Checks that no two objects share a head and no two runs a line, that runs are inside the
-    /// pool, and that none is overfull.
+    /// Checks that no two objects share a head and no two runs share a line, that runs are inside
+    /// the pool, and that no object has more links than its capacity.
     pub(super) fn validate(&self) -> Result<(), String> {
         self.validate_heads()?;
         let mut used = vec![false; self.pool.len()];
@@ -394,7 +398,7 @@ impl Lines {
         self.validate_places()
     }
 
-    /// Checks that every head belongs to one object with links, or is idle and has none.
+    /// Checks that every head either belongs to one object and has links, or is idle and has none.
     fn validate_heads(&self) -> Result<(), String> {
         let mut owners = vec![0_u8; self.heads.len()];
         for (object, &at) in self.owned.iter().enumerate().filter(|(_, at)| **at != NO_HEAD) {
@@ -413,7 +417,7 @@ impl Lines {
         }
     }
 
-    /// Checks that `places` has exactly the links of heavy objects.
+    /// Checks that `places` has exactly the links of the heavy objects.
     fn validate_places(&self) -> Result<(), String> {
         let mut heavy = 0;
         let is_heavy = |object: &u32| self.at(*object).is_some_and(|at| self.is_heavy(at));

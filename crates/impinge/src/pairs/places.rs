@@ -1,26 +1,26 @@
-//! A hash table of link places, for objects with very many links.
+//! A hash table of the places of links, for objects with very many links.
 //!
 //! Open addressing with linear probing and deletion without tombstones (Knuth 1973, vol. 3, § 6.4).
 //! The table is never iterated, so the order of entries affects nothing.
 
 use crate::memory::clone_fields;
 
-/// The place in an entry without a key.
+/// The `place` of an entry without a key.
 const FREE: u32 = u32::MAX;
-/// Least capacity of a table that is not empty.
+/// Least number of slots of a table that is not empty.
 const LEAST: usize = 256;
 
-/// A link, as the key of both ends, and its place.
+/// A link, by its key ([`directed`](super::lines)), and its place.
 #[derive(Clone, Copy, Debug)]
 struct PlaceEntry {
     key: u64,
     place: u32,
 }
 
-/// A map from links, as keys of both ends, to places.
+/// A map from links to places. The key of a link is its two objects, packed.
 #[derive(Debug, Default)]
 pub(super) struct Places {
-    /// Empty, or a power of two of entries, at most half of them in use.
+    /// Empty, or a power of two of slots, of which at most half are in use.
     entries: Vec<PlaceEntry>,
     used: usize,
 }
@@ -28,7 +28,7 @@ pub(super) struct Places {
 clone_fields!([] Places { entries, used });
 
 impl Places {
-    /// Returns the place of the link, if it is in the table.
+    /// Returns the place of the link; `None` if it is not in the table.
     pub(super) fn get(&self, key: u64) -> Option<u32> {
         if self.entries.is_empty() {
             return None;
@@ -47,8 +47,8 @@ impl Places {
         self.entries[place] = PlaceEntry { key, place: value };
     }
 
-    /// Removes the link, if it is in the table: later entries of the probe sequence move up until
-    /// an entry is free.
+    /// Removes the link; does nothing if it is not in the table. Later entries of the probe
+    /// sequence move up until an entry is free.
     pub(super) fn remove(&mut self, key: u64) {
         if self.entries.is_empty() {
             return;
@@ -61,8 +61,8 @@ impl Places {
         self.used -= 1;
         let mut next = (gap + 1) & mask;
         while self.entries[next].place != FREE {
-            // Distances from the home slot: an entry that was displaced past the gap may move into
-            // it.
+            // Compares distances from the entry's home slot: the entry may move into the gap if its
+            // probe sequence passes the gap.
             let from_home = next.wrapping_sub(self.home(self.entries[next].key)) & mask;
             if from_home >= next.wrapping_sub(gap) & mask {
                 self.entries[gap] = self.entries[next];
@@ -79,7 +79,7 @@ impl Places {
     }
 
     /// Returns the slot of the key, or the free slot where it belongs. At most half of the slots
-    /// are in use, so the loop ends.
+    /// are in use, so the loop ends. There must be slots.
     fn place_of(&self, key: u64) -> usize {
         let mask = self.entries.len() - 1;
         let mut place = self.home(key);
@@ -89,7 +89,7 @@ impl Places {
         place
     }
 
-    /// Returns the home slot of the key, the first of its probe sequence.
+    /// Returns the home slot of the key: the first one of its probe sequence.
     fn home(&self, key: u64) -> usize {
         // Constants from the golden ratio and from SplitMix64 (Steele et al. 2014).
         let mixed = (key ^ key >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -97,7 +97,7 @@ impl Places {
         (mixed >> 32) as usize & (self.entries.len() - 1)
     }
 
-    /// Doubles the number of slots and enters all keys again.
+    /// Doubles the number of slots, and inserts all keys again.
     fn grow(&mut self) {
         let length = (2 * self.entries.len()).max(LEAST);
         let free = PlaceEntry { key: 0, place: FREE };
@@ -123,7 +123,7 @@ mod tests {
         };
         let mut removed = 0;
         for step in 0..20_000 {
-            // 30 × 30 keys cause collisions; every other call removes a key.
+            // The 30 × 30 keys cause collisions; about every other call removes a key.
             let key = next(30) << 32 | next(30);
             if next(2) == 0 {
                 let value = u32::try_from(next(1000)).expect("small");

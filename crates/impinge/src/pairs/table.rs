@@ -1,13 +1,13 @@
-//! The set of pairs with its dense array.
+//! The set of pairs with its dense array and its journal.
 
 use super::lines::{Lines, Link, small};
 use crate::journal::Journal;
 use crate::memory::{Look, clone_fields};
 
-/// A set of unordered pairs; see the module for its layout.
+/// A set of unordered pairs of indices; see the module for its layout.
 ///
-/// A number may be paired with any number, itself included. Finding, adding and removing a pair
-/// cost constant time.
+/// An index may be paired with any index, itself included. Finding, inserting and removing a pair
+/// take constant time.
 #[derive(Debug, Default)]
 pub(crate) struct PairTable {
     pairs: Vec<(u32, u32)>,
@@ -17,7 +17,7 @@ pub(crate) struct PairTable {
 
 clone_fields!([] PairTable { pairs, lines, journal });
 
-/// One undoable change of the set.
+/// A change of the set, which can be undone.
 #[derive(Clone, Copy, Debug)]
 enum PairNote {
     Inserted(u32, u32),
@@ -29,7 +29,7 @@ enum PairNote {
 pub(crate) struct Inserted {
     /// Index of the pair in [`PairTable::pairs`].
     pub index: usize,
-    /// The pair was not there before, and is now the last.
+    /// Whether the pair was not in the set before; it is then the last one.
     pub is_new: bool,
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct Removed {
     pub moved_from: Option<usize>,
 }
 
-/// Packs a pair into one number; the order of these numbers is that of `(smaller, larger)`.
+/// Packs a pair into an integer; these integers have the order of `(smaller, larger)`.
 #[inline]
 #[must_use]
 pub(crate) fn pack(a: u32, b: u32) -> u64 {
@@ -50,7 +50,7 @@ pub(crate) fn pack(a: u32, b: u32) -> u64 {
     u64::from(low) << 32 | u64::from(high)
 }
 
-/// Returns the pair `(smaller, larger)` of a number from [`pack`].
+/// Returns the pair `(smaller, larger)` from an integer of [`pack`].
 #[inline]
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "takes the two halves apart")]
@@ -71,8 +71,8 @@ impl PairTable {
         self.pairs.len()
     }
 
-    /// Returns the pairs, each as `(smaller, larger)`, in the order that insertions and removals
-    /// left.
+    /// Returns the pairs, each as `(smaller, larger)`, in an order that depends on the insertions
+    /// and removals.
     #[must_use]
     pub(crate) fn pairs(&self) -> &[(u32, u32)] {
         &self.pairs
@@ -89,20 +89,21 @@ impl PairTable {
         self.lines.links(a).map(|link| (link.partner, link.pair as usize))
     }
 
-    /// Returns the index of one of the pairs of `a`, in constant time; an object is removed by
-    /// removing such pairs until there is none.
+    /// Returns the index of one pair of `a`, in constant time; `None` if `a` has no pair. To remove
+    /// an object, remove such pairs until there is none.
     #[must_use]
     pub(crate) fn any_pair_of(&self, a: u32) -> Option<usize> {
         Some(self.lines.last_link(a)?.pair as usize)
     }
 
-    /// Returns the index of the pair in [`Self::pairs`], in either order of its ends.
+    /// Returns the index of the pair in [`Self::pairs`]; `None` if it is not in the set. Its ends
+    /// may be given in either order.
     #[must_use]
     pub(crate) fn index_of(&self, a: u32, b: u32) -> Option<usize> {
         self.lines.pair_of(a, b)
     }
 
-    /// Inserts the pair, unless it is there.
+    /// Inserts the pair, unless it is in the set already.
     pub(crate) fn insert(&mut self, a: u32, b: u32) -> Inserted {
         match self.index_of(a, b) {
             Some(index) => Inserted { index, is_new: false },
@@ -110,7 +111,7 @@ impl PairTable {
         }
     }
 
-    /// Inserts a pair, which must not be there, and returns its index; constant time.
+    /// Inserts a pair, which must not be in the set, and returns its index, in constant time.
     pub(crate) fn insert_new(&mut self, a: u32, b: u32) -> usize {
         debug_assert!(self.index_of(a, b).is_none(), "the pair {a}, {b} is in the table");
         let index = self.pairs.len();
@@ -120,8 +121,9 @@ impl PairTable {
         index
     }
 
-    /// Removes the pair `old`, if it is there, and puts `new`, which must not be there, at its
-    /// index, so that no other pair moves. Returns the index; constant time.
+    /// Removes the pair `old` and writes `new`, which must not be in the set, at its index, so that
+    /// no other pair moves. Returns the index; `None`, without a change, if `old` is not in the
+    /// set. Constant time.
     pub(crate) fn replace(&mut self, old: (u32, u32), new: (u32, u32)) -> Option<usize> {
         let index = self.unlink(old.0, old.1)?;
         debug_assert!(self.index_of(new.0, new.1).is_none(), "the pair {new:?} is in the table");
@@ -131,27 +133,27 @@ impl PairTable {
         Some(index)
     }
 
-    /// Writes the pair at `index` and adds its links.
+    /// Writes a pair at `index`, and adds its links.
     fn link(&mut self, index: usize, a: u32, b: u32) {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
         self.pairs[index] = (low, high);
         self.lines.reach(high);
         let pair = small(index);
         self.lines.push(low, Link { partner: high, pair });
-        // A number paired with itself has a single link for both ends.
+        // An index paired with itself has a single link for both ends.
         if low != high {
             self.lines.push(high, Link { partner: low, pair });
         }
     }
 
-    /// Removes the pair, if it is there.
+    /// Removes the pair; `None` if it is not in the set. Moves the last pair into the gap.
     pub(crate) fn remove(&mut self, a: u32, b: u32) -> Option<Removed> {
         let index = self.unlink(a, b)?;
         self.journal.note(PairNote::Removed(a, b));
         Some(self.close_gap(index))
     }
 
-    /// Removes the pair at `index`; constant time.
+    /// Removes the pair at `index`, in constant time. Moves the last pair into the gap.
     ///
     /// # Panics
     /// If `index` is not below [`Self::len`].
@@ -162,7 +164,8 @@ impl PairTable {
         self.close_gap(index)
     }
 
-    /// Removes the links of the pair, if it is there, and returns its index.
+    /// Removes the links of the pair and returns its index; `None` if it is not in the set. The
+    /// entry of the dense array stays.
     #[inline]
     fn unlink(&mut self, a: u32, b: u32) -> Option<usize> {
         let index = self.lines.remove(a, b)?;
@@ -172,7 +175,7 @@ impl PairTable {
         Some(index)
     }
 
-    /// Moves the last pair to `index`, whose pair has no links any more.
+    /// Moves the last pair to `index`, whose own pair has no links any more.
     fn close_gap(&mut self, index: usize) -> Removed {
         self.pairs.swap_remove(index);
         let was_last = index == self.pairs.len();
@@ -182,15 +185,15 @@ impl PairTable {
         Removed { index, moved_from: (!was_last).then_some(self.pairs.len()) }
     }
 
-    /// Writes the index of the pair at `index` to its links.
+    /// Updates the links of the pair at `index` to that index.
     fn relink(&mut self, index: usize) {
         let ((low, high), pair) = (self.pairs[index], small(index));
         self.lines.set_pair(low, Link { partner: high, pair });
         self.lines.set_pair(high, Link { partner: low, pair });
     }
 
-    /// Prefetches the heads of both ends of some packed pairs, so that their loads overlap. Changes
-    /// nothing.
+    /// Reads the heads of both ends of some packed pairs, to prefetch them with overlapping loads.
+    /// Changes nothing.
     #[inline]
     pub(crate) fn fetch(&self, keys: &[u64]) {
         let count = |key: u64| {
@@ -200,18 +203,19 @@ impl PairTable {
         core::hint::black_box(keys.iter().fold(0, |sum, &key| count(key).wrapping_add(sum)));
     }
 
-    /// Sets a mark; see [`Journal`].
+    /// Sets a mark with this number; see [`Journal`].
     pub(crate) fn mark(&mut self, number: u64) {
         self.journal.mark(number, ());
     }
 
-    /// Drops the marks with smaller numbers.
+    /// Drops the marks with a number less than `number`.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
     }
 
-    /// Restores the pairs of a mark, in unspecified order. Calls `undone` for each pair that is
-    /// removed, and with `None` for each that is inserted at the end of the dense array.
+    /// Undoes all changes since the mark `number`; the order of the pairs is then unspecified.
+    /// Calls `undone` with the effect of each removal, and with `None` for each pair that is
+    /// inserted at the end of the dense array.
     pub(crate) fn rewind(&mut self, number: u64, mut undone: impl FnMut(Option<Removed>)) {
         let mut journal = core::mem::take(&mut self.journal);
         while let Some(note) = journal.undo(number) {
@@ -235,7 +239,7 @@ impl PairTable {
     /// Checks every invariant of the layout; for tests.
     ///
     /// # Errors
-    /// A sentence that names the violated invariant.
+    /// Returns a sentence that names the violated invariant.
     pub(crate) fn validate(&self) -> Result<(), String> {
         self.lines.validate()?;
         for (index, &(low, high)) in self.pairs.iter().enumerate() {
@@ -261,7 +265,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// Returns a number below `bound` from a linear congruential generator.
+    /// Returns a pseudorandom number below `bound`, from a linear congruential generator.
     fn next(state: &mut u64, bound: u32) -> u32 {
         *state =
             state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -273,7 +277,8 @@ mod tests {
         let (mut state, mut table, mut set) = (7, PairTable::new(), BTreeSet::new());
         let (mut payload, mut found) = (Vec::new(), 0);
         for step in 0..20_000_u32 {
-            // 40 numbers have 820 pairs, so that about every second call hits an existing one.
+            // 40 indices have 820 pairs, so about every second call meets a pair that is in the
+            // set.
             let (a, b) = (next(&mut state, 40), next(&mut state, 40));
             assert_eq!(table.index_of(a, b).is_some(), set.contains(&pack(a, b)), "step {step}");
             if next(&mut state, 2) == 0 {
@@ -313,7 +318,7 @@ mod tests {
             table.insert(0, b);
         }
         assert_eq!(table.count(0), 200_000, "all are partners of 0");
-        // A search linear in the partners would need 2·10^10 steps here.
+        // A search that is linear in the number of partners would need 2·10^10 steps here.
         for b in (1..=200_000).rev().step_by(2) {
             assert!(table.remove(b, 0).is_some(), "{b} was there");
         }
@@ -329,14 +334,14 @@ mod tests {
 
     #[test]
     fn many_objects_with_many_partners() {
-        // All pairs of 180 numbers: every number is heavy.
+        // All pairs of 180 indices: every object is heavy.
         let mut table = PairTable::new();
         for b in 0..180 {
             (0..=b).for_each(|a| _ = table.insert(b, a));
         }
         table.validate().expect("sound");
         assert_eq!(table.len(), 180 * 181 / 2, "each with each, and with itself");
-        // Removals and replacements until few numbers are heavy.
+        // Removes and replaces pairs until few objects are heavy.
         let (mut state, mut set) = (3, BTreeSet::new());
         set.extend(table.pairs().iter().map(|&(a, b)| pack(a, b)));
         for step in 0..16_000_u32 {

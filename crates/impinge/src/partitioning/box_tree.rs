@@ -9,15 +9,15 @@ use crate::bounding_volume::{Aabb, Ray};
 use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::{Point, Real, Space, Vector, max};
 
-/// A tree over boxes that stay where they are, or move all at once; boxes are identified by index.
+/// A tree over boxes that are static, or that all move at once; a box is identified by its index.
 ///
 /// All tests are closed: boxes that only touch overlap. Results are exact for the boxes as given, and equal on every
-/// machine. Boxes may coincide, be flat, or be unbounded; those with a face beyond the range of `f32` count as
-/// unbounded and are tested one by one in each search, so there should be few.
+/// machine. Boxes may coincide, be flat, or be unbounded. A box with a face beyond the range of `f32` is treated as
+/// unbounded: each search tests all of these one by one, so there should be few.
 ///
 /// Building costs O(n log n). A search opens O(log n) blocks of sixteen boxes plus the blocks of its results, unless
-/// boxes overlap heavily. Besides its box, an object takes about 60 bytes in 2D and 85 in 3D, at most twice that with
-/// spare capacity.
+/// boxes overlap heavily. In addition to its box, each object takes about 60 bytes in 2D and 85 in 3D, at most twice
+/// that with spare capacity.
 ///
 /// ```
 /// use impinge::bounding_volume::{Aabb, Ray};
@@ -65,7 +65,7 @@ pub(crate) enum Question<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> BoxTree<N, D> {
-    /// Builds the tree over some boxes, identified by index; there may be none.
+    /// Builds a tree over `boxes`, which may be empty; each is identified by its index.
     ///
     /// # Panics
     /// Where [`Self::try_from_boxes`] returns an error.
@@ -78,16 +78,16 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         }
     }
 
-    /// Builds the tree over some boxes, identified by index; there may be none.
+    /// Builds a tree over `boxes`, which may be empty; each is identified by its index.
     ///
     /// # Errors
-    /// If a box is inverted or has a NaN, which [`Aabb`] refuses but arithmetic on boxes can yield, or if 32 bits
-    /// cannot number the boxes.
+    /// If a box is inverted or has a NaN, or the number of boxes does not fit in 32 bits. [`Aabb`] refuses such boxes,
+    /// but arithmetic on boxes can produce them.
     pub fn try_from_boxes(boxes: &[Aabb<N, D>]) -> Result<Self, BoxTreeError> {
         Self::try_from_vec(boxes.to_vec())
     }
 
-    /// As [`Self::try_from_boxes`], without copying the boxes.
+    /// Builds a tree over `boxes` without copying them; see [`Self::try_from_boxes`] for the errors.
     pub(crate) fn try_from_vec(boxes: Vec<Aabb<N, D>>) -> Result<Self, BoxTreeError> {
         entries::build(boxes)
     }
@@ -103,11 +103,11 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         }
     }
 
-    /// Replaces all boxes, in the order of [`Self::boxes`].
+    /// Replaces all boxes, in the order of [`Self::boxes`]. On an error nothing has changed.
     ///
     /// Results are those of a new tree. The order of the tree stays and its upper layers are refitted: O(n), without a
-    /// sort. When the surface of the blocks has grown by a fifth, the order is renewed over several calls of O(n) each;
-    /// until then searches are slower. On an error nothing has changed.
+    /// sort. When the total surface of the blocks has grown by a fifth, the order is renewed over several calls of O(n)
+    /// each; until then searches are slower.
     ///
     /// ```
     /// use impinge::bounding_volume::Aabb;
@@ -121,51 +121,53 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// ```
     ///
     /// # Errors
-    /// As [`Self::try_from_boxes`], and if their number differs.
+    /// If a box is inverted or has a NaN, or the number of boxes differs from [`Self::len`].
     pub fn try_refit(&mut self, boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
         entries::refit(self, boxes)
     }
 
-    /// Returns the boxes that overlap `aabb`, ascending.
+    /// Returns the indices of the boxes that overlap `aabb`, ascending.
     #[must_use]
     pub fn overlapping(&self, aabb: &Aabb<N, D>) -> Vec<usize> {
         self.collect(&Question::Overlapping(aabb))
     }
 
-    /// Returns the boxes that contain the point, ascending.
+    /// Returns the indices of the boxes that contain the point, ascending.
     #[must_use]
     pub fn containing(&self, point: &Point<N, D>) -> Vec<usize> {
         self.collect(&Question::Containing(point))
     }
 
-    /// Returns the boxes that the ray meets, ascending. A ray that is not finite meets nothing.
+    /// Returns the indices of the boxes that the ray meets, ascending. A ray that is not finite meets nothing.
     #[must_use]
     pub fn hit_by(&self, ray: &Ray<N, D>) -> Vec<usize> {
         self.collect(&Question::HitBy(ray))
     }
 
-    /// Calls `visit` with each box that overlaps `aabb`, without allocating; the order is unspecified, but always the
-    /// same.
+    /// Calls `visit` with the index of each box that overlaps `aabb`, without allocating. The order is unspecified but
+    /// deterministic.
     pub fn visit_overlapping(&self, aabb: &Aabb<N, D>, visit: impl FnMut(usize)) {
         self.each(&Question::Overlapping(aabb), visit);
     }
 
-    /// Calls `visit` with each box that contains the point, as [`Self::visit_overlapping`] does.
+    /// Calls `visit` with the index of each box that contains the point, without allocating. The order is unspecified
+    /// but deterministic.
     pub fn visit_containing(&self, point: &Point<N, D>, visit: impl FnMut(usize)) {
         self.each(&Question::Containing(point), visit);
     }
 
-    /// Calls `visit` with each box that the ray meets, as [`Self::visit_overlapping`] does.
+    /// Calls `visit` with the index of each box that the ray meets, without allocating. The order is unspecified but
+    /// deterministic. A ray that is not finite meets nothing.
     pub fn visit_hit_by(&self, ray: &Ray<N, D>, visit: impl FnMut(usize)) {
         self.each(&Question::HitBy(ray), visit);
     }
 
-    /// Calls `visit` with each box that the ray enters at or before `max_time`, and the time of entry, in ascending
-    /// order of (time, index). Times are in units of the length of the ray's direction.
+    /// Calls `visit` with the index of each box that the ray enters at or before `max_time`, and the time of entry, in
+    /// ascending order of (time, index). Times are in units of the length of the ray's direction.
     ///
-    /// `visit` returns the new `max_time`: the time of the best hit so far to find the first object that the ray meets,
-    /// the old one to visit all boxes, a negative one to stop. It must not increase. A ray that starts in a box enters
-    /// it at time zero; one that is not finite meets nothing.
+    /// `visit` returns the new `max_time`, which must not increase. Return the time of the best hit so far to find the
+    /// first object that the ray meets, the unchanged `max_time` to visit all boxes, or a negative time to stop. A ray
+    /// that starts in a box enters it at time zero. A ray that is not finite meets nothing.
     ///
     /// ```
     /// use impinge::bounding_volume::{Aabb, Ray};
@@ -193,16 +195,15 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         entries::by_time(self, &Sweep::along(ray), max_time, &mut found);
     }
 
-    /// Calls `visit` with each box that `aabb`, moving with `velocity`, touches at or before `max_time`, and the first
-    /// such time, in ascending order of (time, index).
+    /// Calls `visit` with the index of each box that `aabb`, moving with `velocity`, touches at or before `max_time`,
+    /// and the first time of contact, in ascending order of (time, index).
     ///
-    /// The rules are those of [`Self::visit_ray`], with a box in place of a point: `visit` returns the new `max_time`,
-    /// which must not increase. Boxes that overlap `aabb` are touched at time zero, for any velocity; with a velocity
-    /// of zero only these are found. `aabb` may be unbounded. A velocity that is not finite and a box at infinity touch
-    /// nothing.
+    /// `visit` returns the new `max_time`, which must not increase; a negative one stops the search. Boxes that overlap
+    /// `aabb` are touched at time zero, for any velocity; with a velocity of zero only these are found. `aabb` may be
+    /// unbounded. If the velocity is not finite or `aabb` has no finite point, nothing is touched.
     ///
-    /// The time at which a solid in the moving box touches one in a box of the tree is never earlier. So in a search
-    /// for the first impact, `visit` returns the time of the best one so far.
+    /// A solid in the moving box touches a solid in a box of the tree no earlier than the boxes touch. So in a search
+    /// for the first impact, `visit` returns the time of the best impact so far.
     ///
     /// ```
     /// use impinge::bounding_volume::Aabb;
@@ -234,12 +235,12 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         entries::by_time(self, &sweep, max_time, &mut found);
     }
 
-    /// Calls `visit` with each box at most `max_distance` from the point, and the distance, in ascending order of
-    /// (distance, index). Boxes that contain the point have distance zero.
+    /// Calls `visit` with the index of each box at most `max_distance` from the point, and its distance, in ascending
+    /// order of (distance, index). Boxes that contain the point have distance zero.
     ///
-    /// `visit` returns the new `max_distance`: the distance of the best object so far to find the nearest, the old one
-    /// to visit all boxes, a negative one to stop. It must not increase. A point that is not finite is near nothing.
-    /// Distances whose squares underflow in `N` count as zero.
+    /// `visit` returns the new `max_distance`, which must not increase. Return the distance of the best object so far
+    /// to find the nearest, the unchanged `max_distance` to visit all boxes, or a negative distance to stop. A point
+    /// that is not finite is near nothing. Distances whose squares underflow in `N` become zero.
     pub fn visit_nearest(
         &self,
         point: &Point<N, D>,
@@ -249,15 +250,14 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         self.visit_nearest_to_box(&Aabb::at(*point), max_distance, visit);
     }
 
-    /// Calls `visit` with each box at most `max_distance` from `aabb`, and the distance, in ascending order of
-    /// (distance, index). Boxes that overlap `aabb` have distance zero.
+    /// Calls `visit` with the index of each box at most `max_distance` from `aabb`, and its distance, in ascending
+    /// order of (distance, index). Boxes that overlap `aabb` have distance zero.
     ///
-    /// The rules are those of [`Self::visit_nearest`], with a box in place of a point: `visit` returns the new
-    /// `max_distance`, which must not increase. `aabb` may be unbounded; one at infinity, or with a NaN from
-    /// arithmetic, is near nothing.
+    /// `visit` returns the new `max_distance`, which must not increase; a negative one stops the search. `aabb` may be
+    /// unbounded. A box without a finite point, or with a NaN from arithmetic, is near nothing.
     ///
-    /// The distance of a solid in `aabb` from one in a box of the tree is never smaller. So in a search for the nearest
-    /// solid, `visit` returns the distance of the nearest so far.
+    /// The distance between a solid in `aabb` and a solid in a box of the tree is never less than the distance between
+    /// the boxes. So in a search for the nearest solid, `visit` returns the distance of the nearest solid so far.
     ///
     /// ```
     /// use impinge::bounding_volume::Aabb;
@@ -286,8 +286,8 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         entries::by_distance(self, aabb, max_distance, &mut found);
     }
 
-    /// Returns the box that the ray enters first, at or before `max_time`, and the time; at equal times the lowest
-    /// index.
+    /// Returns the index of the box that the ray enters first, and the time of entry; at equal times the lowest index.
+    /// `None` if the ray enters no box at or before `max_time`.
     #[must_use]
     pub fn first_hit(&self, ray: &Ray<N, D>, max_time: N) -> Option<(usize, N)> {
         let (mut first, sweep) = (Best::none(max_time), Sweep::along(ray));
@@ -295,8 +295,8 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         first.of
     }
 
-    /// Returns the box nearest to the point, at most `max_distance` away, and its distance; at equal distances the
-    /// lowest index.
+    /// Returns the index of the box nearest to the point, and its distance; at equal distances the lowest index. `None`
+    /// if no box is at most `max_distance` away.
     #[must_use]
     pub fn nearest(&self, point: &Point<N, D>, max_distance: N) -> Option<(usize, N)> {
         let mut nearest = Best::none(max_distance);
@@ -346,7 +346,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
     /// Checks every invariant; for tests.
     ///
     /// # Errors
-    /// A sentence that names the violated invariant.
+    /// Returns a sentence that names the violated invariant.
     pub fn validate(&self) -> Result<(), String> {
         self.tree.validate()?;
         if self.tree.len() + self.unbounded.len() != self.boxes.len() {
@@ -402,10 +402,10 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         Ok(())
     }
 
-    /// Returns the extent of the objects in the boxes along `direction`: the maximum of `extent_of` over all ids. The
-    /// result is not less, and exceeds it by at most a few `f32` rounding units of the coordinates. Minus infinity if
-    /// there are no objects. Calls `extent_of` for O(log n) objects on curved surfaces, and for more where many are
-    /// almost equally extreme.
+    /// Returns an upper bound of the extent of all objects along `direction`, which exceeds the maximum of
+    /// `extent_of(id)` by at most a few `f32` rounding units of the coordinates. Minus infinity if there are no
+    /// objects. Calls `extent_of` for O(log n) objects on curved surfaces, and for more where many are almost equally
+    /// extreme.
     pub(crate) fn extent_along(
         &self,
         direction: Vector<N, D>,
@@ -415,6 +415,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.unbounded.iter().fold(extent, |extent, &id| max(extent_of(id), extent))
     }
 
+    /// Answers `question`: calls `found` with the id of each result, in no particular order.
     pub(crate) fn answer(&self, question: &Question<'_, N, D>, found: &mut dyn FnMut(u32)) {
         match question {
             Question::Overlapping(aabb) => self.search().each_overlapping(aabb, found),
@@ -423,6 +424,8 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         }
     }
 
+    /// Calls `found` with each box that `sweep` touches at or before `max_time`, in ascending order of (time, id).
+    /// `found` returns the new maximum time.
     pub(crate) fn by_time(
         &self,
         sweep: &Sweep<N, D>,
@@ -432,7 +435,8 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().by_time(sweep, max_time, found);
     }
 
-    /// As [`Self::by_time`], only roughly in order, which is faster.
+    /// Calls `found` with each box that `sweep` touches at or before `max_time`, roughly by ascending time: faster than
+    /// [`Self::by_time`]. `found` returns the new maximum time.
     pub(crate) fn near_first(
         &self,
         sweep: &Sweep<N, D>,
@@ -442,8 +446,8 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().near_first(sweep, max_time, found);
     }
 
-    /// Adds the slabs of faces, which speed up searches for near pairs of faces until the next refit. Unbounded objects
-    /// have none.
+    /// Computes slabs around the faces in each block, which speed up searches for near pairs of faces until the next
+    /// refit. `normals` are by id; no effect unless there is one for each box.
     pub(crate) fn add_slabs<F: Fn(u32) -> [Point<N, D>; 3]>(
         &mut self,
         normals: &[Vector<N, D>],
@@ -458,7 +462,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         &self.tree
     }
 
-    /// Returns the packed tree, if it contains all boxes.
+    /// Returns the packed tree if it contains all boxes; `None` if some are unbounded.
     pub(crate) fn packed_whole(&self) -> Option<&Tree<D>> {
         self.unbounded.is_empty().then_some(&self.tree)
     }
@@ -467,6 +471,8 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         &self.unbounded
     }
 
+    /// Calls `found` with each box at most `max_distance` from `aabb`, in ascending order of (distance, id). `found`
+    /// returns the new maximum distance.
     pub(crate) fn by_distance(
         &self,
         aabb: &Aabb<N, D>,
@@ -476,7 +482,8 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().by_distance(aabb, max_distance, found);
     }
 
-    /// As [`Self::by_distance`], only roughly in order, which is faster.
+    /// Calls `found` with each box at most `max_distance` from `aabb`, roughly by ascending distance: faster than
+    /// [`Self::by_distance`]. `found` returns the new maximum distance.
     pub(crate) fn nearest_first(
         &self,
         aabb: &Aabb<N, D>,

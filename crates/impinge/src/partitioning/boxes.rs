@@ -1,12 +1,12 @@
-//! A user's boxes: checked, counted, united, and packed into a tree.
+//! Functions on the boxes of a user: checks, their count, their union, and a packed tree over them.
 
 use super::BoxTreeError;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::Real;
 
-/// Builds the tree of boxes with different ids; also returns the ids of those that no finite `f32`
-/// box encloses, in order.
+/// Builds a tree from boxes with distinct ids. Also returns the ids of the boxes that no finite
+/// `f32` box encloses, which the tree leaves out, in the order given.
 pub(crate) fn packed<N: Real, const D: usize>(
     lanes: Lanes,
     boxes: impl Iterator<Item = (u32, Aabb<N, D>)>,
@@ -22,7 +22,7 @@ pub(crate) fn packed<N: Real, const D: usize>(
     (Tree::of_still(lanes, bounded), unbounded)
 }
 
-/// Returns an error if a box is inverted or has a NaN.
+/// Returns an error for the first box that is inverted or has a NaN.
 pub(super) fn check<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
     for (index, aabb) in boxes.iter().enumerate() {
         Aabb::try_new(*aabb.mins(), *aabb.maxs())
@@ -31,12 +31,13 @@ pub(super) fn check<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Result<(),
     Ok(())
 }
 
-/// Returns the smallest box around some boxes; `None` for no boxes.
+/// Returns the smallest box around all of `boxes`; `None` if there are none.
 pub(super) fn around<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Option<Aabb<N, D>> {
     boxes.iter().copied().reduce(|all, aabb| all.merged(&aabb))
 }
 
-/// Returns the number of boxes as a `u32` below `u32::MAX`, which the tree reserves for "none".
+/// Converts the number of boxes to `u32`. An error if it is `u32::MAX` or more: the tree reserves
+/// the id `u32::MAX` for "none".
 pub(super) fn count(given: usize) -> Result<u32, BoxTreeError> {
     let count = u32::try_from(given).ok().filter(|&count| count < u32::MAX);
     count.ok_or(BoxTreeError::TooMany { given })

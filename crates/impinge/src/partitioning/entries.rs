@@ -1,11 +1,11 @@
-//! The entries of trees of boxes, compiled in this crate.
+//! Entry points for trees of boxes, whose generic code is compiled in this crate.
 
 use super::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::bounding_volume::Aabb;
 use crate::tables::compiled;
 
 compiled! {
-    /// Entries for building and searching trees of boxes.
+    /// Entry points for building and searching trees of boxes.
     trait SearchEntries;
 
     fn build(boxes: Vec<Aabb<N, D>>) -> Result<BoxTree<N, D>, BoxTreeError> = BoxTree::build;

@@ -25,12 +25,12 @@ pub enum BoxTreeError {
         /// The reason.
         error: AabbError,
     },
-    /// There are more boxes than 32 bits can number.
+    /// The number of boxes does not fit in 32 bits.
     TooMany {
         /// The number of boxes given.
         given: usize,
     },
-    /// The number of boxes differs in a refit.
+    /// A refit was given another number of boxes than the tree has.
     WrongCount {
         /// The number of boxes given.
         given: usize,

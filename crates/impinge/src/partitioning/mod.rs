@@ -1,13 +1,13 @@
-//! Searches among boxes: a tree over a user's boxes, and the searches that it shares with the broad
-//! phase.
+//! Searches among boxes: a tree over the boxes of a user, and the searches that it and the broad
+//! phase share.
 //!
-//! [`BoxTree`] is for static objects of the user's own, each with a box: the triangles of a scene,
-//! the rooms of a building. It returns indices; the objects themselves stay with the user. Objects
-//! that move belong in a broad phase.
+//! [`BoxTree`] is for static objects of the user, each with a box: the triangles of a scene, or the
+//! rooms of a building. It returns indices; the objects themselves stay with the user. Objects that
+//! move on their own belong in a broad phase.
 //!
-//! The packed tree (`bvh`) contains boxes rounded outwards to `f32`, so it misses none; every
-//! proposal is tested against the exact box. Boxes that no `f32` box encloses are kept in a list
-//! beside the tree.
+//! The packed tree (`bvh`) has boxes rounded outwards to `f32`, so it proposes every result; each
+//! proposal is then tested against the exact box. Boxes that no finite `f32` box encloses are kept
+//! in a list beside the tree.
 
 mod box_tree;
 mod boxes;

@@ -4,8 +4,8 @@ use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Block, Bounds, Frontier, GROUP, Gaps, Keys, LANES, Lanes, Slabs, Tree};
 use crate::math::{Point, Real, Vector, min};
 
-/// Exact boxes by id, and the trees over them. Each id in use is in one tree, with a box that
-/// encloses its exact one, or in the list of unbounded boxes.
+/// Exact boxes by id, and the trees over them. Each id in use is either in one of the trees, with a
+/// box that encloses its exact box, or in the list of unbounded boxes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Search<'a, N: Real, const D: usize, const TREES: usize> {
     pub(crate) exact: &'a [Aabb<N, D>],
@@ -14,7 +14,7 @@ pub(crate) struct Search<'a, N: Real, const D: usize, const TREES: usize> {
     pub(crate) lanes: Lanes,
 }
 
-/// A box that moves without rotating, from time zero on.
+/// A box that moves with constant velocity, without rotating, from time zero on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep<N: Real, const D: usize> {
     /// The box at time zero.
@@ -69,7 +69,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         self.unbounded.iter().copied().for_each(propose);
     }
 
-    /// Wraps `found` so that it is called only if the exact box is accepted.
+    /// Wraps `found` in a function that calls it only for ids whose exact box passes `accept`.
     fn accepted(
         &self,
         accept: impl Fn(&Aabb<N, D>) -> bool,
@@ -82,10 +82,10 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         }
     }
 
-    /// Calls `found` with each object whose box the moving box touches at or before `limit`, and
-    /// the first such time, in ascending order of (time, id). `found` returns the new limit, which
-    /// must not increase. A velocity that is not finite and a box without a finite point, such as
-    /// that of a ray with an infinite origin, meet nothing.
+    /// Calls `found` with the id of each object whose box the moving box touches at or before
+    /// `limit`, and the first time of contact, in ascending order of (time, id). `found` returns
+    /// the new limit, which must not increase. Nothing is found if the velocity is not finite or
+    /// the moving box has no finite point, such as the box of a ray with an infinite origin.
     pub(crate) fn by_time(&self, sweep: &Sweep<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
         let Sweep { aabb, velocity } = sweep;
         if !aabb.holds_finite_point() || !velocity.iter().all(|x| x.is_finite_number()) {
@@ -99,9 +99,9 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         self.best_first(limit, &keys, found);
     }
 
-    /// Calls `found` with each object whose box is at most `limit` from `aabb`, and the distance,
-    /// in ascending order of (distance, id). `found` returns the new limit, which must not
-    /// increase. A box without a finite point is near nothing.
+    /// Calls `found` with the id of each object whose box is at most `limit` from `aabb`, and its
+    /// distance, in ascending order of (distance, id). `found` returns the new limit, which must
+    /// not increase. A box without a finite point is near nothing.
     pub(crate) fn by_distance(&self, aabb: &Aabb<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
         if !aabb.holds_finite_point() {
             return;
@@ -113,7 +113,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         self.best_first(limit, &keys, found);
     }
 
-    /// As [`Self::by_time`], only roughly in order.
+    /// Calls `found` with the objects and times that [`Self::by_time`] finds, but only roughly by
+    /// ascending time. `found` returns the new limit, which must not increase.
     pub(crate) fn near_first(&self, sweep: &Sweep<N, D>, limit: N, found: impl FnMut(u32, N) -> N) {
         let Some(slabs) = self.slabs(sweep) else { return };
         let Sweep { aabb, velocity } = sweep;
@@ -125,7 +126,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// As [`Self::by_distance`], only roughly in order.
+    /// Calls `found` with the objects and distances that [`Self::by_distance`] finds, but only
+    /// roughly by ascending distance. `found` returns the new limit, which must not increase.
     pub(crate) fn nearest_first(
         &self,
         aabb: &Aabb<N, D>,
@@ -144,9 +146,10 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// Calls `found` with the objects that the trees propose to [`Self::near_first`], in groups,
-    /// each with a lower bound of the time. For callers that test the objects themselves, which
-    /// makes the exact boxes superfluous.
+    /// Calls `found` with the objects that the moving box may touch by `limit`, in groups, each
+    /// with a lower bound of the time; roughly near ones first. `found` returns the new limit; a
+    /// larger one than before has no effect. The exact boxes are not tested: for callers that test
+    /// the objects themselves.
     pub(crate) fn groups_by_time(
         &self,
         sweep: &Sweep<N, D>,
@@ -163,8 +166,9 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// Calls `found` with the objects that the trees propose to [`Self::nearest_first`], in groups,
-    /// each with a lower bound of the distance.
+    /// Calls `found` with the objects that may be at most `limit` from `aabb`, in groups, each with
+    /// a lower bound of the distance; roughly near ones first. `found` returns the new limit; a
+    /// larger one than before has no effect. The exact boxes are not tested.
     pub(crate) fn groups_by_distance(
         &self,
         aabb: &Aabb<N, D>,
@@ -184,7 +188,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         });
     }
 
-    /// Calls `found` with the unbounded objects, with key zero; returns the new limit.
+    /// Calls `found` with groups of the unbounded objects, each with lower bound zero; returns the
+    /// new limit.
     fn first_unbounded(&self, limit: N, found: &mut impl FnMut(&[(u32, N)]) -> N) -> N {
         self.unbounded.chunks(GROUP).fold(limit, |limit, ids| {
             let mut group = [(0, N::ZERO); GROUP];
@@ -195,7 +200,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         })
     }
 
-    /// Returns the slabs of the moving box; `None` if the velocity is not finite or the box has no
+    /// Prepares the moving box for slab tests; `None` if its velocity is not finite or it has no
     /// finite point.
     fn slabs(&self, sweep: &Sweep<N, D>) -> Option<Slabs<D>> {
         let Sweep { aabb, velocity } = sweep;
@@ -204,8 +209,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
         moves.then(|| Slabs::new(aabb, velocity, self.size()))
     }
 
-    /// Wraps `found` so that it is called only if the key of the exact box is within the limit;
-    /// returns the new limit.
+    /// Wraps `found` in a function that calls it only if the key of the exact box is at most the
+    /// limit so far. The function returns the new limit.
     fn within(
         &self,
         limit: N,
@@ -238,8 +243,8 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
                 frontier.push_object(key, id);
             }
         }
-        // The frontier drops objects beyond an earlier limit. A NaN limit passes through `min`, and
-        // ends the search.
+        // The frontier drops objects beyond an earlier limit, so the limit must not grow. A NaN
+        // limit passes through `min`, and ends the search.
         let mut lowest = limit;
         let lowered = |id: u32, key: N| {
             lowest = min(lowest, found(id, key));
@@ -249,7 +254,7 @@ impl<N: Real, const D: usize, const TREES: usize> Search<'_, N, D, TREES> {
     }
 }
 
-/// The box with the least key so far; at equal keys the lowest index.
+/// The box with the least key so far, and its key; at equal keys the lowest index.
 pub(super) struct Best<N: Real> {
     pub(super) of: Option<(usize, N)>,
     limit: N,
@@ -260,7 +265,7 @@ impl<N: Real> Best<N> {
         Self { of: None, limit }
     }
 
-    /// Considers a box within the limit; returns the new limit.
+    /// Considers a box within the limit. Returns the new limit: the least key so far.
     pub(super) fn offer(&mut self, id: u32, key: N) -> N {
         let index = id as usize;
         if self.of.is_none_or(|(best, least)| key < least || (key == least && index < best)) {
@@ -270,7 +275,7 @@ impl<N: Real> Best<N> {
     }
 }
 
-/// Converts the keys of a group; returns the group and its length.
+/// Converts the keys of a group of at most [`GROUP`] objects; returns the group and its length.
 #[inline(always)]
 fn converted<N: Real>(
     proposed: &[(u32, f32)],

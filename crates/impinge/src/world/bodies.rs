@@ -1,4 +1,4 @@
-//! The record of an object: all that a world keeps except the user's data.
+//! The record of an object: everything that a world stores about it, except the user's data.
 
 use super::changes::ChangeList;
 use super::error::usable_pose;
@@ -11,24 +11,25 @@ use crate::memory::clone_fields;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, PackedQuery};
 use crate::shape::{Compact, Geometry, Shape, ShapeHandle};
 
-/// The broad phase of a world.
+/// The broad phase of a world, of any type.
 pub(crate) type WorldBroadPhase<N, const D: usize> = dyn WorldsBroadPhase<N, D>;
 
 /// State bit: the narrow phase tests the object against itself.
 const SELF_PAIR: u32 = 1 << 31;
-/// State bit: the object is fixed, and has no pairs with other fixed ones.
+/// State bit: the object is fixed, so it has no pairs with other fixed objects.
 const FIXED: u32 = 1 << 30;
 /// State bit: the volume in the broad phase also covers a predicted pose.
 const PREDICTED: u32 = 1 << 29;
-/// Mask of the place in the list of changes; all bits are set for an object that has none.
+/// Mask of the object's index in the list of changes; all bits are set if the object is not in the
+/// list.
 const PLACE: u32 = PREDICTED - 1;
-/// The largest number of entries in the list of changes, and so of objects.
+/// Greatest number of entries in the list of changes, and so of objects.
 pub(super) const MAX_CHANGES: u32 = PLACE;
 
-/// An object as the user left it. Each fact is kept here alone, apart from the copies that the
-/// phases hold as of the last update. 96 bytes for `f32` in 3D.
+/// An object as the user last set it; the phases have copies as of the last update. 96 bytes for
+/// `f32` in 3D.
 ///
-/// Fields that queries read are adjacent, from `isometry` to `groups`; the rest is at both ends:
+/// Fields that queries read are adjacent, from `isometry` to `groups`:
 ///
 /// ```text
 /// shape | isometry | solid | proxy | state | handle | groups | query
@@ -38,11 +39,11 @@ pub(super) const MAX_CHANGES: u32 = PLACE;
 pub(crate) struct WorldBody<N: Space<D>, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
     pub(crate) isometry: N::Isometry,
-    /// A copy of the shape's numbers, if the shape is that small.
+    /// A copy of the shape's numbers, if the shape is small enough.
     solid: Compact<N, D>,
     pub(crate) proxy: ProxyHandle,
-    /// [`SELF_PAIR`], [`FIXED`] and [`PREDICTED`] in the high bits, the place in the list of
-    /// changes below.
+    /// [`SELF_PAIR`], [`FIXED`] and [`PREDICTED`] in the high bits, the index in the list of
+    /// changes ([`PLACE`]) in the low bits.
     state: u32,
     pub(crate) handle: CollisionObjectHandle,
     pub(crate) groups: CollisionGroups,
@@ -53,8 +54,8 @@ clone_fields!([N: Space<D>, const D: usize] WorldBody<N, D> {
     shape, isometry, solid, proxy, state, handle, groups, query,
 });
 
-/// The fields of a body that change when it moves and when an update processes the move; a mark
-/// journals these.
+/// The fields of a body that change when it moves, and when an update processes the move. With
+/// marks, these are recorded.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyMotion<N: Space<D>, const D: usize> {
     isometry: N::Isometry,
@@ -82,14 +83,14 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         Self { shape, isometry, solid, proxy, state: PLACE, handle, groups, query }
     }
 
-    /// Returns the object's place in the list of changes, if it has one.
+    /// Returns the object's index in the list of changes; `None` if it is not in the list.
     #[inline]
     pub(super) fn place(&self) -> Option<u32> {
         let place = self.state & PLACE;
         (place != PLACE).then_some(place)
     }
 
-    /// Sets the object's place in the list of changes, and returns it.
+    /// Stores the object's index in the list of changes, and returns it.
     #[inline]
     pub(super) fn set_place(&mut self, place: usize) -> u32 {
         let small = u32::try_from(place).ok().filter(|&place| place < PLACE);
@@ -98,12 +99,12 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         place
     }
 
-    /// Clears the object's place in the list of changes.
+    /// Marks the object as not in the list of changes.
     pub(super) const fn leave_place(&mut self) {
         self.state |= PLACE;
     }
 
-    /// Flips whether the narrow phase tests the object against itself.
+    /// Toggles whether the narrow phase tests the object against itself.
     pub(super) const fn toggle_self_pair(&mut self) {
         self.state ^= SELF_PAIR;
     }
@@ -125,35 +126,36 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state & other.state & FIXED == 0 && self.groups.can_interact_with_groups(&other.groups)
     }
 
-    /// Returns `true` if the object should be tested against itself: its groups ask for it, and it
-    /// is a composite.
+    /// Returns `true` if the object should be tested against itself: it is a composite, and its
+    /// groups enable self-collision.
     pub(crate) fn wants_self_pair(&self) -> bool {
         self.groups.can_interact_with_self() && self.shape.geometry().as_composite().is_some()
     }
 
-    /// Returns the exact box of the shape at the present pose.
+    /// Returns the exact box of the shape at the object's present pose.
     pub(crate) fn aabb(&self) -> Aabb<N, D> {
         self.aabb_at(&N::pose(&self.isometry))
     }
 
-    /// Returns the box of the shape at `pose`; unbounded if its numbers exceed the scalar's range.
+    /// Returns the box of the shape at `pose`; the unbounded box if coordinates exceed the scalar's
+    /// range.
     pub(super) fn aabb_at(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         usable(self.solid.aabb(&self.shape, pose))
     }
 
-    /// See [`GeometricQueryType::query_limit`].
+    /// Returns the prediction or margin by which the broad phase grows the box; see
+    /// [`GeometricQueryType::query_limit`].
     pub(crate) fn query_limit(&self) -> N {
         self.query.get().query_limit()
     }
 
-    /// Evaluates `question` on the geometry; if a copy of its numbers is at hand, the shape is not
-    /// loaded.
+    /// Evaluates `question` on the geometry. Does not load the shape if the body has a copy of it.
     #[inline(always)]
     pub(crate) fn ask<R>(&self, question: impl FnOnce(Geometry<'_, N, D>) -> R) -> R {
         self.solid.ask(&self.shape, question)
     }
 
-    /// Returns `true` if the volume covers a predicted pose as well.
+    /// Returns `true` if the volume in the broad phase also covers a predicted pose.
     pub(super) const fn is_predicted(&self) -> bool {
         self.state & PREDICTED != 0
     }
@@ -180,8 +182,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         }
     }
 
-    /// Moves the object and clears the prediction. Fails if the isometry has a number that is not
-    /// finite or a rotation that is no unit. An object that is there already does not count as
+    /// Moves the object and clears its prediction. Fails if a number of the isometry is not finite,
+    /// or its rotation is not of unit length. An object that is already there does not become
     /// changed.
     pub(crate) fn set_isometry(
         &mut self,
@@ -200,8 +202,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         Ok(())
     }
 
-    /// Moves the object and sets its predicted pose. Fails if either pose is not finite or not a
-    /// unit rotation.
+    /// Moves the object and sets its predicted pose. Fails if a number of either pose is not
+    /// finite, or a rotation is not of unit length.
     pub(crate) fn set_predicted(
         &mut self,
         list: &mut ChangeList<N, D>,
@@ -254,7 +256,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
     }
 }
 
-/// Returns the box of a placed shape; unbounded where its numbers exceed the scalar's range.
+/// Returns the box of a placed shape; the unbounded box if coordinates exceed the scalar's range.
 pub(super) fn aabb_at<N: Real, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
@@ -262,16 +264,16 @@ pub(super) fn aabb_at<N: Real, const D: usize>(
     usable(shape.aabb(pose))
 }
 
-/// Returns the box; unbounded if a minimum exceeds its maximum or is NaN.
+/// Returns the box, or the unbounded box if a minimum exceeds its maximum or is NaN.
 fn usable<N: Real, const D: usize>(aabb: Aabb<N, D>) -> Aabb<N, D> {
     let is_usable = (0..D).all(|axis| aabb.mins()[axis] <= aabb.maxs()[axis]);
     if is_usable { aabb } else { Aabb::unbounded() }
 }
 
-/// Returns the box grown by `limit` and by a rounding slack of a few units in the last place of the
-/// largest finite coordinate or `limit`. Two grown boxes overlap whenever the solids are at most as
-/// far apart as the sum of both limits; the slack covers the rounding of the boxes, the sum and the
-/// compared distance.
+/// Returns the box grown by `limit` and by a slack for rounding: a few units in the last place of
+/// the largest finite coordinate or of `limit`. Two grown boxes overlap whenever the distance of
+/// the solids is at most the sum of both limits. The slack covers the rounding of the boxes, of the
+/// sum, and of the compared distance.
 pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aabb<N, D> {
     let mut reach = limit;
     for axis in 0..D {

@@ -1,9 +1,9 @@
-//! Changes since the last update: written to the phases by the next one, and found by queries until
-//! then.
+//! Changes since the last update. The next update writes them to the phases; until then queries
+//! find them here.
 //!
-//! The broad phase holds the boxes of the last update. Objects whose boxes changed since are dirty.
-//! The first query after a change builds a [`DirtyTree`] of them, and each later change updates it.
-//! Without queries there is no such tree.
+//! The broad phase has the boxes of the last update. Objects whose boxes changed since then are
+//! dirty. The first query after a change builds a [`DirtyTree`] of them, and each later change
+//! updates it. Without queries there is no such tree.
 
 use super::entries;
 use std::sync::OnceLock;
@@ -17,30 +17,30 @@ use crate::math::{Real, Space};
 use crate::memory::{Look, clone_fields};
 use crate::narrow_phase::{ObjectRow, ObjectTable};
 
-/// Index of an entry whose object was removed.
+/// Handle index in an entry whose object has been removed.
 const GONE: u32 = u32::MAX;
 
-/// Kinds of changes of an object since the last update.
+/// The kinds of changes of an object since the last update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct BodyChanges {
     /// Another object, shape or query type: the whole row of the table must be written.
     row: bool,
-    /// The shape or query type of an object that may have pairs has changed.
+    /// Whether the shape, query type or skin changed of an object that may have pairs.
     algorithm: bool,
-    /// The volume in the broad phase is out of date: the object is dirty.
+    /// Whether the volume in the broad phase is out of date, so that the object is dirty.
     volume: bool,
-    /// The pairs must be filtered again.
+    /// Whether the pairs of the object must be filtered again.
     filter: bool,
 }
 
-/// One object in the list of changes.
+/// An entry of the list of changes, for one object.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyEntry<N: Real, const D: usize> {
     /// Handle index, or [`GONE`] if the object was removed.
     index: u32,
     changes: BodyChanges,
-    /// Exact box of the shape at the present pose; unbounded unless the volume changed.
+    /// Exact box of the shape at the present pose; the unbounded box if the volume has not changed.
     aabb: Aabb<N, D>,
 }
 
@@ -48,17 +48,17 @@ pub(crate) struct BodyEntry<N: Real, const D: usize> {
 #[derive(Debug)]
 pub(crate) struct ChangeList<N: Space<D>, const D: usize> {
     entries: Vec<BodyEntry<N, D>>,
-    /// Predicted poses by handle index, up to the last object with a prediction; meaningless for
-    /// objects without one.
+    /// By handle index, up to the last object with a prediction: the predicted pose. Meaningless
+    /// for objects without one.
     predictions: Vec<N::Isometry>,
-    /// Skins by handle index, up to the last object with one: the distance outside the surface at
-    /// which contacts are measured.
+    /// By handle index, up to the last object with a skin: the skin, which is the distance outside
+    /// the surface at which contacts are measured.
     skins: Vec<N>,
-    /// Tree of the dirty boxes, built by the first query.
+    /// Tree of the dirty boxes, which the first query builds.
     dirty: OnceLock<DirtyTree<D>>,
-    /// Scratch: handle indices of changed objects, sorted.
+    /// Scratch: handle indices of the changed objects, sorted.
     order: Vec<u32>,
-    /// Handle indices of objects whose pair with themselves begins or ends in this update.
+    /// Handle indices of objects whose pair with themselves begins or ends in the next update.
     self_changed: Vec<u32>,
 }
 
@@ -66,11 +66,11 @@ clone_fields!([N: Space<D>, const D: usize] ChangeList<N, D> {
     entries, predictions, skins, dirty, order, self_changed,
 });
 
-/// The receivers of changes when an update begins.
+/// The parts that receive the changes at the start of an update.
 pub(crate) struct Readers<'a, N: Space<D>, const D: usize> {
     pub(crate) table: &'a mut ObjectTable<N, D>,
     pub(crate) broad_phase: &'a mut WorldBroadPhase<N, D>,
-    /// Receives the objects whose shape or query type changed.
+    /// Handle indices of the objects whose shape, query type or skin changed.
     pub(crate) algorithms: &'a mut Vec<u32>,
 }
 
@@ -86,7 +86,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Creates the body of a new object; `proxy` registers its volume in the broad phase.
+    /// Creates the body of a new object. `proxy` registers the object's volume in the broad phase
+    /// and returns its handle.
     pub(crate) fn admit(
         &mut self,
         row: ObjectRow<N, D>,
@@ -130,7 +131,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.volume_around(body, &body.aabb())
     }
 
-    /// As [`Self::volume`], with the exact box given.
+    /// Returns the volume of an object in the broad phase (see [`Self::volume`]) from its exact box
+    /// `aabb`.
     fn volume_around(&self, body: &WorldBody<N, D>, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         let limit = body.query_limit() + self.skin(body.index());
         match self.prediction(body) {
@@ -142,7 +144,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Clears the changes and the skin of an object that is being removed.
+    /// Discards the changes and the skin of an object that is being removed.
     pub(crate) fn forget(&mut self, body: &WorldBody<N, D>) {
         if let Some(skin) = self.skins.get_mut(body.index() as usize) {
             *skin = N::ZERO;
@@ -163,17 +165,17 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         body.place().is_some_and(|place| self.entries[place as usize].changes.volume)
     }
 
-    /// The number of dirty objects.
+    /// Returns the number of dirty objects.
     pub(crate) fn num_dirty(&self) -> usize {
         self.dirty_places().count()
     }
 
-    /// Iterates over the boxes of the dirty objects, by place in this list.
+    /// Iterates over the boxes of the dirty objects, each with its index in this list.
     pub(crate) fn dirty_boxes(&self) -> impl Iterator<Item = (u32, Aabb<N, D>)> {
         self.dirty_places().map(|place| (place, self.box_at(place)))
     }
 
-    /// Returns the box of an object if it is dirty.
+    /// Returns the box of an object; `None` unless the object is dirty.
     pub(crate) fn dirty_box(&self, body: &WorldBody<N, D>) -> Option<Aabb<N, D>> {
         let place = body.place().filter(|_| self.is_dirty(body))?;
         Some(self.box_at(place))
@@ -184,13 +186,13 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         (0..).zip(&self.entries).filter(move |(_, entry)| is_dirty(entry)).map(|(place, _)| place)
     }
 
-    /// Returns the box of the dirty object at a place, grown by the rounding slack.
+    /// Returns the box of the dirty object at index `place`, grown by the slack for rounding.
     fn box_at(&self, place: u32) -> Aabb<N, D> {
         grown(&self.entries[place as usize].aabb, N::ZERO)
     }
 
-    /// Returns the tree that queries search beside the broad phase or instead of it, built by
-    /// `make` on the first call after an update. `None` if nothing changed.
+    /// Returns the tree that queries search in addition to the broad phase, or instead of it. The
+    /// first call after an update builds it with `make`. `None` if nothing changed.
     pub(crate) fn dirty_tree(&self, make: impl FnOnce() -> DirtyTree<D>) -> Option<&DirtyTree<D>> {
         if self.entries.is_empty() {
             return None;
@@ -198,25 +200,25 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         if let Some(tree) = self.made_dirty_tree() {
             return Some(tree);
         }
-        // `make` runs outside the lock: a thread that waits for others to sort their share of the
+        // `make` runs without a lock: a thread that waits for others to sort their part of the
         // boxes may start another query, which must not wait for this one.
         let made = make();
         Some(self.dirty.get_or_init(|| made))
     }
 
-    /// Returns the tree of dirty objects, if a query has built one since the last update.
+    /// Returns the tree of dirty objects; `None` if no query has built it since the last update.
     pub(crate) fn made_dirty_tree(&self) -> Option<&DirtyTree<D>> {
         self.dirty.get()
     }
 
-    /// Returns the handle index of the object that the tree has under `id`.
+    /// Returns the handle index of the object that has the id `id` in the tree.
     #[inline]
     pub(crate) fn dirty_index(&self, tree: &DirtyTree<D>, id: u32) -> u32 {
         if tree.has_all() { id } else { self.entries[id as usize].index }
     }
 
-    /// Returns the handle indices of the changed objects, sorted. [`Self::clear`] takes the list
-    /// back for reuse.
+    /// Takes the sorted list of the handle indices of the changed objects. [`Self::clear`] returns
+    /// its memory.
     pub(crate) fn take_order(&mut self) -> Vec<u32> {
         let mut order = core::mem::take(&mut self.order);
         order.extend(self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE));
@@ -224,7 +226,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         order
     }
 
-    /// Writes the changes of one object to the readers and clears them.
+    /// Writes the changes of an object to the readers, and marks the object as unchanged.
     pub(crate) fn flush(&mut self, body: &mut WorldBody<N, D>, readers: &mut Readers<'_, N, D>) {
         let Some(place) = body.place() else { return };
         let BodyEntry { changes, aabb, .. } = self.entries[place as usize];
@@ -251,7 +253,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Clears all changes, but not the list of objects whose self-pairs change.
+    /// Clears all changes, except the list of objects whose self-pairs change. `order` is the list
+    /// of [`Self::take_order`].
     pub(crate) fn clear(&mut self, mut order: Vec<u32>) {
         order.clear();
         self.order = order;
@@ -259,17 +262,17 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.dirty.take();
     }
 
-    /// Takes the handle indices of objects whose self-pairs begin or end, as of the last flush.
+    /// Takes the handle indices of the objects whose self-pairs begin or end, as of the last flush.
     pub(crate) fn take_self_changed(&mut self) -> Vec<u32> {
         core::mem::take(&mut self.self_changed)
     }
 
-    /// Returns the number of changed objects that still exist.
+    /// Returns the number of changed objects that have not been removed.
     pub(crate) fn num_present(&self) -> usize {
         self.entries.iter().filter(|entry| entry.index != GONE).count()
     }
 
-    /// Returns the length of the list, including removed objects.
+    /// Returns the length of the list, which includes entries of removed objects.
     pub(crate) const fn len(&self) -> usize {
         self.entries.len()
     }
@@ -282,19 +285,19 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         look.trim(&mut self.order);
     }
 
-    /// Notes the new box of an object that moved.
+    /// Records the new box of an object that moved.
     #[inline(always)]
     pub(super) fn note_box(&mut self, body: &mut WorldBody<N, D>, aabb: Aabb<N, D>) {
         self.note_volume(body, aabb);
     }
 
-    /// Notes that the shape or query type of an object has changed.
+    /// Records that the shape, query type or skin of an object has changed.
     pub(super) fn note_row(&mut self, body: &mut WorldBody<N, D>) {
         let changes = self.note_volume(body, body.aabb());
         (changes.row, changes.algorithm) = (true, true);
     }
 
-    /// Notes that the pairs of an object must be filtered again.
+    /// Records that the pairs of an object must be filtered again.
     pub(super) fn note_filter(&mut self, body: &mut WorldBody<N, D>) {
         let place = self.note(body);
         self.entries[place as usize].changes.filter = true;
@@ -312,7 +315,8 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         &mut self.entries[place as usize].changes
     }
 
-    /// Updates the box of an object in the dirty tree; drops the tree if it is worn.
+    /// Updates the box of an object in the dirty tree. Drops the tree if it has had too many
+    /// changes.
     #[cold]
     fn follow(&mut self, body: &WorldBody<N, D>, place: u32) {
         let aabb = self.box_at(place);
@@ -324,7 +328,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         }
     }
 
-    /// Puts an object into the list, unless it is there, and returns its place.
+    /// Adds an object to the list, unless it is already there; returns its index.
     #[inline]
     fn note(&mut self, body: &mut WorldBody<N, D>) -> u32 {
         body.place().unwrap_or_else(|| {
@@ -339,19 +343,19 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         &self.entries
     }
 
-    /// Replaces the list of changes by `entries`, as a rewind needs.
+    /// Replaces the list of changes by `entries`, for a rewind.
     pub(super) fn go_back(&mut self, entries: &[BodyEntry<N, D>]) {
         self.entries.clear();
         self.entries.extend_from_slice(entries);
         self.dirty.take();
     }
 
-    /// Returns the stored pose at an index, whether or not the object has a prediction.
+    /// Returns the pose stored at an index; it is meaningless if the object has no prediction.
     pub(super) fn known_prediction(&self, index: u32) -> Option<N::Isometry> {
         self.predictions.get(index as usize).copied()
     }
 
-    /// Restores the skin and prediction of an object.
+    /// Restores the skin and the stored prediction of an object, for a rewind.
     pub(super) fn keep(&mut self, index: u32, skin: N, prediction: Option<N::Isometry>) {
         if skin != self.skin(index) {
             self.put_skin(index, skin);

@@ -1,6 +1,7 @@
-//! The world: objects in, changes by handle, everything else at the next update.
+//! The world: objects are added and changed by handle; pairs, contacts and events follow at the
+//! next update.
 //!
-//! An operation that fails changes nothing.
+//! An operation that fails has changed nothing.
 
 use super::entries;
 use super::error::{or_panic, usable_pose, usable_query};
@@ -20,15 +21,15 @@ use crate::narrow_phase::{
 };
 use crate::shape::ShapeHandle;
 
-/// Objects, and who touches whom as of the last update.
+/// Collision objects, and the pairs, contacts and proximities among them as of the last update.
 ///
-/// Objects are added, moved, changed and removed by handle; [`Self::update`] then finds the pairs
-/// (broad phase), computes their contacts and proximities (narrow phase) and collects the events
-/// since the update before. World-scale queries see every change at once; pairs, contacts and events
-/// are those of the last update.
+/// Objects are added, moved, changed and removed by handle. [`Self::update`] then finds the pairs
+/// (broad phase), computes their contacts and proximities (narrow phase), and collects the events
+/// since the previous update. Queries of the world see every change at once; pairs, contacts and
+/// events are those of the last update.
 ///
-/// `T` is the user's data, which the world stores and never touches: it need not be `Send` or
-/// `Sync`, and the world is what `T` is. All orders are canonical, by handle.
+/// `T` is the user's data, which the world stores and never accesses. It need not be `Send` or
+/// `Sync`; the world is `Send` or `Sync` if `T` is. All orders are canonical, by handle.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -54,24 +55,24 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) objects: CollisionObjects<N, D, T>,
     pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
     pub(super) narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>,
-    /// The phases that take over at the next update; `None` if they stay.
+    /// The phases that replace the present ones at the next update; `None` if those stay.
     pub(super) next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
     pub(super) next_narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     pub(super) filters: Filters<N, D, T>,
     /// The events of the last update.
     pub(super) events: Events,
-    /// Events caused by removals and [`Self::update_pair`] since the last update; the next one
-    /// delivers them.
+    /// Events of removals and [`Self::update_pair`] since the last update, which the next one
+    /// delivers.
     pub(super) queued: Events,
-    /// The next update keeps the events of the last one.
+    /// Whether the next update keeps the events of the last one.
     pub(super) keeps_events: bool,
-    /// The removed objects that events name.
+    /// Removed objects whose handles are in events.
     pub(super) removed: RemovedObjects<N, D, T>,
-    /// Scratch: the objects whose pairs need other algorithms.
+    /// Scratch: handle indices of objects whose pairs need other algorithms.
     pub(super) algorithms: Vec<u32>,
-    /// Scratch: the pairs that started or stopped.
+    /// Scratch: pairs that started or stopped in an update.
     pub(super) interactions: Vec<Interaction>,
-    /// Recent lengths of the scratch lists and events, by which memory is released.
+    /// Recent lengths of the scratch lists and of the events, which decide when memory is released.
     pub(super) recent: Recent,
     pub(super) history: History<N, D, T>,
 }
@@ -80,12 +81,12 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Creates an empty world.
     ///
-    /// `margin` is the length by which the broad phase loosens each box on every side, so that
+    /// `margin` is the distance by which the broad phase loosens each box on every side, so that
     /// objects that move less cost little. A fiftieth of the size of a typical object is a good
-    /// value. It never changes an exact answer.
+    /// value. The margin never affects exact results.
     ///
     /// # Panics
-    /// If the margin is negative or not finite; [`Self::try_new`] returns these.
+    /// If the margin is negative or not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(margin: N) -> Self {
@@ -118,15 +119,17 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Adds an object and returns its handle. Queries see it at once, pairs at the next update.
+    /// Adds an object and returns its handle. Queries see it at once, and pairs follow at the next
+    /// update.
     ///
     /// `query_type` is a [`GeometricQueryType`], a
     /// [`ContactQuery`](crate::narrow_phase::ContactQuery) or a
     /// [`ProximityQuery`](crate::narrow_phase::ProximityQuery); the last two name their numbers.
     ///
     /// # Panics
-    /// If the position has a number that is not finite or a rotation of another length than 1, a number of the
-    /// query type is negative or not finite, or the world is full; [`Self::try_add`] returns these.
+    /// If a number of the position is not finite, the rotation is not of unit length, a number of
+    /// the query type is negative or not finite, or the world is full; [`Self::try_add`] returns an
+    /// error instead.
     #[track_caller]
     pub fn add(
         &mut self,
@@ -142,8 +145,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Adds an object; see [`Self::add`].
     ///
     /// # Errors
-    /// If the position has a number that is not finite or a rotation of another length than 1, a number of the
-    /// query type is negative or not finite, or the world is full. The world is unchanged then.
+    /// If a number of the position is not finite, the rotation is not of unit length, a number of
+    /// the query type is negative or not finite, or the world is full. Then the world is unchanged.
     pub fn try_add(
         &mut self,
         position: N::Isometry,
@@ -162,10 +165,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Removes objects. Their pairs end at once; the resulting events come first in the next batch.
-    /// As long as an event names a removed object, [`Self::removed_object`] returns it.
+    /// As long as an event contains the handle of a removed object, [`Self::removed_object`]
+    /// returns that object.
     ///
     /// # Panics
-    /// If a handle is stale or occurs twice; [`Self::try_remove`] returns these.
+    /// If a handle is stale or occurs twice; [`Self::try_remove`] returns an error instead.
     #[track_caller]
     pub fn remove(&mut self, handles: &[CollisionObjectHandle]) {
         or_panic(self.try_remove(handles));
@@ -174,7 +178,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Removes objects; see [`Self::remove`].
     ///
     /// # Errors
-    /// If a handle is stale or occurs twice. No object is removed then.
+    /// If a handle is stale or occurs twice. Then no object is removed.
     pub fn try_remove(&mut self, handles: &[CollisionObjectHandle]) -> Result<(), WorldError> {
         let mut proxies = Vec::with_capacity(handles.len());
         for &handle in handles {
@@ -200,7 +204,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Returns an error if a handle occurs twice.
+/// Returns an error for a handle that occurs twice.
 fn refuse_repeated(handles: &[CollisionObjectHandle]) -> Result<(), WorldError> {
     let mut sorted = handles.to_vec();
     sorted.sort_unstable();
@@ -212,11 +216,11 @@ fn refuse_repeated(handles: &[CollisionObjectHandle]) -> Result<(), WorldError> 
 
 /// Changing objects in place.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Moves an object. Queries see it at once, pairs at the next update.
+    /// Moves an object. Queries see the move at once, and pairs follow at the next update.
     ///
     /// # Panics
-    /// If the handle is stale or the position has a number that is not finite or a rotation of another length
-    /// than 1; [`Self::try_set_position`] returns these.
+    /// If the handle is stale, a number of the position is not finite, or the rotation is not of
+    /// unit length; [`Self::try_set_position`] returns an error instead.
     #[track_caller]
     pub fn set_position(&mut self, handle: CollisionObjectHandle, position: N::Isometry) {
         or_panic(self.try_set_position(handle, position));
@@ -225,8 +229,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Moves an object; see [`Self::set_position`].
     ///
     /// # Errors
-    /// If the handle is stale or the position has a number that is not finite or a rotation of another length
-    /// than 1. The world is unchanged then.
+    /// If the handle is stale, a number of the position is not finite, or the rotation is not of
+    /// unit length. Then the world is unchanged.
     pub fn try_set_position(
         &mut self,
         handle: CollisionObjectHandle,
@@ -236,12 +240,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         entries::set_isometry(body, changes, position)
     }
 
-    /// Moves many objects: all of them or, on an error, none. If a handle occurs several times, its
-    /// last position counts.
+    /// Moves many objects: all of them or, on an error, none. If a handle occurs several times, the
+    /// object gets the last position.
     ///
     /// # Panics
-    /// If a handle is stale or a position has a number that is not finite or a rotation of another length
-    /// than 1; [`Self::try_set_positions`] returns these.
+    /// If a handle is stale, a number of a position is not finite, or a rotation is not of unit
+    /// length; [`Self::try_set_positions`] returns an error instead.
     #[track_caller]
     pub fn set_positions(&mut self, positions: &[(CollisionObjectHandle, N::Isometry)]) {
         or_panic(self.try_set_positions(positions));
@@ -250,8 +254,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Moves many objects; see [`Self::set_positions`].
     ///
     /// # Errors
-    /// If a handle is stale or a position has a number that is not finite or a rotation of another length
-    /// than 1. The world is unchanged then.
+    /// If a handle is stale, a number of a position is not finite, or a rotation is not of unit
+    /// length. Then the world is unchanged.
     pub fn try_set_positions(
         &mut self,
         positions: &[(CollisionObjectHandle, N::Isometry)],
@@ -266,16 +270,17 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Gives an object another shape. Its pairs are evaluated anew at the next update.
+    /// Replaces the shape of an object. Queries see it at once; the object's pairs are computed
+    /// anew at the next update.
     ///
     /// # Panics
-    /// If the handle is stale; [`Self::try_set_shape`] returns this.
+    /// If the handle is stale; [`Self::try_set_shape`] returns an error instead.
     #[track_caller]
     pub fn set_shape(&mut self, handle: CollisionObjectHandle, shape: ShapeHandle<N, D>) {
         or_panic(self.try_set_shape(handle, shape));
     }
 
-    /// Gives an object another shape; see [`Self::set_shape`].
+    /// Replaces the shape of an object; see [`Self::set_shape`].
     ///
     /// # Errors
     /// If the handle is stale. The world is unchanged then.
@@ -289,17 +294,17 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Gives an object other groups. Its pairs start and stop accordingly at the next update; queries
-    /// see the groups at once.
+    /// Replaces the groups of an object. Queries see the groups at once; pairs start and stop
+    /// accordingly at the next update.
     ///
     /// # Panics
-    /// If the handle is stale; [`Self::try_set_collision_groups`] returns this.
+    /// If the handle is stale; [`Self::try_set_collision_groups`] returns an error instead.
     #[track_caller]
     pub fn set_collision_groups(&mut self, handle: CollisionObjectHandle, groups: CollisionGroups) {
         or_panic(self.try_set_collision_groups(handle, groups));
     }
 
-    /// Gives an object other groups; see [`Self::set_collision_groups`].
+    /// Replaces the groups of an object; see [`Self::set_collision_groups`].
     ///
     /// # Errors
     /// If the handle is stale. The world is unchanged then.
@@ -313,12 +318,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(())
     }
 
-    /// Changes the query type of an object: its pairs are computed accordingly from the next update
-    /// on.
+    /// Changes the query type of an object. From the next update on its pairs are computed
+    /// accordingly.
     ///
     /// # Panics
-    /// If the handle is stale or a number of the query type is negative or not finite;
-    /// [`Self::try_set_query_type`] returns these.
+    /// If the handle is stale, or a number of the query type is negative or not finite;
+    /// [`Self::try_set_query_type`] returns an error instead.
     #[track_caller]
     pub fn set_query_type(
         &mut self,
@@ -346,7 +351,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
 /// Looking objects up.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the object of a handle; `None` for a stale one.
+    /// Returns the object with this handle; `None` for a stale handle.
     #[must_use]
     pub fn collision_object(
         &self,
@@ -355,7 +360,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects.get(handle)
     }
 
-    /// Returns the object of a handle, to change its data; `None` for a stale one.
+    /// Returns the object with this handle, for changes of its data; `None` for a stale handle.
     #[must_use]
     pub fn collision_object_mut(
         &mut self,
@@ -364,7 +369,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects.get_mut(handle)
     }
 
-    /// The objects, in order of their handles.
+    /// Iterates over the objects, in order of their handles.
     pub fn collision_objects(&self) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
         self.objects.iter()
     }
@@ -372,8 +377,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the handle in this world with the index and generation of `handle`, which may come
     /// from another world or from a file. `None` if there is no such object.
     ///
-    /// For worlds that are filled alike: a server and its clients, a prediction, a replay. The
-    /// caller must know that both objects mean the same thing.
+    /// For worlds that are filled in the same way: a server and its clients, a prediction, a
+    /// replay. The caller must know that both objects correspond.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -396,7 +401,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Iterates over the free indices ([`CollisionObjectHandle::uid`]) of removed objects. New
-    /// objects take the last one first; after these come indices never used before.
+    /// objects take the last index of the list first; after all of these they take new indices.
     ///
     /// Together with the objects, these indices determine the handles of all later objects.
     ///
@@ -430,7 +435,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.filters.names()
     }
 
-    /// Returns `true` if the handle is that of an object in this world.
+    /// Returns `true` if the handle belongs to an object in this world.
     #[must_use]
     pub fn contains(&self, handle: CollisionObjectHandle) -> bool {
         self.objects.get(handle).is_some()

@@ -8,8 +8,8 @@ use crate::bounding_volume::BoundingVolume;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// Prints the numbers of objects and pairs, and the changes that wait for the next update: with
-/// `pending: []` pairs, contacts and events are up to date.
+/// Prints the numbers of objects and pairs, and the kinds of changes that wait for the next update.
+/// If `pending` is `[]`, pairs, contacts and events are up to date.
 impl<N: Space<D>, const D: usize, T> fmt::Debug for CollisionWorld<N, D, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("CollisionWorld")
@@ -22,7 +22,7 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for CollisionWorld<N, D, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns what waits for the next update, in words.
+    /// Returns descriptions of the changes that wait for the next update.
     fn pending(&self) -> Vec<String> {
         let counts = [
             (self.objects.changes.num_present(), "changed objects"),
@@ -60,25 +60,27 @@ impl<N: Space<D>, const D: usize, T: fmt::Debug> fmt::Debug for CollisionObject<
     }
 }
 
-/// A pair filter without state.
+/// A pair filter, as a function without state.
 type PairRule<'a, N, const D: usize, T> =
     dyn Fn(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool + 'a;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Checks the invariants, and that the narrow phase has every pair whose boxes overlap and that
-    /// groups and filters allow. Tests every pair of objects. Valid right after an update.
+    /// groups and filters allow. Tests every pair of objects, so it is slow. Valid right after an
+    /// update.
     ///
     /// # Errors
-    /// A sentence that names the violated invariant.
+    /// Returns a sentence that names the violated invariant.
     #[doc(hidden)]
     pub fn validate(&self) -> Result<(), String> {
         self.validate_with(&|_, _| true)
     }
 
-    /// As [`Self::validate`], for a world whose updates borrow a filter ([`Self::update_with`]).
+    /// Checks the invariants of a world whose updates borrow the filter `lent`
+    /// ([`Self::update_with`]); see [`Self::validate`].
     ///
     /// # Errors
-    /// A sentence that names the violated invariant.
+    /// Returns a sentence that names the violated invariant.
     #[doc(hidden)]
     pub fn validate_with(&self, lent: &PairRule<'_, N, D, T>) -> Result<(), String> {
         self.objects.validate(&*self.broad_phase)?;
@@ -100,7 +102,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Returns the allowed pairs whose volumes overlap.
+    /// Returns the pairs that groups and filters allow and whose loosened volumes overlap.
     fn expected_pairs(
         &self,
         lent: &PairRule<'_, N, D, T>,

@@ -10,14 +10,15 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Changes a copy of an object's shape, which must be of type `S`, and returns the result of
     /// `change`.
     ///
-    /// The object gets the copy as its new shape: other objects that share the old one keep it, and
-    /// so do the contacts of the last update, which can be read until the next. Queries see the new
-    /// shape at once, pairs at the next update, as with [`Self::set_shape`]; contacts whose
-    /// features or places stay keep their ids. Costs a copy of the shape besides what `change`
-    /// costs.
+    /// The object gets the copy as its new shape. Other objects that share the old shape keep it,
+    /// and so do the contacts of the last update, which can be read until the next one. Queries see
+    /// the new shape at once, and pairs follow at the next update, as after [`Self::set_shape`];
+    /// contacts whose features or positions stay keep their ids. Costs a copy of the shape, and the
+    /// call of `change`.
     ///
     /// # Panics
-    /// If the handle is stale or the shape of another type; [`Self::try_deform`] returns these.
+    /// If the handle is stale or the shape is of another type; [`Self::try_deform`] returns an
+    /// error instead.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -51,8 +52,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Changes the shape of an object; see [`Self::deform`].
     ///
     /// # Errors
-    /// If the handle is stale or the shape of another type. `change` is not called and the world
-    /// unchanged then.
+    /// If the handle is stale or the shape is of another type. Then `change` is not called, and the
+    /// world is unchanged.
     pub fn try_deform<S: Shape<N, D> + Clone, R>(
         &mut self,
         handle: CollisionObjectHandle,

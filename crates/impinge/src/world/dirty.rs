@@ -1,13 +1,13 @@
 //! Tree of the boxes of dirty objects, for the queries before the next update.
 //!
-//! The tree is built at once, in an order that serves searches, and then updated box by box: each change costs the path
-//! from a leaf block to the root. Changes wear the order: after `max(32, n / 4)` of them for `n` boxes the tree is
-//! dropped, and the next query builds another. So a change costs amortised O(log n), whether queries come after each
-//! one or after many. A search costs as much as in the broad phase, plus one block for each 16 boxes that were added
-//! since the tree was built.
+//! The tree is built at once, in an order that makes searches fast, and then updated box by box: each change costs the
+//! path from a leaf block to the root. Changes spoil the order: after `max(32, n / 4)` changes of a tree of `n` boxes
+//! it is dropped, and the next query builds a new one. So a change costs amortised O(log n), whether queries come after
+//! each change or after many. A search costs as much as in the broad phase, plus one block for every 16 boxes that were
+//! added since the tree was built.
 //!
 //! Searching two trees costs more than searching one tree of all boxes. If at least a quarter of the objects are dirty,
-//! this tree holds the others too (`has_all`), and queries skip the broad phase.
+//! this tree also has the boxes of the others (`has_all`), and queries skip the broad phase.
 
 use super::bodies::WorldBody;
 use crate::bounding_volume::Aabb;
@@ -15,12 +15,12 @@ use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::{Real, Space};
 use crate::partitioning::{Search, Sweep, packed};
 
-/// Least number of changes that a tree takes before it is worn.
+/// Least number of changes after which a tree is dropped.
 const MIN_PATIENCE: usize = 32;
-/// A tree of `n` boxes takes `n / PATIENCE` changes before it is worn.
+/// A tree of `n` boxes is dropped after `n / PATIENCE` changes, if that is more than [`MIN_PATIENCE`].
 const PATIENCE: usize = 4;
 
-/// Boxes by id. The ids are handle indices if the tree holds all objects, else places in the list of changes.
+/// Boxes with ids. The ids are handle indices if the tree has all objects, else indices in the list of changes.
 #[derive(Clone, Debug)]
 pub(crate) struct DirtyTree<const D: usize> {
     has_all: bool,
@@ -28,15 +28,15 @@ pub(crate) struct DirtyTree<const D: usize> {
     /// Ids of boxes that no finite `f32` box encloses.
     unbounded: Vec<u32>,
     lanes: Lanes,
-    /// Number of changes left until the order is worn.
+    /// Number of changes until the tree should be dropped.
     patience: usize,
 }
 
-/// Receives a few ids with lower bounds of their keys; returns the largest key that still counts.
+/// Receives a group of ids with lower bounds of their keys; returns the new limit of keys.
 pub(crate) type DirtyVisitor<'a, N> = dyn FnMut(&[(u32, N)]) -> N + 'a;
 
 impl<const D: usize> DirtyTree<D> {
-    /// Builds the tree of boxes with different ids; `has_all` if they are those of all objects.
+    /// Builds a tree from boxes with distinct ids. `has_all` is `true` if they are the boxes of all objects.
     pub(crate) fn new<N: Real>(
         has_all: bool,
         boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
@@ -47,23 +47,23 @@ impl<const D: usize> DirtyTree<D> {
         Self { has_all, tree, unbounded, lanes, patience }
     }
 
-    /// Returns `true` if the tree also holds clean objects and its ids are handle indices.
+    /// Returns `true` if the tree also has the boxes of clean objects; its ids are then handle indices.
     #[inline]
     pub(crate) const fn has_all(&self) -> bool {
         self.has_all
     }
 
-    /// Returns `true` if the tree has taken too many changes and should be dropped.
+    /// Returns `true` if the tree has had so many changes that it should be dropped.
     pub(crate) const fn is_worn(&self) -> bool {
         self.patience == 0
     }
 
-    /// Returns the id that the object has here, if it is in the tree at all.
+    /// Returns the id under which the tree has the object, if at all; `None` if it cannot be in the tree.
     pub(crate) fn id_of<N: Space<D>>(&self, body: &WorldBody<N, D>) -> Option<u32> {
         if self.has_all { Some(body.index()) } else { body.place() }
     }
 
-    /// Sets the box of an id, new or known.
+    /// Sets the box with this id, which may be new.
     pub(crate) fn put<N: Real>(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let bounds = Bounds::enclosing(aabb);
         if !self.tree.contains(id) || !bounds.is_finite() {
@@ -77,7 +77,7 @@ impl<const D: usize> DirtyTree<D> {
         self.patience = self.patience.saturating_sub(1);
     }
 
-    /// Removes the box of an id, if it has one.
+    /// Removes the box with this id; does nothing if there is none.
     pub(crate) fn take(&mut self, id: u32) {
         if self.tree.contains(id) {
             self.tree.remove(id);
@@ -86,8 +86,8 @@ impl<const D: usize> DirtyTree<D> {
         }
     }
 
-    /// Calls `found` with the ids whose boxes the moving box may touch by `limit`, and with lower bounds of these
-    /// times.
+    /// Calls `found` with groups of ids whose boxes the moving box may touch by `limit`, each with a lower bound of the
+    /// time.
     pub(crate) fn by_time<N: Real>(
         &self,
         sweep: &Sweep<N, D>,
@@ -97,8 +97,8 @@ impl<const D: usize> DirtyTree<D> {
         self.search().groups_by_time(sweep, limit, found);
     }
 
-    /// Calls `found` with the ids whose boxes may be at most `limit` from `aabb`, and with lower bounds of these
-    /// distances.
+    /// Calls `found` with groups of ids whose boxes may be at most `limit` from `aabb`, each with a lower bound of the
+    /// distance.
     pub(crate) fn by_distance<N: Real>(
         &self,
         aabb: &Aabb<N, D>,
@@ -108,7 +108,7 @@ impl<const D: usize> DirtyTree<D> {
         self.search().groups_by_distance(aabb, limit, found);
     }
 
-    /// Checks the tree, and that it holds exactly these boxes; the error says what is wrong.
+    /// Checks the tree, and that it has exactly these boxes; the error describes the violation.
     pub(crate) fn validate<N: Real>(
         &self,
         boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
@@ -148,7 +148,7 @@ mod tests {
     type Box2 = Aabb<f32, 2>;
     type World = CollisionWorld<f32, ()>;
 
-    /// Returns a number from 0 to `bound - 1`.
+    /// Returns a pseudorandom number from 0 to `bound - 1`.
     fn below(state: &mut u64, bound: u16) -> u16 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040);
         u16::try_from((*state >> 33) % u64::from(bound)).expect("below a u16")
@@ -162,7 +162,7 @@ mod tests {
         Vector::from([(); 2].map(|()| f32::from(below(state, side))))
     }
 
-    /// Counts the blocks that a search for a square opens.
+    /// Returns the number of blocks that a search for a square opens.
     fn opened(dirty: &DirtyTree<2>, square: &Box2) -> usize {
         let (mut count, still) = (0, Vector::zeros());
         let test = |block: &Block<2>| {
@@ -173,8 +173,8 @@ mod tests {
         count
     }
 
-    /// Returns the mean number of opened blocks for each search, when `count` boxes are first added one by one and then
-    /// moved one by one, with a search after each change: one number for each of the two phases.
+    /// Adds `count` boxes one by one, then moves them one by one, with a search after each change. Returns the mean
+    /// number of opened blocks per search, for each of the two phases.
     fn opened_on_average(count: u16, state: &mut u64) -> [f64; 2] {
         let side = (1..256).find(|side| side * side > count).unwrap_or(256) - 1;
         let mut boxes: Vec<(u32, Box2)> = Vec::new();
@@ -200,7 +200,7 @@ mod tests {
     fn searches_among_many_changes_look_at_few_blocks() {
         let [[few_new, few], [many_new, many]] =
             [512, 8192].map(|count| opened_on_average(count, &mut 9));
-        // Boxes added since the tree was built, an eighth of all on average, lie in blocks by age.
+        // Boxes that were added since the tree was built, on average an eighth of all, lie in blocks by age.
         let unsorted = |count: f64| count / 8.0 / 16.0;
         for (count, opened) in [(512.0, few_new), (8192.0, many_new)] {
             assert!(opened < 8.0 + unsorted(count), "{opened} blocks of {count} boxes");

@@ -7,8 +7,8 @@ use crate::math::Space;
 /// The default margin of a world.
 const USUAL_MARGIN: f64 = 0.02;
 
-/// An empty world with margin 0.02, which suits objects of size 1. The margin never changes an
-/// exact answer; [`CollisionWorld::new`] takes another.
+/// Creates an empty world with margin 0.02, which suits objects of size 1. The margin never affects
+/// exact results; [`CollisionWorld::new`] takes another one.
 impl<N: Space<D>, const D: usize, T> Default for CollisionWorld<N, D, T> {
     fn default() -> Self {
         Self::new(N::lit(USUAL_MARGIN))
@@ -17,9 +17,9 @@ impl<N: Space<D>, const D: usize, T> Default for CollisionWorld<N, D, T> {
 
 /// Removing many objects at once.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Removes all objects, as [`Self::remove`] of all handles: each touching or near pair stops,
-    /// with one event in the next batch, and no handle is given out again. Filters, phases and the
-    /// margin stay, and so do the events of the last update until the next.
+    /// Removes all objects. Each touching or near pair stops, with one event in the next batch, and
+    /// no handle is issued again. Filters, phases and the margin stay, and the events of the last
+    /// update stay until the next one.
     ///
     /// ```
     /// use impinge::dim2::events::ContactEvent;
@@ -43,10 +43,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.retain(|_| false);
     }
 
-    /// Removes the objects for which `keeps` is false, as [`Self::remove`] of their handles: each
-    /// touching or near pair that loses an object stops, with one event in the next batch. `keeps`
-    /// is called once for each object, in order of the handles; a panic in it leaves the world
-    /// unchanged.
+    /// Removes the objects for which `keeps` returns `false`. Each touching or near pair that loses
+    /// an object stops, with one event in the next batch. `keeps` is called once for each object,
+    /// in order of the handles; if it panics, the world is unchanged.
     ///
     /// ```
     /// use impinge::dim3::math::Isometry;

@@ -1,4 +1,5 @@
-//! The entries of worlds: functions without the user's data type, compiled in this crate.
+//! Entry points of worlds: functions without the user's data type, which are compiled in this
+//! crate.
 
 use super::bodies::WorldBody;
 use super::changes::{ChangeList, Readers};
@@ -21,7 +22,7 @@ use crate::shape::{Geometry, Shape, ShapeHandle};
 use crate::tables::compiled;
 
 compiled! {
-    /// Entries of worlds.
+    /// Entry points of worlds.
     trait WorldEntries;
 
     /// Creates the broad phase of a new world.
@@ -61,7 +62,7 @@ compiled! {
         readers: &mut Readers<'_, N, D>,
     ) = ChangeList::flush;
 
-    /// Creates the tree of dirty objects.
+    /// Creates a tree of dirty objects.
     fn new_dirty_tree(
         has_all: bool,
         boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
@@ -85,7 +86,7 @@ compiled! {
         found: &mut DirtyVisitor<'_, N>,
     ) = DirtyTree::by_distance;
 
-    /// Casts a ray against one object; see `WorldBody::cast_ray`.
+    /// Casts a ray against an object; see `WorldBody::cast_ray`.
     fn cast_ray(
         body: &WorldBody<N, D>,
         ray: &Ray<N, D>,
@@ -93,7 +94,7 @@ compiled! {
         solid: bool,
     ) -> Option<RayIntersection<N, D>> = WorldBody::cast_ray;
 
-    /// Returns the point of one object that is nearest to `point`, and its distance.
+    /// Returns the projection of `point` on an object, and its distance; see `WorldBody::project`.
     fn project(
         body: &WorldBody<N, D>,
         point: &Point<N, D>,
@@ -104,7 +105,7 @@ compiled! {
     /// Returns `true` if the object contains a point.
     fn holds(body: &WorldBody<N, D>, point: &Point<N, D>) -> bool = WorldBody::holds;
 
-    /// Returns all manifolds, read in place; `slots` gives the handles of the objects.
+    /// Iterates over all manifolds, read in place; `slots` has the handles of the objects.
     fn contact_views<'a>(
         narrow_phase: &'a DefaultNarrowPhase<N, D>,
         table: &'a ObjectTable<N, D>,
@@ -156,35 +157,37 @@ compiled! {
 }
 
 compiled! {
-    /// Entries for single objects in queries, small enough to be inlined in an optimised program.
+    /// Entry points for single objects in queries, small enough to be inlined in an optimised
+    /// program.
     inlined trait SmallWorldEntries;
 
-    /// Returns `true` if the box of an object overlaps another box.
+    /// Returns `true` if the exact box of an object overlaps `aabb`.
     fn meets(body: &WorldBody<N, D>, aabb: &Aabb<N, D>) -> bool = shape::meets;
 
-    /// Returns a shape placed at an isometry.
+    /// Returns a shape placed at a position.
     fn placed_at<'a>(
         position: &<N as Space<D>>::Isometry,
         shape: Geometry<'a, N, D>,
     ) -> Placed<'a, N, D> = Placed::of_isometry;
 
-    /// Returns the box of a shape at an isometry; `None` if that is not finite.
+    /// Returns the box of a placed shape; `None` if the position is not finite.
     fn around(
         position: &<N as Space<D>>::Isometry,
         shape: &dyn Shape<N, D>,
     ) -> Option<Aabb<N, D>> = shape::around;
 
-    /// Returns `true` if a shape touches an object.
+    /// Returns `true` if a placed shape touches or overlaps an object.
     fn touches(placed: &Placed<'_, N, D>, body: &WorldBody<N, D>) -> bool = shape::touches;
 
-    /// Returns the separation of a shape from an object; `None` above `limit`.
+    /// Returns the separation of a placed shape and an object; `None` if their distance exceeds
+    /// `limit`.
     fn separation_from(
         placed: &Placed<'_, N, D>,
         body: &WorldBody<N, D>,
         limit: N,
     ) -> Option<Separation<N, D>> = shape::separation_from;
 
-    /// Creates a shape cast.
+    /// Creates a shape cast; `None` if the position or velocity is not finite.
     fn new_cast<'a>(
         position: &<N as Space<D>>::Isometry,
         velocity: &Vector<N, D>,
@@ -192,7 +195,8 @@ compiled! {
         options: &ImpactOptions<N>,
     ) -> Option<Cast<'a, N, D>> = Cast::new;
 
-    /// Returns when and how the cast shape hits an object.
+    /// Returns the time and the impact of the cast shape with an object; `None` if it does not hit
+    /// the object by `latest`.
     fn cast_impact(
         cast: &Cast<'_, N, D>,
         body: &WorldBody<N, D>,

@@ -6,7 +6,8 @@ use super::WorldMark;
 use crate::math::{Pose, Real, Space, is_unit};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 
-/// Why a world refused an operation; the world is unchanged then. Values are given as `f64`, exactly.
+/// The reason why a world refused an operation, which then changed nothing. Values are converted to
+/// `f64` exactly.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -23,23 +24,23 @@ use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorldError {
-    /// The handle is stale or unknown: the object was removed, or belongs to another world.
+    /// The handle is stale or unknown: its object was removed, or belongs to another world.
     StaleHandle(CollisionObjectHandle),
-    /// The handle occurs twice among those to remove.
+    /// The handle occurs twice in a list of objects to remove.
     RepeatedHandle(CollisionObjectHandle),
     /// A number of a position is NaN or infinite.
     Position {
-        /// The object to be moved; `None` for one to be added.
+        /// The object to be moved; `None` for an object to be added.
         handle: Option<CollisionObjectHandle>,
         /// The number.
         value: f64,
     },
-    /// The complex number or quaternion of a position is no rotation: its length differs from 1 by more than
-    /// 0.8 %.
+    /// The rotation of a position, a complex number or quaternion, is not of unit length: it
+    /// differs from 1 by more than 0.8 %.
     Rotation {
-        /// The object to be moved; `None` for one to be added.
+        /// The object to be moved; `None` for an object to be added.
         handle: Option<CollisionObjectHandle>,
-        /// The length.
+        /// The length of the rotation's complex number or quaternion.
         length: f64,
     },
     /// A number of a query type is negative, NaN or infinite.
@@ -59,9 +60,9 @@ pub enum WorldError {
         /// The number.
         value: f64,
     },
-    /// The shape of the object is of another type than the one to be deformed.
+    /// The shape of the object is not of the type that is to be deformed.
     ShapeType(CollisionObjectHandle),
-    /// The world does not keep the mark: it has ended, or belongs to another world.
+    /// The mark has ended, or belongs to another world.
     MarkGone(WorldMark),
     /// The number of objects has reached the maximum.
     Full,
@@ -116,7 +117,7 @@ impl fmt::Display for WorldError {
 impl std::error::Error for WorldError {}
 
 /// Returns the pose of an isometry; an error if a number is not finite or the rotation is not of
-/// length 1.
+/// unit length.
 #[inline]
 pub(super) fn usable_pose<N: Space<D>, const D: usize>(
     isometry: &N::Isometry,
@@ -157,7 +158,8 @@ pub(super) fn usable_query<N: Real>(
     }
 }
 
-/// Returns the value, or panics with the text of the error: the end of every panicking method.
+/// Returns the value, or panics with the text of the error. Used by the panicking variants of
+/// methods.
 #[track_caller]
 pub(super) fn or_panic<S>(result: Result<S, WorldError>) -> S {
     match result {

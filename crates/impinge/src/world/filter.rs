@@ -1,4 +1,4 @@
-//! User-defined filters on the pairs that the broad phase finds.
+//! Filters of the user on the pairs that the broad phase finds.
 
 use core::fmt;
 use std::sync::Arc;
@@ -9,14 +9,15 @@ use crate::math::Space;
 use crate::memory::clone_fields;
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// Decides which pairs may exist at all.
+/// Decides which pairs may exist.
 ///
-/// Called only for pairs that the groups allow, and only when a pair is about to start; all filters
-/// of a world must return `true`. The result for a pair must stay the same until the filter is
-/// registered again or the pairs are filtered again ([`CollisionWorld::refilter_pairs_of`]).
+/// A filter is called only for pairs that the groups allow, and only when a pair is about to start.
+/// All filters of a world must return `true` for the pair to start. The result for a pair must not
+/// change until the filter is registered again or the pairs are filtered again
+/// ([`CollisionWorld::refilter_pairs_of`]).
 ///
 /// Implement the trait of the same name in [`crate::dim2::world`] or [`crate::dim3::world`], which
-/// stands for this one in its dimension; closures over two references to objects implement these.
+/// fixes the dimension. Closures over two references to objects implement these traits.
 ///
 /// ```
 /// use impinge::dim2::world::{CollisionObject, CollisionWorld};
@@ -38,7 +39,7 @@ type Named<N, const D: usize, T> = (String, Arc<dyn BroadPhasePairFilter<N, D, T
 /// The filters of a world, sorted by name.
 pub(super) struct Filters<N: Space<D>, const D: usize, T> {
     filters: Vec<Named<N, D, T>>,
-    /// A filter was registered or unregistered since the last update.
+    /// Whether a filter was registered or unregistered since the last update.
     have_changed: bool,
 }
 
@@ -49,7 +50,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         Self { filters: Vec::new(), have_changed: false }
     }
 
-    /// Registers a filter under a name and replaces the one that has it.
+    /// Registers a filter under a name; replaces the filter that has this name.
     pub(super) fn register(&mut self, name: &str, filter: Arc<dyn BroadPhasePairFilter<N, D, T>>) {
         self.have_changed = true;
         match self.position(name) {
@@ -58,7 +59,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         }
     }
 
-    /// Removes the filter with a name; returns `false` if there is none.
+    /// Removes the filter with this name; returns `false` if there is none.
     pub(super) fn unregister(&mut self, name: &str) -> bool {
         let place = self.position(name);
         if let Ok(place) = place {
@@ -81,7 +82,7 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         self.filters.iter().all(|(_, filter)| filter.is_pair_valid(co1, co2))
     }
 
-    /// Returns the names of the filters that refuse the pair, sorted.
+    /// Returns the names, sorted, of the filters that refuse the pair.
     pub(super) fn refusing(
         &self,
         co1: &CollisionObject<N, D, T>,
@@ -91,12 +92,12 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
         refusing.map(|(name, _)| name.as_str()).collect()
     }
 
-    /// Iterates over the names, sorted.
+    /// Iterates over the names of the filters, sorted.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.filters.iter().map(|(name, _)| name.as_str())
     }
 
-    /// Notes that an update has called the filters.
+    /// Records that an update has called the filters.
     pub(super) const fn note_update(&mut self) {
         self.have_changed = false;
     }
@@ -124,7 +125,7 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for Filters<N, D, T> {
 
 /// Registering filters, and filtering pairs again.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Registers a pair filter, in place of the one with this name if there is one. All pairs are
+    /// Registers a pair filter; replaces the filter with this name if there is one. All pairs are
     /// filtered again at the next update.
     pub fn register_broad_phase_pair_filter<F>(&mut self, name: &str, filter: F)
     where
@@ -134,7 +135,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.broad_phase.deferred_recompute_all_proximities();
     }
 
-    /// Removes a pair filter; nothing happens if there is none with this name. All pairs are
+    /// Removes the pair filter with this name; does nothing if there is none. All pairs are
     /// filtered again at the next update.
     pub fn unregister_broad_phase_pair_filter(&mut self, name: &str) {
         if self.filters.unregister(name) {
@@ -143,12 +144,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Makes the next update filter all pairs again: it checks groups and filters for every two
-    /// objects whose boxes overlap. For rules that have changed, and for [`Self::update_with`].
+    /// objects whose boxes overlap. Call this when rules have changed, and for
+    /// [`Self::update_with`].
     pub fn refilter_pairs(&mut self) {
         self.broad_phase.deferred_recompute_all_proximities();
     }
 
-    /// Makes the next update filter the pairs of one object again; see [`Self::refilter_pairs`].
+    /// Makes the next update filter the pairs of an object again; see [`Self::refilter_pairs`].
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -173,13 +175,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// ```
     ///
     /// # Panics
-    /// If the handle is stale; [`Self::try_refilter_pairs_of`] returns this.
+    /// If the handle is stale; [`Self::try_refilter_pairs_of`] returns an error instead.
     #[track_caller]
     pub fn refilter_pairs_of(&mut self, handle: CollisionObjectHandle) {
         or_panic(self.try_refilter_pairs_of(handle));
     }
 
-    /// Makes the next update filter the pairs of one object again; see [`Self::refilter_pairs_of`].
+    /// Makes the next update filter the pairs of an object again; see [`Self::refilter_pairs_of`].
     ///
     /// # Errors
     /// If the handle is stale. The world is unchanged then.

@@ -2,8 +2,8 @@
 
 use super::groups::{ALL_GROUPS, CollisionGroups, GroupError};
 
-/// Returns the mask, or an error if it has bit 30 or 31, which are no groups; the error names the
-/// lower one.
+/// Returns the mask; an error if it has bit 30 or 31, which are not groups. The error has the lower
+/// of these bits.
 fn checked(mask: u32) -> Result<u32, GroupError> {
     match mask & !ALL_GROUPS {
         0 => Ok(mask),
@@ -22,14 +22,14 @@ fn or_panic(result: Result<CollisionGroups, GroupError>) -> CollisionGroups {
 
 /// Building groups from lists, in a chain of calls.
 impl CollisionGroups {
-    /// Creates groups without membership, whitelist and blacklist: the object interacts with
+    /// Creates groups with empty membership, whitelist and blacklist: the object interacts with
     /// nothing.
     #[must_use]
     pub const fn empty() -> Self {
         Self::of_masks(0, 0, 0)
     }
 
-    /// Returns the groups with this membership in place of the present one.
+    /// Returns these groups with another membership.
     ///
     /// ```
     /// use impinge::world::CollisionGroups;
@@ -40,7 +40,7 @@ impl CollisionGroups {
     /// ```
     ///
     /// # Panics
-    /// On a group above 29; [`Self::try_set_membership`] returns it.
+    /// If a group is above 29; [`Self::try_set_membership`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn with_membership(mut self, groups: &[usize]) -> Self {
@@ -48,10 +48,10 @@ impl CollisionGroups {
         self
     }
 
-    /// Returns the groups with this whitelist in place of the present one.
+    /// Returns these groups with another whitelist.
     ///
     /// # Panics
-    /// On a group above 29; [`Self::try_set_whitelist`] returns it.
+    /// If a group is above 29; [`Self::try_set_whitelist`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn with_whitelist(mut self, groups: &[usize]) -> Self {
@@ -59,10 +59,10 @@ impl CollisionGroups {
         self
     }
 
-    /// Returns the groups with this blacklist in place of the present one.
+    /// Returns these groups with another blacklist.
     ///
     /// # Panics
-    /// On a group above 29; [`Self::try_set_blacklist`] returns it.
+    /// If a group is above 29; [`Self::try_set_blacklist`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn with_blacklist(mut self, groups: &[usize]) -> Self {
@@ -76,7 +76,7 @@ impl CollisionGroups {
     /// The mask of all groups, 0 to 29.
     pub const ALL: u32 = ALL_GROUPS;
 
-    /// Returns the groups with the membership of a mask in place of the present one.
+    /// Returns these groups with another membership, given as a mask.
     ///
     /// ```
     /// use impinge::world::{CollisionGroups, GroupError};
@@ -93,17 +93,18 @@ impl CollisionGroups {
     /// ```
     ///
     /// # Panics
-    /// On bit 30 or 31; [`Self::try_with_membership_by_mask`] returns it.
+    /// If the mask has bit 30 or 31; [`Self::try_with_membership_by_mask`] returns an error
+    /// instead.
     #[must_use]
     #[track_caller]
     pub fn with_membership_by_mask(self, mask: u32) -> Self {
         or_panic(self.try_with_membership_by_mask(mask))
     }
 
-    /// Returns the groups with the membership of a mask in place of the present one.
+    /// Returns these groups with another membership, given as a mask.
     ///
     /// # Errors
-    /// On bit 30 or 31; the error names the lower one.
+    /// If the mask has bit 30 or 31; the error has the lower one.
     pub fn try_with_membership_by_mask(self, mask: u32) -> Result<Self, GroupError> {
         let named = Self::of_masks(checked(mask)?, 0, 0);
         let mut groups = self;
@@ -111,20 +112,20 @@ impl CollisionGroups {
         Ok(groups)
     }
 
-    /// Returns the groups with the whitelist of a mask in place of the present one.
+    /// Returns these groups with another whitelist, given as a mask.
     ///
     /// # Panics
-    /// On bit 30 or 31; [`Self::try_with_whitelist_by_mask`] returns it.
+    /// If the mask has bit 30 or 31; [`Self::try_with_whitelist_by_mask`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn with_whitelist_by_mask(self, mask: u32) -> Self {
         or_panic(self.try_with_whitelist_by_mask(mask))
     }
 
-    /// Returns the groups with the whitelist of a mask in place of the present one.
+    /// Returns these groups with another whitelist, given as a mask.
     ///
     /// # Errors
-    /// On bit 30 or 31; the error names the lower one.
+    /// If the mask has bit 30 or 31; the error has the lower one.
     pub fn try_with_whitelist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
         let named = Self::of_masks(0, checked(mask)?, 0);
         let mut groups = self;
@@ -132,20 +133,20 @@ impl CollisionGroups {
         Ok(groups)
     }
 
-    /// Returns the groups with the blacklist of a mask in place of the present one.
+    /// Returns these groups with another blacklist, given as a mask.
     ///
     /// # Panics
-    /// On bit 30 or 31; [`Self::try_with_blacklist_by_mask`] returns it.
+    /// If the mask has bit 30 or 31; [`Self::try_with_blacklist_by_mask`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn with_blacklist_by_mask(self, mask: u32) -> Self {
         or_panic(self.try_with_blacklist_by_mask(mask))
     }
 
-    /// Returns the groups with the blacklist of a mask in place of the present one.
+    /// Returns these groups with another blacklist, given as a mask.
     ///
     /// # Errors
-    /// On bit 30 or 31; the error names the lower one.
+    /// If the mask has bit 30 or 31; the error has the lower one.
     pub fn try_with_blacklist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
         let named = Self::of_masks(0, 0, checked(mask)?);
         let mut groups = self;

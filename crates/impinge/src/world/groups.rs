@@ -7,11 +7,11 @@ const LAST_GROUP: usize = 29;
 /// The mask of all groups, 0 to 29.
 pub(super) const ALL_GROUPS: u32 = (1 << (LAST_GROUP + 1)) - 1;
 
-/// The groups that an object belongs to, accepts and refuses.
+/// The groups to which an object belongs, and the groups that it accepts and refuses.
 ///
-/// Two objects interact if each is a member of at least one group that the other whitelists, and
-/// neither is a member of a group that the other blacklists: the blacklist wins. Groups are
-/// numbered 0 to 29, in lists or as the bits of masks.
+/// Two objects interact if each is a member of at least one group on the other's whitelist, and
+/// neither is a member of a group on the other's blacklist: the blacklist wins. Groups are numbered
+/// 0 to 29, in lists or as the bits of masks.
 ///
 /// ```
 /// use impinge::world::CollisionGroups;
@@ -28,17 +28,17 @@ pub(super) const ALL_GROUPS: u32 = (1 << (LAST_GROUP + 1)) - 1;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "Spelled", into = "Spelled"))]
 pub struct CollisionGroups {
-    /// Bits 0 to 29 are groups, as in all masks; bit 31 is [`SELF_COLLISION`].
+    /// Bits 0 to 29 are groups, as in the other masks; bit 31 is [`SELF_COLLISION`].
     membership: u32,
     whitelist: u32,
     blacklist: u32,
 }
 
-/// Bit for self-collision. It shares the membership mask, since every object has groups and a
-/// separate field would cost four bytes each.
+/// Bit that enables self-collision. It is in the membership mask, because a separate field would
+/// cost every object four bytes.
 const SELF_COLLISION: u32 = 1 << 31;
 
-/// Groups with one field for each setting, for serialization and `Debug`.
+/// Groups with a field for each setting, for serialization and `Debug`.
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename = "CollisionGroups"))]
 struct Spelled {
@@ -59,7 +59,7 @@ impl From<CollisionGroups> for Spelled {
 #[cfg(feature = "serde")]
 impl From<Spelled> for CollisionGroups {
     fn from(spelled: Spelled) -> Self {
-        // Bits of groups that do not exist are ignored.
+        // Bits of groups that do not exist are dropped.
         let [membership, whitelist, blacklist] =
             [spelled.membership, spelled.whitelist, spelled.blacklist]
                 .map(|mask| mask & ALL_GROUPS);
@@ -108,12 +108,12 @@ impl Default for CollisionGroups {
     }
 }
 
-/// Returns the mask of one group.
+/// Returns the mask of a single group; an error for a group above 29.
 fn bit(group: usize) -> Result<u32, GroupError> {
     if group > LAST_GROUP { Err(GroupError(group)) } else { Ok(1 << group) }
 }
 
-/// Returns the mask of several groups. It is complete before anything changes, so an error has no
+/// Returns the mask of several groups. It is computed before anything changes, so an error has no
 /// side effect.
 fn mask(groups: &[usize]) -> Result<u32, GroupError> {
     groups.iter().try_fold(0, |mask, &group| Ok(mask | bit(group)?))
@@ -125,7 +125,7 @@ fn with_group(mask: u32, group: usize, present: bool) -> Result<u32, GroupError>
     Ok(if present { mask | bit } else { mask & !bit })
 }
 
-/// Returns `true` if `mask` contains the group; `false` for a group above the last.
+/// Returns `true` if `mask` contains the group; `false` for a group above 29.
 fn has(mask: u32, group: usize) -> bool {
     bit(group).is_ok_and(|bit| mask & bit != 0)
 }
@@ -146,7 +146,7 @@ impl CollisionGroups {
         Self { membership: ALL_GROUPS, whitelist: ALL_GROUPS, blacklist: 0 }
     }
 
-    /// Creates groups from masks without bits of groups that do not exist.
+    /// Creates groups from masks, which must have no bit above 29.
     pub(super) const fn of_masks(membership: u32, whitelist: u32, blacklist: u32) -> Self {
         Self { membership, whitelist, blacklist }
     }

@@ -1,4 +1,5 @@
-//! The world: who touches whom, where, and since when, brought up to date by each update.
+//! The world: objects, and the pairs, contacts and events among them, brought up to date by each
+//! update.
 //!
 //! The world is a thin shell around the two phases. Each object is one record: pose, shape, groups and query type as
 //! the user last set them (`bodies`), and the user's data. The phases hold copies as of the last update:

@@ -1,4 +1,4 @@
-//! Facts about motion that matter for pairs: fixed objects have no pairs with each other, and the box of a fast object
+//! Properties of motion that affect pairs: fixed objects have no pairs with each other, and the volume of a fast object
 //! covers its path.
 
 use super::entries;
@@ -13,9 +13,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// which overlap each other, cost nothing in the narrow phase and have no events.
     ///
     /// A new object is not fixed. Takes effect at the next update: pairs of two objects that are both fixed by then
-    /// stop, with their events, and pairs of two that no longer are both fixed start. A fixed object can still be
-    /// moved. It has pairs with all objects that are not fixed, and with itself if its groups say so
-    /// ([`CollisionGroups::enable_self_collision`]); queries treat it as any other object. The mark is tested before
+    /// stop, with their events, and pairs of two objects that are no longer both fixed start. A fixed object can still
+    /// be moved. It has pairs with all objects that are not fixed, and with itself if its groups enable that
+    /// ([`CollisionGroups::enable_self_collision`]); queries treat it like any other object. The mark is tested before
     /// groups and filters, once, when the boxes of two objects begin to overlap.
     ///
     /// ```
@@ -41,7 +41,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// ```
     ///
     /// # Panics
-    /// If the handle is stale; [`Self::try_set_fixed`] returns this.
+    /// If the handle is stale; [`Self::try_set_fixed`] returns an error instead.
     ///
     /// [`CollisionGroups::enable_self_collision`]: super::CollisionGroups::enable_self_collision
     #[track_caller]
@@ -67,15 +67,16 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// both positions. So the object has a pair with all objects whose boxes it may meet in between, and two fast
     /// bodies have a pair although their boxes never overlap at an update.
     ///
-    /// Such pairs are meant for a closer look by [`nonlinear_time_of_impact`](crate::query::nonlinear_time_of_impact)
-    /// and [`Self::update_pair`]. Their contacts and proximities are those at `position`, and so are the results of all
-    /// queries. The prediction holds until the object is moved again, by [`Self::set_position`] (also to where it is)
-    /// or with another prediction; other changes keep it. As with any change, queries see the position at once, pairs
-    /// at the next update.
+    /// Such pairs are meant for a continuous test by
+    /// [`nonlinear_time_of_impact`](crate::query::nonlinear_time_of_impact) and [`Self::update_pair`]. Their contacts
+    /// and proximities are computed at `position`, and so are the results of all queries. The prediction holds until
+    /// the object is moved again, by [`Self::set_position`] (even to the same position) or with another prediction;
+    /// other changes keep it. As with any change, queries see the position at once, and pairs follow at the next
+    /// update.
     ///
     /// The volume covers the whole path of a translation. A body that rotates on the way can leave it by as much as the
-    /// rotation carries its surface outside both boxes; a larger margin of the world, or a larger prediction of its
-    /// query type, allows for that. A pair costs memory and time even if it does not touch: predict for bodies that
+    /// rotation moves its surface outside both boxes; a larger margin of the world, or a larger prediction of the query
+    /// type, allows for that. A pair costs memory and time even if it does not touch, so predict only for bodies that
     /// move by more than about their size in a step.
     ///
     /// ```
@@ -97,8 +98,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// ```
     ///
     /// # Panics
-    /// If the handle is stale or a position has a number that is not finite or a rotation of another length
-    /// than 1; [`Self::try_set_position_with_prediction`] returns these.
+    /// If the handle is stale, a number of a position is not finite, or a rotation is not of unit length;
+    /// [`Self::try_set_position_with_prediction`] returns an error instead.
     #[track_caller]
     pub fn set_position_with_prediction(
         &mut self,
@@ -109,11 +110,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         or_panic(self.try_set_position_with_prediction(handle, position, predicted));
     }
 
-    /// Moves an object and predicts where it will be next; see [`Self::set_position_with_prediction`].
+    /// Moves an object and predicts its next position; see [`Self::set_position_with_prediction`].
     ///
     /// # Errors
-    /// If the handle is stale or a position has a number that is not finite or a rotation of another length
-    /// than 1. The world is unchanged then.
+    /// If the handle is stale, a number of a position is not finite, or a rotation is not of unit length. Then the
+    /// world is unchanged.
     pub fn try_set_position_with_prediction(
         &mut self,
         handle: CollisionObjectHandle,
@@ -124,8 +125,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         entries::set_predicted(body, changes, position, predicted)
     }
 
-    /// Returns the position predicted by [`Self::set_position_with_prediction`]. `None` for a stale handle, and if the
-    /// object was moved without a prediction since.
+    /// Returns the position that [`Self::set_position_with_prediction`] predicted. `None` for a stale handle, and if
+    /// the object was moved without a prediction since.
     #[must_use]
     pub fn predicted_position(&self, handle: CollisionObjectHandle) -> Option<&N::Isometry> {
         let object = self.objects.get(handle)?;

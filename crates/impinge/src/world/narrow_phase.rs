@@ -18,13 +18,13 @@ pub type ContactPairs<'a, N, const D: usize> = Box<
 pub type ProximityPairs<'a> =
     Box<dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ProximityPair)> + 'a>;
 
-/// Manifolds that hold a contact, in the canonical order of their pairs.
+/// Manifolds with at least one contact, in the canonical order of their pairs.
 pub type ContactManifolds<'a, N, const D: usize> = Box<
     dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, &'a ContactManifold<N, D>)>
         + 'a,
 >;
 
-/// Manifolds that hold a contact, read in place, in unspecified order.
+/// Manifolds with at least one contact, read in place, in unspecified order.
 pub type ContactViews<'a, N, const D: usize> = Box<
     dyn Iterator<Item = (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>)>
         + 'a,
@@ -40,10 +40,10 @@ pub type ContactViewPiece<'a, N, const D: usize> = Box<
 /// Computes contacts and proximities for the pairs that the broad phase proposes.
 ///
 /// In each update a world calls [`Self::handle_change`] for each object with another shape or query
-/// type, [`Self::handle_interactions`] with the pairs that started or stopped, then
-/// [`Self::update`]. In all calls `handle1 < handle2`; both are equal for an object that is tested
-/// against itself. During a call [`CollisionObjects::table`] holds the poses, shapes and query
-/// types of the objects that the call is about and of all objects with pairs.
+/// type, then [`Self::handle_interactions`] with the pairs that started or stopped, then
+/// [`Self::update`]. In all calls `handle1 < handle2`; they are equal for an object that is tested
+/// against itself. During a call [`CollisionObjects::table`] has the poses, shapes and query types
+/// of the objects in the call, and of all objects with pairs.
 ///
 /// ```
 /// use impinge::dim2::narrow_phase::{DefaultNarrowPhase, NarrowPhase};
@@ -58,12 +58,13 @@ pub type ContactViewPiece<'a, N, const D: usize> = Box<
 /// world.update();
 /// ```
 pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
-    /// Computes the contacts and proximities of all pairs and appends the resulting events.
+    /// Computes the contacts and proximities of all pairs, and appends the resulting events to
+    /// `events`.
     fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events);
 
-    /// Computes one pair between two updates. During this call [`CollisionObjects::table`] holds
-    /// the present poses of its two objects instead of those of the last update. Appends the
-    /// resulting events, and returns `true` if there is such a pair.
+    /// Computes a pair between two updates. During this call [`CollisionObjects::table`] has the
+    /// present poses of the pair's objects instead of those of the last update. Appends the
+    /// resulting events; returns `false` if there is no such pair.
     ///
     /// The default does not support this and returns `false`.
     fn update_pair(
@@ -77,9 +78,9 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         false
     }
 
-    /// Starts or stops a pair, without a geometric query. A started pair gets its algorithm; a pair
-    /// that is known already stays as it is. A stopped pair is dropped, with a final event if it
-    /// was touching or near.
+    /// Starts or stops a pair, without a geometric query. A started pair gets its algorithm;
+    /// nothing changes if the pair is already there. A stopped pair is removed, with a final event
+    /// if it was touching or near.
     fn handle_interaction(
         &mut self,
         events: &mut Events,
@@ -89,8 +90,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         started: bool,
     );
 
-    /// Starts (`true`) or stops several different pairs: as [`Self::handle_interaction`] for each,
-    /// in any order.
+    /// Starts (`true`) or stops (`false`) several distinct pairs, in any order; see
+    /// [`Self::handle_interaction`].
     fn handle_interactions(
         &mut self,
         events: &mut Events,
@@ -102,8 +103,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         }
     }
 
-    /// Stops a pair because one of its objects is being removed; appends at most one event, which
-    /// ends the status of the last update.
+    /// Stops a pair because one of its objects is being removed. Appends at most one event, which
+    /// ends the pair's status of the last update.
     fn handle_removal(
         &mut self,
         events: &mut Events,
@@ -112,8 +113,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         handle2: CollisionObjectHandle,
     );
 
-    /// Picks the algorithms of an object's pairs again, because its shape or query type has
-    /// changed.
+    /// Chooses the algorithms of an object's pairs again, because the object's shape or query type
+    /// has changed.
     fn handle_change(
         &mut self,
         events: &mut Events,
@@ -121,16 +122,16 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         handle: CollisionObjectHandle,
     );
 
-    /// Returns `true` if the narrow phase keeps a pair of the object. Once there is none, the world
-    /// releases the object's row in [`CollisionObjects::table`]; a narrow phase that does not read
-    /// the table can keep the default.
+    /// Returns `true` if the narrow phase has a pair of the object. When it returns `false`, the
+    /// world releases the object's row in [`CollisionObjects::table`]. A narrow phase that does not
+    /// read the table can keep the default, which returns `true`.
     fn has_pairs_of(&self, handle: CollisionObjectHandle) -> bool {
         let _ = handle;
         true
     }
 
-    /// Returns the objects that have a pair with this one, sorted; includes the object itself if it
-    /// is tested against itself.
+    /// Returns the objects that have a pair with this object, sorted by handle. Includes the object
+    /// itself if it is tested against itself.
     ///
     /// The default searches all pairs.
     fn partners_of(
@@ -147,8 +148,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         partners
     }
 
-    /// Returns the source of contact ids, which moves on to the next narrow phase so that no id is
-    /// given twice. `None` if this narrow phase has no such source.
+    /// Returns the allocator of contact ids, which passes to the next narrow phase so that no id is
+    /// issued twice. `None` if this narrow phase has no allocator.
     fn ids(&mut self) -> Option<&mut IdAllocator> {
         None
     }
@@ -177,7 +178,7 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactPairs<'a, N, D>;
 
-    /// Returns all manifolds that hold a contact.
+    /// Returns all manifolds with at least one contact, in the canonical order of their pairs.
     fn contact_manifolds<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
@@ -187,8 +188,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         }))
     }
 
-    /// Returns all manifolds that hold a contact in the fastest order, which is equal on every
-    /// machine.
+    /// Returns all manifolds with at least one contact, in the order that is fastest to read. This
+    /// order is equal on every machine.
     fn contact_views<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
@@ -199,8 +200,8 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         }))
     }
 
-    /// Splits the sequence of [`Self::contact_views`] into at most `pieces` consecutive parts, at
-    /// least one.
+    /// Splits the sequence of [`Self::contact_views`] into consecutive parts: at least one, and at
+    /// most `pieces`.
     fn contact_view_pieces<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
@@ -353,7 +354,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
     }
 }
 
-/// See [`NarrowPhase::contact_views`].
+/// Implements [`NarrowPhase::contact_views`].
 pub(super) fn views_of<'a, N: Space<D>, const D: usize>(
     narrow_phase: &'a DefaultNarrowPhase<N, D>,
     table: &'a ObjectTable<N, D>,
@@ -362,7 +363,7 @@ pub(super) fn views_of<'a, N: Space<D>, const D: usize>(
     named_views(narrow_phase.contact_views(table), slots)
 }
 
-/// See [`NarrowPhase::contact_view_pieces`].
+/// Implements [`NarrowPhase::contact_view_pieces`].
 pub(super) fn view_pieces_of<'a, N: Space<D>, const D: usize>(
     narrow_phase: &'a DefaultNarrowPhase<N, D>,
     table: &'a ObjectTable<N, D>,
@@ -373,8 +374,8 @@ pub(super) fn view_pieces_of<'a, N: Space<D>, const D: usize>(
     pieces.map(|views| named_views(views, slots)).collect()
 }
 
-/// Returns views with the handles of their objects. Plain and particular views get an iterator
-/// each, since a chain of both is slower to read.
+/// Returns views with the handles of their objects. Plain and particular views have separate
+/// iterators, since a chain of both is slower to read.
 fn named_views<'a, N: Space<D>, const D: usize>(
     views: Views<'a, N, D>,
     slots: &'a [Slot],

@@ -8,10 +8,10 @@ use crate::memory::clone_fields;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 use crate::shape::ShapeHandle;
 
-/// An object of a world, as the user described it.
+/// An object of a world, with the user's data.
 ///
-/// It gives mutable access to the user's data alone; everything else is changed through the world,
-/// by handle.
+/// Only the user's data can be changed through it; everything else is changed through the world, by
+/// handle.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -41,14 +41,14 @@ impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
         self.body.handle
     }
 
-    /// Returns the handle of the object's volume in the broad phase. It changes when the broad
-    /// phase or the narrow phase of the world is replaced.
+    /// Returns the handle of the object's volume in the broad phase. The handle changes when the
+    /// broad phase or the narrow phase of the world is replaced.
     #[must_use]
     pub const fn proxy_handle(&self) -> ProxyHandle {
         self.body.proxy
     }
 
-    /// Returns the position of the object, as it was given.
+    /// Returns the position of the object, as the user gave it.
     #[must_use]
     pub const fn position(&self) -> &N::Isometry {
         &self.body.isometry
@@ -66,14 +66,14 @@ impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
         &self.body.groups
     }
 
-    /// Returns `true` if the object is fixed and so has no pairs with other fixed ones; see
+    /// Returns `true` if the object is fixed, so that it has no pairs with other fixed objects; see
     /// [`CollisionWorld::set_fixed`](super::CollisionWorld::set_fixed).
     #[must_use]
     pub const fn is_fixed(&self) -> bool {
         self.body.is_fixed()
     }
 
-    /// Returns the query type: what is computed for the object's pairs.
+    /// Returns the query type, which decides what is computed for the object's pairs.
     #[must_use]
     pub fn query_type(&self) -> GeometricQueryType<N> {
         self.body.query.get()
@@ -85,7 +85,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
         &self.data
     }
 
-    /// Returns the user's data, to change it.
+    /// Returns the user's data, for changes.
     #[must_use]
     pub const fn data_mut(&mut self) -> &mut T {
         &mut self.data

@@ -1,5 +1,4 @@
-//! The objects of a world: handle slots, records, changes, and the table that the narrow phase
-//! reads.
+//! The objects of a world: handle slots, records, changes, and the table for the narrow phase.
 
 use super::bodies::{MAX_CHANGES, WorldBody, WorldBroadPhase};
 use super::changes::{BodyEntry, ChangeList, Readers};
@@ -21,8 +20,8 @@ const MANY: usize = 4;
 
 /// The objects of a world, by handle.
 ///
-/// A freed index is used again, the last freed one first, under the next generation. An index whose
-/// generations are exhausted is never used again.
+/// A free index is reused under the next generation; the last freed index is reused first. An index
+/// whose generations are exhausted is not reused.
 ///
 /// ```
 /// use impinge::dim2::world::{CollisionObject, CollisionObjects};
@@ -37,16 +36,15 @@ pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
     /// Generation of the first object at each index.
     pub(super) first: Generation,
     pub(super) slots: Vec<Slot>,
-    /// The objects in no particular order, without gaps. Whether a handle is fresh is decided by
-    /// its slot alone, so code that only forwards references does not wait for these records to
-    /// load.
+    /// The objects in no particular order, without gaps. Whether a handle is stale depends on its
+    /// slot alone, so code that only forwards references does not wait for these records to load.
     pub(super) records: Vec<CollisionObject<N, D, T>>,
-    /// Free indices; the last one is used next.
+    /// Free indices; the last one in the list is used next.
     pub(super) free: Vec<u32>,
     pub(super) changes: ChangeList<N, D>,
     pub(super) table: ObjectTable<N, D>,
     pub(super) journal: Journal<ObjectNote<N, D, T>, Vec<BodyEntry<N, D>>>,
-    /// Clones an object; set when the first mark is made, since `T` need not be `Clone` before.
+    /// Clones an object; `None` before the first mark, since `T` need not be `Clone` until then.
     pub(super) cloned: Option<CloneObject<N, D, T>>,
 }
 
@@ -60,9 +58,9 @@ type CloneObject<N, const D: usize, T> = fn(&CollisionObject<N, D, T>) -> Collis
 /// Handle slot: the generation and the record of one handle index.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slot {
-    /// Generation of the object at this index, or of the next one if the slot is free.
+    /// Generation of the object at this index, or of the next object if the slot is free.
     pub(super) generation: Generation,
-    /// Index in `records`, or [`NOWHERE`].
+    /// Index of the object in `records`, or [`NOWHERE`].
     pub(super) place: u32,
 }
 
@@ -106,7 +104,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Returns the object of a handle; `None` for a stale handle or one of another world.
+    /// Returns the object with this handle; `None` for a stale handle or a handle of another world.
     #[inline]
     #[must_use]
     pub fn get(&self, handle: CollisionObjectHandle) -> Option<&CollisionObject<N, D, T>> {
@@ -122,7 +120,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.records.get_mut(place)
     }
 
-    /// Returns the record index of a handle, if it is fresh and of this world.
+    /// Returns the index in `records` of the object with this handle; `None` for a stale handle or
+    /// a handle of another world.
     #[inline]
     fn place(&self, handle: CollisionObjectHandle) -> Option<usize> {
         let slot = self.slots.get(handle.uid())?;
@@ -144,8 +143,9 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.iter().map(|object| &object.body)
     }
 
-    /// Returns the tree that queries search beside the broad phase, or instead of it if it holds
-    /// all objects. `None` if nothing changed since the last update.
+    /// Returns the tree that queries search in addition to the broad phase, or instead of it if the
+    /// tree has all objects; builds it if necessary. `None` if nothing changed since the last
+    /// update.
     pub(super) fn dirty_tree(&self, broad_phase: &WorldBroadPhase<N, D>) -> Option<&DirtyTree<D>> {
         self.changes.dirty_tree(|| {
             let has_all = self.changes.num_dirty() * MANY >= self.records.len();
@@ -154,8 +154,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         })
     }
 
-    /// Iterates over the boxes of all objects (`has_all`), by handle index, or of the dirty ones,
-    /// by their place in the list of changes.
+    /// Iterates over the boxes of all objects, with their handle indices, if `has_all`; else over
+    /// the dirty boxes, with their indices in the list of changes.
     fn boxes<'a>(
         &'a self,
         has_all: bool,
@@ -171,7 +171,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }))
     }
 
-    /// Returns the object that the dirty tree has under `id`.
+    /// Returns the object that has the id `id` in the dirty tree.
     #[inline]
     pub(super) fn of_dirty(
         &self,
@@ -181,9 +181,9 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.at(self.changes.dirty_index(tree, id))
     }
 
-    /// Returns the object whose proxy has the number `uid`; `None` if it is not found by a direct
-    /// look-up. As long as no object was removed, records and proxies have the same order;
-    /// afterwards the look-up by handle index still succeeds where both numbers agree.
+    /// Returns the object whose proxy has the uid `uid`; `None` if a direct look-up does not find
+    /// it. While no object has been removed, records and proxies have the same order; afterwards
+    /// the look-up by handle index succeeds where handle and proxy have the same index.
     #[inline]
     pub(super) fn of_proxy(&self, uid: usize) -> Option<&CollisionObject<N, D, T>> {
         let is_its = |object: &&CollisionObject<N, D, T>| object.body.proxy.uid() == uid;
@@ -191,7 +191,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         in_order.or_else(|| self.at(u32::try_from(uid).ok()?).filter(is_its))
     }
 
-    /// Returns `true` unless both objects are fixed or the groups of one refuse the other.
+    /// Returns `true` unless both objects are fixed, the groups of one refuse the other, or an
+    /// index is free.
     #[inline]
     pub(super) fn can_interact(&self, index1: u32, index2: u32) -> bool {
         let both = self.body(index1).zip(self.body(index2));
@@ -220,14 +221,15 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.records.is_empty()
     }
 
-    /// Returns the table of poses, shapes and query types as of the last update; during an update,
-    /// of this one.
+    /// Returns the table of poses, shapes and query types: as of the last update, or during an
+    /// update as of this update.
     #[must_use]
     pub const fn table(&self) -> &ObjectTable<N, D> {
         &self.table
     }
 
-    /// Returns the body of a handle, or [`WorldError::StaleHandle`].
+    /// Returns the body of the object with this handle; [`WorldError::StaleHandle`] if there is
+    /// none.
     pub(super) fn known(
         &self,
         handle: CollisionObjectHandle,
@@ -236,8 +238,9 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(&object.body)
     }
 
-    /// Returns the body of a handle and the list of changes, to change the object, or
-    /// [`WorldError::StaleHandle`].
+    /// Returns the body of an object and the list of changes, for a change of the object, and
+    /// records the old state if there are marks. [`WorldError::StaleHandle`] if there is no such
+    /// object.
     pub(super) fn fresh(
         &mut self,
         handle: CollisionObjectHandle,
@@ -248,7 +251,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok((&mut object.body, &mut self.changes))
     }
 
-    /// As [`Self::fresh`], for a change of position only: a mark then journals less.
+    /// Returns what [`Self::fresh`] returns, but for a change of position only: less is recorded if
+    /// there are marks.
     pub(super) fn fresh_to_move(
         &mut self,
         handle: CollisionObjectHandle,
@@ -259,7 +263,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok((&mut object.body, &mut self.changes))
     }
 
-    /// Returns the handle that the next object will have.
+    /// Returns the handle of the next object; [`WorldError::Full`] if there is none.
     pub(super) fn next_handle(&self) -> Result<CollisionObjectHandle, WorldError> {
         if let Some(&index) = self.free.last() {
             return Ok(CollisionObjectHandle::new(index, self.slots[index as usize].generation));
@@ -268,7 +272,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         Ok(CollisionObjectHandle::new(index.ok_or(WorldError::Full)?, self.first))
     }
 
-    /// Stores an object under the next handle.
+    /// Stores an object under `handle`, which must be the next handle.
     pub(super) fn insert(
         &mut self,
         handle: CollisionObjectHandle,
@@ -289,7 +293,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Removes an object and returns it.
+    /// Removes an object and returns it; its handle becomes stale.
     pub(super) fn remove(&mut self, handle: CollisionObjectHandle) -> CollisionObject<N, D, T> {
         let next = handle.generation().next();
         self.note_removed(handle);
@@ -317,8 +321,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// Writes the changes since the last update to the table and the broad phase, in order of
-    /// index, and clears them. Fills `algorithms` with the objects whose shape or query type
-    /// changed.
+    /// handle indices, and clears them. Fills `algorithms` with the objects whose pairs need other
+    /// algorithms.
     pub(super) fn flush(
         &mut self,
         broad_phase: &mut WorldBroadPhase<N, D>,
@@ -338,7 +342,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         changes.clear(order);
     }
 
-    /// Writes the row of an object to the table, if it has none yet.
+    /// Writes the row of an object to the table; does nothing if it has one.
     pub(super) fn lend(&mut self, index: u32) {
         let Self { slots, records, table, .. } = self;
         let slot = slots.get(index as usize);
@@ -360,7 +364,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.free.iter().map(|&index| index as usize)
     }
 
-    /// Returns the number of indices that have ever been in use.
+    /// Returns the number of indices that have ever been used.
     pub(super) const fn reach(&self) -> usize {
         self.slots.len()
     }
@@ -371,7 +375,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Checks slots, records, changes and table; the error says what is wrong.
+    /// Checks slots, records, changes and table; the error describes the violation.
     pub(super) fn validate(&self, broad_phase: &WorldBroadPhase<N, D>) -> Result<(), String> {
         if self.iter().count() != self.records.len() {
             return Err(format!("{} objects do not all have slots", self.records.len()));
@@ -396,7 +400,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.validate_free()
     }
 
-    /// Returns `true` if the table has no row for the object or the row is up to date.
+    /// Returns `true` if the table has no row for the object, or an up-to-date row.
     fn is_row_of(&self, body: &WorldBody<N, D>) -> bool {
         let index = body.index();
         !self.table.has_row(index)

@@ -1,22 +1,22 @@
-//! Reading the pairs of one object, with that object as the first.
+//! Access to the pairs of one object, with that object as the first.
 
 use super::{CollisionObject, CollisionWorld};
 use crate::math::Space;
 use crate::narrow_phase::{CollisionObjectHandle, ContactPair};
 use crate::query::{ContactPoint, ManifoldView, Proximity};
 
-/// The pairs of one object as of the last update, in order of the other objects' handles; pairs
-/// with objects that were removed since are left out. Costs one look-up for each pair of the
-/// object, whatever the size of the world; for a custom narrow phase see
+/// The pairs of one object as of the last update, in order of the other objects' handles, without
+/// objects that were removed since. Costs a look-up for each pair of the object, whatever the size
+/// of the world; for a custom narrow phase see
 /// [`NarrowPhase::partners_of`](super::NarrowPhase::partners_of).
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Iterates over the objects that have a pair with this one, touching or not, in order of their
-    /// handles; includes the object itself if it is tested against itself. Empty for a stale
+    /// Iterates over the objects that have a pair with this object, touching or not, in order of
+    /// their handles. Includes the object itself if it is tested against itself. Empty for a stale
     /// handle.
     ///
-    /// These are the pairs that the broad phase has found and that groups and filters allow:
-    /// objects whose boxes overlap. Which pairs without contact are among them depends on the
-    /// margin. Read a pair by [`Self::contact_pair`] or [`Self::proximity_pair`].
+    /// These are the objects whose boxes overlap and that groups and filters allow. Which pairs
+    /// without contact are among them depends on the margin. [`Self::contact_pair`] and
+    /// [`Self::proximity_pair`] return the contacts or the proximity of such a pair.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -43,12 +43,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         partners.into_iter().flatten().filter_map(|other| self.objects.get(other))
     }
 
-    /// Iterates over the contact points of an object with all others, each with the other object.
+    /// Iterates over the contact points of an object with all other objects, each with the other
+    /// object.
     ///
     /// The object is the first solid of each contact, whatever the order of the handles: `world1`,
-    /// `feature1` and `part1` are on it, and the normal points from it to the other. If an object
-    /// is tested against itself, the first solid is the part with the lower number. Empty for a
-    /// stale handle.
+    /// `feature1` and `part1` are on it, and the normal points from it to the other object. If an
+    /// object is tested against itself, the first solid is the part with the lower index. Empty for
+    /// a stale handle.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -82,8 +83,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Iterates over the objects near this one: the pairs whose query type is proximity. Disjoint
-    /// pairs are left out, since their existence depends on the margin. Empty for a stale handle.
+    /// Iterates over the objects near this object, with their proximity: the pairs whose query type
+    /// is proximity. Omits disjoint pairs, since their presence depends on the margin. Empty for a
+    /// stale handle.
     ///
     /// ```
     /// use impinge::dim3::events::Proximity;

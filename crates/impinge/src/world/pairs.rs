@@ -1,4 +1,4 @@
-//! Reading what the last update found: pairs, contacts, proximities, events.
+//! Access to the results of the last update: pairs, contacts, proximities, events.
 
 use super::step::in_order;
 use super::{CollisionObject, CollisionObjects, CollisionWorld};
@@ -14,8 +14,8 @@ type Object<N, const D: usize, T> = CollisionObject<N, D, T>;
 type PairView<'a, N, const D: usize, T> =
     (&'a Object<N, D, T>, &'a Object<N, D, T>, ManifoldView<'a, N, D>);
 
-/// Iterator over manifolds with their objects. Written out, since the closure of an adapter is not
-/// inlined and costs a call for each manifold.
+/// Iterates over manifolds with their objects. Not built of adapters, since the closure of an
+/// adapter is not inlined and costs a call for each manifold.
 struct PairViews<'a, N: Space<D>, const D: usize, T, I> {
     objects: &'a CollisionObjects<N, D, T>,
     views: I,
@@ -44,14 +44,14 @@ where
     }
 }
 
-/// Pairs, contacts and events of the last update; pairs of objects that were removed since are left
-/// out.
+/// Pairs, contacts and events of the last update. Pairs of objects that were removed since are
+/// omitted.
 ///
-/// In every pair the object with the smaller handle is the first; normals point from it to the
-/// second.
+/// In every pair the object with the smaller handle comes first; normals point from it to the
+/// second object.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the contacts of two objects, in either order. `None` for a stale handle, for a pair
-    /// that the broad phase does not keep, and for one whose query type is proximity.
+    /// Returns the contacts of two objects, given in either order. `None` for a stale handle, for
+    /// objects without a pair in the broad phase, and for a pair whose query type is proximity.
     #[must_use]
     pub fn contact_pair(
         &self,
@@ -62,8 +62,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.narrow_phase.contact_pair(&self.objects, first, second)
     }
 
-    /// Returns the proximity of two objects, in either order. `None` for a stale handle, for a pair
-    /// that the broad phase does not keep, and for one whose query type is contacts.
+    /// Returns the proximity of two objects, given in either order. `None` for a stale handle, for
+    /// objects without a pair in the broad phase, and for a pair whose query type is contacts.
     #[must_use]
     pub fn proximity_pair(
         &self,
@@ -106,8 +106,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Iterates over all manifolds that hold a contact, in order of their pairs: the contacts of
-    /// [`Self::contact_views`]. Each manifold is built on first access.
+    /// Iterates over all manifolds with at least one contact, in the canonical order of their
+    /// pairs. The contacts are those of [`Self::contact_views`]. Each manifold is built on first
+    /// access.
     pub fn contact_manifolds(
         &self,
     ) -> impl Iterator<Item = (&Object<N, D, T>, &Object<N, D, T>, &ContactManifold<N, D>)> {
@@ -117,10 +118,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Iterates over all manifolds that hold a contact, read in place; see [`ManifoldView`].
+    /// Iterates over all manifolds with at least one contact, read in place; see [`ManifoldView`].
     ///
-    /// The order is that of the library's memory: unspecified, but equal for equal histories, on
-    /// every machine and with any number of threads.
+    /// The order is that of the library's memory. It is unspecified, but equal for equal histories,
+    /// on every machine and with any number of threads.
     ///
     /// ```
     /// use impinge::math::{Isometry2, Vector};
@@ -150,8 +151,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         PairViews { objects: &self.objects, views }
     }
 
-    /// Splits the sequence of [`Self::contact_views`] into at most `pieces` consecutive iterators
-    /// of about as many pairs each, at least one: for threads of the user's own.
+    /// Splits the sequence of [`Self::contact_views`] into consecutive iterators over about equally
+    /// many pairs: at least one, and at most `pieces`. They are for threads of the user.
     ///
     /// The cuts depend only on `pieces` and the pairs. Pairs that touch a mesh cost more than
     /// others; four pieces for each thread let idle threads take over work.
@@ -196,7 +197,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Returns the contact events of the last update: pairs that got their first contact point or
-    /// lost their last.
+    /// lost their last one.
     #[must_use]
     pub fn contact_events(&self) -> &[ContactEvent] {
         self.events.contacts()

@@ -1,4 +1,4 @@
-//! Why two objects have a pair or none: refusing filters and loosened boxes.
+//! Reasons why two objects have a pair or none: refusing filters and loosened boxes.
 
 use super::CollisionWorld;
 use super::step::in_order;
@@ -7,11 +7,11 @@ use crate::bounding_volume::Aabb;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// Explaining pairs. An update tests boxes first, then [`CollisionGroups`](super::CollisionGroups),
-/// then filters.
+/// Explanations of pairs. An update tests boxes first, then
+/// [`CollisionGroups`](super::CollisionGroups), then filters.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the names of the pair filters that refuse two objects, sorted; empty for an object
-    /// and itself, and for a stale handle. Groups and boxes are ignored.
+    /// Returns the names, sorted, of the pair filters that refuse two objects. Empty for an object
+    /// and itself, and for a stale handle. Ignores groups and boxes.
     ///
     /// Calls all filters.
     ///
@@ -46,9 +46,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Returns the loosened box of an object in the broad phase as of the last update; objects
-    /// whose boxes overlap are proposed as a pair. `None` for a stale handle, for an object added
-    /// since the last update, and for a custom broad phase that does not expose boxes.
+    /// Returns the loosened box of an object in the broad phase, as of the last update; two objects
+    /// whose loosened boxes overlap are proposed as a pair. `None` for a stale handle, for an
+    /// object added since the last update, and for a custom broad phase without such boxes.
     ///
     /// ```
     /// use impinge::dim2::bounding_volume::BoundingVolume;

@@ -1,4 +1,4 @@
-//! Removed objects, kept as long as an event names them.
+//! Removed objects, which are kept as long as an event contains their handle.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,14 +7,15 @@ use crate::math::Space;
 use crate::memory::clone_fields;
 use crate::narrow_phase::{CollisionObjectHandle, Events};
 
-/// The removed objects that events name, and the set of handles named.
+/// The removed objects whose handles are in events, and the set of all handles in events.
 ///
 /// Until an object is removed, nothing is stored and no event is read.
 pub(super) struct RemovedObjects<N: Space<D>, const D: usize, T> {
     pub(super) objects: BTreeMap<CollisionObjectHandle, CollisionObject<N, D, T>>,
     /// Handles named by the events that [`Self::note`] has read since the update.
     named: BTreeSet<CollisionObjectHandle>,
-    /// Numbers of contact and proximity events already read: of the last update, and queued since.
+    /// Numbers of contact and of proximity events that have been read: of the last update, and
+    /// queued since.
     noted: [(usize, usize); 2],
 }
 
@@ -25,7 +26,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         Self { objects: BTreeMap::new(), named: BTreeSet::new(), noted: [(0, 0); 2] }
     }
 
-    /// Reads the events that came since the last call, and notes the handles that they name.
+    /// Reads the events that were added since the last call, and stores the handles in them.
     pub(super) fn note(&mut self, events: &Events, queued: &Events) {
         for (noted, events) in self.noted.iter_mut().zip([events, queued]) {
             self.named.extend(events.named_from(*noted));
@@ -33,7 +34,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         }
     }
 
-    /// Keeps a removed object if an event names it, else drops it.
+    /// Keeps a removed object if an event has its handle; else drops it.
     pub(super) fn keep(&mut self, object: CollisionObject<N, D, T>) {
         let handle = object.handle();
         if self.named.contains(&handle) {
@@ -41,7 +42,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         }
     }
 
-    /// Drops the objects that no event of the new batch names.
+    /// Drops the objects whose handle is in no event of the new batch.
     pub(super) fn keep_named(&mut self, events: &Events) {
         self.named.clear();
         self.noted = [(0, 0); 2];
@@ -53,18 +54,18 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
     }
 }
 
-/// Removed objects that events still name.
+/// Access to removed objects whose handles are still in events.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns a removed object, in its last state, as long as an event names it: one of the last
-    /// update, or one that its removal has queued for the next. So every handle in
-    /// [`Self::contact_events`] and [`Self::proximity_events`] has its object, here or by
-    /// [`Self::collision_object`].
+    /// Returns a removed object, in its last state, as long as an event contains its handle: an
+    /// event of the last update, or one that the removal has queued for the next. So every handle
+    /// in [`Self::contact_events`] and [`Self::proximity_events`] has an object, which this method
+    /// or [`Self::collision_object`] returns.
     ///
-    /// `None` for objects that are there, for stale handles that no event names, and for objects
-    /// taken by [`Self::take_removed`]. A removed object that no event names is dropped at once.
-    /// Others are dropped by the update that discards the last event naming them: without
-    /// [`Self::keep_events`] that is the second one after the removal at the latest. Until then
-    /// their data and shapes take memory.
+    /// `None` for objects that have not been removed, for stale handles in no event, and for
+    /// objects taken by [`Self::take_removed`]. A removed object whose handle is in no event is
+    /// dropped at once. Others are dropped by the update that discards the last event with their
+    /// handle: without [`Self::keep_events`], at the latest the second update after the removal.
+    /// Until then their data and shapes take memory.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -94,8 +95,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.removed.objects.get(&handle)
     }
 
-    /// Takes the data of a removed object, which [`Self::removed_object`] no longer returns
-    /// afterwards.
+    /// Takes the data of a removed object, which [`Self::removed_object`] then no longer returns.
+    /// `None` where that method returns `None`.
     pub fn take_removed(&mut self, handle: CollisionObjectHandle) -> Option<T> {
         self.removed.objects.remove(&handle).map(|object| object.data)
     }

@@ -1,4 +1,4 @@
-//! Contact skins: contacts computed for shapes grown by a distance.
+//! Contact skins: contacts are computed for shapes grown by a distance.
 
 use super::entries;
 use super::error::or_panic;
@@ -12,14 +12,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// distance, with rounded edges, without building such a shape. Zero, the default, removes the
     /// skin.
     ///
-    /// Contacts are those of the grown solids: `world1` and `world2` are on the grown surfaces,
-    /// `depth` exceeds that of the shapes by the sum of both skins, normals and features are those
-    /// of the shapes, and kinematics include the skins. Contact points exist, and the pair is in
-    /// contact, while the grown solids overlap or are no farther apart than the sum of the
+    /// Contacts are those of the grown solids: `world1` and `world2` are on the grown surfaces, and
+    /// `depth` exceeds the depth of the shapes by the sum of both skins. Normals and features are
+    /// those of the shapes; kinematics include the skins. There are contact points, and the pair is
+    /// in contact, while the grown solids overlap or are no farther apart than the sum of the
     /// predictions. So a solver that brings depths to zero keeps the shapes apart by both skins,
     /// where normals are exact and cheap. This corresponds to the `contact_skin` of rapier, the
-    /// radius of a polygon in Box2D and the dilation of ncollide. Works for any shape: each part of
-    /// a composite is grown.
+    /// radius of a polygon in Box2D, and the dilation of ncollide. It works for any shape: each
+    /// part of a composite is grown.
     ///
     /// Proximities, queries and the algorithms of a custom dispatcher ignore the skin. Takes effect
     /// at the next update; contacts keep their ids. Costs nothing in a world without skins.
@@ -49,7 +49,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// ```
     ///
     /// # Panics
-    /// If the handle is stale or the skin is negative or not finite; [`Self::try_set_skin`] returns these.
+    /// If the handle is stale, or the skin is negative or not finite; [`Self::try_set_skin`]
+    /// returns an error instead.
     #[doc(alias = "contact_skin")]
     #[track_caller]
     pub fn set_skin(&mut self, handle: CollisionObjectHandle, skin: N) {
@@ -59,7 +60,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Sets the skin of an object; see [`Self::set_skin`].
     ///
     /// # Errors
-    /// If the handle is stale or the skin is negative or not finite. The world is unchanged then.
+    /// If the handle is stale, or the skin is negative or not finite. Then the world is unchanged.
     pub fn try_set_skin(
         &mut self,
         handle: CollisionObjectHandle,

@@ -1,4 +1,4 @@
-//! One update of a world, and the replacement of its phases.
+//! The update of a world, and the replacement of its phases.
 
 use super::{CollisionObject, CollisionWorld, WorldBroadPhase, WorldsNarrowPhase};
 use crate::math::Space;
@@ -7,41 +7,42 @@ use crate::narrow_phase::{
 };
 use crate::query::Proximity;
 
-/// Number of pairs handed to the narrow phase at once: few enough that the rows of their objects
-/// are still in the cache when released.
+/// Number of pairs passed to the narrow phase at once: few enough that the rows of their objects
+/// are still in the cache when they are released.
 const AT_ONCE: usize = 512;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
 
-/// A pair filter that one update borrows from the caller.
+/// A pair filter of the caller, borrowed for one update.
 type LentFilter<'a, N, const D: usize, T> =
     &'a mut dyn FnMut(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Applies the changes since the last update: computes pairs, contacts and proximities, and
+    /// Applies the changes since the last update, computes pairs, contacts and proximities, and
     /// collects the events.
     ///
     /// The events of the last update are discarded, unless [`Self::keep_events`] was called. Events
-    /// queued since then by removals and [`Self::update_pair`] come first.
+    /// that removals and [`Self::update_pair`] queued since then come first.
     pub fn update(&mut self) {
         self.update_filtered(None);
     }
 
-    /// Updates as [`Self::update`] does, with one more pair filter. It may borrow and change what
-    /// the caller has: the joints of a solver, a table of who ignores whom.
+    /// Updates the world as [`Self::update`] does, with an additional pair filter. It may borrow
+    /// and change data of the caller: the joints of a solver, or a table of pairs to ignore.
     ///
     /// The filter is called once for each pair that this update would start, after groups and all
     /// registered filters have allowed it; if it returns `false`, the pair does not start. The
     /// object with the smaller handle is the first argument, and the order of calls does not depend
-    /// on the number of threads. As every pair filter it must be constant in time: it is called
+    /// on the number of threads. Like every pair filter it must not change over time: it is called
     /// when the boxes of two objects begin to overlap, and later updates call no filter again,
-    /// neither for a pair that stands nor for one that was refused.
+    /// neither for a pair that started nor for one that was refused.
     ///
-    /// To have the filter decide again, call [`Self::refilter_pairs`] or
-    /// [`Self::refilter_pairs_of`] before the update: pairs that it refuses then stop, with their
-    /// events, and pairs that it allows start. A change of registered filters, groups or fixed
-    /// marks also has the affected pairs filtered again, as does another broad phase. Pairs of an
-    /// object with itself are not filtered. If the filter panics, the next update calls it again.
+    /// To call the filter again, call [`Self::refilter_pairs`] or [`Self::refilter_pairs_of`]
+    /// before the update: pairs that the filter refuses then stop, with their events, and pairs
+    /// that it allows start. After a change of registered filters, groups or fixed marks the
+    /// affected pairs are filtered again too, and after a change of the broad phase all pairs are.
+    /// Pairs of an object with itself are not filtered. If the filter panics, the next update calls
+    /// it again.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -93,8 +94,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Starts the batch of events of an update, behind the last one's if these are kept, and drops
-    /// removed objects that no event names any more.
+    /// Begins the batch of events of an update, behind the last batch if that is kept. Drops
+    /// removed objects whose handle is in no event any more.
     fn begin_events(&mut self) {
         if !core::mem::take(&mut self.keeps_events) {
             self.events.clear();
@@ -103,12 +104,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.removed.keep_named(&self.events);
     }
 
-    /// Makes the next update keep the events of the last one and append its own. A program that
-    /// updates twice in a step then reads the events of both together.
+    /// Makes the next update keep the events of the last one and append its own. So a program that
+    /// updates twice in a step can read the events of both updates together.
     ///
     /// The events of each update form a batch in canonical order; a `Started` in the first batch
-    /// can be followed by a `Stopped` of the same pair in the second. Holds for one update; to
-    /// collect more, call it before each update but the first.
+    /// can be followed by a `Stopped` of the same pair in the second. The call affects one update;
+    /// to collect the events of several, call this before each update except the first.
     ///
     /// ```
     /// use impinge::dim2::events::ContactEvent;
@@ -174,13 +175,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects.table.tidy();
     }
 
-    /// Passes one started or stopped pair to the narrow phase.
+    /// Passes a started or stopped pair to the narrow phase.
     fn tell(&mut self, pair: HandlePair, has_started: bool) {
         self.tell_all(&[(pair, has_started)]);
     }
 
     /// Passes started and stopped pairs to the narrow phase, in chunks of [`AT_ONCE`]. The object
-    /// table has rows for the objects of its pairs only.
+    /// table has rows only for objects with pairs in the narrow phase, and for objects of the
+    /// chunk.
     fn tell_all(&mut self, interactions: &[Interaction]) {
         interactions.chunks(AT_ONCE).for_each(|some| self.tell_some(some));
     }
@@ -197,8 +199,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Releases the rows of a stopped pair's objects in the table, unless the narrow phase has
-    /// other pairs of them.
+    /// Releases the table rows of a stopped pair's objects, unless the narrow phase has other pairs
+    /// of an object.
     pub(super) fn give_back(&mut self, pair: HandlePair) {
         for handle in [pair.0, pair.1] {
             if !self.narrow_phase.has_pairs_of(handle) {
@@ -216,24 +218,25 @@ pub(super) fn in_order(
     if handle2 < handle1 { (handle2, handle1) } else { (handle1, handle2) }
 }
 
-/// Status of a pair with events: touching, or a proximity other than disjoint.
+/// Status of a pair that has events: touching, or a proximity other than disjoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum StepStatus {
     Touching,
     Near(Proximity),
 }
 
-/// Replacing the phases. The old ones serve until the next update, which creates all proxies anew.
+/// Replacing the phases. The old ones are used until the next update, which creates all proxies
+/// anew.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Replaces the broad phase by an empty one: any type that is `Clone`, `Send` and `Sync`.
     ///
-    /// It takes over at the next update, which reports changes as any other does and ends all
-    /// marks.
+    /// The new broad phase takes over at the next update, which reports changes as any other update
+    /// does, and ends all marks.
     pub fn set_broad_phase(&mut self, broad_phase: Box<WorldBroadPhase<N, D>>) {
         self.next_broad_phase = Some(broad_phase);
     }
 
-    /// The broad phase that found the pairs of the last update.
+    /// Returns the broad phase that found the pairs of the last update.
     #[cfg(feature = "debug_render")]
     pub(crate) fn broad_phase(&self) -> &WorldBroadPhase<N, D> {
         &*self.broad_phase
@@ -241,16 +244,16 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// Replaces the narrow phase by one without pairs: any type that is `Clone`.
     ///
-    /// It takes over at the next update, which reports changes as any other does and ends all
-    /// marks; contacts get new ids.
+    /// The new narrow phase takes over at the next update, which reports changes as any other
+    /// update does, and ends all marks. Contacts get new ids.
     pub fn set_narrow_phase(&mut self, narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>) {
         self.next_narrow_phase = Some(narrow_phase);
     }
 
-    /// Updates with a new broad phase or narrow phase. Since all proxies are new, the broad phase
-    /// reports every pair as started. A narrow phase that stays knows most of these already; the
-    /// pairs that it has and the broad phase did not report are stopped. A new narrow phase starts
-    /// without pairs; its events are the differences of its statuses from the old one's.
+    /// Updates with a new broad phase or narrow phase. All proxies are new, so the broad phase
+    /// reports every pair as started. A narrow phase that stays already has most of these; its
+    /// pairs that the broad phase did not report are stopped. A new narrow phase starts without
+    /// pairs; its events are the differences between the old statuses and the new ones.
     fn update_with_other_phases(&mut self, filter: Option<LentFilter<'_, N, D, T>>) {
         self.end_marks();
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
@@ -279,7 +282,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Creates a proxy for every object, in the next broad phase if there is one. Returns the pairs
-    /// that the old proxies had.
+    /// of the old proxies.
     fn renew_proxies(&mut self) -> Vec<HandlePair> {
         let known = self.objects.bodies().map(|body| (body.handle, body.proxy));
         let (handles, proxies): (Vec<_>, Vec<_>) = known.unzip();
@@ -317,7 +320,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
     }
 
-    /// Returns the pairs that touch or are near, sorted, with their statuses.
+    /// Returns the pairs that are touching or near, sorted, with their statuses.
     fn statuses(&self) -> Vec<(HandlePair, StepStatus)> {
         let contacts = self.narrow_phase.contact_pairs(&self.objects);
         let touching = contacts.filter(|(_, _, pair)| pair.num_contacts() > 0);
@@ -331,7 +334,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Pushes the events that lead from one sorted list of statuses to another.
+/// Pushes the events for the differences between two sorted lists of statuses.
 fn push_differences(
     before: &[(HandlePair, StepStatus)],
     after: &[(HandlePair, StepStatus)],
@@ -351,7 +354,7 @@ fn push_differences(
     }
 }
 
-/// Pushes the events that lead from one status of a pair to another.
+/// Pushes the events for the change from one status of a pair to another.
 fn push_change(
     pair: HandlePair,
     before: Option<StepStatus>,

@@ -1,4 +1,4 @@
-//! Computing one pair between two updates.
+//! The computation of a single pair between two updates.
 
 use super::error::or_panic;
 use super::step::in_order;
@@ -9,20 +9,20 @@ use crate::narrow_phase::CollisionObjectHandle;
 /// Continuous collision: single pairs at new positions.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Computes the contacts or the proximity of two objects at their present positions, without an
-    /// update. The order of the handles does not matter. For the substeps of a solver that moves a
-    /// fast body to where it hits.
+    /// update. The handles may be in either order. For the substeps of a solver that moves a fast
+    /// body to the position of its impact.
     ///
-    /// Returns `true` if the last update kept a pair of the two; if not, nothing happens. The broad
-    /// phase is not searched: where two bodies may meet within a step, their boxes must cover it
-    /// ([`Self::set_position_with_prediction`]). The pair is computed as an update would: contacts
-    /// that moved keep their ids. Until the next update all readers see this pair at the new
-    /// positions, and every other pair as of the last update. Shapes, query types and groups are
-    /// those of the last update.
+    /// Returns `false`, without a change, if the two had no pair at the last update. The broad
+    /// phase is not searched: if two bodies may meet within a step, their volumes must cover that
+    /// step ([`Self::set_position_with_prediction`]). The pair is computed as in an update:
+    /// contacts that only moved keep their ids. Until the next update all readers see this pair at
+    /// the new positions, and every other pair as of the last update. Shapes, query types and
+    /// groups are those of the last update.
     ///
-    /// If the pair began or ceased to touch, the event is queued: the next update delivers it
-    /// first, with those of removals, in the order in which they happened to the pair. Each
-    /// `Started` still has one `Stopped`: if a pair touches in a substep and has parted by the
-    /// update, both are delivered.
+    /// If the pair began or ceased to touch, the event is queued. The next update delivers it
+    /// first, with the events of removals, in the order in which they occurred for the pair. Each
+    /// `Started` still has one `Stopped`: if a pair touches in a substep and has separated by the
+    /// update, both events are delivered.
     ///
     /// Costs one query and two look-ups. A custom narrow phase must implement
     /// [`NarrowPhase::update_pair`](super::NarrowPhase::update_pair).
@@ -56,7 +56,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// ```
     ///
     /// # Panics
-    /// If a handle is stale; [`Self::try_update_pair`] returns this.
+    /// If a handle is stale; [`Self::try_update_pair`] returns an error instead.
     #[doc(alias = "update_contact")]
     #[track_caller]
     pub fn update_pair(
@@ -67,7 +67,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         or_panic(self.try_update_pair(handle1, handle2))
     }
 
-    /// Computes one pair at the present positions; see [`Self::update_pair`].
+    /// Computes a pair at the present positions; see [`Self::update_pair`].
     ///
     /// # Errors
     /// If a handle is stale. The world is unchanged then.

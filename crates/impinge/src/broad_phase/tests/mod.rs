@@ -9,13 +9,13 @@ use crate::bvh::tests::take_placed;
 use crate::math::{Point, Real, Vector};
 use crate::pairs::pack;
 
-/// Returns a number below `bound` from a linear congruential generator.
+/// Returns a pseudorandom number below `bound`, from a linear congruential generator.
 fn next(state: &mut u64, bound: u32) -> u32 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     u32::try_from((*state >> 33) % u64::from(bound)).expect("below a u32")
 }
 
-/// Returns a box of 0 to 1.25 units on each axis with multiples of 1/4 as coordinates, exact in
+/// Returns a random box with sides of 0 to 1.25 and coordinates that are multiples of 1/4, exact in
 /// `f32`.
 fn random_box<N: Real, const D: usize>(state: &mut u64, side: u32) -> Aabb<N, D> {
     let lo = Vector::<N, D>::from_fn(|_, _| N::lit(f64::from(next(state, 4 * side)) / 4.0));
@@ -23,8 +23,8 @@ fn random_box<N: Real, const D: usize>(state: &mut u64, side: u32) -> Aabb<N, D>
     Aabb::new(Point::from(lo), Point::from(lo + size))
 }
 
-/// Outcome of a scene: its events by step, the pairs in the order of the table, and the largest
-/// number of still objects.
+/// Outcome of a scene: its events with their steps, the pairs in the order of the table, and the
+/// greatest number of still objects.
 #[derive(Debug, PartialEq)]
 struct Outcome {
     events: Vec<(usize, u32, u32, bool)>,
@@ -32,8 +32,9 @@ struct Outcome {
     most_still: usize,
 }
 
-/// Plays a scene of 90 steps: many objects move, then few, so that the others come to rest, then
-/// many again. In each step three objects are removed and added elsewhere.
+/// Plays a scene of 90 steps and returns its outcome. Many objects move, then few, so that the
+/// others come to rest, then many again. Each step also removes three objects and inserts them
+/// elsewhere.
 fn play<N: Real, const D: usize>(lanes: Lanes, count: u32, side: u32) -> Outcome {
     let mut finder = PairFinder::<N, D>::with_lanes(N::lit(0.125), lanes).expect("a margin");
     let (mut state, mut events, mut most_still) = (count.into(), Vec::new(), 0);
@@ -91,8 +92,8 @@ fn compare_pairs<N: Real, const D: usize>(
     assert!(finder.homes.iter().all(|&home| home != Home::Nowhere), "all take part");
 }
 
-/// Asserts that objects came to rest and that there were enough events and pairs for the test to
-/// mean something.
+/// Asserts that objects came to rest, and that there were enough events and pairs for a meaningful
+/// test.
 fn check_reached(outcome: &Outcome, count: usize) {
     assert!(outcome.most_still > count / 8, "objects came to rest: {}", outcome.most_still);
     assert!(outcome.events.len() > 4 * count, "{} events", outcome.events.len());
@@ -111,7 +112,7 @@ fn every_instruction_set_gives_the_same_events() {
     }
 }
 
-/// More than 16³ = 4096 objects: the tree has four layers.
+/// More than 16³ = 4096 objects, so the tree has four layers.
 #[test]
 fn a_deep_tree() {
     check_reached(&play::<f32, 2>(Lanes::detect(), 5000, 90), 5000);
@@ -131,7 +132,7 @@ fn any_number_of_threads_gives_the_same_events() {
     }
 }
 
-/// The order of slots is restored within 30 updates after all boxes have moved elsewhere.
+/// After all boxes have moved elsewhere, the order of slots is restored within 30 updates.
 #[test]
 fn renewal_keeps_the_tree_good() {
     let mut finder = PairFinder::<f32, 3>::try_new(0.05).expect("a margin");
@@ -145,7 +146,7 @@ fn renewal_keeps_the_tree_good() {
     update(&mut finder);
     let fresh = finder.moving.leaf_surface();
     for id in 0..3000 {
-        // Every box moves to a random place, which makes the order as bad as possible.
+        // Every box moves to a random position, which makes the order as bad as possible.
         finder.set(id, random_box(&mut state, 20));
     }
     update(&mut finder);
@@ -157,9 +158,9 @@ fn renewal_keeps_the_tree_good() {
     finder.validate().expect("sound");
 }
 
-/// Objects that are added elsewhere under an old id do not get the slots of their predecessors when
-/// a renewal that began earlier is applied: over 60 steps that replace a tenth of the objects, the
-/// surface of the leaves stays below twice that of a fresh tree.
+/// An object that is inserted elsewhere under an old id does not get the old object's slot when a
+/// renewal that began earlier is applied. Over 60 steps, each of which replaces a tenth of the
+/// objects, the mean leaf surface stays below twice that of a fresh tree.
 #[test]
 fn respawned_objects_keep_the_tree_good() {
     let mut finder = PairFinder::<f32, 3>::try_new(0.05).expect("a margin");
@@ -185,8 +186,8 @@ fn respawned_objects_keep_the_tree_good() {
     compare_pairs(&finder, |_, _| true);
 }
 
-/// If 10 of 30 000 objects added at once move, the others come to rest without an update that moves
-/// more than 2500 objects between slots.
+/// If 10 of 30 000 objects that were inserted at once move, the others come to rest, and no update
+/// moves more than 2500 objects between slots.
 #[test]
 fn no_update_handles_many_objects_at_rest() {
     let (count, movers, state) = (30_000, 10, &mut 5);
@@ -208,8 +209,7 @@ fn no_update_handles_many_objects_at_rest() {
     assert!(finder.still.len() > 29_900, "{} are still", finder.still.len());
 }
 
-/// A stream of 20 new objects in each update, which stay where they are: they come to rest in small
-/// portions.
+/// Each update inserts 20 objects, which do not move. They come to rest in small groups.
 #[test]
 fn a_stream_of_objects_comes_to_rest_bit_by_bit() {
     let state = &mut 6;

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use smallvec::SmallVec;
 
-/// Pairs of blocks that a stack holds without an allocation.
+/// Number of pairs that a stack stores without an allocation.
 pub(super) const STACK: usize = 48;
 
 /// A pair of blocks, one of each tree.
@@ -13,18 +13,18 @@ pub(super) const STACK: usize = 48;
 pub(super) struct OpenPair {
     pub(super) layers: [u8; 2],
     pub(super) blocks: [u32; 2],
-    /// Lower bound, but for rounding, of the distance of two objects in them; NaN where the reach
-    /// has no limit.
+    /// Lower bound of the distance of two objects in the blocks, before rounding errors; minus
+    /// infinity if unknown, NaN if the maximum distance is infinite.
     pub(super) gap: f32,
 }
 
-/// A queue of pairs of blocks.
+/// A queue of pairs of blocks; `take` returns `None` when it is empty.
 pub(super) trait Agenda {
     fn put(&mut self, pair: OpenPair);
     fn take(&mut self) -> Option<OpenPair>;
 }
 
-/// Takes the pair that was put last.
+/// A stack: takes the pair that was put last.
 impl Agenda for SmallVec<[OpenPair; STACK]> {
     fn put(&mut self, pair: OpenPair) {
         self.push(pair);
@@ -35,10 +35,11 @@ impl Agenda for SmallVec<[OpenPair; STACK]> {
     }
 }
 
-/// Takes the pair with the least gap; in a tie the lowest layers, then the lowest blocks.
+/// A heap: takes the pair with the least gap. In a tie, the pair with the lowest sum of layers,
+/// then the pair with the lowest block indices.
 impl Agenda for BinaryHeap<Reverse<RankedPair>> {
     fn put(&mut self, pair: OpenPair) {
-        // The bits of non-negative floats are ordered as the floats.
+        // Non-negative floats have the same order as their bits. A negative or NaN gap counts as 0.
         let gap = if pair.gap > 0.0 { pair.gap.to_bits() } else { 0 };
         let layers = pair.layers.map(u32::from);
         let rank = (gap, layers[0] + layers[1], pair.blocks);
@@ -50,7 +51,7 @@ impl Agenda for BinaryHeap<Reverse<RankedPair>> {
     }
 }
 
-/// A pair of blocks, ordered by its gap, the sum of its layers and its block indices.
+/// A pair of blocks with its rank: its gap, the sum of its layers, and its block indices.
 #[derive(Clone, Copy)]
 pub(super) struct RankedPair {
     rank: (u32, u32, [u32; 2]),

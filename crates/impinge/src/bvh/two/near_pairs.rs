@@ -1,12 +1,12 @@
 //! Pairs of objects of two trees, each in its own frame, near ones first.
 //!
 //! The search is best first over pairs of blocks, one of each tree (Hjaltason and Samet,
-//! "Incremental distance join algorithms for spatial databases", 1998), after a descent straight to
-//! two objects, so that a distance is known to reject others. The lanes of both blocks are compared
-//! with each other, or those of the wider block alone if it is much wider. A box of one tree is
-//! compared in the frame of the other, so that the axes of both frames separate blocks in turn, and
-//! so do directions between them, along which the extent of a block is bounded by its box and its
-//! slab.
+//! "Incremental distance join algorithms for spatial databases", 1998). It begins with a descent
+//! straight to two objects, whose distance rejects other pairs. The lanes of both blocks are
+//! compared with each other, or only the lanes of the wider block if it is much wider. A box of one
+//! tree is transformed into the frame of the other, so that the axes of both frames separate
+//! blocks. Other directions between the trees do so too: along these, a block's extent is bounded
+//! by its box and its slab.
 //!
 //! ```text
 //!  queue: pairs (block1, block2) by distance
@@ -32,11 +32,12 @@ use crate::math::{Mapped, Point, Real, Vector, filled, max, unit};
 
 /// Initial capacity of the queue: enough for most searches.
 const EXPECTED: usize = 64;
-/// If the surface of one block is larger by this factor, about a layer's worth, only that block is
-/// opened.
+/// If the surface of one block is larger by this factor, about the ratio between two layers, only
+/// that block is opened.
 const MUCH_WIDER: f64 = 8.0;
 
-/// A direction toward the other tree: a unit vector in the frame of each, opposites of each other.
+/// A direction toward the other tree: a unit vector in the frame of each tree. In one frame, the
+/// two vectors are opposite.
 pub(crate) type Toward<N, const D: usize> = [Vector<N, D>; 2];
 
 /// The relative pose of two trees, and the receiver of pairs of their objects.
@@ -49,54 +50,57 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     /// other.
     fn object_in_other(&self, which: usize, id: u32) -> Aabb<N, D>;
 
-    /// The largest distance at which boxes matter, negative to end the search; never grows.
+    /// Returns the largest distance between boxes of pairs to visit; a negative one ends the
+    /// search. It must never grow.
     fn bound(&self) -> N;
 
-    /// The largest signed distance at which objects matter; never grows.
+    /// Returns the largest signed distance between objects of pairs to visit. It must never grow.
     fn limit(&self) -> N;
 
-    /// Lower bound, zero or more, of the overlap along every axis of the boxes of objects within
-    /// the limit.
+    /// Returns a lower bound, zero or more, of the overlap along every axis of the boxes of two
+    /// objects within [`Self::limit`].
     fn depth(&self) -> N;
 
-    /// The direction along which the nearest objects so far are separated; `None` before there are
-    /// any.
+    /// Returns the direction along which the nearest objects so far are separated; `None` before
+    /// two objects have been compared.
     fn best(&self) -> Option<Toward<N, D>>;
 
-    /// Converts a unit vector in the frame of the first (0) or the second (1) tree into a
-    /// direction; `None` if gaps along it are meaningless, since objects move.
+    /// Returns the direction for a unit vector in the frame of the first (0) or the second (1)
+    /// tree. `None` if gaps along it mean nothing, because the objects move.
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>>;
 
-    /// The direction from a point of the first tree to one of the second.
+    /// Returns the direction from a point of the first tree to a point of the second, each in its
+    /// tree's frame; `None` if there is none.
     fn between(&self, points: [Point<N, D>; 2]) -> Option<Toward<N, D>>;
 
-    /// Upper bound of the extent of an object of the first (0) or the second (1) tree along a unit
-    /// vector.
+    /// Returns an upper bound of the extent of an object of the first (0) or the second (1) tree
+    /// along a unit vector in the frame of its tree.
     fn extent(&self, which: usize, id: u32, along: &Vector<N, D>) -> N;
 
-    /// Lower bound of the signed distance of objects with these extents toward each other.
+    /// Returns a lower bound of the signed distance of two objects that have these extents along
+    /// `toward`.
     fn gap(&self, toward: &Toward<N, D>, extents: [N; 2]) -> N;
 
-    /// Receives two objects that are likely to be near, before the search; [`NONE`] where a descent
-    /// failed. They are visited again.
+    /// Receives two objects that are probably near each other, before the search; [`NONE`] for a
+    /// tree in which the descent failed. The search may visit them again.
     fn guess(&mut self, objects: [u32; 2]);
 
-    /// Receives the pairs with boxes within the bound: an object of the first (0) or the second (1)
-    /// tree and at most [`LANES`] of the other.
+    /// Receives pairs whose boxes are within the bound: object `own` of the first (0) or the second
+    /// (1) tree with at most [`LANES`] objects of the other tree.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]);
 }
 
-/// A pair of blocks, one of each tree. In a tie of distances those in low layers come first.
+/// A pair of blocks, one of each tree. At equal distances, pairs in low layers come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct BlockPair {
-    /// The bits of a lower bound of the distance of objects, zero or more, so that the bits are
-    /// ordered as it is.
+    /// Bits of a lower bound of the distance of two objects, one in each block. It is zero or more,
+    /// so the bits have the order of the values.
     distance: u64,
     layers: [u8; 2],
     blocks: [u32; 2],
-    /// Whether the boxes of the blocks are apart.
+    /// Whether the boxes of the two blocks are disjoint.
     are_apart: bool,
-    /// Whether the distance is that of the boxes, or of the parent pair, and can still be raised.
+    /// Whether the distance is only that of the boxes or of the parent pair, and can be raised.
     is_rough: bool,
 }
 
@@ -107,11 +111,11 @@ struct PairSearch<'a, 'q, N: Real, const D: usize> {
     question: &'q mut dyn TreePair<N, D>,
 }
 
-/// Distances of lanes, with their slots or the indices of child blocks.
+/// Lanes of a block: their distances, and their slots or the indices of their child blocks.
 type NearLanes<N> = SmallVec<[(N, u32); LANES]>;
 
-/// Visits the pairs of objects of two trees within the bound of the question, near ones first but
-/// in no exact order.
+/// Visits the pairs of objects of two trees that may be within the bound and limit of `question`,
+/// near ones roughly first.
 pub(crate) fn visit_pairs<N: Real, const D: usize>(
     trees: [&Tree<D>; 2],
     question: &mut dyn TreePair<N, D>,
@@ -127,8 +131,8 @@ pub(crate) fn visit_pairs<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
-    /// Guesses two objects if the limit is positive and the trees are near each other. Then opens
-    /// pairs of blocks, nearest first, until the next is beyond the bound.
+    /// Passes two likely objects to `guess` if the limit is positive and the trees are near each
+    /// other. Then opens pairs of blocks, nearest first, until the next pair is beyond the bound.
     fn run(&mut self, whole: BlockPair) {
         self.queue.push(Reverse(whole));
         let near = || self.near(0, whole.layers[0], 0, &self.other_box(0, &whole));
@@ -149,9 +153,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Returns one object of each tree, likely to be near each other. Each is the end of a descent
-    /// towards the centre of the other's leaf block; the first descent goes towards the centre of
-    /// the other tree.
+    /// Returns one object of each tree, probably near each other, or [`NONE`]. Each is the end of a
+    /// descent toward the centre of the other object's leaf block; the first descent goes toward
+    /// the centre of the other tree.
     fn descend(&self, whole: BlockPair) -> [u32; 2] {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
@@ -164,8 +168,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         found
     }
 
-    /// Returns the pair if it is within the limit and still comes first once its lower bound is
-    /// raised. If another pair comes before it now, it is queued again.
+    /// Raises the lower bound of a pair, and returns the pair if it is still first. `None` if the
+    /// pair is beyond the limit, or if another one now comes first: then the pair is queued again.
     fn first(&mut self, mut pair: BlockPair) -> Option<BlockPair> {
         let gap = if pair.is_rough { self.gap(&pair) } else { self.best_gap(&pair) };
         let is_beyond = gap > self.question.limit();
@@ -181,7 +185,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         Some(pair)
     }
 
-    /// Block `which` of a pair: its box and slab, in the frame of its tree.
+    /// Returns the box and slab of block `which` of a pair, in the frame of its tree.
     fn slab_box(&self, which: usize, pair: &BlockPair) -> SlabBox<'_, D> {
         self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which])
     }
@@ -190,23 +194,23 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         *self.slab_box(which, pair).bounds
     }
 
-    /// Lower bound of the signed distance of the contents of two blocks, by the gap along a
-    /// direction.
+    /// Returns a lower bound of the signed distance of the contents of two blocks: the gap along
+    /// `toward`.
     fn gap_along(&self, toward: &Toward<N, D>, pair: &BlockPair) -> N {
         let extents = [0, 1].mapped(|which| self.slab_box(which, pair).extent(&toward[which]));
         self.question.gap(toward, extents)
     }
 
-    /// The gap along the direction of the nearest objects so far, if the boxes of two blocks are
-    /// apart; else minus infinity.
+    /// Returns the gap along the direction of the nearest objects so far, if the boxes of the two
+    /// blocks are disjoint; else minus infinity.
     fn best_gap(&self, pair: &BlockPair) -> N {
         let best = self.question.best().filter(|_| pair.are_apart);
         best.map_or(-N::INFINITY, |toward| self.gap_along(&toward, pair))
     }
 
-    /// The largest gap along directions likely to separate the contents of two blocks: between
-    /// their centres and between the nearest objects so far if their boxes are apart, else across
-    /// their slabs.
+    /// Returns the largest gap along directions that are likely to separate the contents of two
+    /// blocks. These are the direction of the nearest objects so far and the direction between the
+    /// block centres if their boxes are disjoint, else the normals of their slabs.
     fn gap(&self, pair: &BlockPair) -> N {
         let gap = self.best_gap(pair);
         if gap > self.question.limit() {
@@ -227,8 +231,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         gaps.fold(gap, max)
     }
 
-    /// Compares the contents of two blocks, or of one with the other block: visits objects, and
-    /// queues pairs of blocks.
+    /// Opens one block of a pair or both: queues pairs of children, or visits the objects of two
+    /// leaf blocks.
     fn open(&mut self, pair: &BlockPair) {
         let widths = [0, 1].mapped(|which| self.bounds(which, pair).half_surface());
         let wider = usize::from(widths[1] >= widths[0]);
@@ -241,7 +245,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Queues the children of one block, each paired with the other block.
+    /// Queues the children of block `which`, each paired with the other block, unless
+    /// [`Self::best_gap`] exceeds the limit.
     fn open_one(&mut self, which: usize, pair: &BlockPair) {
         for below in self.near_below(which, pair) {
             let is_beyond = self.best_gap(&below) > self.question.limit();
@@ -251,8 +256,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Queues pairs of children of two blocks: each child of the narrower block with the near
-    /// children of the other.
+    /// Queues pairs of children of both blocks: for each child of block `which` within the limit,
+    /// the near children of the other block.
     fn open_both(&mut self, which: usize, pair: &BlockPair) {
         for below in self.near_below(which, pair) {
             let is_beyond = self.gap(&below) > self.question.limit();
@@ -262,8 +267,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Visits the near pairs of objects of two leaf blocks: each object of block `which` with those
-    /// of the other.
+    /// Visits the near pairs of objects of two leaf blocks: each object of block `which` with the
+    /// near objects of the other block.
     fn meet(&mut self, which: usize, pair: &BlockPair) {
         let [own, other] = [pair.blocks[which], pair.blocks[1 - which]];
         let sides = self.sides(1 - which, pair);
@@ -290,9 +295,10 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         }
     }
 
-    /// Directions that may separate single objects from a whole leaf block, and the extent of the
-    /// block along them: of its objects along the direction of the nearest objects so far, if these
-    /// are apart, and of its slab across itself.
+    /// Returns directions that may separate single objects from all of leaf block `which`, each
+    /// with the extent of the block along it. They are the two normals of its slab and, if the
+    /// limit is positive, the direction of the nearest objects so far, with the extent of the
+    /// block's objects.
     fn sides(&self, which: usize, pair: &BlockPair) -> SmallVec<[(Toward<N, D>, N); 3]> {
         let block = self.slab_box(which, pair);
         let across = block.slab.and_then(|slab| Some(unit(&slab.across::<N>())?.0));
@@ -308,13 +314,13 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         sides
     }
 
-    /// Returns a box around the other block of a pair, in the frame of tree `which`.
+    /// Returns the box of the block that is not `which`, in the frame of tree `which`.
     fn other_box(&self, which: usize, pair: &BlockPair) -> Aabb<N, D> {
         self.question.in_other(1 - which, &self.bounds(1 - which, pair).as_aabb())
     }
 
-    /// Returns the children of block `which` that are near the other block, each as a pair with it;
-    /// near ones first.
+    /// Iterates over the children of block `which` that are near the other block, each paired with
+    /// the other block; near ones first.
     fn near_below(
         &self,
         which: usize,
@@ -326,9 +332,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         near.into_iter().map(move |(distance, block)| below(&pair, which, block, distance))
     }
 
-    /// Returns the lanes of a block that are within the bound of `aabb`, a box in the frame of the
-    /// block's tree, and overlap it by at least `depth`: near ones first, in a tie the lowest lane.
-    /// A distance is slightly below the exact one.
+    /// Returns the lanes of a block whose boxes are within the bound of `aabb` and overlap it by at
+    /// least `depth`. `aabb` is in the frame of the block's tree. Near lanes come first; at equal
+    /// distances the lowest lane. Distances are rounded down.
     fn near(&self, which: usize, layer: u8, block: u32, aabb: &Aabb<N, D>) -> NearLanes<N> {
         let (tree, layer) = (self.trees[which], usize::from(layer));
         let gaps = Gaps::new(aabb, tree.size()).within(self.question.depth());
@@ -346,8 +352,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 }
 
-/// Returns the pair of a child of block `which` with the other block; `distance` is that of their
-/// boxes.
+/// Returns the pair of a child of block `which` with the other block; `distance` is the distance of
+/// their boxes.
 fn below<N: Real>(pair: &BlockPair, which: usize, block: u32, distance: N) -> BlockPair {
     let (mut layers, mut blocks) = (pair.layers, pair.blocks);
     (layers[which], blocks[which]) = (layers[which] - 1, block);
@@ -364,7 +370,7 @@ mod tests {
     use crate::math::xorshift::Xorshift;
     use crate::math::{Point, Vector};
 
-    /// The second tree is translated by `shift` along the first axis.
+    /// Two lists of boxes; the second list is translated by `shift` along the x axis.
     struct Shifted<'a> {
         boxes: &'a [Vec<Aabb<f64, 3>>; 2],
         shift: f64,

@@ -1,4 +1,4 @@
-//! Regions of one tree in the frame of another, in `f32`, and the test which boxes of a block a
+//! Regions of one tree in the frame of another, in `f32`, and the test of which boxes in a block a
 //! region may touch.
 //!
 //! ```text
@@ -19,29 +19,29 @@ use crate::math::lanes::{bits, with_lanes};
 use crate::math::simd::{Level, Simd};
 use crate::math::{Pose, Real, Vector, Wide, filled};
 
-/// Lanes that one pass handles.
+/// Lanes that are tested at once.
 const HALF: usize = LANES / 2;
 
 /// The pose of one tree in the frame of the other.
 #[derive(Clone, Copy)]
 pub(super) struct TreePose<const D: usize> {
-    /// Columns of the rotation.
+    /// Columns of the rotation matrix.
     axes: [[f32; D]; D],
     pub(super) shift: [f32; D],
 }
 
-/// A convex region in the frame of the blocks it is compared with: a box and slabs, all widened by
-/// the reach and the rounding error.
+/// A convex region in the frame of the blocks that it is tested against: the intersection of a box
+/// and slabs. All are widened by the maximum distance and the rounding error.
 pub(super) struct RotatedBox<const D: usize> {
     bounds: Bounds<D>,
-    /// Along the axes of the own frame, and across a slab.
+    /// Slabs along the axes of the region's own frame, and its block's slab.
     slabs: SmallVec<[BlockSlab<D>; 4]>,
-    /// Only in a search for the nearest pair.
+    /// Set only in a search for the nearest pair.
     extent: Option<Extent<D>>,
 }
 
-/// The extent of a region along any direction: the hull of some points plus the segments from `-w`
-/// to `w` for each `w` of `wider`, widened by `margin`.
+/// Bounds the extent of a region along any direction: the convex hull of `points`, plus the
+/// segments from `-w` to `w` for each `w` of `wider` (a Minkowski sum), widened by `margin`.
 struct Extent<const D: usize> {
     middle: [f32; D],
     points: SmallVec<[[f32; D]; 3]>,
@@ -49,7 +49,7 @@ struct Extent<const D: usize> {
     margin: f32,
 }
 
-/// The boxes of a block that a region may touch, as a bit mask.
+/// The boxes in a block that a region may touch.
 pub(super) struct Held {
     pub(super) mask: u32,
     /// Lower bounds of the distances of the boxes to the region: the largest gap along the tested
@@ -58,7 +58,7 @@ pub(super) struct Held {
 }
 
 impl<const D: usize> TreePose<D> {
-    /// Rounds a pose to `f32`.
+    /// Converts a pose to `f32`.
     pub(super) fn of<N: Real>(pose: &Pose<N, D>) -> Self {
         let axes = filled(|axis| filled(|row| pose.rotation[(row, axis)].as_f32()));
         Self { axes, shift: filled(|row| pose.translation[row].as_f32()) }
@@ -69,8 +69,8 @@ impl<const D: usize> TreePose<D> {
         filled(|row| (0..D).map(|axis| self.axes[axis][row] * local[axis]).sum())
     }
 
-    /// Transforms a box of one tree, and its slab, into the frame of the other tree, widened by
-    /// `margin`.
+    /// Returns the region of a box and its slab, both in this tree's frame, in the frame of the
+    /// other tree. The region is widened by `margin`.
     pub(super) fn region_of(
         &self,
         bounds: &Bounds<D>,
@@ -116,8 +116,8 @@ fn dot<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
 }
 
 impl<const D: usize> RotatedBox<D> {
-    /// Takes a box around an object and, if given, its corners, in the frame of the blocks; all
-    /// widened by `margin`.
+    /// Returns the region of an object's box, and of the object's corners if given, all in the
+    /// frame of the blocks and widened by `margin`.
     pub(super) fn of_object<N: Real>(
         bounds: &Bounds<D>,
         corners: Option<[Vector<N, D>; 3]>,
@@ -131,7 +131,7 @@ impl<const D: usize> RotatedBox<D> {
         Self { bounds, slabs: SmallVec::new(), extent }
     }
 
-    /// Tests the boxes of a block; those that may be touched are set in the mask.
+    /// Tests all boxes in a block, and returns the mask of those that the region may touch.
     pub(super) fn held(&self, level: Level, block: &Block<D>) -> Held {
         let mut held = Held { mask: 0, gaps: [0.0; LANES] };
         for first in [0, HALF] {
@@ -142,7 +142,8 @@ impl<const D: usize> RotatedBox<D> {
         held
     }
 
-    /// Tests 8 boxes of a block. Empty lanes are infinitely far.
+    /// Tests 8 boxes in a block, from lane `first` on: writes their gaps and returns the mask of
+    /// those that may be touched. Empty lanes have an infinite gap.
     #[inline(always)]
     fn held_half<S: Simd>(&self, simd: S, block: &Block<D>, first: usize, gaps: &mut [f32]) -> u8 {
         let (lanes, zero) = (first..first + HALF, S::F32x8::all(simd, 0.0));
@@ -179,14 +180,14 @@ impl<const D: usize> RotatedBox<D> {
 }
 
 impl<const D: usize> Extent<D> {
-    /// The hull of the corners of a part.
+    /// The convex hull of three corners, widened by `margin`.
     fn of_corners<N: Real>(corners: &[Vector<N, D>; 3], margin: f32) -> Self {
         let points: [[f32; D]; 3] = filled(|at: usize| filled(|axis| corners[at][axis].as_f32()));
         let middle = filled(|axis| points.iter().map(|corner| corner[axis] / 3.0).sum());
         Self { middle, points: SmallVec::from_slice(&points), wider: SmallVec::new(), margin }
     }
 
-    /// The gaps to 8 boxes of a block along the line from `middle` to the centre of each.
+    /// Returns the gaps to 8 boxes, each along the line from `middle` to the centre of the box.
     #[inline(always)]
     fn gaps<S: Simd>(&self, simd: S, [lo, hi]: &[[S::F32x8; D]; 2]) -> S::F32x8 {
         let (half, zero) = (S::F32x8::all(simd, 0.5), S::F32x8::all(simd, 0.0));

@@ -1,17 +1,18 @@
 //! Pairs of objects of two trees that may touch, each tree in its own frame.
 //!
-//! The search is depth first over pairs of blocks. The box around one block is transformed into the
-//! frame of the other tree, once, and compared with all boxes in the other block at a time: along
-//! the axes of both frames, which separate most boxes that are apart (Gottschalk, Lin and Manocha,
-//! "`OBBTree`", 1996, also have the directions across two edges), and across its slab. The larger
-//! of two blocks is opened, and the child with the deepest overlap comes next, without a queue. A
-//! search for the nearest pair is best first (Hjaltason and Samet, "Incremental distance join
-//! algorithms for spatial databases", 1998), after a descent straight to two objects: the direction
-//! between these, and between the centres of two blocks, separates most blocks that lie beside each
-//! other.
+//! The search is depth first over pairs of blocks. The box of one block is transformed once into
+//! the frame of the other tree, and compared with all boxes in the other block. It is compared
+//! along the axes of both frames, which separate most disjoint boxes (Gottschalk, Lin and Manocha,
+//! "`OBBTree`", 1996, also test the cross products of edges), and across its slab. The larger of
+//! two blocks is opened, and the child with the deepest overlap comes next, without a queue.
 //!
-//! Boxes are compared in `f32` with a margin for its rounding: rejected pairs are certainly beyond
-//! the reach.
+//! A search for the nearest pair is best first (Hjaltason and Samet, "Incremental distance join
+//! algorithms for spatial databases", 1998), after a descent straight to two objects. The direction
+//! between these, and the direction between the centres of two blocks, separates most blocks that
+//! lie beside each other.
+//!
+//! Boxes are compared in `f32`, with a margin for the rounding errors: every rejected pair is
+//! beyond the maximum distance.
 
 use std::collections::BinaryHeap;
 
@@ -28,64 +29,68 @@ use crate::math::order::sort_few;
 use crate::math::simd::Level;
 use crate::math::{Mapped, Pose, Real, Vector, filled, max_component, unit};
 
-/// Rounding error of heights, in units of `f32` epsilon times all lengths: 3 for a rotation, 3 for
-/// a scalar product, 2 for directions that are not quite unit, in up to three axes. The rest is
-/// reserve.
+/// Rounding error of heights, as a multiple of the `f32` epsilon times the sum of all lengths: 3
+/// for a rotation, 3 for a scalar product and 2 for directions that are not exactly of unit length,
+/// on up to three axes. The rest is reserve.
 const ROUNDING: f32 = 64.0;
 
 /// The relative pose of two trees, and the receiver of pairs of their objects.
 pub(crate) trait TouchQuery<N: Real, const D: usize> {
-    /// The pose of the first (0) or the second (1) tree in the frame of the other.
+    /// Returns the transformation from the frame of the first (0) or the second (1) tree to the
+    /// frame of the other.
     fn pose(&self, which: usize) -> &Pose<N, D>;
 
-    /// The largest distance of pairs to visit; it never grows, and `None` ends the search.
+    /// Returns the largest distance of pairs to visit, which must never grow; `None` ends the
+    /// search.
     fn max_distance(&self) -> Option<N>;
 
-    /// Whether the reach shrinks to the best distance. If so, pairs of blocks come by their gaps,
-    /// not the deepest first.
+    /// Returns `true` if the maximum distance shrinks to the best distance so far. Pairs of blocks
+    /// are then opened by ascending gap, instead of depth first.
     fn is_for_nearest(&self) -> bool {
         false
     }
 
-    /// Receives two objects that are likely to be near, before the search; they are visited again.
+    /// Receives two objects that are probably near each other, before the search. The search may
+    /// visit them again.
     fn guess(&mut self, _objects: [u32; 2]) {}
 
-    /// Unit vectors toward the other tree, in the frame of each, along which the nearest objects so
-    /// far are separated.
+    /// Returns the direction along which the nearest objects so far are separated, as a unit vector
+    /// toward the other tree in the frame of each tree; `None` if unknown.
     fn best(&self) -> Option<Toward<N, D>> {
         None
     }
 
     /// Returns a box around an object of the first (0) or the second (1) tree, in the frame of the
-    /// other, but for rounding. If any objects are near it, it is visited next.
+    /// other tree, up to rounding errors. If any objects are near the box, the next call is
+    /// [`Self::visit`] for this object.
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D>;
 
-    /// The corners of the object of the last call of [`Self::object_in_other`], in the frame of the
-    /// other tree; `None` for an object without corners.
+    /// Returns the corners of the object of the last call of [`Self::object_in_other`], in the
+    /// frame of the other tree; `None` if it has none.
     fn corners(&self) -> Option<[Vector<N, D>; 3]> {
         None
     }
 
-    /// Receives an object of the first (0) or the second (1) tree and all objects of one block of
-    /// the other with boxes within its reach.
+    /// Receives object `own` of the first (0) or the second (1) tree, and the objects in one block
+    /// of the other tree whose boxes are within the maximum distance.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]);
 }
 
-/// A depth-first search of two trees, best first if it is for the nearest pair.
+/// A search of two trees: best first if it is for the nearest pair, else depth first.
 struct TouchSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
     tree_poses: [TreePose<D>; 2],
     level: Level,
-    /// Bound of the rounding error of a gap in `f32`.
+    /// Upper bound of the rounding error of a gap in `f32`.
     margin: f32,
-    /// Bound of the rounding error of a gap in the scalar type.
+    /// Upper bound of the rounding error of a gap in the scalar type.
     slack: N,
     is_for_nearest: bool,
     question: &'q mut dyn TouchQuery<N, D>,
 }
 
-/// Visits all pairs of objects of two trees with boxes within the reach of the question; pairs
-/// somewhat farther may be among them.
+/// Visits all pairs of objects of two trees whose boxes are within the maximum distance of
+/// `question`. It may also visit pairs that are slightly farther apart.
 pub(crate) fn visit_touching<N: Real, const D: usize>(
     trees: [&Tree<D>; 2],
     question: &mut dyn TouchQuery<N, D>,
@@ -114,8 +119,8 @@ pub(crate) fn visit_touching<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
-    /// Opens pairs of blocks until the queue is empty or the question ends the search. Of two inner
-    /// blocks the one with the larger surface is opened.
+    /// Opens pairs of blocks until the queue is empty or the question ends the search. Of two
+    /// blocks above the lowest layer, the one with the larger surface is opened.
     fn run(&mut self, whole: OpenPair, mut agenda: impl Agenda) {
         agenda.put(whole);
         while let Some(pair) = agenda.take() {
@@ -136,9 +141,10 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         }
     }
 
-    /// Whether the contents of two blocks are beyond the reach along the direction of the nearest
-    /// objects so far, or along that between the centres of their boxes. Computed in the scalar
-    /// type, which resolves more than `f32` between distant blocks.
+    /// Returns `true` if the contents of two blocks are beyond the maximum distance, along the
+    /// direction of the nearest objects so far or the direction between the centres of the blocks.
+    /// The gaps are computed in the scalar type, which resolves more than `f32` between distant
+    /// blocks.
     fn is_beyond(&self, pair: &OpenPair) -> bool {
         let Some((best, max_distance)) = self.question.best().zip(self.question.max_distance())
         else {
@@ -155,8 +161,7 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         })
     }
 
-    /// Returns the gap along a direction, given as a unit vector toward the other tree in the frame
-    /// of each.
+    /// Returns the gap between the two blocks of a pair along `toward`.
     fn gap_along(&self, toward: &Toward<N, D>, pair: &OpenPair) -> N {
         let extents = [0, 1].mapped(|which| {
             let block = self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which]);
@@ -165,13 +170,14 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         toward[0].dot(&self.question.pose(1).translation) - extents[0] - extents[1]
     }
 
-    /// The reach plus the rounding error; `None` to end the search.
+    /// Returns the maximum distance plus the rounding error; `None` to end the search.
     fn margin(&self) -> Option<f32> {
         self.question.max_distance().map(|max_distance| self.margin + max_distance.as_f32_above())
     }
 
-    /// Hands out one object of each tree. Each is the end of a descent towards the centre of the
-    /// other's leaf block; the first descent goes towards the centre of the other tree.
+    /// Passes one object of each tree to the question, unless a descent finds none. Each is the end
+    /// of a descent toward the centre of the other object's leaf block; the first descent goes
+    /// toward the centre of the other tree.
     fn guess(&mut self, whole: OpenPair) {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
@@ -187,13 +193,13 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         }
     }
 
-    /// The box around block `which` of a pair, in the frame of its tree.
+    /// Returns the bounds of block `which` of a pair, in the frame of its tree.
     fn bounds(&self, which: usize, pair: &OpenPair) -> &Bounds<D> {
         &self.trees[which].layers[usize::from(pair.layers[which])].bounds
             [pair.blocks[which] as usize]
     }
 
-    /// Returns the boxes in block `which` that the contents of the other block may touch.
+    /// Returns the lanes of block `which` that the contents of the other block may touch.
     fn held(&self, which: usize, pair: &OpenPair, margin: f32) -> Held {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
@@ -203,15 +209,15 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         region.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }
 
-    /// Queues the children of one block, each paired with the other block, so that the deepest
-    /// overlap comes next.
+    /// Queues the children of block `which`, each paired with the other block. The deepest overlap
+    /// is put last, and a stack takes it next.
     fn open(&self, which: usize, pair: &OpenPair, margin: f32, agenda: &mut impl Agenda) {
         let Held { mask, gaps } = self.held(which, pair, margin);
         let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));
         let mut near = SmallVec::<[(f32, u32); LANES]>::new();
         for lane in Ones::<LANES>(mask) {
             let block = first + small(lane);
-            // An infinite reach rejects nothing, not even an empty lane.
+            // With an infinite margin, no lane is rejected, not even an empty one.
             if self.trees[which].is_block(layer, block) {
                 near.push((gaps[lane], block));
             }
@@ -220,14 +226,14 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         for (gap, block) in near {
             let mut below = *pair;
             (below.layers[which], below.blocks[which]) = (layer, block);
-            // Minus the rounding error of the sum.
+            // Subtracts the rounding error of the sum.
             below.gap = gap + margin - margin.abs() * ROUNDING * f32::EPSILON;
             agenda.put(below);
         }
     }
 
-    /// Visits the objects of two leaf blocks: each of the block with fewer near ones, with those of
-    /// the other.
+    /// Visits near objects of two leaf blocks: each near object of the block that has fewer, with
+    /// the near objects of the other block.
     fn meet(&mut self, pair: &OpenPair, mut margin: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {
@@ -265,7 +271,7 @@ mod tests {
     use crate::math::xorshift::Xorshift;
     use crate::math::{Isometry3, Point, Vector};
 
-    /// Segments by their ends, in the frame of their tree.
+    /// Segments by their endpoints, in the frame of their tree.
     type Segments = Vec<[Point<f64, 3>; 2]>;
 
     struct RotatedPairs<'a> {
@@ -275,7 +281,7 @@ mod tests {
         found: Vec<[u32; 2]>,
         is_first_enough: bool,
         is_for_nearest: bool,
-        /// The object of the last call, as a triangle without area.
+        /// Corners of the object of the last call, as a triangle without area.
         own: Option<[Vector<f64, 3>; 3]>,
     }
 
@@ -320,7 +326,7 @@ mod tests {
         (0..count).map(each).collect()
     }
 
-    /// The least distance of samples along two segments.
+    /// Returns the least distance between nine samples of each of two segments.
     fn distance(one: &[Point<f64, 3>; 2], other: &[Point<f64, 3>; 2]) -> f64 {
         let point_at = |[a, b]: &[Point<f64, 3>; 2], at: i32| a + (b - a) * (f64::from(at) / 8.0);
         let pairs = (0..=8).flat_map(|at1| (0..=8).map(move |at2| (at1, at2)));

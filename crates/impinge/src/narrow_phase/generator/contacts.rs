@@ -1,4 +1,4 @@
-//! Contacts of a single pair, of convex solids or with a composite.
+//! Contacts of a single pair: of convex solids, or with a composite.
 
 use crate::collide::{ManifoldRequest, Placed, Solid};
 use crate::math::{Point, Pose, Real, Space, Vector};
@@ -48,12 +48,13 @@ impl<N: Real, const D: usize> KeptPoints<N, D> for PairContacts<N, D> {
     }
 }
 
-/// Returns two values with that of the solid in whose frame contacts are stored first.
+/// Returns two values in the order in which contacts are stored: first the value of the solid in
+/// whose frame they are.
 pub(super) fn in_kept_order<T>([one, other]: [T; 2], is_swapped: bool) -> [T; 2] {
     if is_swapped { [other, one] } else { [one, other] }
 }
 
-/// Returns the pose of the solid in whose frame contacts are stored, relative to the other.
+/// Returns the pose of the solid in whose frame contacts are stored, relative to the other solid.
 pub(super) fn pose21<N: Real, const D: usize>(
     [one, other]: &[Pose<N, D>; 2],
     is_swapped: bool,
@@ -62,7 +63,7 @@ pub(super) fn pose21<N: Real, const D: usize>(
     Pose::relative(away, home)
 }
 
-/// Combines poses and shapes.
+/// Combines each pose with its shape.
 pub(super) fn placed<'a, N: Real, const D: usize>(
     [pose1, pose2]: &[Pose<N, D>; 2],
     [shape1, shape2]: [Geometry<'a, N, D>; 2],
@@ -71,7 +72,7 @@ pub(super) fn placed<'a, N: Real, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> PairContacts<N, D> {
-    /// Updates the contacts. `copies` has the solids that are small enough for a copy.
+    /// Updates the contacts. `copies` has a copy of each solid that is small enough.
     pub(in crate::narrow_phase) fn update(
         &mut self,
         (poses, shapes): (&[Pose<N, D>; 2], [Geometry<'_, N, D>; 2]),
@@ -86,7 +87,7 @@ impl<N: Space<D>, const D: usize> PairContacts<N, D> {
         }
     }
 
-    /// Returns the manifolds that hold a contact, in the memory of `old`.
+    /// Returns the manifolds with at least one contact, in the memory of `old`.
     pub(in crate::narrow_phase) fn manifolds(
         &self,
         placed: &[Placed<'_, N, D>; 2],

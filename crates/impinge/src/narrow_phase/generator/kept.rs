@@ -1,8 +1,8 @@
-//! Copies by which a generator recognises its shapes from call to call, and which its readers use
-//! later.
+//! Copies of shapes. A generator recognises its shapes by them from call to call, and its readers
+//! need them later.
 //!
 //! Small solids are copied and compared. Hulls are recognised by a shared [twin](Polytope::twin),
-//! composites by their [`Revision`]; of a composite itself nothing is kept.
+//! and composites by their [`Revision`]; a composite itself is not kept.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::shape::{
 };
 use crate::tables::ByDimension;
 
-/// A shape at the last call.
+/// A copy of a shape, or a key that recognises it, from the last call.
 #[derive(Clone, Debug)]
 pub(super) enum KeptShape<N: Real, const D: usize> {
     Solid(Solid<N, D>),
@@ -29,7 +29,7 @@ pub(super) enum KeptShape<N: Real, const D: usize> {
     Composite(Revision),
 }
 
-/// A solid of revolution; in 3D only.
+/// A solid of revolution; exists in 3D only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Revolved<N: Real> {
     Cylinder(Cylinder<N>),
@@ -37,7 +37,7 @@ pub(crate) enum Revolved<N: Real> {
 }
 
 impl<N: Real, const D: usize> KeptShape<N, D> {
-    /// Returns a copy; `None` for custom shapes, which may change unnoticed.
+    /// Returns a copy; `None` for custom shapes, which may change without notice.
     pub(super) fn of(shape: Geometry<'_, N, D>) -> Option<Self> {
         Some(match shape.0 {
             Kind::Ball(_) | Kind::Segment(_) | Kind::Capsule(_) | Kind::Cuboid(_) => {
@@ -56,7 +56,7 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
         })
     }
 
-    /// Returns `true` if a shape is equal to the kept one for all queries.
+    /// Returns `true` if `shape` gives the same results as the kept one in all queries.
     pub(super) fn is(&self, shape: Geometry<'_, N, D>) -> bool {
         match (self, shape.0) {
             (Self::Solid(kept), _) => kept.is(shape),
@@ -77,7 +77,7 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
         }
     }
 
-    /// Returns the copy of a small solid.
+    /// Returns the copy of a small solid; `None` for other shapes.
     pub(super) const fn solid(&self) -> Option<&Solid<N, D>> {
         match self {
             Self::Solid(solid) => Some(solid),
@@ -104,17 +104,17 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
     }
 }
 
-/// The solids that a contact of a composite lies on.
+/// The solids on which a contact of a composite lies.
 #[derive(Clone, Debug)]
 pub(super) struct KeptTouch<N: Real, const D: usize> {
-    /// Parts with their poses; `None` for a shape that is its own part.
+    /// By side, the part with its pose; `None` for a shape that is its own part.
     parts: [Option<(KeptShape<N, D>, Pose<N, D>)>; 2],
     turns_with_second: Option<bool>,
 }
 
 impl<N: Space<D>, const D: usize> KeptTouch<N, D> {
-    /// Copies the solids; `None` if a part is a custom solid. `are_whole` marks the shapes that are
-    /// their own parts.
+    /// Copies the solids; `None` if a part is a custom solid. `are_whole[i]` is `true` if shape `i`
+    /// is its own part.
     pub(super) fn of(touched: &Touched<'_, N, D>, are_whole: [bool; 2]) -> Option<Self> {
         let Touched { solids, poses, turns_with_second, .. } = touched;
         let mut parts = [None, None];
@@ -126,8 +126,8 @@ impl<N: Space<D>, const D: usize> KeptTouch<N, D> {
         Some(Self { parts, turns_with_second: *turns_with_second })
     }
 
-    /// Returns the solids that the contact lies on. `wholes` are the shapes that are their own
-    /// parts; `None` if one of these is missing.
+    /// Returns the solids on which the contact lies. `wholes[i]` is shape `i` if it is its own
+    /// part; `None` if such a shape is missing.
     pub(super) fn touched<'a>(
         &'a self,
         wholes: [Option<Geometry<'a, N, D>>; 2],

@@ -25,16 +25,16 @@ use crate::math::{Mapped, Pose, Real, Space};
 use crate::query::ContactManifold;
 use crate::shape::{Geometry, Shape};
 
-/// Returns the default maximum number of points of a manifold, enough to span the overlap: two in
-/// 2D and four in 3D.
+/// Returns the default maximum number of points of a manifold: two in 2D and four in 3D, enough to
+/// span an overlap of faces.
 pub(crate) const fn conforming_points<const D: usize>() -> usize {
     1 << (D - 1)
 }
 
-/// Computes contacts of any two built-in solids, composites included.
+/// Computes the contacts of any two built-in shapes, composites included.
 ///
-/// One type serves all pairs: it selects the algorithm by the kinds of the solids at each update,
-/// so even the solids may change from one update to the next.
+/// The same type serves all pairs: it selects the algorithm by the kinds of the shapes at each
+/// update, so even the shapes may change from one update to the next.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -58,20 +58,20 @@ pub(crate) const fn conforming_points<const D: usize>() -> usize {
 #[derive(Clone)]
 pub struct PairManifoldGenerator<N: Real, const D: usize> {
     max_points: usize,
-    /// Number of the pair, once it has one.
+    /// Identifier of the pair in contact ids; `None` until it is allocated.
     number: Option<u64>,
     /// Copies of the shapes at the last update; `None` for shapes that cannot be recognised.
     shapes: [Option<KeptShape<N, D>>; 2],
-    /// The solids that the contacts of a composite lie on, in order of contacts.
+    /// The solids on which the contacts of a composite lie, in the order of contacts.
     touched: Vec<KeptTouch<N, D>>,
-    /// All data for reading the contacts later is kept.
+    /// Whether all data for reading the contacts later are kept.
     is_readable: bool,
-    /// The contacts are those of `numbers` and `request`.
+    /// Whether the contacts are those for `numbers` and `request`.
     is_current: bool,
-    /// The numbers of both isometries at the last update.
+    /// The coordinates of both isometries at the last update.
     numbers: [[N; 7]; 2],
     request: ManifoldRequest<N>,
-    /// Poses at the last update, by which contacts are read.
+    /// Poses at the last update, which readers use.
     poses: [Pose<N, D>; 2],
     contacts: PairContacts<N, D>,
     /// State of contact reuse, if it is enabled.
@@ -89,8 +89,8 @@ struct PairReuse<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
-    /// Creates a generator without contacts, whose manifolds have at most `max_points` points, but
-    /// at least one.
+    /// Creates a generator without contacts, whose manifolds have at most `max_points` points (0
+    /// means 1).
     #[must_use]
     pub fn new(max_points: usize) -> Self {
         Self {
@@ -112,7 +112,7 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
     /// Enables contact reuse with this tolerance; see [`Self::try_reusing`].
     ///
     /// # Panics
-    /// If the tolerance is negative or not finite; [`Self::try_reusing`] returns that.
+    /// If the tolerance is negative or not finite; [`Self::try_reusing`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn reusing(self, tolerance: N) -> Self {
@@ -128,8 +128,8 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
     /// since the last computation, contacts stay fixed to the solids, and only their depths are
     /// measured again.
     ///
-    /// Pairs of a ball and another ball, a box, a segment or a capsule are always computed, which
-    /// is as fast. So are custom shapes, which may have changed.
+    /// A pair of a ball with a ball, a box, a segment or a capsule is always computed, which is
+    /// equally fast. Custom shapes are always computed too, since they may have changed.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -203,17 +203,18 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
             self.compute(shapes, is_beyond);
         }
         if !self.is_readable && self.contacts.len() > 0 {
-            // If the shapes cannot be kept for a later reader, the manifolds are built now.
+            // If copies of the shapes cannot be kept for a later reader, the manifolds are built
+            // now.
             let placed = placed(&self.poses, shapes);
             self.view.manifolds(|old| self.contacts.manifolds(&placed, number, old));
         }
     }
 
-    /// Removes all contacts; the pair is one of two convex solids.
+    /// Removes all contacts; the pair is then one of two convex solids.
     fn clear(&mut self) {
         match &mut self.contacts {
             PairContacts::Convex(state) => state.clear(),
-            // This state belongs to earlier shapes.
+            // This state belongs to shapes of an earlier call.
             PairContacts::Composite(_) => {
                 (self.number, self.shapes) = (None, [None, None]);
                 self.contacts = PairContacts::new(false);
@@ -221,7 +222,7 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Computes the contacts; with `are_beyond` there are none.
+    /// Computes the contacts, or removes all of them if `are_beyond`.
     fn compute(&mut self, shapes: [Geometry<'_, N, D>; 2], are_beyond: bool) {
         if are_beyond {
             self.clear();
@@ -246,7 +247,8 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         solids.iter().all(Option::is_some) && solids.iter().any(is_ball)
     }
 
-    /// Moves the contacts along and returns `true`, if the solids have moved little enough.
+    /// Moves the contacts along with the solids if these have moved little enough; returns whether
+    /// it did.
     fn keeps_contacts(&mut self) -> bool {
         let Some(reuse) = &mut self.reuse else { return false };
         let is_swapped = self.contacts.is_swapped();
@@ -255,7 +257,7 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         reuse.reference.keeps(&mut self.contacts, pose21, limits)
     }
 
-    /// Returns `true` if the shapes are those of the last update, unchanged.
+    /// Returns `true` if the shapes equal those of the last update.
     fn are_kept(&self, shapes: &[Geometry<'_, N, D>; 2]) -> bool {
         let is_kept = |(kept, shape): (&Option<KeptShape<N, D>>, &Geometry<'_, N, D>)| {
             kept.as_ref().is_some_and(|kept| kept.is(*shape))
@@ -263,14 +265,14 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         self.shapes.iter().zip(shapes).all(is_kept)
     }
 
-    /// Replaces the shapes.
+    /// Replaces the kept shapes, and prepares the state for their kinds.
     fn meet(&mut self, given: [&dyn Shape<N, D>; 2], shapes: [Geometry<'_, N, D>; 2]) {
         let has_composite = shapes.iter().any(|shape| shape.as_composite().is_some());
         match &mut self.contacts {
             PairContacts::Convex(_) if !has_composite => {}
             PairContacts::Composite(state) if has_composite => state.forget_shapes(),
             _ => {
-                // The other kind of contacts counts ids from the start: the pair gets a new number.
+                // The new state starts its ids anew, so the pair needs a new identifier.
                 self.number = None;
                 self.contacts = PairContacts::new(has_composite);
             }
@@ -283,8 +285,8 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Keeps the solids that the contacts, which were just computed, lie on. Returns `false` if one
-    /// cannot be kept.
+    /// Keeps copies of the solids on which the contacts lie, which were just computed. Returns
+    /// `false` if a solid cannot be kept.
     fn keep_touched(&mut self, shapes: [Geometry<'_, N, D>; 2]) -> bool {
         let are_whole = self.wholes().mapped(|whole| whole.is_some());
         let PairContacts::Composite(state) = &self.contacts else { return are_whole == [true; 2] };
@@ -296,12 +298,13 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         touched.len() == state.len()
     }
 
-    /// Returns the convex solids among the shapes, if they are kept.
+    /// Returns the kept copies of the shapes; `None` for a composite or a shape without a copy.
     fn wholes(&self) -> [Option<Geometry<'_, N, D>>; 2] {
         self.shapes.each_ref().mapped(|shape| shape.as_ref()?.geometry())
     }
 
-    /// Returns the manifolds as of the last update, from the kept shapes, in the memory of `old`.
+    /// Returns the manifolds as of the last update, from the copies of the shapes, in the memory of
+    /// `old`.
     pub(crate) fn read(&self, old: Vec<ContactManifold<N, D>>) -> Vec<ContactManifold<N, D>> {
         let (wholes, number) = (self.wholes(), self.number.unwrap_or_default());
         match (&self.contacts, wholes) {
@@ -318,7 +321,8 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
     }
 
-    /// Returns the manifolds that hold a contact, built on first access.
+    /// Returns the manifolds with at least one contact; builds them on first access after an
+    /// update.
     fn manifolds(&self) -> &[ContactManifold<N, D>] {
         if self.contacts.len() == 0 {
             return &[];
@@ -402,7 +406,7 @@ impl<const D: usize> DefaultContactDispatcher<D> {
         Self { max_points: conforming_points::<D>() }
     }
 
-    /// Creates a dispatcher for manifolds of at most `max_points` points, but at least one.
+    /// Creates a dispatcher for manifolds of at most `max_points` points (0 means 1).
     #[must_use]
     pub const fn with_max_points(max_points: usize) -> Self {
         Self { max_points: if max_points == 0 { 1 } else { max_points } }

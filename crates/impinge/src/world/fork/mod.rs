@@ -1,4 +1,4 @@
-//! Clones of a world, which evolve independently.
+//! Clones of a world, which evolve independently of it.
 
 mod objects;
 mod rewind;
@@ -15,12 +15,12 @@ pub(super) use objects::ObjectNote;
 pub(super) use rewind::History;
 pub use rewind::WorldMark;
 
-/// The broad phase of a new world.
+/// The broad phase of a new world, as a concrete type.
 pub(super) type UsualBroadPhase<N, const D: usize> =
     DBVTBroadPhase<N, Aabb<N, D>, CollisionObjectHandle>;
 
-/// A broad phase that a world can use: any that is `Clone`, `Send` and `Sync`. The blanket
-/// implementation covers them all.
+/// A broad phase that a world can use: any type that is `Clone`, `Send` and `Sync`. A blanket
+/// implementation covers all of these.
 ///
 /// ```
 /// use impinge::dim2::broad_phase::DBVTBroadPhase;
@@ -33,7 +33,7 @@ pub(super) type UsualBroadPhase<N, const D: usize> =
 pub trait WorldsBroadPhase<N: Space<D>, const D: usize>:
     BroadPhase<N, Aabb<N, D>, CollisionObjectHandle> + Send + Sync
 {
-    /// Returns a clone that behaves as this one does from then on.
+    /// Returns a clone with the same future behaviour.
     fn boxed_clone(&self) -> Box<WorldBroadPhase<N, D>>;
 
     /// Returns the value itself, for a downcast.
@@ -62,8 +62,8 @@ where
     }
 }
 
-/// A narrow phase that a world can use: any that is `Clone`. The blanket implementation covers them
-/// all.
+/// A narrow phase that a world can use: any type that is `Clone`. A blanket implementation covers
+/// all of these.
 ///
 /// ```
 /// use impinge::dim2::narrow_phase::DefaultNarrowPhase;
@@ -74,7 +74,7 @@ where
 /// world.update();
 /// ```
 pub trait WorldsNarrowPhase<N: Space<D>, const D: usize, T>: NarrowPhase<N, D, T> {
-    /// Returns a clone that behaves as this one does from then on.
+    /// Returns a clone with the same future behaviour.
     fn boxed_clone(&self) -> Box<dyn WorldsNarrowPhase<N, D, T>>;
 
     /// Returns the value itself, for a downcast.
@@ -115,20 +115,20 @@ impl<N: Space<D>, const D: usize, T> Clone for Box<dyn WorldsNarrowPhase<N, D, T
     }
 }
 
-/// A clone gives the same bits as the original from then on, if the same calls are made: pairs,
-/// contacts with their ids, events, and handles of objects that are added. It may be updated on
-/// another thread.
+/// A clone gives the same bits as the original if the same calls are made: pairs, contacts with
+/// their ids, events, and handles of added objects. It may be updated on another thread.
 ///
-/// A handle from before the clone names the same object in both worlds. A handle given by one of
-/// them afterwards may name another object or none in the other: keep the handles of each apart.
-/// Shapes are shared, and never change: [`CollisionWorld::deform`] gives the object of one world a
-/// new shape. Pair filters and dispatchers are shared too, including any state that they refer to.
-/// Algorithms of single pairs are cloned. The manifolds that [`CollisionWorld::contact_manifolds`]
-/// has built are not: the clone builds its own on first access.
+/// A handle from before the clone refers to the same object in both worlds. A handle that one of
+/// the worlds issues afterwards may refer to another object in the other world, or to none: keep
+/// the handles of the two worlds apart. Shapes are shared and never change:
+/// [`CollisionWorld::deform`] gives the object of one world a new shape. Pair filters and
+/// dispatchers are shared too, including any state to which they refer. Algorithms of single pairs
+/// are cloned. Manifolds that [`CollisionWorld::contact_manifolds`] has built are not cloned; the
+/// clone builds its own on first access.
 ///
-/// Costs a copy of the memory of the world; `clone_from` reuses the memory of the target, and
-/// allocates nothing if the target has had as much. 10 000 boxes that touch nothing take 2.5 MB, in
-/// a dense pile of 118 000 pairs 54 MB (3D, `f32`).
+/// Costs a copy of the memory of the world. `clone_from` reuses the memory of the target, and
+/// allocates nothing if the target has been as large. 10 000 boxes that touch nothing take 2.5 MB,
+/// and a dense pile with 118 000 pairs takes 54 MB (3D, `f32`).
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -192,12 +192,12 @@ impl<N: Space<D>, const D: usize, T: Clone> Clone for CollisionWorld<N, D, T> {
 }
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the broad phase, if it is the library's own.
+    /// Returns the broad phase if it is the library's own; else `None`.
     pub(super) fn usual_broad_phase(&mut self) -> Option<&mut UsualBroadPhase<N, D>> {
         (*self.broad_phase).as_any_mut().downcast_mut()
     }
 
-    /// Returns the narrow phase, if it is the library's own.
+    /// Returns the narrow phase if it is the library's own; else `None`.
     pub(super) fn usual_narrow_phase(&mut self) -> Option<&mut DefaultNarrowPhase<N, D>> {
         (*self.narrow_phase).as_any_mut().downcast_mut()
     }

@@ -1,4 +1,4 @@
-//! The journal of a world's objects: notes by which a rewind undoes changes.
+//! The journal of a world's objects: records by which a rewind undoes changes.
 
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
@@ -6,17 +6,17 @@ use crate::world::bodies::BodyMotion;
 use crate::world::objects::Slot;
 use crate::world::{CollisionObject, CollisionObjects};
 
-/// One undoable change of the objects.
+/// A change of the objects, which can be undone.
 pub(in crate::world) enum ObjectNote<N: Space<D>, const D: usize, T> {
     Added(CollisionObjectHandle),
     Removed(Box<KeptObject<N, D, T>>),
-    /// An object before its first change since a mark.
+    /// An object before its first change since a mark, other than a move.
     Changed(Box<KeptObject<N, D, T>>),
-    /// Pose and state of an object before its first move since a mark, by handle index.
+    /// Handle index, pose and state of an object before its first move since a mark.
     Moved(u32, BodyMotion<N, D>),
 }
 
-/// An object as it was, with its skin and prediction, which are stored elsewhere by index.
+/// A copy of an object, with its skin and prediction, which the world stores elsewhere.
 pub(in crate::world) struct KeptObject<N: Space<D>, const D: usize, T> {
     object: CollisionObject<N, D, T>,
     skin: N,
@@ -40,7 +40,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.table.forget_before(number);
     }
 
-    /// Undoes all changes since a mark, which is kept.
+    /// Undoes all changes since a mark. The mark stays.
     pub(super) fn rewind(&mut self, number: u64) {
         while let Some(note) = self.journal.undo(number) {
             match note {
@@ -60,7 +60,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.table.rewind(number);
     }
 
-    /// Undoes an addition, which is the latest change of the slots.
+    /// Undoes an addition, which must be the latest change of the slots.
     fn unadd(&mut self, handle: CollisionObjectHandle) {
         self.take_record(handle);
         if handle.generation() == self.first {
@@ -70,8 +70,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Undoes a removal, which is the latest change of the slots. The object gets the last place of
-    /// the records.
+    /// Undoes a removal, which must be the latest change of the slots. The object becomes the last
+    /// record.
     fn unremove(&mut self, kept: KeptObject<N, D, T>) {
         let (handle, object) = (kept.object.handle(), self.unpack(kept));
         let generation = handle.generation();
@@ -83,14 +83,14 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.records.push(object);
     }
 
-    /// Restores skin and prediction, and returns the object.
+    /// Restores the skin and prediction of an object, and returns the object.
     fn unpack(&mut self, kept: KeptObject<N, D, T>) -> CollisionObject<N, D, T> {
         let KeptObject { object, skin, prediction } = kept;
         self.changes.keep(object.body.index(), skin, prediction);
         object
     }
 
-    /// Notes the object at index `place` of the records before it changes.
+    /// Records the object at index `place` of the records before it changes, if there are marks.
     #[inline]
     pub(in crate::world) fn note(&mut self, place: usize) {
         if self.journal.is_on() {
@@ -107,7 +107,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Notes the motion of the object at index `place` of the records before it moves.
+    /// Records the motion of the object at index `place` of the records before it moves, if there
+    /// are marks.
     #[inline]
     pub(in crate::world) fn note_motion(&mut self, place: usize) {
         if self.journal.is_on()
@@ -118,7 +119,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Notes the motion of the objects at some indices before an update processes them.
+    /// Records the motion of the objects with these handle indices before an update processes them.
     pub(in crate::world) fn note_all(&mut self, indices: &[u32]) {
         if self.journal.is_on() {
             for &index in indices {
@@ -127,7 +128,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Notes an object before it is removed.
+    /// Records an object before it is removed, if there are marks.
     pub(in crate::world) fn note_removed(&mut self, handle: CollisionObjectHandle) {
         if let Some(kept) = self.kept(self.slots[handle.uid()].place as usize) {
             self.journal.note(ObjectNote::Removed(kept));

@@ -1,7 +1,7 @@
-//! Rewinding a world to a mark in its history.
+//! Rewinds a world to a mark in its history.
 //!
-//! While there are marks, each part notes its state before it changes
-//! ([`Journal`](crate::journal::Journal)); small state is copied whole with the mark
+//! While there are marks, each part records its state before it changes
+//! ([`Journal`](crate::journal::Journal)). Small state is copied as a whole with the mark
 //! ([`WorldHead`]).
 //!
 //! | state | who notes | how it comes back |
@@ -11,9 +11,9 @@
 //! | boxes, proxies and their pairs | `apply_waiting` and `remove` of `PairFinder`; `PairTable`; `DBVTBroadPhase` | boxes are set in the trees, whose order affects time alone |
 //! | contacts and proximities | `Group`; before an update `PairLanes::note` and `note_due` | to their former positions, since `contact_views` reads in that order |
 //!
-//! The order of partners in a `PairTable` is not restored: no result may depend on it.
+//! The order of partners in a `PairTable` is not restored, so no result may depend on it.
 //! `Run::play_again` of the tests replays every golden scene with steps taken back;
-//! `world_model/forks.rs` has random operations.
+//! `world_model/forks.rs` tests random operations.
 
 use std::collections::VecDeque;
 
@@ -25,12 +25,13 @@ use crate::world::filter::Filters;
 use crate::world::removed::RemovedObjects;
 use crate::world::{CollisionWorld, WorldBroadPhase, WorldError, WorldsNarrowPhase};
 
-/// Number of marks that a world keeps by default.
+/// Number of marks that a world keeps unless the user sets another.
 const USUAL_MARKS: usize = 8;
 
-/// A moment in the history of a world, to which it can return: see [`CollisionWorld::mark`].
+/// A state in the history of a world, to which the world can return: see [`CollisionWorld::mark`].
 ///
-/// A world refuses marks of other worlds, including its clones and its own original.
+/// A world refuses marks of other worlds, including its clones and the world of which it is a
+/// clone.
 ///
 /// ```
 /// use impinge::dim2::world::{CollisionWorld, WorldError};
@@ -48,7 +49,7 @@ pub struct WorldMark {
     number: u64,
 }
 
-/// State that is copied whole with a mark.
+/// State that a mark copies as a whole.
 pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
     number: u64,
     events: Events,
@@ -56,7 +57,7 @@ pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
     keeps_events: bool,
     removed: RemovedObjects<N, D, T>,
     filters: Filters<N, D, T>,
-    /// The present phases, if they are not the library's own, which have journals.
+    /// The present phases, unless they are the library's own, which have journals.
     broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
     narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
@@ -65,11 +66,11 @@ pub(in crate::world) struct WorldHead<N: Space<D>, const D: usize, T> {
 
 /// The marks of a world.
 pub(in crate::world) struct History<N: Space<D>, const D: usize, T> {
-    /// Identifies the marks of this world; created with the first mark.
+    /// Identifies the marks of this world; `None` before the first mark.
     name: Option<Generation>,
     next: u64,
     most: usize,
-    /// Sorted by number, the oldest first.
+    /// The marks, in ascending order of their numbers.
     heads: VecDeque<WorldHead<N, D, T>>,
 }
 
@@ -99,17 +100,18 @@ impl<N: Space<D>, const D: usize, T> History<N, D, T> {
 
 /// Marks and rewinding.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Marks the present state, so that [`Self::rewind`] can restore it: before a step whose inputs
-    /// are guessed, in a game over a network.
+    /// Marks the present state, so that [`Self::rewind`] can restore it: for example before a step
+    /// with guessed inputs, in a game over a network.
     ///
-    /// The 8 latest marks are kept, or as many as [`Self::keep_marks`] says; a surplus ends the
-    /// oldest. All marks end when another broad or narrow phase takes over, and a clone has none.
+    /// The latest 8 marks are kept, or as many as [`Self::keep_marks`] sets; beyond that the oldest
+    /// mark ends. All marks end when another broad or narrow phase takes over. A clone has no
+    /// marks.
     ///
-    /// While there are marks, the world notes old state before each change: each object once
-    /// between two marks, each pair once. A mark itself costs 1 to 20 µs: a clone of the events
-    /// and, if the world has custom phases, of these. With 100 of 10 000 objects moving and a mark
-    /// before each update, updates that compute the contacts of a dense pile take up to 8 % longer.
-    /// Updates that find nothing to compute take half as long again (9 µs and 13 µs), and the notes
+    /// While there are marks, the world records old state before each change: each object and each
+    /// pair once between two marks. A mark itself costs 1 to 20 µs: a clone of the events and, if
+    /// the world has custom phases, of these. With 100 of 10 000 objects moving and a mark before
+    /// each update, updates that compute the contacts of a dense pile take up to 8 % longer.
+    /// Updates without anything to compute take half as long again (9 µs become 13 µs). The records
     /// of 8 marks take 0.4 to 8 MB.
     ///
     /// ```
@@ -157,24 +159,27 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         WorldMark { history, number }
     }
 
-    /// Sets the number of latest marks to keep from now on; 0 ends all marks and their cost.
+    /// Sets the greatest number of marks from now on; the latest ones are kept. 0 ends all marks
+    /// and their cost.
     pub fn keep_marks(&mut self, most: usize) {
         self.history.most = most;
         self.drop_old_marks();
     }
 
     /// Restores the state of a mark: objects with their data, shapes, groups, query types, pairs,
-    /// contacts with their ids, events, filters and the changes that wait for the next update. The
-    /// same calls as before then give the same bits, handles of added objects included. So a handle
-    /// that was given after the mark now names another object or none. All queries, pairs and
-    /// contacts return what they did, in the same order.
+    /// contacts with their ids, events, filters, and the changes that wait for the next update. The
+    /// same calls as before then give the same bits, including handles of added objects. So a
+    /// handle that was issued after the mark now refers to another object, or to none. All queries,
+    /// pairs and contacts have the results that they had at the mark, in the same order.
     ///
     /// The mark stays, so that the world can return to it again; later marks end. The cost is
-    /// proportional to the changes since: 8 updates are undone in the time of two to four.
-    /// Manifolds of [`Self::contact_manifolds`] that changed are built again on first access.
+    /// proportional to the changes since the mark: undoing 8 updates takes as long as two to four
+    /// updates. Manifolds of [`Self::contact_manifolds`] that changed are built again on first
+    /// access.
     ///
     /// # Panics
-    /// If the world does not keep the mark; [`Self::try_rewind`] returns this.
+    /// If the mark has ended or belongs to another world; [`Self::try_rewind`] returns an error
+    /// instead.
     #[track_caller]
     pub fn rewind(&mut self, mark: WorldMark)
     where
@@ -186,8 +191,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Restores the state of a mark; see [`Self::rewind`].
     ///
     /// # Errors
-    /// If the world does not keep the mark: it has ended, or belongs to another world. The world is
-    /// unchanged then.
+    /// If the mark has ended or belongs to another world. Then the world is unchanged.
     pub fn try_rewind(&mut self, mark: WorldMark) -> Result<(), WorldError>
     where
         T: Clone,

@@ -12,15 +12,15 @@ use crate::world::bodies::{WorldBody, grown};
 use crate::world::entries;
 use crate::world::{CollisionObject, CollisionWorld};
 
-/// Shape casts: solids that move through the world along a straight line without rotating, while
-/// its objects stay at rest.
+/// Shape casts: a solid moves through the world along a straight line, without rotating, while the
+/// objects of the world are at rest.
 ///
-/// An [`Impact`] is in the world frame, at its time; its first solid is the moving one. Contacts at
-/// time zero count as they do for [`impact`]: a solid that does not approach an object does not hit
-/// it. A position or velocity that is not finite hits nothing.
+/// An [`Impact`] is in the world frame, at its time; its first solid is the moving one. The rules
+/// for contacts at time zero are those of [`impact`]: a solid that does not approach an object does
+/// not hit it. A position or velocity that is not finite hits nothing.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the object that a moving solid hits first, and the impact; at equal times the object
-    /// with the smallest handle.
+    /// with the smallest handle. `None` if it hits nothing by the maximum time of `options`.
     ///
     /// Costs a tree search, and an [`impact`] for a few objects whose boxes lie on the path.
     ///
@@ -71,9 +71,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Returns all objects that a moving solid would hit if none of them stopped it, each with its
-    /// first impact, in ascending order of time, then of handle.
-    ///
-    /// Otherwise as [`Self::cast_shape`].
+    /// first impact, in ascending order of time, then of handle. See [`Self::cast_shape`] for the
+    /// arguments.
     #[must_use]
     pub fn cast_shape_all(
         &self,
@@ -130,7 +129,8 @@ impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Cast<'_, N, D> {
-    /// Returns the time and the impact with an object; `None` if that is after `latest`.
+    /// Returns the time of the first impact with an object, and the impact; `None` if there is none
+    /// by `latest`.
     pub(crate) fn impact(&self, body: &WorldBody<N, D>, latest: N) -> Option<(N, Impact<N, D>)> {
         let options = self.options.with_max_time(latest);
         let at_rest = Vector::<N, D>::zeros();

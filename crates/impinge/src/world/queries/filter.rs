@@ -1,4 +1,4 @@
-//! Filters of queries: which objects count.
+//! Filters of queries, which select objects.
 
 use core::fmt;
 
@@ -8,10 +8,10 @@ use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::world::{CollisionGroups, CollisionObject};
 
-/// Selects the objects that a query considers: all, unless a condition below excludes some.
+/// Selects the objects that a query considers. Without conditions it selects all.
 ///
-/// Boxes are tested first, then groups, excluded objects and the predicate, and the exact geometry last.
-/// [`CollisionGroups`] alone convert to a filter by `into()`.
+/// A query tests boxes first, then groups, excluded objects and the predicate, and exact geometry
+/// last. `into()` converts [`CollisionGroups`] to a filter that has no other condition.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -47,7 +47,7 @@ pub struct QueryFilter<'a, N: Space<D>, const D: usize, T> {
     predicate: Option<&'a Predicate<'a, N, D, T>>,
 }
 
-/// A condition on an object.
+/// A condition on an object, as a function of the user.
 type Predicate<'a, N, const D: usize, T> = dyn Fn(&CollisionObject<N, D, T>) -> bool + 'a;
 
 impl<'a, N: Space<D>, const D: usize, T> QueryFilter<'a, N, D, T> {
@@ -63,17 +63,18 @@ impl<'a, N: Space<D>, const D: usize, T> QueryFilter<'a, N, D, T> {
         Self { groups: Some(groups), ..self }
     }
 
-    /// Excludes one more object, such as the one that asks. A stale handle excludes nothing. For
-    /// more than a few objects a predicate is faster.
+    /// Excludes another object, such as the one for which the query runs. A stale handle excludes
+    /// nothing. To exclude more than a few objects, a predicate is faster.
     #[must_use]
     pub fn exclude(mut self, handle: CollisionObjectHandle) -> Self {
         self.excluded.push(handle);
         self
     }
 
-    /// Allows only objects for which `predicate` is true; replaces an earlier predicate.
+    /// Allows only objects for which `predicate` returns `true`; replaces an earlier predicate.
     ///
-    /// A query calls it at most once for an object, in unspecified order, and not for all objects.
+    /// A query calls it at most once for each object, in unspecified order, and not for all
+    /// objects.
     #[must_use]
     pub fn predicate(self, predicate: &'a dyn Fn(&CollisionObject<N, D, T>) -> bool) -> Self {
         Self { predicate: Some(predicate), ..self }

@@ -1,8 +1,8 @@
-//! Queries among all objects of a world: rays, points, boxes, solids at rest and in motion.
+//! Queries among all objects of a world: with rays, points, boxes, and solids at rest or in motion.
 //!
-//! The broad phase proposes objects as of the last update, and a tree of dirty objects those whose
-//! boxes changed since, so every change is visible at once. The queries for one or two solids then
-//! test each proposed object exactly.
+//! The broad phase proposes objects as of the last update, and a tree of dirty objects proposes
+//! those whose boxes changed since, so every change is visible at once. Each proposed object is
+//! then tested exactly by the queries for one or two solids.
 
 pub(super) mod cast;
 mod filter;
@@ -46,7 +46,7 @@ pub struct NearObject<'a, N: Space<D>, const D: usize, T> {
     pub object: &'a CollisionObject<N, D, T>,
     /// The distance: zero if the object touches or overlaps the query's point or solid.
     pub distance: N,
-    /// The nearest points in the world frame, first on the query's point or solid, then on the
+    /// The nearest points in the world frame: first on the query's point or solid, then on the
     /// object. Never [`ClosestPoints::Disjoint`].
     pub points: ClosestPoints<N, D>,
 }
@@ -72,7 +72,8 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for NearObject<'_, N, D, T> {
 /// Functions shared by all queries.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the objects that the filter allows and whose boxes have a key of at most `limit`,
-    /// and few others, in order of handle, each once; the caller applies the exact test.
+    /// each once, in order of their handles. A few others may be among them, so the caller must
+    /// test each object exactly.
     fn met<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
@@ -90,8 +91,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Returns `true` if `passes` accepts one of the objects whose boxes have a key of at most
-    /// `limit`. `passes` is called for these and few others, at most once each, and not after it
-    /// has returned `true`.
+    /// `limit`. `passes` may also be called for a few other objects. It is called at most once for
+    /// each object, and not again after it has returned `true`.
     fn any_met<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
@@ -99,7 +100,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         mut passes: impl FnMut(&'a CollisionObject<N, D, T>) -> bool,
     ) -> bool {
         if matches!(probe, WorldProbe::Near(aabb) if !aabb.holds_finite_point()) {
-            // No tree search reaches infinity, where only unbounded boxes are met.
+            // No tree search visits boxes at infinity, so all objects are tested.
             return self.objects.iter().any(passes);
         }
         let mut is_found = false;
@@ -110,7 +111,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         is_found
     }
 
-    /// Returns the objects whose boxes overlap `aabb`, as [`Self::met`].
+    /// Returns the objects that the filter allows and whose boxes may overlap `aabb`, in order of
+    /// their handles; the caller must test each exactly.
     fn meeting<'a>(
         &'a self,
         aabb: &Aabb<N, D>,

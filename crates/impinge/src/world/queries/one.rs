@@ -1,4 +1,4 @@
-//! Queries of one object, compiled in this crate.
+//! Queries of a single object, whose generic code is compiled in this crate.
 
 use crate::math::{Point, Space};
 use crate::query::point::{holds, is_surely_beyond, project};
@@ -6,8 +6,8 @@ use crate::query::{PointProjection, Ray, RayIntersection, cast_on, surely_misses
 use crate::world::WorldBody;
 
 impl<N: Space<D>, const D: usize> WorldBody<N, D> {
-    /// Returns where a ray meets the object, at time `latest` or before, with the normal in the
-    /// world frame.
+    /// Returns the first point at which a ray meets the object, with the normal in the world frame;
+    /// `None` if that is after time `latest`.
     pub(crate) fn cast_ray(
         &self,
         ray: &Ray<N, D>,
@@ -28,8 +28,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         Some(RayIntersection { normal: pose.vector(&hit.normal), ..hit })
     }
 
-    /// Returns the nearest point of the object and its distance; `None` if the shape is empty. May
-    /// also be `None` if the distance exceeds `farthest`.
+    /// Returns the projection of the point on the object, and its distance. `None` if the shape is
+    /// empty; may also be `None` if the distance exceeds `farthest`.
     pub(crate) fn project(
         &self,
         point: &Point<N, D>,

@@ -12,7 +12,8 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Point queries, in the world frame. A point that is not finite is in no object and near none.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// As [`Self::objects_containing`], for the objects that may interact with `groups`.
+    /// Returns the objects that contain a point, boundary included, in order of their handles.
+    /// Considers the objects that may interact with `groups`.
     pub fn interferences_with_point<'a>(
         &'a self,
         point: &Point<N, D>,
@@ -33,13 +34,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         near.into_iter().flatten().filter(move |object| entries::holds(&object.body, &point))
     }
 
-    /// Returns the object nearest to `point` and the projection of `point` on it; at equal
+    /// Returns the object nearest to `point`, and the projection of `point` on it; at equal
     /// distances the object with the smallest handle. `None` if no object is at most `max_distance`
-    /// away.
+    /// away, or if `max_distance` is negative or NaN.
     ///
-    /// With `solid`, a point in an object is its own projection, at distance zero; without, only
-    /// the boundaries of the objects count, from inside and from outside. `None` if `max_distance`
-    /// is negative or NaN.
+    /// If `solid` is `true`, a point in an object is its own projection, at distance zero.
+    /// Otherwise points are projected on the boundary of the object, from inside and from outside.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -83,11 +83,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// order of distance, then of handle.
     ///
     /// An object that contains the point has distance zero and [`ClosestPoints::Intersecting`]. For
-    /// others, [`ClosestPoints::WithinMargin`] has `point` itself first. Empty if `count` is zero,
-    /// or `max_distance` negative or NaN.
+    /// other objects, [`ClosestPoints::WithinMargin`] has `point` first, then the nearest point of
+    /// the object. The list is empty if `count` is zero, or `max_distance` is negative or NaN.
     ///
-    /// Corresponds to [`Self::nearest_objects`] with a point instead of a solid; see there for an
-    /// example.
+    /// [`Self::nearest_objects`] is the query for a solid instead of a point, and has an example.
     #[must_use]
     pub fn nearest_to_point(
         &self,
@@ -109,13 +108,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Returns the probe of a point; `None` if it is not finite.
+/// Returns the probe of a point; `None` if the point is not finite.
 fn near<N: Space<D>, const D: usize>(point: &Point<N, D>) -> Option<WorldProbe<N, D>> {
     let usable = point.iter().all(|x| x.is_finite_number());
     usable.then(|| WorldProbe::Near(Aabb::at(*point)))
 }
 
-/// Returns the distance of an object from a point and its nearest point; `None` beyond `farthest`.
+/// Returns the distance between a point and an object, and the projection of the point; `None` if
+/// the distance exceeds `farthest`.
 fn projection<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     point: &Point<N, D>,

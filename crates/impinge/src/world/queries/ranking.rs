@@ -1,7 +1,7 @@
 //! The best results of a ranked query.
 //!
-//! Results are ordered by (key, handle), whatever the order in which objects are proposed. A box is
-//! skipped only if its key proves that it holds no better result.
+//! Results are ordered by (key, handle), in whatever order objects are proposed. A box is skipped
+//! only if its key proves that its object has no better result.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -9,12 +9,13 @@ use std::collections::BinaryHeap;
 use crate::math::{Real, max};
 use crate::narrow_phase::CollisionObjectHandle;
 
-/// The results with the smallest keys, ties by handle: at most `count` of them, none above `limit`.
+/// The results with the least keys, at equal keys with the smallest handles: at most `count`, with
+/// keys of at most `limit`.
 #[derive(Debug)]
 pub(super) struct Ranking<N: Real, A> {
     count: usize,
     limit: N,
-    /// Max-heap: the worst result on top.
+    /// A max-heap, with the worst result on top.
     heap: BinaryHeap<Ranked<N, A>>,
 }
 
@@ -26,18 +27,19 @@ pub(super) struct Ranked<N: Real, A> {
     pub(super) answer: A,
 }
 
-/// A collection of the best results, which bounds the keys of further ones.
+/// A collection of the best results so far, which limits the keys of further results.
 pub(super) trait Rank<N: Real, A> {
-    /// Returns the largest key that still counts.
+    /// Returns the largest key with which a result can still be among the best.
     fn limit(&self) -> N;
 
-    /// Keeps the result if it is among the best. A NaN key never is.
+    /// Keeps the result if it is among the best. A result with a NaN key is dropped.
     fn offer(&mut self, ranked: Ranked<N, A>);
 
-    /// Returns the largest key of a box whose object may have a key that still counts.
+    /// Returns the largest key of a box whose object may still have a result among the best.
     ///
-    /// Keys of boxes are quotients and square roots of sums, with errors of a few units in the last
-    /// place. The error is larger where squares underflow; hence the lower bound.
+    /// Keys of boxes are quotients, or square roots of sums, with errors of a few units in the last
+    /// place. The error is larger where squares underflow, so the limit is never less than a small
+    /// bound.
     fn limit_of_boxes(&self) -> N {
         let limit = self.limit();
         let least = (N::MIN_POSITIVE / N::EPSILON).sqrt();
@@ -45,7 +47,7 @@ pub(super) trait Rank<N: Real, A> {
     }
 }
 
-/// Number of requested results, and the largest key.
+/// The number of requested results, and their largest key.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RankRange<N: Real> {
     pub(super) count: usize,
@@ -60,14 +62,14 @@ impl<N: Real> RankRange<N> {
 }
 
 impl<N: Real, A> Ranking<N, A> {
-    /// Creates a ranking of up to `count` results with keys up to `limit`; `None` if no result can
-    /// qualify.
+    /// Creates a ranking of up to `count` results with keys of at most `limit`; `None` if `count`
+    /// is zero, or `limit` is negative or NaN.
     pub(super) fn new(count: usize, limit: N) -> Option<Self> {
         let has_room = count > 0 && limit >= N::ZERO;
         has_room.then(|| Self { count, limit, heap: BinaryHeap::new() })
     }
 
-    /// Returns the results, the best first.
+    /// Returns the results, best first.
     pub(super) fn into_sorted(self) -> Vec<Ranked<N, A>> {
         self.heap.into_sorted_vec()
     }
@@ -94,7 +96,7 @@ impl<N: Real, A> Rank<N, A> for Ranking<N, A> {
     }
 }
 
-/// A ranking of one result, which does not allocate.
+/// A ranking of a single result, which does not allocate.
 #[derive(Debug)]
 pub(super) struct BestOne<N: Real, A> {
     limit: N,
@@ -102,13 +104,13 @@ pub(super) struct BestOne<N: Real, A> {
 }
 
 impl<N: Real, A> BestOne<N, A> {
-    /// Creates a ranking of one result with a key up to `limit`; `None` if `limit` is negative or
-    /// NaN.
+    /// Creates a ranking of a single result with a key of at most `limit`; `None` if `limit` is
+    /// negative or NaN.
     pub(super) fn new(limit: N) -> Option<Self> {
         (limit >= N::ZERO).then_some(Self { limit, best: None })
     }
 
-    /// Returns the result.
+    /// Returns the best result; `None` if there is none.
     pub(super) fn found(self) -> Option<Ranked<N, A>> {
         self.best
     }

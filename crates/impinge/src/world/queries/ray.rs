@@ -12,11 +12,12 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Ray queries.
 ///
-/// Times are in units of the length of the ray's direction, normals in the world frame. Each object
-/// is hit at most once: where the ray meets it first.
+/// Times are in units of the length of the ray's direction, and normals are in the world frame.
+/// Each object is hit at most once: where the ray first meets it.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// As [`Self::ray_hits`] without a maximum time and with solids, for the objects that may
-    /// interact with `groups`, but in order of their handles.
+    /// Returns the objects that a ray meets, each with its first intersection, in order of their
+    /// handles. There is no maximum time, and a ray that starts inside an object meets it at time
+    /// zero. Considers the objects that may interact with `groups`.
     pub fn interferences_with_ray<'a>(
         &'a self,
         ray: &Ray<N, D>,
@@ -28,8 +29,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
 
-    /// As [`Self::first_ray_hit`] without a maximum time and with solids, for the objects that may
-    /// interact with `groups`.
+    /// Returns the object that a ray meets first, and the intersection; see
+    /// [`Self::first_ray_hit`]. There is no maximum time, and a ray that starts inside an object
+    /// meets it at time zero. Considers the objects that may interact with `groups`.
     #[must_use]
     pub fn first_interference_with_ray(
         &self,
@@ -39,14 +41,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.first_ray_hit(ray, N::INFINITY, true, &groups.into())
     }
 
-    /// Returns the object that a ray meets first, at `max_time` or before, and the intersection; at
-    /// equal times the object with the smallest handle.
+    /// Returns the object that a ray meets first, and the intersection; at equal times the object
+    /// with the smallest handle. `None` if the ray meets no object at or before `max_time`.
     ///
-    /// With `solid`, a ray that starts inside an object meets it at time zero; without, where it
-    /// leaves it. A ray that is not finite meets nothing, nor does any ray if `max_time` is
-    /// negative or NaN.
+    /// If `solid` is `true`, a ray that starts inside an object meets it at time zero, otherwise
+    /// where the ray leaves the object. A ray that is not finite meets nothing. No ray meets
+    /// anything if `max_time` is negative or NaN.
     ///
-    /// Costs a tree search and a ray cast against a few objects.
+    /// Costs a tree search, and a ray cast against a few objects.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -91,11 +93,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Casts many rays: `hits[i]` becomes the handle and the intersection that
-    /// [`Self::first_ray_hit`] finds for `batch.rays[i]`, to the bit. The caller keeps `hits` from
-    /// frame to frame.
+    /// [`Self::first_ray_hit`] finds for `batch.rays[i]`, to the bit. The caller can keep the
+    /// memory of `hits` from frame to frame.
     ///
-    /// Runs on the calling thread, whatever the features, since the user's data may not be `Sync`.
-    /// A world that is `Sync` may be queried from several threads, each with a share of the rays.
+    /// Runs on the calling thread, whatever the features, since the data of the user need not be
+    /// `Sync`. A world that is `Sync` may be queried by several threads, each with a part of the
+    /// rays.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -118,7 +121,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// ```
     ///
     /// # Panics
-    /// If there are not as many places as rays.
+    /// If `hits` is not as long as `batch.rays`.
     #[track_caller]
     pub fn cast_rays(
         &self,
@@ -132,10 +135,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         });
     }
 
-    /// Returns the objects that a ray meets, at `max_time` or before, each with its first
-    /// intersection, in ascending order of time, then of handle.
-    ///
-    /// Otherwise as [`Self::first_ray_hit`].
+    /// Returns the objects that a ray meets at or before `max_time`, each with its first
+    /// intersection, in ascending order of time, then of handle. See [`Self::first_ray_hit`] for
+    /// the arguments.
     #[doc(alias = "interferences_with_ray")]
     #[must_use]
     pub fn ray_hits(
@@ -163,8 +165,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Returns where a ray meets an object, at time `latest` or before, with the normal in the world
-/// frame.
+/// Returns the first intersection of a ray and an object, with the normal in the world frame;
+/// `None` if that is after time `latest`.
 fn cast<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     ray: &Ray<N, D>,

@@ -1,5 +1,5 @@
-//! The search of all ranked queries: objects by their boxes, near ones first, as long as a box may
-//! hold a result.
+//! The search that all ranked queries share: objects by the keys of their boxes, near ones first,
+//! as long as a box may have a result.
 
 use crate::world::entries;
 use core::cell::Cell;
@@ -15,19 +15,20 @@ use crate::partitioning::Sweep;
 use crate::world::bodies::WorldBody;
 use crate::world::{CollisionObject, CollisionWorld, DirtyTree, DirtyVisitor, WorldBroadPhase};
 
-/// The probe of a query. The key of a box is a time or a distance.
+/// The probe of a query. It defines the key of a box: a time or a distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum WorldProbe<N: Real, const D: usize> {
-    /// Key: the time at which the ray enters the box.
+    /// The key is the time at which the ray enters the box.
     Ray(Ray<N, D>),
-    /// Key: the distance between the boxes.
+    /// The key is the distance between the two boxes.
     Near(Aabb<N, D>),
-    /// Key: the time at which the moving box touches the box.
+    /// The key is the time at which the moving box first touches the box. Its velocity is the
+    /// second field.
     Cast(Aabb<N, D>, Vector<N, D>),
 }
 
 impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
-    /// Visits the boxes of dirty objects, roughly in ascending order of keys.
+    /// Visits the boxes of dirty objects, roughly in ascending order of their keys.
     fn visit_dirty(&self, tree: &DirtyTree<D>, limit: N, visit: &mut DirtyVisitor<'_, N>) {
         let along = |sweep, visit| entries::dirty_by_time(tree, &sweep, limit, visit);
         match self {
@@ -37,7 +38,7 @@ impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
         }
     }
 
-    /// Visits the boxes of the broad phase, roughly in ascending order of keys.
+    /// Visits the boxes of the broad phase, roughly in ascending order of their keys.
     fn visit(
         &self,
         broad_phase: &WorldBroadPhase<N, D>,
@@ -54,10 +55,10 @@ impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
     }
 }
 
-/// Receives some objects that the broad phase proposes; returns the largest key that still counts.
+/// Receives a group of objects that the broad phase proposes, and returns the new limit of keys.
 type ProposalVisitor<'a, N> = dyn FnMut(&[Proposal<'_, N, CollisionObjectHandle>]) -> N + 'a;
 
-/// A few objects with lower bounds of their keys.
+/// A group of objects with lower bounds of their keys; unused entries are `None`.
 type ProposedGroup<'a, N, const D: usize, T> = [Option<(&'a CollisionObject<N, D, T>, N)>; GROUP];
 
 /// An object and its result.
@@ -66,13 +67,14 @@ type FoundObject<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, A
 /// An object, its key and its result.
 pub(super) type QueryAnswer<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, N, A);
 
-/// Receives an object and the largest key that still counts; returns the object's key and result,
-/// or `None` if it has no key or a larger one.
+/// Receives an object and the present limit of keys. Returns the object's key and result, or `None`
+/// if it has no key or its key exceeds the limit.
 pub(super) type Measure<'a, N, const D: usize, A> =
     dyn Fn(&WorldBody<N, D>, N) -> Option<(N, A)> + 'a;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Returns the best results of `measure` among the objects that the filter allows, in order.
+    /// Returns the best results of `measure` among the objects that the filter allows, by ascending
+    /// key, then handle.
     pub(super) fn rank<A>(
         &self,
         probe: &WorldProbe<N, D>,
@@ -85,7 +87,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         ranking.into_sorted().into_iter().map(answer).collect()
     }
 
-    /// Returns the best result with a key up to `limit`.
+    /// Returns the best result of `measure` with a key of at most `limit`; `None` if there is none.
     pub(super) fn best<A>(
         &self,
         probe: &WorldProbe<N, D>,
@@ -117,12 +119,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         });
     }
 
-    /// Calls `visit` for each object whose box may have a key of at most `limit`, and for some
-    /// others, near ones roughly first, each once. `visit` receives and returns the largest key
-    /// that still counts; a negative one ends the search.
+    /// Calls `visit` with each object whose box may have a key of at most `limit`, and possibly
+    /// with a few others, each once and roughly near ones first. `visit` receives the present limit
+    /// of keys and returns the new one; a negative limit ends the search.
     ///
-    /// Dirty objects come from a tree of their own; proposals of the broad phase for them are
-    /// dropped.
+    /// Dirty objects come from their own tree; proposals of the broad phase for them are dropped.
     pub(super) fn propose<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
@@ -152,10 +153,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         });
     }
 
-    /// Returns the object of a proposal of the broad phase, if it exists and is not dirty.
+    /// Returns the object of a proposal of the broad phase; `None` if it does not exist or is
+    /// dirty.
     ///
-    /// Usually the number of the proxy gives the index of the object, which avoids loading the
-    /// broad phase's record. A proxy number that a living object has identifies that object.
+    /// Usually the uid of the proxy leads to the object, so that the record of the broad phase need
+    /// not be loaded: a uid that belongs to a living object identifies that object.
     #[inline]
     fn clean_proposal(
         &self,
@@ -184,7 +186,7 @@ fn answer<'a, N: Space<D>, const D: usize, T, A>(
     (object, ranked.key, answer)
 }
 
-/// Fetches the objects of a few proposals before any of them is tested: they are scattered in
+/// Loads the objects of a group of proposals before any of them is tested. They are scattered in
 /// memory, and independent loads overlap.
 #[inline]
 fn gathered<P, A: Copy>(group: &[P], find: impl Fn(&P) -> Option<A>) -> [Option<A>; GROUP] {

@@ -16,12 +16,13 @@ use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Queries with solids and boxes, in the world frame.
 ///
-/// The solid of a query is not an object of the world: any shape at any position will do, and a
-/// [`ShapeHandle`](crate::shape::ShapeHandle) gives its shape by `&*`. A position that is not
+/// The solid of a query is not an object of the world: it may be any shape at any position. `&*`
+/// converts a [`ShapeHandle`](crate::shape::ShapeHandle) to its shape. A position that is not
 /// finite is near nothing. Distances are those of [`crate::query::distance`]: zero for solids that
 /// touch or overlap.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// As [`Self::objects_in_aabb`], for the objects that may interact with `groups`.
+    /// Returns the objects whose boxes overlap or touch `aabb`, in order of their handles; see
+    /// [`Self::objects_in_aabb`]. Considers the objects that may interact with `groups`.
     pub fn interferences_with_aabb<'a>(
         &'a self,
         aabb: &Aabb<N, D>,
@@ -30,8 +31,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.objects_in_aabb(aabb, &groups.into())
     }
 
-    /// Returns the objects whose boxes overlap or touch `aabb`, in order of their handles. These
-    /// are the exact boxes of the shapes at the present positions, without margin;
+    /// Returns the objects whose boxes overlap or touch `aabb`, in order of their handles. Tests
+    /// the exact boxes of the shapes at their present positions, without margin;
     /// [`Self::objects_overlapping`] with a cuboid tests the shapes themselves.
     #[doc(alias = "interferences_with_aabb")]
     pub fn objects_in_aabb<'a>(
@@ -79,8 +80,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         near.into_iter().flatten().filter(move |object| entries::touches(&placed, &object.body))
     }
 
-    /// Returns `true` if an object touches or overlaps a solid: whether
-    /// [`Self::objects_overlapping`] has any. The search ends at the first one found.
+    /// Returns `true` if at least one object touches or overlaps a solid. The search ends at the
+    /// first such object.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -115,8 +116,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         })
     }
 
-    /// Returns the object nearest to a solid, as [`Self::nearest_objects`] does; at equal distances
-    /// the one with the smallest handle.
+    /// Returns the object nearest to a solid, with its distance and nearest points; at equal
+    /// distances the object with the smallest handle. `None` if no object is at most `max_distance`
+    /// away. See [`Self::nearest_objects`].
     #[must_use]
     pub fn closest_object(
         &self,
@@ -129,7 +131,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Returns all objects at most `distance` from a solid, in ascending order of distance, then of
-    /// handle; as [`Self::nearest_objects`] without a `count`.
+    /// handle; see [`Self::nearest_objects`] for the fields.
     #[must_use]
     pub fn objects_within(
         &self,
@@ -145,12 +147,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// order of distance, then of handle.
     ///
     /// Objects that touch or overlap the solid have distance zero and
-    /// [`ClosestPoints::Intersecting`]. For others, [`ClosestPoints::WithinMargin`] has the point
-    /// on the solid first, then the one on the object. Empty if `count` is zero, or `max_distance`
-    /// negative or NaN.
+    /// [`ClosestPoints::Intersecting`]. For other objects, [`ClosestPoints::WithinMargin`] has the
+    /// point on the solid first, then the point on the object. The list is empty if `count` is
+    /// zero, or `max_distance` is negative or NaN.
     ///
-    /// Costs a tree search, and a distance computation for each object found and for a few whose
-    /// boxes are as near as the last of them.
+    /// Costs a tree search, and a distance computation for each object found and for a few objects
+    /// with boxes about as near as the last object found.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point};
@@ -207,7 +209,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-/// Returns the box of a placed solid, grown by the rounding slack; `None` if the position is not
+/// Returns the box of a placed solid, grown by its rounding errors; `None` if the position is not
 /// finite.
 pub(crate) fn around<N: Space<D>, const D: usize>(
     position: &N::Isometry,
@@ -217,8 +219,7 @@ pub(crate) fn around<N: Space<D>, const D: usize>(
     pose.is_finite().then(|| grown(&aabb_at(shape, &pose), N::ZERO))
 }
 
-/// Returns `true` if a solid touches or overlaps an object, that is, if their distance does not
-/// exceed zero.
+/// Returns `true` if a solid touches or overlaps an object: their distance is zero or negative.
 pub(crate) fn touches<N: Space<D>, const D: usize>(
     placed: &Placed<'_, N, D>,
     body: &WorldBody<N, D>,
@@ -229,7 +230,7 @@ pub(crate) fn touches<N: Space<D>, const D: usize>(
     })
 }
 
-/// Returns the separation of a solid from an object; `None` beyond `limit`.
+/// Returns the separation of a solid and an object; `None` if their distance exceeds `limit`.
 pub(crate) fn separation_from<N: Space<D>, const D: usize>(
     placed: &Placed<'_, N, D>,
     body: &WorldBody<N, D>,
@@ -241,7 +242,7 @@ pub(crate) fn separation_from<N: Space<D>, const D: usize>(
     })
 }
 
-/// Returns `true` if the exact box of an object overlaps another box.
+/// Returns `true` if the exact box of an object overlaps or touches `aabb`.
 #[inline]
 pub(crate) fn meets<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,

@@ -1,4 +1,4 @@
-//! Tests that a step in which no pair or object is new takes no memory from the allocator.
+//! Tests that a step without new pairs or objects allocates no memory.
 
 use impinge::dim2::shape::ConvexPolygon;
 use impinge::math::na::{Translation2, Translation3, UnitComplex, UnitQuaternion};
@@ -14,7 +14,7 @@ const PERIOD: u32 = 16;
 /// Number of objects along each axis.
 const ROW: usize = 6;
 
-/// The poses and shapes that differ by dimension.
+/// The parts of the scene that differ by dimension: poses and shapes.
 trait Stage<const D: usize>: Space<D> {
     fn place(at: Vector<Self, D>, turn: f64) -> Self::Isometry;
     fn own_shapes() -> Vec<ShapeHandle<Self, D>>;
@@ -57,8 +57,8 @@ fn shapes<N: Stage<D>, const D: usize>() -> Vec<ShapeHandle<N, D>> {
     shapes
 }
 
-/// Pose of object `index` at `step`: on a grid of unit cells, swinging, so that neighbours come and
-/// go.
+/// Returns the pose of object `index` at `step`: on a grid of unit cells, swinging, so that
+/// neighbours begin and cease to touch.
 fn pose<N: Stage<D>, const D: usize>(index: usize, step: u32) -> N::Isometry {
     let phase = (step as usize + index * 5) % PERIOD as usize;
     let swing = (phase.min(PERIOD as usize - phase) as f64 - 4.0) * 0.06;
@@ -136,7 +136,7 @@ fn nor_where_contacts_are_kept() {
     takes_nothing::<f64, 3>(DefaultNarrowPhase::new().reusing(0.05));
 }
 
-/// A solid that slides to and fro over a surface with hills takes no memory either.
+/// Asserts that a solid that slides to and fro over a surface with hills allocates no memory.
 fn slides_without_memory<const D: usize>(ground: ShapeHandle<f32, D>, solid: ShapeHandle<f32, D>)
 where
     f32: Stage<D>,
@@ -161,7 +161,7 @@ where
         }
         contacts
     };
-    // Within these 8 periods the surface comes to rest and all buffers reach their size.
+    // Within these 8 periods the surface comes to rest, and all buffers grow to their final size.
     for _ in 0..8 {
         slide();
     }

@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Greatest number of lines of a map; longer ones are not read to the end.
+/// Greatest number of lines of a map; nobody reads a longer one to the end.
 const MAX_LINES: usize = 150;
 
-/// Root folder of the repository.
+/// Returns the root folder of the repository.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
@@ -15,8 +15,8 @@ fn document(name: &str) -> String {
     fs::read_to_string(root().join(name)).expect("a text at the root of the repository")
 }
 
-/// The words in backquotes that name a file or folder, that is, end in `.rs`, `.md` or `/`. Blocks of code are left
-/// out, because they may name files that a command writes.
+/// Returns the words in backquotes that name a file or folder: those that end in `.rs`, `.md` or
+/// `/`. Skips blocks of code, because these may name files that a command writes.
 fn paths(text: &str) -> Vec<&str> {
     let prose = text.split("```").step_by(2);
     let quoted = prose.flat_map(|prose| prose.split('`').skip(1).step_by(2));
@@ -27,14 +27,15 @@ fn paths(text: &str) -> Vec<&str> {
     quoted.filter(is_path).collect()
 }
 
-/// Whether a folder holds a file of this name, at any depth.
+/// Returns `true` if a folder has a file of this name, at any depth.
 fn holds(folder: &Path, name: &str) -> bool {
     let mut entries =
         fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     entries.any(|path| path.ends_with(name) || path.is_dir() && holds(&path, name))
 }
 
-/// Whether a path exists below the root or below the library's sources; a bare file name may be that of any source.
+/// Returns `true` if a path exists below the root or below the library's sources. A bare file name
+/// may belong to any source.
 fn exists(path: &str) -> bool {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let is_there = root().join(path).exists() || sources.join(path).exists();

@@ -32,7 +32,7 @@ use impinge::dim3::world::{
 
 type World = CollisionWorld<f64, &'static str>;
 
-/// Filter that keeps only pairs of objects whose data differ.
+/// A filter that accepts only pairs of objects whose data differ.
 struct OtherNames;
 
 impl BroadPhasePairFilter<f64, &'static str> for OtherNames {
@@ -49,7 +49,8 @@ fn at(x: f64) -> Isometry<f64> {
     Isometry::translation(x, 0.0, 0.0)
 }
 
-/// Two balls that overlap by 0.5 (radius 1, centres 1.5 apart), and a sensor around both.
+/// Returns a world of two balls that overlap by 0.5 (radius 1, centres 1.5 apart) and a sensor
+/// around both, with the three handles.
 fn world() -> (World, [CollisionObjectHandle; 3]) {
     let mut world = CollisionWorld::new(0.02);
     let ball = ShapeHandle::new(Ball::new(1.0));
@@ -305,7 +306,7 @@ fn volumes_trees_and_algorithms() {
     assert_eq!(na::one::<f64>(), 1.0, "nalgebra");
 }
 
-/// The identifiers in the code of the column for impinge, each with its line of the table.
+/// Returns the identifiers in the column for impinge, each with its row of the table.
 fn names_of_the_page(page: &str) -> Vec<(String, String)> {
     let rows = page.lines().filter(|line| line.starts_with("| ") && line.contains('`'));
     let column = |row: &str| row.split(" | ").nth(1).expect("three columns").to_owned();

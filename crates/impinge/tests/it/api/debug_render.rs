@@ -49,7 +49,7 @@ fn at<N: Space<D>, const D: usize>(coordinates: &[f64]) -> N::Isometry {
     N::isometry(&Pose::from_translation(vector(coordinates)))
 }
 
-/// The vector with these first coordinates; missing ones are zero.
+/// Returns the vector with these first coordinates; the others are zero.
 fn vector<N: Real, const D: usize>(coordinates: &[f64]) -> Vector<N, D> {
     Vector::<N, D>::from_fn(|axis, _| N::lit(coordinates.get(axis).copied().unwrap_or(0.0)))
 }
@@ -73,8 +73,8 @@ fn assert_sound<N: Real, const D: usize>(mesh: &ShapeMesh<N, D>, name: &str) {
     assert!(!mesh.vertices.is_empty(), "{name}: nothing to see");
 }
 
-/// Random bounded solids of all kinds, every third with sizes of zero, have their vertices on their
-/// surface; returns how many have lines.
+/// Asserts that random bounded solids of all kinds have their vertices on their surface; every
+/// third has sizes of zero. Returns how many of their meshes have lines.
 fn vertices_on_surfaces<N: Space<D>, const D: usize>(
     kinds: &[ShapeKind],
     sample: Sample<N, D>,
@@ -107,9 +107,9 @@ fn every_vertex_lies_on_the_surface() {
     assert!(counts.iter().all(|&count| count > 120), "few are points: {counts:?}");
 }
 
-/// The triangles of solids with an interior are counter-clockwise seen from outside. `volume` gives
-/// the signed volume of the simplex of an inner point and a triangle in 3D, and of the triangle in
-/// 2D.
+/// Asserts that the triangles of solids with an interior are counter-clockwise seen from outside.
+/// `volume` returns a signed volume: in 3D of the simplex of a triangle and an inner point, in 2D
+/// of the triangle.
 fn triangles_face_outwards<N: Space<D>, const D: usize>(
     kinds: &[ShapeKind],
     sample: Sample<N, D>,
@@ -140,8 +140,8 @@ fn triangles_are_counter_clockwise() {
     triangles_face_outwards::<f64, 3>(&SPACE, sample3, volume);
 }
 
-/// The edges of a box of half extents 1, 2, 3 each run along one axis, from one face to the
-/// opposite one. Unequal extents tell the axes apart.
+/// Asserts that each edge of a box with half extents 1, 2, 3 runs along one axis, from one face to
+/// the opposite one. The extents are unequal so that axes cannot be confused.
 fn edges_of_boxes<N: Space<D>, const D: usize>(expected: usize) {
     let half = Vector::<N, D>::from_fn(|axis, _| N::lit([1.0, 2.0, 3.0][axis]));
     let mesh = mesh_of(&Cuboid::new(half));
@@ -239,7 +239,8 @@ fn ids_follow_from_the_mesh() {
     assert_ne!(ShapeMesh::<f32, 3>::of(&Ball::new(0.5), &fine).id, ids[0]);
 }
 
-/// Shapes that overlap their neighbours, above a half-space, and a sensor beside the first one.
+/// Returns a world of shapes that overlap their neighbours, above a half-space, with a sensor
+/// beside the first one.
 fn stage<N: Space<D>, const D: usize>() -> CollisionWorld<N, D, ()> {
     let mut world = CollisionWorld::new(N::lit(0.02));
     let contacts = GeometricQueryType::Contacts(N::ZERO, N::ZERO);
@@ -261,7 +262,7 @@ fn stage<N: Space<D>, const D: usize>() -> CollisionWorld<N, D, ()> {
     world
 }
 
-/// All lines drawn for a world, coloured by the uid of their object.
+/// Returns all lines drawn for a world, each in a colour that is the uid of its object.
 fn picture<N: Space<D>, const D: usize>(
     world: &CollisionWorld<N, D, ()>,
     options: DebugOptions<N>,
@@ -327,15 +328,15 @@ fn boxes_hold_their_objects<N: Space<D>, const D: usize>(
     }
 }
 
-/// Least and greatest coordinates of the ends of lines.
+/// Returns the least and the greatest coordinates of the ends of lines.
 fn extremes<N: Real, const D: usize>(lines: &[Line<N, D>]) -> [Vector<N, D>; 2] {
     let ends: Vec<_> = lines.iter().flat_map(|line| line.ends.map(|end| end.coords)).collect();
     let low = ends.iter().fold(ends[0], |low, end| low.inf(end));
     [low, ends.iter().fold(ends[0], |high, end| high.sup(end))]
 }
 
-/// Contact points are drawn as crosses of `D` lines centred at the point, alternately on the first
-/// and the second shape of a pair.
+/// Asserts that each contact point is drawn as a cross of `D` lines centred at the point. Crosses
+/// lie alternately on the first and the second shape of a pair.
 fn contact_points_lie_on_both<N: Space<D>, const D: usize>(
     world: &CollisionWorld<N, D, ()>,
     drawn: &Lines<N, D>,

@@ -1,4 +1,4 @@
-//! Programs as users of `impinge::dim2` type them from the guide: names, signatures, custom
+//! Programs as users of `impinge::dim2` copy them from the guide: names, signatures, custom
 //! algorithms.
 
 use std::sync::Arc;
@@ -29,8 +29,8 @@ fn count_touching<N: Real, T>(world: &CollisionWorld<N, T>) -> usize {
     world.contact_pairs().filter(|(_, _, pair)| pair.num_contacts() > 0).count()
 }
 
-/// A generic function that fills a world with three balls of equal centres, updates it and casts a
-/// ray.
+/// Fills a world with three balls of equal centres, updates it and casts a ray; generic over scalar
+/// and data.
 fn fill<N: Real, T: Clone>(data: T) -> CollisionWorld<N, T> {
     let mut world = CollisionWorld::new(N::lit(0.02));
     let shape = ShapeHandle::new(Ball::new(N::HALF));
@@ -94,7 +94,7 @@ fn questions_about_solids() {
     assert!(plane.contains_point(&here, &Point::new(3.0, 0.0)), "behind the plane");
 }
 
-/// Dispatcher that leaves the work to the library and counts its calls.
+/// A dispatcher that delegates to the library and counts its calls.
 struct Counting(Arc<AtomicUsize>);
 
 impl<N: Real> ContactDispatcher<N, 2> for Counting {
@@ -108,7 +108,7 @@ impl<N: Real> ContactDispatcher<N, 2> for Counting {
     }
 }
 
-/// Dispatcher without algorithms.
+/// A dispatcher that returns no algorithm.
 struct Nothing;
 
 impl<N: Real> ProximityDispatcher<N, 2> for Nothing {
@@ -121,7 +121,8 @@ impl<N: Real> ProximityDispatcher<N, 2> for Nothing {
     }
 }
 
-/// A world of three balls with the same centre, one of them a sensor, before its first update.
+/// Returns a world of three balls with the same centre, one of them a sensor, before its first
+/// update.
 fn three_balls() -> (CollisionWorld<f32, ()>, [CollisionObjectHandle; 3]) {
     let mut world = CollisionWorld::new(0.02);
     let shape = ShapeHandle::new(Ball::new(0.5));
@@ -144,8 +145,7 @@ fn dispatchers_of_ones_own() {
     assert_eq!(world.contact_events(), [ContactEvent::Started(first, second)], "by the library");
     assert!(world.proximity_events().is_empty(), "there is no algorithm");
 
-    // The pairs without an algorithm must go with the old narrow phase and broad phase and send no
-    // events.
+    // The pairs without an algorithm must be removed with the old phases, without events.
     world.set_broad_phase(Box::new(DBVTBroadPhase::new(0.5)));
     world.update();
     assert!(world.contact_events().is_empty() && world.proximity_events().is_empty(), "the same");
@@ -160,8 +160,8 @@ fn dispatchers_of_ones_own() {
     world.validate().expect("the parts agree");
 }
 
-/// Wraps the default narrow phase and hands only pairs of two contact queries to it: no proximities
-/// are reported.
+/// Wraps the default narrow phase and passes it only pairs of two contact queries, so that no
+/// proximities are reported.
 #[derive(Clone, Debug, Default)]
 struct ContactsOnly(DefaultNarrowPhase<f32>);
 
@@ -261,7 +261,7 @@ fn a_narrow_phase_of_ones_own() {
     assert_eq!(world.contact_events(), [ContactEvent::Stopped(first, second)], "as ever");
 }
 
-/// Filter that refuses every pair.
+/// A filter that refuses every pair.
 struct Nobody;
 
 impl<N: Real, T> BroadPhasePairFilter<N, T> for Nobody {

@@ -1,7 +1,8 @@
-//! Tests the order of the modules and the rules for sources, by reading the sources.
+//! Tests the layering of the modules and the rules for sources, by reading the sources.
 //!
-//! A module imports only from floors below its own, or from itself. `tables/` is the one hook that
-//! reaches upwards, `lib.rs` names the modules, and tests may import anything.
+//! Modules lie on floors. A module imports only from lower floors, or from itself. Exceptions:
+//! `tables/` is a hook that reaches upwards, `lib.rs` names the modules, and tests may import
+//! anything.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,14 +27,14 @@ const FLOORS: [&[&str]; 13] = [
 struct Source {
     /// Path below `src`.
     path: PathBuf,
-    /// Top-level module that the file belongs to.
+    /// Top-level module of the file.
     module: String,
     lines: usize,
     /// Lines that are neither comments nor part of the test module at the end.
     code: Vec<String>,
 }
 
-/// All source files except those that hold only tests.
+/// Returns all source files except those that contain only tests.
 fn sources() -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let (mut folders, mut sources) = (vec![root.clone()], Vec::new());
@@ -70,7 +71,7 @@ fn floor(module: &str) -> Option<usize> {
     FLOORS.iter().position(|floor| floor.contains(&module))
 }
 
-/// The top-level modules that a line of code names after `crate::`.
+/// Iterates over the top-level modules that follow `crate::` in a line of code.
 fn named(line: &str) -> impl Iterator<Item = &str> {
     let ends = |c: char| !c.is_alphanumeric() && c != '_';
     line.split("crate::").skip(1).filter_map(move |rest| rest.split(ends).next())

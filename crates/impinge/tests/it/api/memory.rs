@@ -1,4 +1,4 @@
-//! Bounds the bytes of a world for each object that rests.
+//! Tests upper bounds of the memory that a world uses for each object at rest.
 
 use crate::support::world_stage;
 
@@ -8,9 +8,9 @@ use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 use impinge::world::{CollisionGroups, CollisionWorld};
 use world_stage::{Stage, ball};
 
-/// Number of steps after which every object counts as still and spare memory has been given back.
+/// Number of steps after which every object is at rest and spare memory has been released.
 const ASLEEP: u32 = 300;
-/// Bytes allowed for a world beside those of its objects.
+/// Bytes allowed for a world in addition to the memory of its objects.
 const WORLD: usize = 200_000;
 
 struct Grid<N: Space<D>, const D: usize> {
@@ -18,7 +18,7 @@ struct Grid<N: Space<D>, const D: usize> {
     handles: Vec<CollisionObjectHandle>,
 }
 
-/// Position of object `index` of `count` on a grid of this spacing.
+/// Returns the position of object `index` of `count`, on a grid with this spacing.
 fn place<const D: usize>(index: usize, count: usize, spacing: f64) -> [f64; D] {
     let volume = |row: usize| row.pow(u32::try_from(D).expect("2 or 3"));
     let row = (1..).find(|&row| volume(row) >= count).expect("some row is long enough");
@@ -31,7 +31,7 @@ fn place<const D: usize>(index: usize, count: usize, spacing: f64) -> [f64; D] {
 }
 
 impl<N: Stage<D>, const D: usize> Grid<N, D> {
-    /// Balls of diameter 1 at rest, which share their shape.
+    /// Creates a world of `count` balls of diameter 1, which share their shape.
     fn new(count: usize, spacing: f64) -> Self {
         let (mut world, shape) = (CollisionWorld::new(N::lit(0.02)), ball::<N, D>(0.5));
         let query = GeometricQueryType::Contacts(N::lit(0.01), N::ZERO);
@@ -48,7 +48,8 @@ impl<N: Stage<D>, const D: usize> Grid<N, D> {
     }
 }
 
-/// Bytes for each object of the grid that `make` returns, without the list of handles that the test keeps.
+/// Returns the bytes for each object of the grid that `make` returns. Excludes the list of handles,
+/// which only the test needs.
 fn bytes_each<N: Stage<D>, const D: usize>(count: usize, make: impl FnOnce() -> Grid<N, D>) -> f64 {
     let mut kept = None;
     let used = measure(|| kept = Some(make()));
@@ -57,7 +58,8 @@ fn bytes_each<N: Stage<D>, const D: usize>(count: usize, make: impl FnOnce() -> 
     (used - handles - WORLD.min(used - handles)) as f64 / count as f64
 }
 
-/// Bytes of objects that rest and never had pairs: the spacing 1.5 keeps balls of diameter 1 apart.
+/// Asserts a bound of the bytes for each object that rests and never had pairs. With a spacing of
+/// 1.5, balls of diameter 1 are disjoint.
 fn sleeps_in<N: Stage<D>, const D: usize>(bound: f64) {
     let count = 20_000;
     let fresh = bytes_each(count, || {
@@ -69,9 +71,9 @@ fn sleeps_in<N: Stage<D>, const D: usize>(bound: f64) {
     assert!(fresh <= bound, "{fresh} bytes for an object that sleeps, {bound} are allowed");
 }
 
-/// In 3D with `f32` an object takes 96 bytes for the user's data (pose 28, shape 16 and its numbers 12, query 8, groups
-/// 12, handles 16, state 4), 48 for its volume and the loosened one, 24 for its box in the tree, and about 45 for the
-/// indices that join these; an eighth is left for growth.
+/// In 3D with `f32` an object takes 96 bytes for its record (pose 28, shape 16 and its numbers 12,
+/// query 8, groups 12, handles 16, state 4), 48 for its exact and its loosened box, 24 for its box
+/// in the tree, and about 45 for the indices that link these. An eighth is added for growth.
 #[test]
 fn an_object_that_sleeps_takes_256_bytes() {
     sleeps_in::<f32, 3>(256.0);
@@ -85,7 +87,7 @@ fn a_quiet_step_takes_no_memory() {
     for spacing in [1.0, 1.5] {
         let mut grid = Grid::<f64, 3>::new(3000, spacing);
         grid.rest();
-        // Within these 128 steps the world checks twice whether memory can be given back.
+        // Within these 128 steps the world checks twice whether it can release memory.
         let used = measure(|| (0..128).for_each(|_| grid.world.update()));
         assert_eq!(used.count_total, 0, "spacing {spacing}: {used:?}");
     }

@@ -1,5 +1,5 @@
-//! Tests that messages of panics name the handle or the value at fault, in the words of the error
-//! of the matching `try_` method.
+//! Tests that panic messages name the handle or value at fault, with the text of the error of the
+//! matching `try_` method.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -14,7 +14,7 @@ use impinge::dim2::shape::{
 };
 use impinge::dim2::world::{CollisionGroups, CollisionObject, CollisionWorld, GeometricQueryType};
 
-/// The message with which `call` panics.
+/// Returns the message with which `call` panics.
 fn message<R>(call: impl FnOnce() -> R) -> String {
     let Err(panic) = catch_unwind(AssertUnwindSafe(call)) else { panic!("no panic") };
     *panic.downcast::<String>().expect("a formatted message")
@@ -114,7 +114,7 @@ fn features_that_are_not_there_are_named() {
     names(&["Face(4)"], || cuboid.feature_normal(FeatureId::Face(4)));
 }
 
-/// Names of private fields and parts, which mean nothing to users.
+/// Names of private fields and parts, which users do not know.
 const INSIDES: [&str; 22] = [
     "state",
     "blocks",

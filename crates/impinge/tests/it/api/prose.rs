@@ -1,15 +1,16 @@
-//! Tests that comments have subjects: few lines of them begin with a noun clause ("What is …", "Of
-//! those that …", "The same of …"), which hides what a sentence is about.
+//! Tests that comments have subjects: at most a few of their lines begin with a noun clause ("What
+//! is …", "Of those that …", "The same of …"), which hides the subject of a sentence.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Words that begin such a clause.
+/// Words with which such a clause begins.
 const OPENINGS: [&str; 5] = ["What", "Of", "Those", "That", "The same"];
-/// Lines of the whole project that may begin so: questions, and lines in the middle of a sentence.
+/// Number of lines in the whole project that may begin with these words: questions, and lines in
+/// the middle of a sentence.
 const MOST: usize = 60;
 
-/// The Rust sources below a folder, without what a build writes.
+/// Collects the Rust sources below a folder; skips build output.
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -22,7 +23,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Whether a line is a comment that begins with one of the openings.
+/// Returns `true` if a line is a comment that begins with one of the openings.
 fn has_opening(line: &str) -> bool {
     let Some(comment) = line.trim_start().strip_prefix("//") else { return false };
     let comment = comment.trim_start_matches(['/', '!']).trim_start();

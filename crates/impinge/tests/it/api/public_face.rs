@@ -1,5 +1,5 @@
-//! Programs of users who start with the prelude: the names exist in both dimensions and for both
-//! scalars, and the short names are the generic types.
+//! Programs of users who start with the prelude. The names exist in both dimensions and for both
+//! scalars, and the short names are aliases of the generic types.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Real, Space, Vector};
@@ -7,7 +7,8 @@ use impinge::shape::{
     CompositeShape, FeatureId, Geometry, Part, PartSearch, Polyline, Shape, Surface,
 };
 
-/// A polyline behind a custom type that implements only the required methods of a composite shape.
+/// A polyline wrapped in a custom type that implements only the required methods of a composite
+/// shape.
 #[derive(Debug)]
 struct Ground<N: Space<D>, const D: usize>(Polyline<N, D>);
 
@@ -57,7 +58,7 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Ground<N, D> {
     }
 }
 
-/// The programs of one dimension, written once for both.
+/// Defines the programs for one dimension.
 macro_rules! programs {
     ($name:ident, $dim:ident, $d:literal) => {
         mod $name {
@@ -73,7 +74,7 @@ macro_rules! programs {
                 Cuboid::new(Vector::repeat(N::lit(size)))
             }
 
-            /// A typical program that needs no import beside the prelude.
+            /// A typical program that needs no import except the prelude.
             fn program<N: Real>() {
                 let mut world = CollisionWorld::new(N::lit(0.02));
                 let groups = CollisionGroups::new();
@@ -91,7 +92,7 @@ macro_rules! programs {
                 assert_eq!(hit.map(|(object, hit)| (object.handle(), hit.toi)), {
                     Some((ball, N::lit(3.25)))
                 });
-                // The generic type is the same type.
+                // The short name is an alias of the generic type.
                 let _: &impinge::world::CollisionWorld<N, $d, &str> = &world;
             }
 
@@ -159,7 +160,7 @@ macro_rules! programs {
                 );
             }
 
-            /// Each alias of a query gives the result of the method it stands for.
+            /// Each alias of a query gives the result of the method that it is an alias for.
             fn aliases<N: Real>() {
                 let mut world = CollisionWorld::new(N::lit(0.02));
                 let ball = ShapeHandle::new(Ball::new(N::ONE));
@@ -196,7 +197,7 @@ macro_rules! programs {
                 assert_eq!(found.map(|hit| hit.toi), ball.toi_with_ray(&here, &ray, true), "time");
             }
 
-            /// A polyline along the first axis, from -3 to 3.
+            /// Returns a polyline along the first axis, from -3 to 3.
             fn line<N: Real>() -> Polyline<N> {
                 let at = |x: i32| Point::from(Vector::x() * N::lit(f64::from(x)));
                 Polyline::open((-3..4).map(at).collect())
@@ -225,7 +226,7 @@ macro_rules! programs {
                 }
             }
 
-            /// A world with pairs of every representation of contacts, in both orders.
+            /// Returns a world with pairs of every representation of contacts, in both orders.
             fn crowd<N: Real>() -> CollisionWorld<N, ()> {
                 let mut world = CollisionWorld::new(N::lit(0.02));
                 let query = ContactQuery::new(N::lit(0.125)).with_angular_prediction(N::lit(0.09));
@@ -248,7 +249,7 @@ macro_rules! programs {
                 world
             }
 
-            /// A rotation by a tenth of a radian in the plane of the first two axes.
+            /// Returns a rotation by a tenth of a radian in the plane of the first two axes.
             fn tilted<N: Real>() -> Isometry<N> {
                 let (from, to) = (Vector::x(), Vector::x() + Vector::y() * N::lit(0.1));
                 let turn = Rotation::rotation_between(&from, &to);

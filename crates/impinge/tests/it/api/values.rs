@@ -1,5 +1,5 @@
-//! Tests the traits of the public types (plain values, errors, worlds that are `Send` and `Sync` if
-//! their data are), and compiles programs that depend on the lifetimes of borrows.
+//! Tests which traits the public types implement: plain values, errors, and worlds that are `Send`
+//! and `Sync` if their data are. Also compiles programs that depend on the lifetimes of borrows.
 
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -63,7 +63,7 @@ fn a_world_is_what_its_data_is() {
     sent::<CollisionWorld<f32, std::cell::Cell<u32>>>();
 }
 
-/// A world of two balls with the same centre.
+/// Returns a world of two balls with the same centre.
 fn two<N: Real, T: Clone>(data: &T) -> CollisionWorld<N, T> {
     let mut world = CollisionWorld::new(N::lit(0.02));
     let shape = ShapeHandle::new(Ball::new(N::HALF));
@@ -76,7 +76,7 @@ fn two<N: Real, T: Clone>(data: &T) -> CollisionWorld<N, T> {
     world
 }
 
-/// Number of contacts, with the manifolds of all pairs collected in one list.
+/// Returns the number of contacts, by collecting the manifolds of all pairs in one list.
 fn count<N: Real, T>(world: &CollisionWorld<N, T>) -> usize {
     let mut manifolds: Vec<&ContactManifold<N>> = Vec::new();
     for (_, _, algorithm) in world.contact_pairs() {
@@ -94,8 +94,8 @@ fn data_may_be_anything() {
     assert_eq!(count(&two::<f32, _>(&|| 3)), 1, "a closure");
 }
 
-/// Number of points of a tilted box whose lowest corner is below the surface of a half-space, where
-/// both objects have the angular prediction `angle`.
+/// Returns the number of contact points of a tilted box whose lowest corner is below the surface of
+/// a half-space. Both objects have the angular prediction `angle`.
 fn points_of_a_tilted_box(angle: f64) -> usize {
     let mut world = CollisionWorld::new(0.02);
     let (query, groups) = (GeometricQueryType::Contacts(0.0, angle), CollisionGroups::new());
@@ -107,8 +107,8 @@ fn points_of_a_tilted_box(angle: f64) -> usize {
     count(&world)
 }
 
-/// A larger angular prediction never gives fewer points, also beyond a right angle, where its sine
-/// falls again or is negative.
+/// A larger angular prediction never gives fewer points, even beyond a right angle, where its sine
+/// decreases or is negative.
 #[test]
 fn angular_predictions_beyond_a_right_angle() {
     assert_eq!(points_of_a_tilted_box(0.0), 1, "the lower corner");

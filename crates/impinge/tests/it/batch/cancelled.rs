@@ -1,4 +1,4 @@
-//! Tests progress and cancellation of every method of batches.
+//! Tests progress and cancellation of every batch method.
 
 use std::ops::ControlFlow;
 use std::sync::Mutex;
@@ -16,7 +16,7 @@ use super::scene::on_threads;
 
 const COUNT: usize = 1000;
 
-/// Passes each method to `call` together with its name.
+/// Calls `call` for each method, with its name.
 fn each_method(call: impl Fn(&str, &dyn Fn(&Control<'_>) -> Result<(), BatchError>)) {
     let ball = Ball::new(1.0_f64);
     let at = |index: usize| Pose::from_translation(Vector::<f64, 2>::new(3.0 * index as f64, 0.0));
@@ -48,8 +48,8 @@ fn each_method(call: impl Fn(&str, &dyn Fn(&Control<'_>) -> Result<(), BatchErro
     call("cast", &|control| rays.cast(control, HitColumns::default()));
 }
 
-/// Result of a batch whose callback cancels at its call number `call`, and the progress reported
-/// until then.
+/// Runs a batch whose callback cancels it in call number `call`. Returns the result, and the
+/// progress reported until then.
 fn cancelled_at(
     call: usize,
     run: &dyn Fn(&Control<'_>) -> Result<(), BatchError>,

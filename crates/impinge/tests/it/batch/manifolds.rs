@@ -1,4 +1,4 @@
-//! Compares the manifolds of batches with those of a new generator for each pair.
+//! Compares the manifolds of batches with those that a new generator computes for each pair.
 
 use impinge::batch::{Control, ManifoldRows, OnePose, PairBatch, Shapes, Side};
 use impinge::math::{AbstractRotation, Isometry, Isometry3, Pose, Space, Vector};
@@ -12,7 +12,7 @@ use impinge::shape::{Ball, Capsule, Cuboid, Segment, ShapeHandle};
 use super::scene::{Scene, assert_number, assert_point, on_threads, scene2, scene3};
 use crate::support::query_support::random::Random;
 
-/// Asserts that the rows of pair `index` hold the points of the expected manifolds, and returns the
+/// Asserts that the rows of pair `index` have the points of the expected manifolds; returns the
 /// number of points.
 fn check<N: Space<D>, const D: usize>(
     rows: &ManifoldRows<N, D>,
@@ -83,8 +83,8 @@ fn points_are_those_of_new_generators() {
     rows_of_all(&scene3::<f64>(0.0));
 }
 
-/// Kinds of pairs that are computed in lanes, in random order, so that groups stay incomplete; all
-/// solids are near each other.
+/// Pairs of all kinds that are computed in lanes, in random order, so that the last group of a kind
+/// is incomplete. All solids are near each other.
 #[test]
 fn lanes_take_pairs_of_mixed_kinds() {
     let random = &mut Random(3, false);

@@ -7,7 +7,8 @@ use impinge::shape::Ball;
 
 use super::scene::{Scene, on_threads, scene2, scene3};
 
-/// The least distance of the pairs from index `from` on; of equal ones that with the least index.
+/// Returns the least distance of the pairs from index `from` on, with its index; at equal distances
+/// the lowest index.
 fn least<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
     from: usize,
@@ -24,7 +25,7 @@ fn least<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize>(
     least
 }
 
-/// Keeps the pairs that are more than 0.5 apart, and doubles them, so that each distance occurs
+/// Keeps the pairs that are more than 0.5 apart, and repeats them, so that each distance occurs
 /// twice and the index decides.
 fn apart<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     scene: Scene<N, R, D>,
@@ -73,7 +74,7 @@ fn the_least_of_all_by_distance_then_by_index() {
 fn of_equals_the_first_on_any_number_of_threads() {
     let ball = Ball::new(1.0_f64);
     let at = |x: f64| Pose::from_translation(Vector::<f64, 2>::new(x, 0.0));
-    // All at one distance, except two that are nearer by equal amounts.
+    // All poses at the same distance, except two that are nearer by equal amounts.
     let mut poses = vec![at(10.0); 2000];
     let here = OnePose(at(0.0));
     let nearest = |poses: &Vec<Pose<f64, 2>>, threads| {

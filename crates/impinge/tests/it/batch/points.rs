@@ -7,7 +7,7 @@ use impinge::query::PointQuery;
 use super::scene::{Scene, assert_number, assert_point, on_threads, scene2, scene3};
 use crate::support::query_support::random::Random;
 
-/// A point near the first solid of each pair; two points are not finite.
+/// Returns a point near the first solid of each pair; two of the points are not finite.
 fn points_near<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
 ) -> Vec<[N; D]> {

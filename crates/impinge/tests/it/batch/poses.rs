@@ -1,4 +1,4 @@
-//! Tests that poses in every form and shapes in every arrangement give the same bits.
+//! Tests that every representation of poses and of shapes gives the same bits.
 
 use impinge::batch::{
     AsPose, BatchError, ClosestColumns, Control, Matrices, MatrixError, OnePose, PairBatch,
@@ -9,7 +9,7 @@ use impinge::shape::{Ball, Cuboid, ShapeHandle};
 
 use super::scene::{Scene, scene2, scene3};
 
-/// The poses as homogeneous matrices, row by row.
+/// Returns the poses as homogeneous matrices, row by row.
 fn numbers<N: Real, const D: usize>(poses: &[Pose<N, D>]) -> Vec<N> {
     let mut numbers = Vec::new();
     for pose in poses {
@@ -23,7 +23,7 @@ fn numbers<N: Real, const D: usize>(poses: &[Pose<N, D>]) -> Vec<N> {
     numbers
 }
 
-/// The bits of all distances and witness points of a batch.
+/// Returns the bits of all distances and witness points of a batch.
 fn facts<N: Space<D>, const D: usize>(batch: &PairBatch<'_, N, D>) -> Vec<u64> {
     let count = batch.len();
     let (mut distance, mut away) = (vec![N::ZERO; count], vec![N::ZERO; count]);
@@ -44,7 +44,7 @@ fn facts<N: Space<D>, const D: usize>(batch: &PairBatch<'_, N, D>) -> Vec<u64> {
 fn check<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     mut scene: Scene<N, R, D>,
 ) {
-    // A pose with a NaN translation would be refused as a matrix, so it is replaced here.
+    // A NaN translation is refused in a matrix, so it is replaced here.
     for pose in &mut scene.poses[1] {
         if !pose.translation.vector.iter().all(|x| x.is_finite_number()) {
             pose.translation.vector = Vector::<N, D>::zeros();
@@ -82,7 +82,7 @@ fn forms_of_poses_and_arrangements_of_shapes() {
     check(scene3::<f64>(1e6));
 }
 
-/// One shape, one pose, or both give the bits of as many copies of them.
+/// A single shape or pose gives the same bits as a list of copies of it.
 fn ones<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
 ) {
@@ -114,7 +114,7 @@ fn one_stands_for_as_many_as_are_needed() {
     ones(&scene3::<f32>(0.0));
 }
 
-/// A pose with any number that is not finite gives no result, for a ball and for a box.
+/// An element whose pose has a number that is not finite has no result, for a ball and for a box.
 #[test]
 fn broken_poses_have_no_answers() {
     let shapes: [ShapeHandle<f32, 3>; 2] = [

@@ -1,4 +1,4 @@
-//! Compares rays with single calls.
+//! Compares ray casts of batches with single calls.
 
 use impinge::batch::{Control, HitColumns, NO_FEATURE, OnePose, RayColumns, Shapes, Side};
 use impinge::math::{AbstractRotation, Point, Space, Vector};
@@ -61,7 +61,7 @@ fn hits_are_those_of_single_calls() {
     check(&scene3::<f64>(0.0));
 }
 
-/// A fan of rays: one origin, 200 directions, one shape.
+/// One origin and one shape for 200 directions.
 #[test]
 fn a_fan_from_one_origin() {
     let scene = scene3::<f64>(0.0);

@@ -1,4 +1,4 @@
-//! Tests which inputs are refused with which error, and that the output stays unchanged.
+//! Tests which inputs are refused and with which error, and that the output stays unchanged.
 
 use impinge::batch::{
     BatchError, ClosestColumns, ContactColumns, Control, HitColumns, ImpactColumns, OnePose,

@@ -1,4 +1,4 @@
-//! Pairs of all shapes in all relative positions.
+//! Pairs of all shapes in all relative positions, for the tests of batches.
 
 use impinge::batch::{PairBatch, PoseSource, Shapes, Side};
 use impinge::math::na::{UnitComplex, UnitQuaternion};
@@ -15,9 +15,9 @@ pub(super) struct Scene<N: Real, R, const D: usize> {
     pub(super) poses: [Vec<Isometry<N, R, D>>; 2],
 }
 
-/// Pairs every shape with every other: with equal centres, with touching boxes, turned and
-/// overlapping, near, far, and with a position that is NaN. All lie around the point whose
-/// coordinates are all `away`.
+/// Pairs every shape with every shape: with equal centres, with touching boxes, rotated and
+/// overlapping, near, far, and with a position that is NaN. All lie around the point with all
+/// coordinates equal to `away`.
 fn scene<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize>(
     table: shape_table::Shapes<N, D>,
     away: f64,
@@ -68,7 +68,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> Scene<N, R, 
         self.picks[0].len()
     }
 
-    /// Shape of pair `index` on `side`.
+    /// Returns the shape of pair `index` on side `side`.
     pub(super) fn shape(&self, side: usize, index: usize) -> &ShapeHandle<N, D> {
         &self.shapes[self.picks[side][index] as usize]
     }
@@ -77,7 +77,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> Scene<N, R, 
         Shapes::Picked { shapes: &self.shapes, picks: &self.picks[side] }
     }
 
-    /// One side of a batch: the scene's shapes at `poses`.
+    /// Returns a side of a batch: the shapes of the scene at `poses`.
     pub(super) fn side<'a>(
         &'a self,
         side: usize,
@@ -92,14 +92,14 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> Scene<N, R, 
     }
 }
 
-/// Runs on a pool of `threads` threads, which share the chunks of a batch if the feature `parallel`
-/// is on.
+/// Runs `run` on a pool of `threads` threads, which share the chunks of a batch if the feature
+/// `parallel` is on.
 pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(run)
 }
 
-/// Asserts that the coordinates have equal bits, or that all are NaN where `expected` is `None`.
+/// Asserts that the coordinates have the bits of `expected`, or are all NaN if it is `None`.
 #[track_caller]
 pub(super) fn assert_point<N: Real, const D: usize>(
     found: &[N; D],

@@ -1,4 +1,5 @@
-//! Compares the pairs of all tiles together with those of one call, for several numbers of tiles.
+//! Compares the pairs of all tiles together with the pairs of a single call, for several numbers of
+//! tiles.
 
 use impinge::batch::{
     BatchError, Control, Shapes, Side, TileCut, Tiles, boxes, pairs_in_tile, pairs_within_one,
@@ -10,7 +11,7 @@ use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 
 use crate::support::query_support::random::Random;
 
-/// Placed shapes, with ids in no order.
+/// Placed shapes with ids, which are in no order.
 struct Heap<N: Space<D>, const D: usize> {
     shapes: Vec<ShapeHandle<N, D>>,
     picks: Vec<u32>,
@@ -39,9 +40,9 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         self.ids.push(count.wrapping_mul(0x9E37_79B9_7F4A_7C15));
     }
 
-    /// Balls and boxes in three clusters, each 10 times as wide as the one before with as many
-    /// objects. With `odd` also four balls with equal centres, a huge object, half-spaces and a
-    /// ball at NaN.
+    /// Creates balls and boxes in three clusters, each 10 times as wide as the one before with as
+    /// many objects. If `odd`, also adds four balls with equal centres, a huge object, half-spaces,
+    /// and a ball at NaN.
     fn uneven(count: usize, odd: bool) -> Self {
         let (mut heap, mut random) = (Self::new(), Random(5, false));
         for index in 0..count {
@@ -58,8 +59,8 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         heap
     }
 
-    /// Cubes of size 1 on a grid of spacing 1.5: neighbours are exactly 0.5 apart, and faces lie on
-    /// cuts.
+    /// Creates cubes of size 1 on a grid of spacing 1.5: neighbours are exactly 0.5 apart, and
+    /// faces lie on cuts.
     fn grid(width: usize) -> Self {
         let mut heap = Self::new();
         for index in 0..width.pow(u32::try_from(D).expect("few")) {
@@ -78,7 +79,7 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         boxes(&Side::try_new(shapes, &self.poses).expect("as many"), &Control::new()).expect("few")
     }
 
-    /// The pairs of ids that one call finds.
+    /// Returns the pairs of ids that a single call finds.
     fn pairs(&self, distance: N) -> Vec<[u64; 2]> {
         let shapes = Shapes::Picked { shapes: &self.shapes, picks: &self.picks };
         let side = Side::try_new(shapes, &self.poses).expect("as many");
@@ -93,7 +94,8 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         named
     }
 
-    /// The objects of each tile in descending order: the order of objects must not matter.
+    /// Returns, by tile, the indices of its objects in descending order: their order must not
+    /// matter.
     fn objects(&self, tiles: &Tiles<N, D>) -> Vec<Vec<usize>> {
         let rows = tiles.meeting(&self.boxes());
         let mut objects = vec![vec![]; tiles.number() as usize];
@@ -114,8 +116,8 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         found
     }
 
-    /// Compares the pairs of all tiles with those of one call; the tiles are made from every
-    /// `step`-th box.
+    /// Asserts that the pairs of all tiles are the pairs of a single call; the tiles are made from
+    /// every `step`-th box. Returns the number of pairs.
     fn check(&self, distance: f64, step: usize) -> usize {
         let distance = N::lit(distance);
         let expected = self.pairs(distance);
@@ -138,7 +140,7 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
     }
 }
 
-/// The second unit vector in any dimension.
+/// The unit vector along the second axis, in any dimension.
 trait YAxis<N, const D: usize> {
     fn y_axis_of() -> Unit<Vector<N, D>>;
 }
@@ -155,8 +157,8 @@ fn check<N: Space<D>, const D: usize>() {
         let count = uneven.check(distance, 5);
         assert!(count > 100, "{count} pairs within {distance}");
     }
-    // First with tiles made from a sample of one box, which lies away from most objects; then with
-    // a distance that makes every two objects a pair.
+    // First the tiles are made from a sample of one box, far from most objects. Then the distance
+    // is infinite, so that every two objects are a pair.
     assert!(uneven.check(0.25, 10_000) > 100, "one box");
     assert!(Heap::<N, D>::uneven(60, true).check(f64::INFINITY, 1) > 60 * 59 / 2, "all of them");
     let width = if uneven.shapes[0].local_aabb().mins().len() == 2 { 20_usize } else { 7 };

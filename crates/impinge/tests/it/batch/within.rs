@@ -1,4 +1,4 @@
-//! Compares the pairs within a distance with a test of all pairs, one by one.
+//! Compares the pairs within a distance with a brute-force test of all pairs.
 
 use impinge::batch::{BatchError, Control, OnePose, Shapes, Side, pairs_within, pairs_within_one};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Pose, Space, Unit, Vector};
@@ -8,15 +8,15 @@ use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 use super::scene::{Scene, on_threads, scene2, scene3};
 use crate::support::composite_support::Pieces;
 
-/// Placed shapes taken from a scene.
+/// Placed shapes from a scene.
 struct Crowd<N: Space<D>, R, const D: usize> {
     shapes: Vec<ShapeHandle<N, D>>,
     poses: Vec<Isometry<N, R, D>>,
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize> Crowd<N, R, D> {
-    /// Every `step`-th second solid of a scene, spread over a volume; two have equal centres, and one is a hundred
-    /// times as large as the others.
+    /// Takes the second solids of every `step`-th pair of a scene, spread over a volume. Two have
+    /// equal centres, and one is a hundred times as large as the others.
     fn of(scene: &Scene<N, R, D>, step: usize) -> Self {
         let all = (0..scene.len()).step_by(step);
         let shapes = all.clone().map(|index| scene.shape(1, index).clone());
@@ -99,7 +99,8 @@ fn pairs_are_those_that_single_calls_find() {
     check(&scene3::<f64>(1e6), [97, 13]);
 }
 
-/// Balls of radius 1 on a grid of spacing 3: neighbours are exactly 1 apart, and a distance equal to the limit counts.
+/// Balls of radius 1 on a grid of spacing 3: neighbours are exactly 1 apart, and the maximum
+/// distance is inclusive.
 #[test]
 fn touching_at_exactly_the_distance_counts() {
     for away in [0.0, 1048576.0] {
@@ -175,9 +176,9 @@ fn distances_that_are_none_are_refused() {
     assert!(matches!(error, BatchError::Distance { value } if value.is_nan()), "{error}");
 }
 
-/// Every two shapes are placed side by side along an axis, where the gap of their boxes is their distance up to
-/// rounding. The tree must propose each pair at exactly the distance that the single call gives, whichever way that was
-/// rounded.
+/// Every two shapes are placed side by side along an axis, so that the gap of their boxes is their
+/// distance up to rounding. The tree must propose each pair at exactly the distance of the single
+/// call, in whichever direction that was rounded.
 fn at_their_own_distance<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
     scene: &Scene<N, R, D>,
 ) {

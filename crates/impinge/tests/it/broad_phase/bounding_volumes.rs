@@ -1,5 +1,5 @@
-//! Tests with 31 digits that bounding volumes hold their contents to the last bit and are hardly
-//! larger.
+//! Tests, with 31 digits, that bounding volumes contain their contents to the last bit and are
+//! hardly larger.
 
 use impinge::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use impinge::math::na::{Quaternion, UnitQuaternion};
@@ -29,17 +29,17 @@ fn norm<const D: usize>(a: &Exact<D>) -> Quad {
     dot(a, a).sqrt()
 }
 
-/// Pieces whose convex hull is a solid.
+/// A piece of a solid, which is the convex hull of its pieces.
 #[derive(Clone, Debug)]
 enum Piece<const D: usize> {
     Ball([f64; D], f64),
-    /// A disk at right angles to the y axis, by its height and its radius.
+    /// A disk perpendicular to the y axis: its height and its radius.
     Disk(f64, f64),
     Ellipsoid([f64; D]),
 }
 
 impl<const D: usize> Piece<D> {
-    /// Farthest extent along a direction, and greatest distance from the origin.
+    /// Returns the extent along a direction.
     fn reach(&self, direction: &Exact<D>) -> Quad {
         match self {
             Self::Ball(center, radius) => {
@@ -70,7 +70,7 @@ impl<const D: usize> Piece<D> {
 
 type Solid<N, const D: usize> = (ShapeHandle<N, D>, Vec<Piece<D>>);
 
-/// Random numbers that the scalar represents exactly, as `f64`.
+/// Returns random numbers of magnitude up to `limit` that the scalar represents exactly, as `f64`.
 fn numbers<N: Real, const K: usize>(random: &mut Random, limit: f64) -> [f64; K] {
     std::array::from_fn(|_| N::lit(random.range(-limit, limit)).as_f64())
 }
@@ -83,7 +83,7 @@ fn point<N: Real, const D: usize>(p: &[f64; D]) -> Point<N, D> {
     Point::from(Vector::<N, D>::from_fn(|axis, _| N::lit(p[axis])))
 }
 
-/// Solids of both dimensions.
+/// Returns random solids that exist in both dimensions.
 fn solids<N: Space<D>, const D: usize>(random: &mut Random) -> Vec<Solid<N, D>> {
     let [a, b, c]: [[f64; D]; 3] = [(); 3].map(|()| numbers::<N, D>(random, 20.0));
     let [r, s] = lengths::<N, 2>(random);
@@ -120,7 +120,7 @@ fn solids<N: Space<D>, const D: usize>(random: &mut Random) -> Vec<Solid<N, D>> 
     ]
 }
 
-/// Solids in 3D: those of both dimensions and some that exist in 3D only.
+/// Returns random solids in 3D: those of both dimensions, and those that exist in 3D only.
 fn solids3<N: Space<3>>(random: &mut Random) -> Vec<Solid<N, 3>> {
     let [r, h] = lengths::<N, 2>(random);
     let corners: [[f64; 3]; 9] = [(); 9].map(|()| numbers::<N, 3>(random, 20.0));
@@ -135,7 +135,8 @@ fn solids3<N: Space<3>>(random: &mut Random) -> Vec<Solid<N, 3>> {
     all
 }
 
-/// The box of a shape holds it, and is larger by no more than rounding.
+/// Asserts that the box of a placed shape contains the shape, and is larger by no more than
+/// rounding.
 fn check_box<N: Space<D>, const D: usize>((shape, pieces): &Solid<N, D>, pose: &Pose<N, D>) {
     let aabb = shape.aabb(pose);
     let size = pieces.iter().map(Piece::size).fold(0.0, f64::max);
@@ -162,7 +163,7 @@ fn check_box<N: Space<D>, const D: usize>((shape, pieces): &Solid<N, D>, pose: &
     check_sphere(shape, pieces, pose);
 }
 
-/// The bounding sphere of a shape holds it.
+/// Asserts that the bounding sphere of a shape contains the shape.
 fn check_sphere<N: Space<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
     pieces: &[Piece<D>],
@@ -181,7 +182,7 @@ fn check_sphere<N: Space<D>, const D: usize>(
     }
 }
 
-/// A random angle: zero, a quarter turn, a tiny one or any.
+/// Returns a random angle: zero, a quarter turn, a tiny one or an arbitrary one.
 fn angle<N: Real>(random: &mut Random) -> N {
     let tilt = random.magnitude(1e-12, 40);
     N::lit(*random.pick(&[0.0, std::f64::consts::FRAC_PI_2, tilt, -tilt, random_angle(tilt)]))
@@ -242,8 +243,8 @@ fn boxes_and_spheres_hold_the_shapes_in_the_plane() {
     all_in_the_plane::<f64>(4);
 }
 
-/// The box of a compound holds the children, whose corners are placed by two poses one after the
-/// other.
+/// Asserts that the box of a compound contains its children, whose corners are transformed by two
+/// poses in turn.
 fn compounds<N: Space<3, Isometry = Isometry3<N>>>(seed: u64) {
     let mut random = Random::new(seed);
     for _ in 0..300 {
@@ -292,8 +293,8 @@ fn random_box<N: Real, const D: usize>(random: &mut Random) -> Aabb<N, D> {
     Aabb::from_half_extents(Point::from(center), Vector::<N, D>::from_fn(|i, _| N::lit(half[i])))
 }
 
-/// The corner with the greatest coordinate on the axes whose bits are set, and the least on the
-/// others.
+/// Returns the corner with the greatest coordinate on the axes whose bits are set in `bits`, and
+/// the least on the others.
 fn corner_of<N: Real, const D: usize>(aabb: &Aabb<N, D>, bits: usize) -> Exact<D> {
     std::array::from_fn(|axis| {
         let ends = [aabb.mins()[axis], aabb.maxs()[axis]];
@@ -301,7 +302,7 @@ fn corner_of<N: Real, const D: usize>(aabb: &Aabb<N, D>, bits: usize) -> Exact<D
     })
 }
 
-/// Boxes derived from boxes (turned, loosened, swept, ...) hold the exact result.
+/// Asserts that boxes derived from boxes (rotated, loosened, swept, ...) contain the exact result.
 fn boxes<N: Space<D>, const D: usize>(seed: u64, pose: fn(&mut Random) -> Pose<N, D>) {
     let mut random = Random::new(seed);
     for _ in 0..3000 {
@@ -335,7 +336,8 @@ fn boxes_round_outwards() {
     boxes::<f64, 3>(10, pose3);
 }
 
-/// How far the inner sphere, moved by `by`, reaches beyond the outer one; negative if it is inside.
+/// Returns the distance by which the inner sphere, moved by `by`, extends beyond the outer one;
+/// negative if it is inside.
 fn outside<N: Real, const D: usize>(
     outer: &BoundingSphere<N, D>,
     inner: &BoundingSphere<N, D>,

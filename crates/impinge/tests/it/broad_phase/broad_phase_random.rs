@@ -5,7 +5,7 @@ use crate::support::broad_phase_model;
 use broad_phase_model::{Plan, Reached, run};
 use impinge::math::Space;
 
-/// Runs plans of several sizes; all coordinates lie on a grid, so that touching is common.
+/// Runs random plans of several sizes. All coordinates lie on a grid, so that touching is common.
 fn check<N: Space<D>, const D: usize>(size: u32) {
     let small = (0..6).map(|seed| Plan {
         seed,

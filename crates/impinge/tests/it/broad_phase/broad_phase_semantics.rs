@@ -1,10 +1,10 @@
-//! Tests each guarantee of the broad phase's interface.
+//! Tests each guarantee of the interface of broad phases.
 
 use impinge::bounding_volume::{Aabb, BoundingVolume, Ray};
 use impinge::broad_phase::{BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle};
 use impinge::math::{Point, Real, Space, Vector};
 
-/// The box of a ball around `center`, in `D` dimensions.
+/// Returns the box of a ball around `center`, in `D` dimensions.
 fn ball<N: Space<D>, const D: usize>(center: [f64; 3], radius: f64) -> Aabb<N, D> {
     let center = Point::from(Vector::<N, D>::from_fn(|axis, _| N::lit(center[axis])));
     let reach = Vector::<N, D>::repeat(N::lit(radius));
@@ -27,8 +27,8 @@ fn events<N: Real, BV: BoundingVolume<N>>(
     events
 }
 
-/// The example of the user guide: four balls make six pairs; two are removed, and five pairs end
-/// with them.
+/// The example of the user guide: four balls form six pairs. Two balls are removed, and five pairs
+/// end with them.
 fn guide<N: Space<D>, const D: usize>() {
     let mut broad_phase = DBVTBroadPhase::<N, Aabb<N, D>, u32>::new(N::lit(0.2));
     let centers = [[0.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0]];
@@ -84,7 +84,7 @@ fn small_moves_are_free_and_large_ones_are_not() {
     broad_phase.deferred_set_bounding_volume(mover, at(2.5));
     assert_eq!(broad_phase.proxy(mover).expect("there").0, &at(2.375), "deferred");
     assert_eq!(events(&mut broad_phase, yes), [(0, 1, false)], "it left");
-    // Only the last of several moves before an update counts.
+    // Only the last of several moves before an update has an effect.
     broad_phase.deferred_set_bounding_volume(mover, at(0.0));
     broad_phase.deferred_set_bounding_volume(mover, at(50.0));
     assert_eq!(events(&mut broad_phase, yes), [], "it never was at 0");
@@ -168,7 +168,7 @@ fn misuse_is_told_and_changes_nothing() {
     assert_eq!(broad_phase.proxy(first), None, "and yet the old handle finds nothing");
     let text = BroadPhaseError::StaleHandle(first).to_string();
     assert_eq!(text, format!("there is no proxy {first:?}"), "the error names the handle");
-    // Boxes are checked when users make them, but later arithmetic can still spoil them.
+    // Boxes are checked when users create them, but later arithmetic can still make them invalid.
     assert!(Aabb::try_new(P::new(f32::NAN, 0.0), P::origin()).is_err(), "NaN");
     for bad in [good.loosened(f32::NAN), good.loosened(-2.0)] {
         let refused = broad_phase.try_create_proxy(bad, 3);
@@ -233,8 +233,8 @@ fn a_filter_that_panics_is_asked_again() {
     broad_phase.validate().expect("sound");
 }
 
-/// A bar over a row of 5000 balls moves half a row to and fro, so that 2500 pairs begin or end at
-/// once.
+/// A bar over a row of 5000 balls moves to and fro by half the row, so that 2500 pairs begin or end
+/// at once.
 #[test]
 fn an_object_with_five_thousand_pairs() {
     let mut broad_phase = DBVTBroadPhase::new(0.125);
@@ -252,7 +252,7 @@ fn an_object_with_five_thousand_pairs() {
     for round in 0..20 {
         broad_phase.deferred_set_bounding_volume(bar, long(5000.0));
         let gone = events(&mut broad_phase, yes);
-        // The pairs that end have 2i + 0.25 + 0.125 < 5000 - 0.125, hence i < 2500.
+        // The pairs that end satisfy 2i + 0.25 + 0.125 < 5000 - 0.125, so i < 2500.
         assert_eq!(gone.len(), 2500, "round {round}");
         assert!(
             gone.iter().all(|&(a, b, started)| a == 0 && b <= 2500 && !started),
@@ -269,8 +269,8 @@ fn an_object_with_five_thousand_pairs() {
     broad_phase.validate().expect("sound");
 }
 
-/// 20000 points in groups of ten along a line: all centres tie on two axes, and ten tie on the
-/// third. The work must grow with the number of pairs found.
+/// 20000 points in groups of ten along a line: all centres are equal on two axes, and ten are equal
+/// on the third. The work must grow only with the number of pairs found.
 #[test]
 fn twenty_thousand_objects_at_one_point() {
     let mut broad_phase = DBVTBroadPhase::new(0.0);
@@ -280,7 +280,7 @@ fn twenty_thousand_objects_at_one_point() {
     }
     assert_eq!(events(&mut broad_phase, yes).len(), 2000 * 45, "all pairs of each heap");
     broad_phase.validate().expect("sound");
-    // All points at one position: every two make a pair, so there are fewer points.
+    // All points at one position are pairwise in contact, so there are fewer points here.
     let mut broad_phase = DBVTBroadPhase::new(0.0);
     let heap: Vec<ProxyHandle> =
         (0..1500).map(|i| broad_phase.create_proxy(ball::<f64, 2>([0.1; 3], 0.0), i)).collect();

@@ -10,7 +10,7 @@ use impinge::math::{Point, Space, Vector};
 struct Random(u64);
 
 impl Random {
-    /// A random number from 0 to 1.
+    /// Returns a random number from 0 to 1.
     fn unit(&mut self) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -18,7 +18,7 @@ impl Random {
     }
 }
 
-/// Boxes of half extents 0.35 to 0.65, each with about three neighbours, flying straight within a
+/// Boxes of half extents 0.35 to 0.65, each with about three neighbours, that fly straight within a
 /// room.
 struct Scene<N: Space<D>, const D: usize> {
     centers: Vec<Vector<f64, D>>,
@@ -32,8 +32,8 @@ struct Scene<N: Space<D>, const D: usize> {
 impl<N: Space<D>, const D: usize> Scene<N, D> {
     fn new(count: u32, step: f64) -> Self {
         let mut random = Random(5);
-        // A box overlaps those whose centres lie within 2^D times its volume; the side of the room
-        // is chosen so that these are three.
+        // A box overlaps the boxes whose centres lie within 2^D times its volume. The side of the
+        // room is chosen so that these are three.
         let per_neighbour = 2_f64.powi(i32::try_from(D).expect("2 or 3")) / 3.0;
         let side = (f64::from(count) * per_neighbour).powf(1.0 / if D > 2 { 3.0 } else { 2.0 });
         let mut scene = Self {
@@ -63,8 +63,8 @@ impl<N: Space<D>, const D: usize> Scene<N, D> {
         Aabb::new(corner(-half), corner(half))
     }
 
-    /// Moves every `stride`-th box, and returns the number of events and the milliseconds for
-    /// passing the boxes and updating.
+    /// Moves every `stride`-th box and updates. Returns the milliseconds for both, and the number
+    /// of events.
     fn step(&mut self, stride: usize) -> (f64, usize) {
         let mut boxes = Vec::new();
         for index in (0..self.handles.len()).step_by(stride) {

@@ -1,4 +1,4 @@
-//! Compares the tree over a user's boxes with a scan of all boxes.
+//! Compares a tree over boxes with a scan of all boxes.
 //!
 //! Coordinates are whole numbers or halves, so that touching is common and the scan, done in `f64`
 //! without rounding, is exact.
@@ -8,7 +8,7 @@ use impinge::math::{Point, Real, Space, Vector};
 use impinge::partitioning::{BoxTree, BoxTreeError};
 use impinge_reference::random::Random;
 
-/// A box as its least and its greatest corner.
+/// A box, as its least and its greatest corner.
 type Corners<const D: usize> = [[f64; D]; 2];
 
 const COUNTS: [usize; 8] = [0, 1, 2, 16, 17, 257, 600, 4200];
@@ -32,7 +32,7 @@ fn tree_of<N: Space<D>, const D: usize>(corners: &[Corners<D>]) -> BoxTree<N, D>
     tree
 }
 
-/// A random multiple of 0.5 in `0..side`.
+/// Returns a random multiple of 0.5 in `0..side`.
 fn half(random: &mut Random, side: usize) -> f64 {
     let doubled = u16::try_from(random.below(2 * side)).expect("a small grid");
     f64::from(doubled) / 2.0
@@ -42,8 +42,8 @@ fn place<const D: usize>(random: &mut Random, side: usize) -> [f64; D] {
     core::array::from_fn(|_| half(random, side))
 }
 
-/// Boxes of extents up to 2 on a grid so large that only a few overlap; flat boxes and copies are
-/// among them.
+/// Returns the side of a grid and `count` boxes of extents up to 2 on it. The grid is so large that
+/// only a few overlap; some boxes are flat, and some are copies.
 fn scene<const D: usize>(random: &mut Random, count: usize) -> (usize, Vec<Corners<D>>) {
     let dimension = u32::try_from(D).expect("small");
     let holds = |side: &usize| side.pow(dimension) >= count;
@@ -69,8 +69,7 @@ fn matching<const D: usize>(
     (0..boxes.len()).filter(|&index| accept(&boxes[index])).collect()
 }
 
-/// Asserts that at least a tenth of `of` cases were hits, so that the test does not pass for lack
-/// of them.
+/// Asserts that at least a tenth of `of` cases found something, so that the test is meaningful.
 fn assert_common(what: &str, hits: usize, of: usize) {
     assert!(10 * hits >= of, "{what}: {hits} of {of} found something");
 }
@@ -102,8 +101,8 @@ fn boxes_and_points<N: Space<D>, const D: usize>() {
     assert_common("points that miss", misses, asked);
 }
 
-/// Time at which a ray enters a box: the least of the times at which it crosses a face and is in
-/// the box. The numbers are chosen so that nothing rounds.
+/// Returns the time at which a ray enters a box: the least time at which it crosses a face while it
+/// is in the box. With the numbers of these tests nothing rounds.
 fn entry<const D: usize>([lo, hi]: &Corners<D>, from: &[f64; D], dir: &[f64; D]) -> Option<f64> {
     let crossing = |axis: usize| [lo, hi].map(|face| (face[axis] - from[axis]) / dir[axis]);
     let crossings = (0..D).filter(|&axis| dir[axis] != 0.0).flat_map(crossing);
@@ -146,7 +145,7 @@ fn rays<N: Space<D>, const D: usize>() {
     assert_common("rays", hits, asked);
 }
 
-/// A limit on the time cuts off the rest of the list and changes nothing else.
+/// Asserts that a maximum time removes the end of the list of hits, and changes nothing else.
 fn assert_limits<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     ray: &Ray<N, D>,
@@ -186,8 +185,7 @@ fn nearest<N: Space<D>, const D: usize>() {
         let tree = tree_of::<N, D>(&boxes);
         for _ in 0..30 {
             let p: [f64; D] = place(&mut random, side);
-            // The squared distances are exact, so their roots round from the same number for both
-            // scalars.
+            // The squared distances are exact, so both scalars take the root of the same number.
             let mut expected: Vec<(f64, usize)> =
                 (0..count).map(|index| (distance_squared(&boxes[index], &p), index)).collect();
             expected.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
@@ -217,8 +215,8 @@ fn nearest<N: Space<D>, const D: usize>() {
     assert_common("points outside", asked - inside, asked);
 }
 
-/// Coordinates that no `f32` holds: the tree, made of `f32` boxes, only proposes candidates, and
-/// the boxes as given decide. Ordered searches give the bits of the box's own methods.
+/// Coordinates that no `f32` represents. The tree, which has `f32` boxes, only proposes candidates;
+/// the boxes as given decide. Ordered searches give the bits of the methods of [`Aabb`].
 fn anywhere<N: Space<D>, const D: usize>() {
     let (mut random, mut proposed) = (Random::new(4), 0);
     let lo = |random: &mut Random| core::array::from_fn(|_| random.range(-10.0, 10.0));
@@ -281,7 +279,7 @@ fn unbounded<N: Space<D>, const D: usize>() {
     }
     let all = tree.bounds().expect("there are boxes");
     assert!(!all.is_bounded(), "around everything");
-    // Every box is unbounded, and one ray hits them all.
+    // Three unbounded boxes, which one ray hits.
     let tree = tree_of::<N, D>(&[[[f64::NEG_INFINITY; D], [f64::INFINITY; D]]; 3]);
     let ray = Ray::new(Point::origin(), vector([1.0; D]));
     assert_eq!(tree.hit_by(&ray), [0, 1, 2], "inside at once");
@@ -297,7 +295,7 @@ fn few_and_equal<N: Space<D>, const D: usize>() {
     assert!(none.containing(&origin).is_empty() && none.hit_by(&ray).is_empty(), "nothing");
     assert_eq!(none.nearest(&origin, N::INFINITY), None, "nothing");
     assert_eq!(none.bounds(), None, "around nothing");
-    // A thousand equal points: every list is in order of the index.
+    // A thousand equal points: every list is in ascending order of the index.
     let tree = tree_of::<N, D>(&[[[2.0; D]; 2]; 1000]);
     let all: Vec<usize> = (0..1000).collect();
     assert_eq!(tree.containing(&point([2.0; D])), all, "a point holds itself");

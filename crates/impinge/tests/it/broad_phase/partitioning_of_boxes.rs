@@ -1,7 +1,7 @@
 //! Compares searches of a tree with a box, at rest or moving, with a scan of all boxes.
 //!
 //! Coordinates that are whole numbers or halves do not round in the scan, which uses `f64`, so
-//! results must be equal. With other coordinates the methods of single boxes give the expected
+//! results must be equal. For other coordinates the methods of single boxes give the expected
 //! results.
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
@@ -9,7 +9,7 @@ use impinge::math::{Point, Real, Space, Vector};
 use impinge::partitioning::BoxTree;
 use impinge_reference::random::Random;
 
-/// A box as its least and its greatest corner.
+/// A box, as its least and its greatest corner.
 type Corners<const D: usize> = [[f64; D]; 2];
 /// Results of a search: the key (a distance or a time) and the index of the box.
 type Found<N> = Vec<(N, usize)>;
@@ -28,13 +28,13 @@ fn tree_of<N: Space<D>, const D: usize>(corners: &[Corners<D>]) -> BoxTree<N, D>
     BoxTree::from_boxes(&corners.iter().copied().map(aabb).collect::<Vec<_>>())
 }
 
-/// A random multiple of 0.5 in `0..side`.
+/// Returns a random multiple of 0.5 in `0..side`.
 fn half(random: &mut Random, side: usize) -> f64 {
     let doubled = u16::try_from(random.below(2 * side)).expect("a small grid");
     f64::from(doubled) / 2.0
 }
 
-/// A random box of extents up to 2; flat boxes are among them.
+/// Returns a random box of extents up to 2, which may be flat.
 fn small_box<const D: usize>(random: &mut Random, side: usize) -> Corners<D> {
     let lo: [f64; D] = core::array::from_fn(|_| half(random, side));
     [lo, lo.map(|x| x + half(random, 2))]
@@ -74,8 +74,7 @@ fn sorted<N: Real>(keys: impl Iterator<Item = Option<N>>) -> Found<N> {
     all
 }
 
-/// Cuts the results at the key of the middle one, and returns that limit and the results up to it,
-/// inclusively.
+/// Returns the key of the middle result, and the results up to that key, inclusively.
 fn up_to<N: Real>(all: &Found<N>) -> (N, Found<N>) {
     let limit = all.get(all.len() / 2).map_or(N::ONE, |&(key, _)| key);
     (limit, all.iter().copied().filter(|&(key, _)| key <= limit).collect())
@@ -86,8 +85,8 @@ fn distance_squared<const D: usize>(a: &Corners<D>, b: &Corners<D>) -> f64 {
     (0..D).map(|axis| gap(axis) * gap(axis)).sum()
 }
 
-/// Time at which a moving box first touches another: the least of the times at which two faces come
-/// level and the boxes meet.
+/// Returns the time at which a moving box first touches another: the least time at which two faces
+/// are level while the boxes touch.
 fn touching<const D: usize>(own: &Corners<D>, other: &Corners<D>, v: &[f64; D]) -> Option<f64> {
     let level = |axis: usize| {
         let faces = [other[0][axis] - own[1][axis], other[1][axis] - own[0][axis]];
@@ -133,8 +132,8 @@ fn on_a_grid<N: Space<D>, const D: usize>() {
     assert!(hits > 1000 && misses > 1000, "some are met, some are not: {hits}, {misses}");
 }
 
-/// Coordinates that no `f32` holds, near the origin and far from it: the tree, made of `f32` boxes,
-/// only proposes candidates, and the boxes as given decide.
+/// Coordinates that no `f32` represents, near the origin and far from it. The tree, which has `f32`
+/// boxes, only proposes candidates; the boxes as given decide.
 fn anywhere<N: Space<D>, const D: usize>() {
     around::<N, D>(0.0);
     around::<N, D>(1e6);
@@ -192,7 +191,7 @@ fn unbounded<N: Space<D>, const D: usize>() {
 }
 
 fn limits<N: Space<D>, const D: usize>() {
-    // Points at 1, 2, 2 and 3 on every axis; the search starts at the origin.
+    // Points at 1, 2, 2 and 3 on every axis. The search starts at the origin.
     let boxes = [3.0, 2.0, 1.0, 2.0].map(|x| [[x; D]; 2]);
     let (tree, origin) = (tree_of::<N, D>(&boxes), aabb::<N, D>([[0.0; D]; 2]));
     let v = vector([1.0; D]);
@@ -220,7 +219,7 @@ fn limits<N: Space<D>, const D: usize>() {
     assert!(nearest(&none, &Aabb::unbounded(), N::INFINITY).is_empty(), "there is nothing");
 }
 
-/// Distances whose squares overflow the scalar.
+/// Squares of these distances overflow the scalar.
 fn huge<N: Space<D>, const D: usize>() {
     let unit = N::MAX.as_f32().min(f32::MAX / 8.0);
     let unit = f64::from(unit) / 64.0;

@@ -1,5 +1,6 @@
-//! Found by fuzzing: an angular prediction must never hide a contact that is within the linear prediction. A world has
-//! a contact of a solid and a surface where `contact` has one, whatever its angular prediction.
+//! Found by fuzzing: an angular prediction must never suppress a contact within the linear
+//! prediction. Where `contact` finds a contact of a solid and a surface, a world must find one with
+//! any angular prediction.
 
 use impinge::math::na::{Quaternion, Translation3, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Unit, Vector};
@@ -14,7 +15,8 @@ fn point<N: Real, const D: usize>(random: &mut Random, limit: u32) -> Point<N, D
     Point::from(Vector::<N, D>::from_fn(|_, _| N::lit(random.grid(limit, 3))))
 }
 
-/// A few triangles between six random corners; some occur twice, with opposite windings.
+/// Returns a mesh of a few triangles between six random corners; some triangles occur twice, with
+/// opposite windings.
 fn mesh<N: Space<3>>(random: &mut Random) -> ShapeHandle<N, 3> {
     let corners: Vec<Point<N, 3>> = (0..6).map(|_| point(random, 4)).collect();
     let mut triangles = Vec::new();
@@ -73,10 +75,10 @@ fn place2<N: Real>(random: &mut Random) -> Isometry2<N> {
     Isometry2::new(point::<N, 2>(random, 4).coords, N::lit(random.range(-3.0, 3.0)))
 }
 
-/// A pose and the shape at it.
+/// A pose, and the shape that it places.
 type Placed<N, const D: usize> = (<N as Space<D>>::Isometry, ShapeHandle<N, D>);
 
-/// Number of contacts in a world of two shapes with these predictions.
+/// Returns the number of contacts in a world of two shapes with these predictions.
 fn contacts_of<N: Space<D>, const D: usize>(
     pair: [&Placed<N, D>; 2],
     prediction: N,
@@ -90,8 +92,8 @@ fn contacts_of<N: Space<D>, const D: usize>(
     world.contact_pair(a, b).map_or(0, |pair| pair.num_contacts())
 }
 
-/// Asks for contacts of many pairs that are apart, with predictions of 1.02 and 0.98 times their distance: the first
-/// must give contacts and the second none.
+/// Tests many pairs of disjoint solids, with predictions of 1.02 and 0.98 times their distance. The
+/// first must give contacts and the second none.
 fn ask_all<N: Space<D>, const D: usize>(
     seed: u64,
     make: impl Fn(&mut Random) -> [Placed<N, D>; 2],
@@ -147,8 +149,8 @@ fn what_is_near_has_a_contact_in_the_plane() {
     in_the_plane::<f64>(4);
 }
 
-/// Number of contacts among the four corners of a box's bottom; the box stands on one edge of its bottom, tilted by
-/// `tilt`.
+/// Returns the number of contacts at the four corners of a box's bottom. The box stands on an edge
+/// of its bottom, tilted by `tilt`.
 fn corners_of_tilted_box<N: Space<3, Isometry = Isometry3<N>>>(
     solid: &ShapeHandle<N, 3>,
     floor: &ShapeHandle<N, 3>,
@@ -167,7 +169,8 @@ fn corners_of_tilted_box<N: Space<3, Isometry = Isometry3<N>>>(
     count
 }
 
-/// Corners beyond the prediction count if a rotation by the angular prediction brings them within it.
+/// Corners beyond the prediction have contacts if a rotation by the angular prediction brings them
+/// within it.
 fn corners_that_turning_brings_near<N: Space<3, Isometry = Isometry3<N>>>() {
     let one = Vector::<N, 3>::repeat(N::ONE);
     let corner =
@@ -204,7 +207,8 @@ fn corners_that_turning_brings_near_are_contacts() {
     corners_that_turning_brings_near::<f64>();
 }
 
-/// Boxes on a box, which the library computes in batches: the pairs of a batch have different angular predictions.
+/// Boxes on a box, which the library computes in batches. The pairs of a batch have different
+/// angular predictions.
 #[test]
 fn corners_of_boxes_in_batches() {
     type V = Vector<f64, 3>;

@@ -1,4 +1,5 @@
-//! Found by fuzzing: the box of a placed shape whose coordinates overflow is the unbounded box.
+//! Found by fuzzing: the box of a placed shape must be the unbounded box if its coordinates
+//! overflow.
 
 use impinge::bounding_volume::Aabb;
 use impinge::dim3::math::{Isometry, Point, Vector};
@@ -27,7 +28,7 @@ fn shapes() -> Vec<Box<dyn Shape<f32, 3>>> {
     ]
 }
 
-/// The box of a placed shape panicked where a coordinate was NaN.
+/// Bug: a NaN coordinate in the box of a placed shape caused a panic.
 #[test]
 fn boxes_at_no_place_are_those_of_everything() {
     let nowhere = Pose::from_isometry(&Isometry::translation(f32::NAN, 0.0, 0.0));
@@ -36,7 +37,8 @@ fn boxes_at_no_place_are_those_of_everything() {
     }
 }
 
-/// With this rotation, sums like 3e38 - 3e38 - 3e38 overflow on the way to a representable number.
+/// With this rotation, sums such as 3e38 - 3e38 - 3e38 overflow before they reach a representable
+/// number.
 #[test]
 fn boxes_of_corners_at_the_end_of_all_numbers_are_boxes() {
     let far = Isometry::new(Vector::new(3e38, 3e38, 3e38), Vector::new(0.0, 1.0, 2.0));

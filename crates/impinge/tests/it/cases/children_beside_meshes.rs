@@ -1,11 +1,12 @@
-//! Found by fuzzing: a convex child of a compound has the same contacts whether or not another child has a surface.
+//! Found by fuzzing: a convex child of a compound must have the same contacts whether or not
+//! another child has a surface.
 
 use impinge::math::{Isometry, Isometry2, Isometry3, Point, Vector};
 use impinge::query::contact;
 use impinge::shape::{Compound, Cuboid, Segment, Shape, ShapeHandle, TriMesh, Triangle};
 
-/// The position of the other solid relative to the child decided about the child's normal, and was even used as that
-/// normal with its length: the depth came out as 8.7 instead of 3.
+/// Bug: the vector from the child to the other solid selected the child's normal, and was even used
+/// as the normal without normalisation. The depth was 8.7 instead of 3.
 #[test]
 fn contacts_of_a_child_beside_a_mesh_in_the_plane() {
     let mesh = TriMesh::new(far_corners::<2>(), vec![[0, 1, 2]]);
@@ -29,7 +30,8 @@ fn contacts_of_a_child_beside_a_mesh_in_the_plane() {
     }
 }
 
-/// The middle of the triangle lies above that of the bar, but the shortest way out of the bar points down.
+/// The centre of the triangle lies above the centre of the bar, but the shortest way out of the bar
+/// points down.
 #[test]
 fn contacts_away_from_the_middle_of_the_other() {
     let mesh = TriMesh::new(far_corners::<2>(), vec![[0, 1, 2]]);
@@ -59,7 +61,7 @@ fn contacts_of_a_child_beside_a_mesh_in_space() {
     }
 }
 
-/// Corners of a triangle far away from all other shapes.
+/// Returns the corners of a triangle far away from all other shapes.
 fn far_corners<const D: usize>() -> Vec<Point<f32, D>> {
     let corner = |number: usize| {
         Point::from(Vector::<f32, D>::from_fn(|axis, _| if axis == number { 101.0 } else { 100.0 }))

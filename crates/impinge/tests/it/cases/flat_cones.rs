@@ -1,10 +1,11 @@
-//! Found by fuzzing: balls beside cones of height or radius zero, which are a disk or a segment.
+//! Found by fuzzing: balls beside cones of height or radius zero, which are disks or segments.
 
 use impinge::dim3::math::{Isometry, Vector};
 use impinge::dim3::shape::{Ball, Cone, Shape};
 use impinge::query::{Proximity, contact, distance, proximity};
 
-/// Signed distance of a ball of radius 1 from a cone; `center` is in the frame of the cone.
+/// Returns the signed distance between a cone and a ball of radius 1; `center` is in the frame of
+/// the cone.
 fn of_ball(cone: &Cone<f64>, center: [f64; 3]) -> f64 {
     let (ball, here) = (Ball::new(1.0), Isometry::identity());
     let place = Isometry::translation(center[0], center[1], center[2]);
@@ -19,7 +20,7 @@ fn of_ball(cone: &Cone<f64>, center: [f64; 3]) -> f64 {
     -found.depth
 }
 
-/// Nothing bounded a disk within its own plane: every solid there touched it.
+/// Bug: a disk was unbounded within its own plane, so that it touched every solid there.
 #[test]
 fn a_disk_ends_at_its_rim() {
     let disk = Cone::new(0.0, 3.0);
@@ -30,7 +31,7 @@ fn a_disk_ends_at_its_rim() {
     assert_eq!(of_ball(&disk, [1.0, 0.25, 0.0]), -0.75, "on it");
 }
 
-/// A cone of radius zero had no upper end on its axis.
+/// Bug: a cone of radius zero was unbounded upwards on its axis.
 #[test]
 fn a_needle_ends_at_its_apex() {
     let needle = Cone::new(2.0, 0.0);

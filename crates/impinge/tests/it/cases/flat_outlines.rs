@@ -6,7 +6,8 @@ use impinge::query::{Proximity, contact, distance, proximity};
 
 const HERE: [f64; 2] = [4.875, 0.0];
 
-/// Distance from a small solid that lies beyond the end of a flat one, on its line.
+/// Returns the distance between a flat solid and a small solid that lies on its line, beyond its
+/// end.
 fn beyond(flat: &dyn Shape<f64, 2>, solid: &dyn Shape<f64, 2>) -> f64 {
     let (origin, place) = (Isometry::identity(), Isometry::translation(HERE[0], HERE[1]));
     let found = distance(&origin, flat, &place, solid);
@@ -18,7 +19,8 @@ fn beyond(flat: &dyn Shape<f64, 2>, solid: &dyn Shape<f64, 2>) -> f64 {
     found
 }
 
-/// The side of length zero hid the end of the triangle: it touched everything along its line.
+/// Bug: a triangle with a side of length zero was unbounded at that end, so it touched every solid
+/// on its line.
 #[test]
 fn triangles_with_two_corners_at_one_place_end_there() {
     let (a, o) = (Point::new(-7.5, 0.0), Point::origin());
@@ -43,7 +45,7 @@ fn triangles_of_one_point_are_points() {
     assert_eq!(beyond(&triangle, &Segment::new(Point::new(-2.0, 0.0), o)), 2.875, "towards it");
 }
 
-/// Boxes with an extent of zero have coinciding corners too.
+/// Boxes with a half extent of zero have coinciding corners too.
 #[test]
 fn flat_boxes_end_at_their_corners() {
     let flat = Cuboid::new(Vector::new(2.0, 0.0));

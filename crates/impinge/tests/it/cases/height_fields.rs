@@ -1,11 +1,12 @@
-//! Bugs of other libraries with height fields.
+//! Bugs of other libraries in height fields.
 
 use impinge::math::na::Isometry3;
 use impinge::math::{Point, Real, Vector};
 use impinge::query::{Ray, RayCast};
 use impinge::shape::HeightField;
 
-/// The height field of rapier#165: sin(x) + cos(z) over 100 by 100, in 20 by 20 cells of 5 by 5.
+/// Returns the height field of rapier#165: sin(x) + cos(z) over 100 by 100, in 20 by 20 cells of 5
+/// by 5.
 fn waves<N: Real>() -> HeightField<N, 3> {
     let at = |index: u32| f64::from(index) * 5.0 - 50.0;
     let height = |row: u32, column: u32| {
@@ -21,7 +22,8 @@ fn waves<N: Real>() -> HeightField<N, 3> {
     )
 }
 
-/// A ray straight down hits the field at its height there, also at corners and borders of cells.
+/// Asserts that a ray straight down hits the field at its height there, even at corners and borders
+/// of cells.
 fn down<N: Real>(field: &HeightField<N, 3>, [x, z]: [f64; 2]) {
     let here = Isometry3::identity();
     let (x, z) = (N::lit(x), N::lit(z));
@@ -34,14 +36,14 @@ fn down<N: Real>(field: &HeightField<N, 3>, [x, z]: [f64; 2]) {
     assert!(hit.normal.y > N::ZERO, "from above at {x} {z}");
 }
 
-/// Vertical rays exactly on borders of cells, where the reported ones missed: first the reported coordinates, then all
-/// borders and corners.
+/// Casts vertical rays exactly on borders of cells, where rapier's rays missed: first at the
+/// reported coordinates, then on all borders and corners.
 fn rapier_165<N: Real>() {
     let field = waves::<N>();
     let reported =
         [[5.0, 2.63113], [9.50162, 5.0], [19.00324, 10.0], [30.0, 15.78678], [40.0, 21.04904]];
     reported.into_iter().for_each(|at| down(&field, at));
-    // The outermost borders are among these.
+    // These include the outermost borders.
     for line in 0..=20_u32 {
         let line = f64::from(line) * 5.0 - 50.0;
         for step in 0..=400_u32 {

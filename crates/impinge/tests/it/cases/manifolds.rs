@@ -1,5 +1,5 @@
-//! Tests how many points the contacts of the corpus's boxes have, and which share of the overlap of two faces the
-//! points span. Of more than four points the library keeps four.
+//! Tests how many points the manifolds of the corpus's boxes have, and which share of the overlap of two faces these
+//! points span. If there are more than four points, the library keeps four.
 
 use crate::support::query_support;
 
@@ -18,7 +18,7 @@ use query_support::corpus::{placed2, placed3, regression, vector};
 use query_support::random::Random;
 use serde_json::Value;
 
-/// The manifolds of two boxes in a world, added in the order of `names`.
+/// Returns the manifolds of two boxes in a world to which they are added in the order of `names`.
 fn manifolds<N, R, const D: usize>(
     case: &Value,
     place: fn(&Value, &Value) -> Option<Placed<N, R, D>>,
@@ -81,7 +81,7 @@ fn manifold_points_of_the_corpus() {
 /// A convex polygon in the plane of contact, counter-clockwise.
 type Outline = Vec<[f64; 2]>;
 
-/// Twice the area of a triangle, positive if it is counter-clockwise.
+/// Returns twice the signed area of a triangle, positive if it is counter-clockwise.
 fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -91,7 +91,7 @@ fn area(outline: &[[f64; 2]]) -> f64 {
     outline.windows(2).map(|side| turn(first, side[0], side[1])).sum::<f64>() / 2.0
 }
 
-/// Intersection of two outlines (I. E. Sutherland and G. W. Hodgman, 1974), without coinciding corners.
+/// Returns the intersection of two outlines (I. E. Sutherland and G. W. Hodgman, 1974), without coinciding corners.
 fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     let mut rest = one.to_vec();
     for (at, &from) in other.iter().enumerate() {
@@ -114,7 +114,7 @@ fn overlap(one: &[[f64; 2]], other: &[[f64; 2]]) -> Outline {
     rest
 }
 
-/// Largest area of four corners of an outline over all choices, or over those that contain the corner `given`.
+/// Returns the largest area of four corners of an outline. With `given`, the four must include that corner.
 fn best_four(outline: &[[f64; 2]], given: Option<usize>) -> f64 {
     let count = outline.len();
     if count < 4 {
@@ -137,7 +137,7 @@ fn best_four(outline: &[[f64; 2]], given: Option<usize>) -> f64 {
     }
 }
 
-/// Area of the polygon whose corners are the points, given in any order.
+/// Returns the area of the polygon whose corners are the points, given in any order.
 fn spanned(mut points: Outline) -> f64 {
     let sum = points.iter().fold([0.0; 2], |sum, point| [sum[0] + point[0], sum[1] + point[1]]);
     let middle = sum.map(|x| x / points.len() as f64);
@@ -154,8 +154,8 @@ fn turned(outline: &[[f64; 2]], angle: f64, at: [f64; 2]) -> Outline {
     outline.iter().map(|&corner| place(corner)).collect()
 }
 
-/// A solid from `-0.5 scale` to `0.5 scale` in height, and the outline of its flat ends seen from above, in coordinates x
-/// and z.
+/// A solid that extends from `-0.5 scale` to `0.5 scale` in height, and the outline of its flat ends seen from above,
+/// in coordinates x and z.
 struct Flat<N: Space<3>> {
     shape: ShapeHandle<N, 3>,
     outline: Outline,
@@ -172,7 +172,7 @@ fn cuboid<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     Flat { shape: ShapeHandle::new(shape), outline: rectangle(half) }
 }
 
-/// A prism with 3 to 20 sides.
+/// Returns a random prism with 3 to 20 sides.
 fn prism<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     let count = [3, 5, 6, 8, 12, 20][usize::try_from(random.bits() % 6).expect("few")];
     let radii = [random.within(0.4, 1.5), random.within(0.4, 1.5)].map(|x| x * scale);
@@ -183,7 +183,7 @@ fn prism<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     Flat { shape: ShapeHandle::new(ConvexHull::from_points(&points)), outline }
 }
 
-/// A square of nine cells at the height `0.5 scale`, as a height field or a mesh.
+/// Returns a square of nine cells at the height `0.5 scale`, as a height field or a mesh.
 fn floor<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     let side = 3.0 * scale;
     let outline = rectangle([0.5 * side; 2]);
@@ -204,8 +204,8 @@ fn floor<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
 
 type Make<N> = fn(&mut Random, f64) -> Flat<N>;
 
-/// A solid that rests on another: the overlap of their ends seen from above, and the index of its deepest corner if
-/// there is a single one.
+/// A solid that rests on another one: the overlap of their ends seen from above, and the index of its deepest corner;
+/// `None` if several are equally deep.
 struct Rest<N: Space<3>> {
     solids: [(ShapeHandle<N, 3>, N::Isometry); 2],
     overlap: Outline,
@@ -226,7 +226,7 @@ impl<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>> Rest<N> {
         let (at, angle) = ([0.0; 2].map(|_| 1.5 * scale * random.signed()), TAU * random.signed());
         let axis = TAU * random.signed();
         let (sine, cosine) = (axis.sin(), axis.cos());
-        // The touching end is `0.5 scale` below the axis of the tilt, so the tilt moves it aside.
+        // The touching end is `0.5 scale` below the axis of the tilt, so the tilt moves that end aside.
         let slide = 0.5 * scale * tilt.sin();
         let upper = turned(&high.outline, angle, [at[0] + slide * sine, at[1] - slide * cosine]);
         let overlap = overlap(&upper, &low.outline);
@@ -250,8 +250,8 @@ impl<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>> Rest<N> {
     }
 }
 
-/// Share of the best area that the points of each rest span: of the best four corners that contain the deepest one, and
-/// of the best four corners at all.
+/// Returns two lists of shares, one of each rest: the area that its points span, relative to the best area of four
+/// corners that include the deepest one, and relative to the best area of any four corners.
 fn shares<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>>(
     rests: &[Rest<N>],
     scale: f64,
@@ -311,15 +311,15 @@ fn points_span_the_overlap<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>,
     }
 }
 
-/// The points span at least 90 % of the area of the best four corners; where one corner is the deepest, these contain
-/// it.
+/// The points span at least 90 % of the area of the best four corners. If a single corner is the deepest, the four must
+/// include it.
 #[test]
 fn four_points_span_the_overlap_of_two_faces() {
     points_span_the_overlap::<f32>();
     points_span_the_overlap::<f64>();
 }
 
-/// In 2D the points are both ends of the common stretch of two sides.
+/// In 2D the points are the two ends of the overlap interval of two sides.
 #[test]
 fn two_points_span_the_overlap_of_two_sides() {
     let random = &mut Random(8, false);

@@ -1,4 +1,4 @@
-//! Regression tests: cases in which the library, or others, once gave wrong results.
+//! Regression tests: inputs for which this or another library once gave wrong results.
 
 mod angular_prediction;
 mod boxes_without_numbers;

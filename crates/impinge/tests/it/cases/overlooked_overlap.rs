@@ -1,4 +1,4 @@
-//! Found by fuzzing: a solid that overlaps a surface but had no contact.
+//! Found by fuzzing: a solid overlapped a surface without a contact.
 
 use impinge::dim3::math::{Isometry, Vector};
 use impinge::dim3::shape::{HeightField, Shape, Tetrahedron, TriMesh};
@@ -14,7 +14,7 @@ fn tetrahedron() -> Tetrahedron<f32> {
     Tetrahedron::new(corners.map(Into::into))
 }
 
-/// A field with a steep sliver, which the tetrahedron pierces.
+/// Returns a field with a steep sliver, which the tetrahedron pierces.
 fn field() -> HeightField<f32> {
     let mut heights = vec![0.0; 8];
     (heights[0], heights[4]) = (-26.777527, 440.34155);
@@ -36,8 +36,9 @@ fn places() -> [Isometry<f32>; 2] {
     ]
 }
 
-/// Along the normal of the tetrahedron's face, the part of the sliver's plane below the face lies
-/// beside the overlap. The test of that face therefore reported a gap, and there was no contact.
+/// Bug: along the normal of the tetrahedron's face, the part of the sliver's plane below the face
+/// lies beside the overlap. The test of that face therefore reported a gap, and there was no
+/// contact.
 #[test]
 fn what_overlaps_a_sliver_touches_it() {
     let ([place, origin], solid) = (places(), tetrahedron());
@@ -49,7 +50,7 @@ fn what_overlaps_a_sliver_touches_it() {
         for prediction in [0.0, 100.0] {
             let found = contact(&place, &*shape, &origin, &solid, prediction);
             let found = found.expect("overlapping shapes have a contact");
-            // The depth of the tetrahedron and the triangle alone.
+            // The depth for the tetrahedron and the sliver alone.
             assert!((found.depth - 0.6468).abs() < 1e-3, "{found:?} within {prediction}");
         }
     }

@@ -1,4 +1,4 @@
-//! Rotating bodies from the corpus of bugs.
+//! Cases of rotating bodies from the corpus of bugs.
 
 use crate::support::query_support;
 
@@ -9,8 +9,8 @@ use impinge::query::{ConstantVelocities, ImpactOptions, RigidMotion, nonlinear_t
 use query_support::corpus::{number, placed2, regression};
 use serde_json::Value;
 
-/// box2d#115: a sweep that only comes near another body reported a hit, and one that starts after
-/// many turns did not end.
+/// box2d#115: a sweep that only came near another body was reported as a hit, and a sweep that
+/// started after many turns did not end.
 fn sweep<N: Real>(case: &Value, tolerance: f64) {
     let (params, expected) = (&case["params"], &case["expected"]);
     let one = placed2::<N>(&case["shape1"], &case["pose1"]).expect("a box");
@@ -39,7 +39,7 @@ fn sweep<N: Real>(case: &Value, tolerance: f64) {
         };
         assert_eq!(within(0.0), None, "it only nears");
         let least = number::<f64>(&expected["min_signed_distance"]);
-        // The angle of many turns is given with fewer digits.
+        // In the corpus, the angle of many turns has fewer digits.
         let tolerance = if turned == 1 { tolerance.max(1e-3) } else { tolerance };
         assert_eq!(within(least - tolerance), None, "not so near");
         let at = number::<f64>(&expected["at"]);

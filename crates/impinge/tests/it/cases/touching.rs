@@ -1,7 +1,7 @@
-//! Surfaces that touch solids up to rounding: query and manifold must agree whether they touch.
+//! Surfaces that touch solids up to rounding: query and manifold must agree on whether they touch.
 //!
-//! Triangles and segments have a corner or a side in the plane of a face, and both bodies have the same pose. The
-//! distance is therefore zero up to the digits that the rotation loses, with either sign.
+//! Each triangle or segment has a corner or a side in the plane of a face, and both bodies have the
+//! same pose. So the distance is zero up to the rounding of the rotation, with either sign.
 
 use impinge::math::na::{Translation, UnitComplex, UnitQuaternion};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Real, Space, Vector};
@@ -14,7 +14,7 @@ use impinge::shape::{
     Ball, Capsule, ConvexHull, ConvexPolygon, Cuboid, Polyline, Segment, Shape, TriMesh,
 };
 
-/// A pseudorandom number from -1 to 1.
+/// Returns a pseudorandom number from -1 to 1.
 fn noise(state: &mut u64) -> f64 {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -26,8 +26,8 @@ fn point<N: Real, const D: usize>(at: [f64; D]) -> Point<N, D> {
     Point::from(at.map(N::lit))
 }
 
-/// Whether a surface and a solid touch, by the query and by the manifold, in both orders. The depth must be of the size
-/// of rounding.
+/// Returns whether a surface and a solid touch: by the query and by the manifold, each in both
+/// orders. Asserts that the depth is no larger than rounding errors.
 fn touch<N: Space<D>, R, const D: usize>(
     pose: &Isometry<N, R, D>,
     surface: &dyn Shape<N, D>,
@@ -54,8 +54,8 @@ where
     [query1, manifold1, query2, manifold2]
 }
 
-/// How many pairs of a surface and a solid touch at a pose, with and without an angular prediction; the four results of
-/// [`touch`] must agree.
+/// Returns how many pairs of a surface and a solid touch at a pose, with and without an angular
+/// prediction. Asserts that the four results of [`touch`] agree.
 fn touching<N: Space<D>, R, const D: usize>(
     pose: &Isometry<N, R, D>,
     surfaces: &[Box<dyn Shape<N, D>>],
@@ -79,8 +79,8 @@ where
     count
 }
 
-/// Meshes at a face across the x axis: with a side in it, a corner in it, a ridge in it, and the first one with
-/// triangles of size zero added at a corner.
+/// Returns meshes at a face perpendicular to the x axis: with a side, a corner or a ridge in the
+/// plane of the face, and the first mesh with additional triangles of size zero at a corner.
 fn meshes<N: Space<3>>(face: f64) -> Vec<Box<dyn Shape<N, 3>>> {
     let mesh = |points: &[[f64; 3]], triangles: &[[u32; 3]]| -> Box<dyn Shape<N, 3>> {
         let points = points.iter().map(|&[x, y, z]| point([x - 1.0 + face, y, z])).collect();
@@ -110,7 +110,7 @@ fn in_space<N: Space<3, Isometry = Isometry3<N>>>() {
         Box::new(Capsule::new(N::lit(8.0), N::ONE)),
         Box::new(Ball::new(N::ONE)),
     ];
-    // Boxes of width zero have both faces in the plane of the mesh.
+    // A box of width zero has both faces in the plane of the mesh.
     let flat: Vec<Box<dyn Shape<N, 3>>> = vec![
         Box::new(Cuboid::new(vector([0.0, 9.0, 3.0]))),
         Box::new(Cuboid::new(vector([0.0, 5.1875, 0.0]))),

@@ -18,7 +18,8 @@ fn axis<N: Real, const D: usize>(axis: usize) -> Unit<Vector<N, D>> {
     Unit::new_unchecked(along(axis, 1.0).translation)
 }
 
-/// A checker with a ball that slides along the first axis, and a box whose face is at 2.
+/// Returns a checker with a ball that slides along the first axis, and a box whose nearest face is
+/// at 2.
 fn slider<N: Space<D>, const D: usize>(radius: f64) -> Checker<N, D> {
     let frame =
         Frame { parent: None, origin: Pose::identity(), joint: Joint::prismatic(axis(0), 0) };
@@ -33,7 +34,8 @@ fn slider<N: Space<D>, const D: usize>(radius: f64) -> Checker<N, D> {
     checker
 }
 
-/// A body that touches exactly is not free; one that is a rounding error away is.
+/// A body that touches an obstacle exactly is not free; a body that is a rounding error away is
+/// free.
 fn touches<N: Space<D>, const D: usize>() {
     for radius in [0.5, 0.0] {
         let checker = slider::<N, D>(radius);
@@ -87,8 +89,8 @@ fn joints_move_as_they_say() {
     at(1, [3.0, 1.0, 0.0]);
     at(4, [1.0, 0.5, 0.0]);
     at(5, [1.0, 1.5, 0.0]);
-    // Frame 3 of the first row has half a turn; that of the second row a quarter (its parent's),
-    // minus two quarters, plus half a turn.
+    // In the first row, frame 3 is rotated by half a turn. In the second row it is rotated by a
+    // quarter (of its parent), minus two quarters, plus half a turn.
     assert!((poses[3].rotation[(0, 0)] + 1.0).abs() < 1e-15, "half a turn");
     assert!((poses[7].rotation[(1, 0)] - 1.0).abs() < 1e-15, "a quarter turn");
 }

@@ -1,4 +1,4 @@
-//! The results of the checker, computed by single queries of all pairs.
+//! The expected results of the checker, computed by single queries of all pairs.
 
 use impinge::batch::{Control, PairBatch, Shapes, Side};
 use impinge::checker::NO_PAIR;
@@ -51,13 +51,14 @@ impl<N: Real> Brute<N> {
         Self { is_finite: frames.iter().all(Pose::is_finite), pairs, distances }
     }
 
-    /// The first pair whose distance is at most the clearance.
+    /// Returns the first pair whose distance is at most the clearance; [`NO_PAIR`] if there is none
+    /// or a pose is not finite.
     pub(super) fn first(&self, clearance: N) -> [u32; 2] {
         let found = self.distances.iter().position(|&distance| distance <= clearance);
         found.filter(|_| self.is_finite).map_or(NO_PAIR, |index| self.pairs[index])
     }
 
-    /// The least distance up to a limit, and the first pair at that distance.
+    /// Returns the least distance up to a limit, and the first pair at that distance.
     pub(super) fn nearest(&self, limit: N) -> (N, [u32; 2]) {
         if !self.is_finite {
             return (N::lit(f64::NAN), NO_PAIR);
@@ -73,7 +74,7 @@ impl<N: Real> Brute<N> {
     }
 }
 
-/// All pairs that the checker tests, in ascending order.
+/// Returns all pairs that the checker tests, ascending.
 fn pairs_of<N: Space<D>, const D: usize>(robot: &Robot<N, D>) -> Vec<[u32; 2]> {
     let count = |number: usize| u32::try_from(number).expect("a few");
     let (bodies, obstacles) =

@@ -1,4 +1,4 @@
-//! Compares all results about random robots with single queries of all pairs, bit for bit.
+//! Compares all results for random robots with single queries of all pairs, bit for bit.
 
 use impinge::batch::Control;
 use impinge::checker::{NO_PAIR, NearestColumns};
@@ -8,8 +8,8 @@ use super::brute::Brute;
 use super::robots::{Robot, robot2, robot3};
 use crate::batch::scene::{assert_number, on_threads};
 
-/// Compares the results for one clearance, and returns how many configurations are free and how
-/// many are not.
+/// Compares the results for one clearance. Returns the number of free configurations and the number
+/// of others.
 fn check<N: Space<D>, const D: usize>(
     robot: &Robot<N, D>,
     clearance: f64,

@@ -1,4 +1,4 @@
-//! Tests which inputs are refused with which error.
+//! Tests which inputs are refused, and with which error.
 
 use impinge::batch::{BatchError, Control};
 use impinge::checker::{Body, Checker, CheckerError, Frame, FrameTree, Joint, Obstacle};

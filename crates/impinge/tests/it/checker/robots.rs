@@ -1,4 +1,4 @@
-//! Robots with random frames, and with bodies and obstacles of every kind.
+//! Random robots, with bodies and obstacles of every kind.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -9,7 +9,7 @@ use impinge::shape::{Ball, ShapeHandle};
 use crate::support::query_support::random::Random;
 use crate::support::shape_table;
 
-/// A checker, the pairs whose contact is ignored, and configurations row by row.
+/// A checker, the ignored pairs, and configurations row by row.
 pub(super) struct Robot<N: Real, const D: usize> {
     pub(super) checker: Checker<N, D>,
     pub(super) ignored: Vec<[u32; 2]>,
@@ -19,14 +19,14 @@ pub(super) struct Robot<N: Real, const D: usize> {
 /// Number of joint values of a random robot.
 const COLUMNS: usize = 5;
 
-/// Makes a random revolute joint driven by the given column.
+/// Makes a random revolute joint that is driven by a given column.
 type Turn<N, const D: usize> = fn(&mut Random, usize) -> Joint<N, D>;
 
-/// The random parts that differ by dimension: revolute joints, and poses.
+/// The functions that differ by dimension: they draw revolute joints and poses.
 type Draws<N, const D: usize> = (Turn<N, D>, fn(&mut Random) -> Pose<N, D>);
 
 impl<N: Space<D>, const D: usize> Robot<N, D> {
-    /// Number of configurations.
+    /// Returns the number of configurations.
     pub(super) fn count(&self) -> usize {
         self.configurations.len() / self.checker.frames().columns()
     }
@@ -69,8 +69,8 @@ fn robot<N: Space<D>, const D: usize>(
     Robot { checker, ignored, configurations: configurations(random) }
 }
 
-/// Joint 3 slides, joint 5 is fixed and the others are revolute. Joint 6 follows column 1, which
-/// other joints use too, with a factor and an offset.
+/// Returns joint `number`. Joint 3 slides, joint 5 is fixed, and the others are revolute. Joint 6
+/// is driven by column 1, which other joints use too, with a factor and an offset.
 fn joint<N: Space<D>, const D: usize>(
     random: &mut Random,
     number: usize,
@@ -99,8 +99,8 @@ fn obstacle<N: Space<D>, const D: usize>(
     Obstacle { shape: shape.clone(), pose: place }
 }
 
-/// Configurations that are random, aligned to quarter turns, extreme or not finite, mixed so that a
-/// batch of eight has several kinds.
+/// Returns configurations: random, aligned to quarter turns, extreme, or not finite. They are mixed
+/// so that a batch of eight has several kinds.
 fn configurations<N: Real>(random: &mut Random) -> Vec<N> {
     let mut all: Vec<N> = vec![N::ZERO; COLUMNS];
     for index in 0..90 * COLUMNS {

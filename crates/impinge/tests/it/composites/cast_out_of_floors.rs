@@ -1,5 +1,5 @@
-//! Tests that a solid that has sunk a little into a floor of many parts can be cast out of it,
-//! whatever lies below the surface.
+//! Tests that a solid that has sunk a little into a floor of many parts can be cast out of the
+//! floor, whatever is below the surface.
 
 use crate::support::{query_support, slides};
 
@@ -16,11 +16,12 @@ fn v<N: Real>(x: f64, y: f64, z: f64) -> Vector<N, 3> {
     Vector::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z))
 }
 
-/// Directions out of the floor, steep, slanting and nearly along it; and directions into it.
+/// Directions out of the floor (steep, slanting and almost along it), and directions into it.
 const OUT: [[f64; 3]; 4] = [[0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-0.7, 0.2, 0.9], [3.0, 0.05, -2.0]];
 const INTO: [[f64; 3]; 3] = [[0.0, -1.0, 0.0], [2.0, -0.1, 1.0], [-0.3, -0.4, 0.2]];
 
-/// Casts every solid out of a floor at y = 0 without a hit, and into it with one.
+/// Asserts that every solid can be cast out of a floor at y = 0 without a hit, and hits it when
+/// cast into it.
 fn leave<N: Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shape<N, 3>, label: &str, seed: u64) {
     let random = &mut Random(seed, false);
     let still = Moving::still(&Isometry3::identity(), floor);
@@ -52,7 +53,7 @@ fn leave<N: Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shape<N, 3>, label: &
                 assert_eq!(hit.toi, N::ZERO, "{what}");
                 assert_eq!(hit.status, ImpactStatus::PenetratingAtStart, "{what}");
                 assert!(hit.normal.y > N::lit(1.0 - 1e-5), "{what}: {:?}", hit.normal);
-                // The clipping at an inner edge may leave out the vertex beyond it.
+                // Clipping at an inner edge may omit the vertex beyond that edge.
                 let reach = (hit.world2 - hit.world1).norm().as_f64();
                 assert!((reach - depth).abs() < 0.01 * depth + 1e-5, "{what}: {reach} deep");
             }
@@ -77,7 +78,8 @@ fn solids_leave_height_fields() {
     leave::<f64>(&field::<f64>(16, 0.5), "field", 8);
 }
 
-/// Casts out of floors in 2D, first with the numbers of a report, then at random positions.
+/// Casts solids out of a floor in 2D: first with the numbers of a bug report, then at random
+/// positions.
 fn leave_line<N: Space<2, Isometry = Isometry2<N>>>(floor: &dyn Shape<N, 2>) {
     let w = |x: f64, y: f64| Vector::<N, 2>::new(N::lit(x), N::lit(y));
     let still = Moving::still(&Isometry2::identity(), floor);
@@ -116,7 +118,7 @@ fn solids_leave_lines() {
     check::<f64>();
 }
 
-/// A body that leaves the floor still hits the wall, also a wall that it touches at the start.
+/// A body that leaves the floor still hits the wall, even a wall that it touches at the start.
 #[test]
 fn what_leaves_the_floor_meets_the_wall() {
     let p = |x: f64, y: f64| Point::<f64, 2>::new(x, y);
@@ -136,7 +138,7 @@ fn what_leaves_the_floor_meets_the_wall() {
     assert_eq!((hit.toi, hit.normal.x), (0.0, -1.0));
 }
 
-/// Casts of worlds agree with those of single queries.
+/// Casts in a world give the results of single queries.
 #[test]
 fn worlds_cast_out_of_floors() {
     let mut world = CollisionWorld::<f32, 3, ()>::new(0.02);

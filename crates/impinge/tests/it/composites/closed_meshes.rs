@@ -1,5 +1,5 @@
-//! Compares the volumes that closed meshes and lines enclose with solid angles and angle-weighted
-//! pseudonormals.
+//! Compares the volumes that closed meshes and lines enclose with two definitions of the inside:
+//! solid angles, and angle-weighted pseudonormals.
 
 use crate::support::query_support;
 
@@ -22,7 +22,7 @@ fn rounded(point: P3) -> P3 {
     Point::from(point.coords.map(|x| x.as_f32().as_f64()))
 }
 
-/// The corners and triangles of a box between two corners.
+/// Returns the corners and triangles of the box between two corners.
 fn cuboid(low: [f64; 3], high: [f64; 3]) -> (Vec<P3>, Vec<[u32; 3]>) {
     let (low, high) = (P3::from(low), P3::from(high));
     let surface = surfaces::cuboid(&Cuboid::new((high - low) * 0.5));
@@ -40,7 +40,7 @@ fn joined(bodies: &[(Vec<P3>, Vec<[u32; 3]>)]) -> (Vec<P3>, Vec<[u32; 3]>) {
     (corners, triangles)
 }
 
-/// A ball with bumps and thin spikes.
+/// Returns a ball with bumps and thin spikes.
 fn bumpy(random: &mut Random, subdivisions: u32) -> (Vec<P3>, Vec<[u32; 3]>) {
     let surface = surfaces::ball(&Ball::new(1.0_f64), subdivisions);
     let mut bump = |corner: &P3| {
@@ -50,7 +50,7 @@ fn bumpy(random: &mut Random, subdivisions: u32) -> (Vec<P3>, Vec<[u32; 3]>) {
     (surface.vertices.iter().map(&mut bump).collect(), surface.triangles)
 }
 
-/// A ring of square section around the z axis, thin on one side.
+/// Returns a ring of square section around the z axis, thin on one side.
 fn ring() -> (Vec<P3>, Vec<[u32; 3]>) {
     let (mut corners, mut triangles) = (Vec::new(), Vec::new());
     for step in 0..24_u32 {
@@ -70,8 +70,8 @@ fn ring() -> (Vec<P3>, Vec<[u32; 3]>) {
     (corners, triangles)
 }
 
-/// Winding number of a surface around a point: the sum of solid angles over 4π (Van Oosterom and
-/// Strackee, "The Solid Angle of a Plane Triangle", 1983).
+/// Returns the winding number of a surface around a point: the sum of solid angles over 4π (Van
+/// Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983).
 fn solid_angles(mesh: &Mesh, point: &P3) -> f64 {
     let one = |part: u32| {
         let [a, b, c] = mesh.triangle(part).corners().map(|corner| corner - point);
@@ -83,9 +83,9 @@ fn solid_angles(mesh: &Mesh, point: &P3) -> f64 {
     (0..mesh.num_parts()).map(one).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
-/// Cosine between the pseudonormal of the nearest feature and the direction to the point; negative
-/// inside (Bærentzen and Aanæs, "Signed distance computation using the angle weighted
-/// pseudonormal", 2005).
+/// Returns the cosine between the pseudonormal of the nearest feature and the direction to the
+/// point; negative inside (Bærentzen and Aanæs, "Signed distance computation using the angle
+/// weighted pseudonormal", 2005).
 fn pseudonormal(mesh: &Mesh, point: &P3) -> f64 {
     let (nearest, location) = mesh.project_local_point_with_location(point, false);
     let normal = |part: u32| mesh.normal(part).expect("an area");
@@ -111,7 +111,8 @@ fn pseudonormal(mesh: &Mesh, point: &P3) -> f64 {
     (point - nearest.point).normalize().dot(&sum.normalize())
 }
 
-/// A random point around the mesh, close to its surface, or level with a corner along an axis.
+/// Returns a random point: around the mesh, close to its surface, or level with a corner along an
+/// axis.
 fn asked(random: &mut Random, mesh: &Mesh) -> P3 {
     let part = u32::try_from(random.bits() % u64::from(mesh.num_parts())).expect("few");
     let corners = *mesh.triangle(part).corners();
@@ -173,8 +174,8 @@ fn signs_are_those_of_solid_angles_and_pseudonormals() {
     assert!(counts.iter().all(|&count| count > 700), "{counts:?} inside and outside");
 }
 
-/// Compares a union of boxes with its closed form, at all points of a grid that contains the
-/// corners, so that many points are level with corners or equally near to several faces.
+/// Compares a union of boxes with its closed form at all points of a grid. The grid contains the
+/// corners, so many points are level with corners or equally near to several faces.
 fn check_grid<N: Real>(bodies: &[([f64; 3], [f64; 3])], offset: f64) {
     let moved = |corner: [f64; 3]| corner.map(|x| x + offset);
     let all: Vec<_> = bodies.iter().map(|&(low, high)| cuboid(moved(low), moved(high))).collect();
@@ -195,7 +196,7 @@ fn check_grid<N: Real>(bodies: &[([f64; 3], [f64; 3])], offset: f64) {
     }
 }
 
-/// Signed distance to the boundary of a box.
+/// Returns the signed distance of a point from the boundary of a box.
 fn to_box(at: [f64; 3], low: &[f64; 3], high: &[f64; 3]) -> f64 {
     let beyond: [f64; 3] = std::array::from_fn(|i| f64::max(low[i] - at[i], at[i] - high[i]));
     let deepest = beyond.iter().copied().fold(f64::MIN, f64::max);
@@ -205,8 +206,8 @@ fn to_box(at: [f64; 3], low: &[f64; 3], high: &[f64; 3]) -> f64 {
     beyond.iter().map(|x| f64::max(*x, 0.0).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The signed distance to a union from those to its two bodies: the smaller magnitude, negative if
-/// the point is in one of them.
+/// Returns the signed distance to a union from the signed distances to its two bodies: the smaller
+/// magnitude, negative if the point is in one of them.
 fn nearer(a: f64, b: f64) -> f64 {
     let size = f64::min(a.abs(), b.abs());
     if a < 0.0 || b < 0.0 { -size } else { size }
@@ -266,7 +267,8 @@ fn what_is_not_closed_encloses_nothing() {
         assert!(!mesh.is_volume(), "no volume");
         assert_eq!((mesh.encloses(&middle), mesh.signed_distance(&middle)), (None, None));
     }
-    // Adds a triangle with a repeated corner and two that pass it, as at the poles of a globe.
+    // Adds a triangle with a repeated corner, and two that pass that corner, as at the poles of a
+    // globe.
     let mut filled = triangles;
     let [a, b, _] = filled[0];
     filled.push([a, b, b]);
@@ -324,7 +326,7 @@ fn scales_and_points_that_are_none() {
     check_extremes::<f64>(&[up, down, up.powi(6), down.powi(6)]);
 }
 
-/// Winding number of a closed line around a point, by angles.
+/// Returns the winding number of a closed line around a point, by angles.
 fn turns(corners: &[Point<f64, 2>], point: &Point<f64, 2>) -> f64 {
     let around = |at: usize| {
         let [u, v] = [at, at + 1].map(|at| corners[at % corners.len()] - point);
@@ -337,7 +339,7 @@ fn check_lines<N: Real>() {
     let (mut inside, mut outside) = (0, 0);
     for seed in 0..40 {
         let random = &mut Random(seed, false);
-        // Corners on a grid, so that many are in line; the line crosses itself.
+        // Corners on a grid, so that many are collinear; the line crosses itself.
         let mut whole = || (random.within(-4.0, 4.0)).round();
         let corners: Vec<_> = (0..12).map(|_| Point::<f64, 2>::new(whole(), whole())).collect();
         let here = corners.iter().map(|corner| Point::from(corner.coords.map(N::lit))).collect();

@@ -1,4 +1,4 @@
-//! Tests laws of contacts with composites, which hold whatever the contacts are.
+//! Tests laws of contacts with composites, which need no expected contacts.
 
 use crate::support::slides;
 
@@ -16,7 +16,7 @@ fn turned<N: Real>(random: &mut Random) -> UnitQuaternion<N> {
     UnitQuaternion::from_scaled_axis(v(random.unit() * 3.0, random.unit() * 3.0, random.unit()))
 }
 
-/// Hills of small triangles with slopes of up to about 45 degrees.
+/// Returns a surface of hills, made of small triangles with slopes of up to about 45 degrees.
 fn hills<N: Real + Space<3>>(pattern: Pattern) -> TriMesh<N, 3> {
     let height = |x: f64, z: f64| {
         let (x, z) = (x * 1.7, z * 1.3);
@@ -25,7 +25,7 @@ fn hills<N: Real + Space<3>>(pattern: Pattern) -> TriMesh<N, 3> {
     grid::<N>(20, 0.35, [0.0; 3], pattern, height)
 }
 
-/// How far a solid must be lifted until it does not touch the floor, by bisection.
+/// Returns, by bisection, the least height by which a solid must be lifted to be free of the floor.
 fn lift<N: Real + Space<3, Isometry = Isometry3<N>>>(
     floor: &dyn Shape<N, 3>,
     solid: &dyn Shape<N, 3>,
@@ -84,7 +84,8 @@ fn laws_over_hills<N: Real + Space<3, Isometry = Isometry3<N>>>(floor: &dyn Shap
             }
             let swapped = contact(&pose, solid, &unmoved, floor, prediction).expect("touches");
             assert_eq!(swapped.flipped(), single, "{label}");
-            // A depth along a slope may exceed the lift straight up, but by no more than half.
+            // A depth along the normal of a slope may exceed the lift straight up, but by no more
+            // than half.
             let lift = lift(floor, solid, &pose);
             // The middle of a solid that is deeper may be below the hills, and then it is pushed
             // out downwards.
@@ -121,7 +122,7 @@ fn laws_hold_over_hills_with_one_side() {
     laws_over_hills::<f64>(&hills::<f64>(Pattern::Zigzag).one_sided());
 }
 
-/// Laws of any two shapes: overlap, a distance of zero and a contact with prediction zero occur
+/// Laws for any two shapes. Overlap, a distance of zero, and a contact with prediction zero occur
 /// together; a single contact and the manifolds agree; swapping the shapes flips the contact.
 fn laws_of_pairs<N: Real + Space<3, Isometry = Isometry3<N>>>(
     label: &str,
@@ -191,7 +192,7 @@ fn laws_of_all_pairs<N: Real + Space<3, Isometry = Isometry3<N>>>() {
     laws_of_pairs("hills", [&hills, &hills], 1.2);
 }
 
-/// A small piece of a surface with hills.
+/// Returns a small piece of a surface with hills.
 fn grid_piece<N: Real + Space<3>>() -> TriMesh<N, 3> {
     let height = |x: f64, z: f64| 0.3 * x * x - 0.2 * x * z;
     grid::<N>(5, 0.4, [0.0; 3], Pattern::Zigzag, height)

@@ -1,5 +1,6 @@
-//! Compares composites against convex solids, half-spaces and each other with a scan of all parts,
-//! in both orders to the bit, whatever order the search proposes.
+//! Compares composites with a brute-force scan of their parts, against convex solids, half-spaces
+//! and other composites. Both orders must agree to the bit, in whatever order the search proposes
+//! parts.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -38,7 +39,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Two<'_, N, R, D> {
         witness(self.m1, self.g1, self.m2, self.g2, limit)
     }
 
-    /// Laws of every pair of shapes; `noise` is the rounding error allowed in lengths.
+    /// Checks the laws of every pair of shapes; `noise` is the rounding error allowed in lengths.
     fn check(&self, noise: N) {
         let Self { m1, g1, m2, g2 } = *self;
         let found = self.witness(N::INFINITY).expect("they are some distance apart");
@@ -67,7 +68,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Two<'_, N, R, D> {
     }
 }
 
-/// The parts that a witness reports are at the distance that it reports.
+/// Asserts that the parts of a witness have the distance of the witness.
 fn check_parts<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     found: &Witness<N, D>,
     two: (&Scene<N, R, D>, &Isometry<N, R, D>),
@@ -177,7 +178,7 @@ fn against_each_other() {
     assert!((60..260).contains(&overlaps), "{overlaps} of 320 overlap");
 }
 
-/// Against a half-space, the deepest part gives the result.
+/// Against a half-space, the result is that of the deepest part.
 fn against_planes<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     maker: &Maker<N, R, D>,
 ) {
@@ -205,7 +206,7 @@ fn against_half_spaces() {
     against_planes(&space);
 }
 
-/// A composite of one part, in that part's own frame, gives the result of the part.
+/// A composite of one part, in that part's own frame, has the result of the part.
 fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(maker: &Maker<N, R, D>) {
     for seed in 0..60 {
         let random = &mut Random(seed, false);
@@ -215,7 +216,7 @@ fn wrapped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(maker
         let m2 = maker.place(random, N::lit(3.0));
         let bare = witness(&m1, &*solid, &m2, &*other, N::INFINITY).expect("a witness");
         let found = witness(&m1, &one, &m2, &*other, N::INFINITY).expect("a witness");
-        // The order of the operations may differ, so they agree only up to rounding.
+        // The order of operations may differ, so results agree only up to rounding.
         let noise = N::EPSILON * N::lit(1024.0) + N::lit(1e-9);
         assert!((bare.distance - found.distance).abs() <= noise, "{bare:?} {found:?}");
         assert_eq!((found.part1, found.part2), (0, 0), "the only part");
@@ -293,7 +294,8 @@ fn what_is_not_finite_is_far() {
     assert_eq!(witness(&here, &one, &here, &one, f32::NAN), None, "no limit");
 }
 
-/// A ball above a mesh of two triangles that lie `far` from the origin of the mesh.
+/// Returns the witness of a ball above a mesh of two triangles, which lie `far` from the origin of
+/// the mesh.
 fn over_far_floor(far: f32, world: f32) -> Witness<f32, 3> {
     let p = |x: f32, z: f32| Point::<f32, 3>::new(far + x, -far, far + z);
     let points = [p(0.0, 0.0), p(4.0, 0.0), p(4.0, 4.0), p(0.0, 4.0)];

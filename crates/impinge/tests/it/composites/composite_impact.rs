@@ -1,4 +1,4 @@
-//! Tests the first impact of moving composites, in both orders to the bit.
+//! Tests the first impact of moving composites; both orders must agree to the bit.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -29,7 +29,7 @@ fn hit<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     impact(&Moving::new(one.0, &one.1, one.2), &Moving::new(two.0, &two.1, two.2), options)
 }
 
-/// Time of the first impact of all parts with a solid, found one by one.
+/// Returns the time of the first impact of any part with a solid, by a query of each part.
 fn brute<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     scene: &Scene<N, R, D>,
     (m1, velocity): (&Isometry<N, R, D>, Vector<N, D>),
@@ -71,7 +71,7 @@ fn against_convex<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize
         let expected = brute(&scene, (&m1, v1), &two, &options);
         let toi = found.map_or(N::INFINITY, |found| found.toi);
         let noise = N::EPSILON.sqrt() * N::lit(16.0) + N::lit(1e-6);
-        // Rounding decides whether shapes that graze each other touch.
+        // For shapes that graze each other, rounding decides whether they touch.
         let both = toi.is_finite_number() && expected.is_finite_number();
         assert!(!both || (toi - expected).abs() <= noise, "{seed} {toi:?} {expected:?}");
         if both != (toi.is_finite_number() || expected.is_finite_number()) {
@@ -97,7 +97,8 @@ fn moved<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     m
 }
 
-/// Before the impact the shapes are farther apart than the target distance, and at the impact they are at it.
+/// Asserts that the shapes are farther apart than the target distance before the impact, and at that distance at the
+/// impact.
 fn stepped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     one: &Mover<'_, N, R, D>,
     two: &Mover<'_, N, R, D>,
@@ -107,7 +108,7 @@ fn stepped<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     let at =
         |time: N| distance(&moved(one.0, one.1 * time), one.2, &moved(two.0, two.1 * time), two.2);
     assert!(at(toi) <= target + noise, "they touch at {toi:?}: {:?}", at(toi));
-    // Shapes that touch at the start and part again do not count as an impact, so only pairs that start apart are
+    // Shapes that touch at the start and then separate have no impact, so only pairs that are disjoint at the start are
     // checked.
     if at(N::ZERO) > target + noise {
         for step in 0..16 {
@@ -151,7 +152,7 @@ fn against_composites<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: u
             stepped(&one, &two, (found.toi, N::ZERO));
             later += u32::from(found.toi > N::ZERO);
         }
-        // The composite against itself at the same pose, with two different velocities.
+        // Tests the composite against itself at the same pose, with two different velocities.
         let twin = (&m1, v2, &scene1.fast as &dyn Shape<N, D>);
         let found = hit(&one, &twin, &options);
         let swapped = hit(&twin, &one, &options).map(|found| found.flipped());
@@ -211,8 +212,8 @@ fn what_slides_over_the_floor_meets_the_wall() {
     assert_eq!(impact(&still, &slide, &short), None, "too late");
 }
 
-/// Impact of a moving shape with one that stays at the origin: nothing touches before it, and at it the gap is at most
-/// 2⁻¹⁵.
+/// Computes the impact of a moving shape with one that rests at the origin. Asserts that nothing touches before the
+/// impact, and that the gap is at most 2⁻¹⁵ at the impact. Returns whether there is one.
 fn slides<N, R, const D: usize>(
     motion: ConstantVelocities<N, D>,
     mover: &dyn Shape<N, D>,
@@ -230,7 +231,7 @@ where
     let gap = |time: N| distance(&motion.position_at(time), mover, &Isometry::identity(), stays);
     for look in 0..12 {
         let share = N::lit(f64::from(look) / 12.0);
-        // Looks all along the path, and ever closer to its end.
+        // Samples the whole path, and more densely near its end.
         for time in [end * share, end * (N::ONE - share * share * share)] {
             assert!(gap(time) > N::ZERO, "{time} is before {found:?} {motion:?}");
         }
@@ -242,7 +243,7 @@ where
     true
 }
 
-/// Surface of a screw thread of pitch 1 around the second axis: its radius varies by 0.25 along a helix.
+/// Returns the surface of a screw thread of pitch 1 around the second axis: its radius varies by 0.25 along a helix.
 fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
     let (around, rows) = (24, 8 * pitches);
     let mut points = Vec::new();
@@ -264,7 +265,7 @@ fn thread<N: Space<3>>(radius: f64, pitches: u32) -> Pieces<N, 3> {
     Pieces::mesh(&points, &triangles)
 }
 
-/// A screw turns in its nut and rises by nearly as much as the pitch asks for, so that flanks slide along flanks.
+/// A screw turns in its nut and rises by almost the pitch of each turn, so that flanks slide along flanks.
 fn screw_in_nut<N: Space<3, Isometry = Isometry3<N>>>()
 where
     ConstantVelocities<N, 3>: RigidMotion<N, 3>,
@@ -283,7 +284,7 @@ where
     assert!(hits >= 2, "{hits}");
 }
 
-/// A round outline of segments spins within another, and drifts towards it much more slowly than it spins.
+/// A round outline of segments spins within another one, and drifts toward it much more slowly.
 fn spins_in_ring<N: Space<2, Isometry = Isometry2<N>>>()
 where
     ConstantVelocities<N, 2>: RigidMotion<N, 2>,
@@ -334,7 +335,7 @@ impl Shape<f64, 3> for Asked {
 }
 
 /// A screw in its nut advances to the impact with a few searches over all parts, not with one search for each step of
-/// the parts that touch.
+/// the touching parts.
 #[test]
 fn screws_are_looked_at_a_few_times() {
     let [screw, nut] =
@@ -353,8 +354,8 @@ fn screws_are_looked_at_a_few_times() {
     }
 }
 
-/// The impact of two composites whose parts have the identity as their pose is the first impact of any two parts, each
-/// advanced as a solid of its own.
+/// Asserts that the impact of two composites is the first impact of any two parts, each advanced as a separate solid.
+/// All parts have the identity as their pose.
 fn both_turn<N: Space<D>, const D: usize>(
     motions: &[ConstantVelocities<N, D>; 2],
     shapes: &[Pieces<N, D>; 2],
@@ -377,7 +378,7 @@ where
     found.is_finite_number()
 }
 
-/// Patches that lie close to each other and rotate, each about its own centre, or only one of them.
+/// Patches that lie close to each other. Both rotate, each about its own centre, or only one does.
 fn patches_that_turn<N: Space<2, Isometry = Isometry2<N>> + Space<3, Isometry = Isometry3<N>>>() {
     let (random, mut hits) = (&mut Random(31, false), [0, 0]);
     for round in 0..40 {

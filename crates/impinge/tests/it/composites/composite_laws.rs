@@ -1,5 +1,5 @@
-//! Tests laws of composites that hold whatever the right result is: a solid against its surface, common motion,
-//! nesting, and the number of parts that a search visits.
+//! Tests laws of composites that need no expected results: a solid and its surface agree, common
+//! motion changes nothing, nesting changes nothing, and a search visits few parts.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -19,7 +19,7 @@ use impinge::shape::{
 use query_support::random::Random;
 use query_support::samples::{SPACE, sample3};
 
-/// A ball of radius 1 as a closed mesh, and how far at most the mesh lies inside the ball.
+/// Returns a ball of radius 1 as a closed mesh, and the greatest depth of the mesh inside the ball.
 fn ball_mesh<N: Real>(subdivisions: u32) -> (TriMesh<N, 3>, N) {
     let surface = surfaces::ball(&Ball::new(N::ONE), subdivisions);
     let inside = |corners: [Point<N, 3>; 3]| {
@@ -95,7 +95,8 @@ fn common_motion_changes_nothing() {
     }
 }
 
-/// A compound of meshes and solids gives the results of its parts in a flat list, and reports the path to each.
+/// A compound of meshes and solids has the results of a flat list of its parts, and reports the
+/// path to each part.
 #[test]
 fn nested_is_as_flat() {
     let (mesh, _) = ball_mesh::<f64>(4);
@@ -150,14 +151,15 @@ fn nested_is_as_flat() {
         let hit =
             |shape: &dyn Shape<f64, 3>| impact(&Moving::still(&here, shape), &moving, &options);
         let hits = [hit(&outer), hit(&flat)];
-        // Whether a contact at the start counts depends on the seams of the meshes, which the flat parts do not have.
+        // Whether there is a contact at the start depends on internal edges of the meshes, which
+        // the flat parts do not have.
         if !hits.iter().flatten().any(|hit| hit.status.is_at_start()) {
             assert_eq!(hits[0], hits[1], "impacts");
         }
     }
 }
 
-/// A mesh that counts how often a part is visited.
+/// A mesh that counts visits of parts.
 #[derive(Debug)]
 struct Counted {
     mesh: TriMesh<f64, 3>,

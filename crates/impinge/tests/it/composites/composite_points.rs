@@ -1,5 +1,5 @@
-//! Tests queries of points and composites: the result belongs to the nearest part, or to the one in
-//! which the point lies deepest.
+//! Tests queries of points against composites: the result is that of the nearest part, or of the
+//! part in which the point lies deepest.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -26,7 +26,8 @@ fn dot<N: Real, const D: usize, const K: usize>(
     Point::from(sum)
 }
 
-/// The point that barycentric weights stand for, in the frame of the solid; `None` without weights.
+/// Returns the point with given barycentric weights, in the frame of the solid; `None` if there are
+/// no weights.
 fn weighed<N: Real, const D: usize>(
     solid: &PartSolid<'_, N, D>,
     barycentric: &Barycentric<N>,

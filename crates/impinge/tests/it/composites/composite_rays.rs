@@ -1,5 +1,5 @@
-//! Tests rays and composites: no ray slips through where parts meet, and the hits are those of the
-//! parts.
+//! Tests rays against composites: no ray passes between adjacent parts, and the hits are the hits
+//! of the parts.
 
 use crate::support::composite_support;
 use crate::support::query_support;
@@ -14,10 +14,10 @@ use impinge::shape::{Ball, CompositeShape, Cuboid, HeightField, Polyline, Shape,
 use query_support::random::Random;
 use query_support::samples::{PLANE, SPACE, sample2, sample3};
 
-/// Offsets from the origin, for meshes about a hundred large.
+/// Offsets from the origin, for meshes of size 100.
 const OFFSETS: [f64; 3] = [0.0, 1e3, 1e6];
 
-/// A closed surface, about a hundred large, and its middle, both moved away from the origin.
+/// A closed surface of size 100 and its centre, both moved away from the origin.
 struct Closed<N: Real> {
     mesh: TriMesh<N, 3>,
     middle: Point<N, 3>,
@@ -35,7 +35,7 @@ fn closed<N: Real>(which: usize, offset: f64) -> Closed<N> {
     Closed { mesh: TriMesh::new(vertices, surface.triangles), middle: Point::from(by) }
 }
 
-/// A point on a side of a triangle: a corner, the middle, or any point between.
+/// Returns a point on a side of a triangle: a corner, the midpoint, or any point of the side.
 fn on_side<N: Real>(random: &mut Random, corners: &[Point<N, 3>; 3]) -> Point<N, 3> {
     let side = usize::try_from(random.bits() % 3).expect("few");
     let (a, b) = (corners[side], corners[(side + 1) % 3]);
@@ -47,8 +47,8 @@ fn on_side<N: Real>(random: &mut Random, corners: &[Point<N, 3>; 3]) -> Point<N,
     a + (b - a) * share
 }
 
-/// Shoots rays from within a closed surface, and from far outside through its middle, aimed exactly
-/// at edges and corners. None may pass without a hit.
+/// Casts rays from within a closed surface, and from far outside through its centre, exactly at
+/// edges and corners. Asserts that each has a hit; returns the number of rays.
 fn through_closed<N: Real>(world: f64) -> usize {
     let mut shots = 0;
     let random = &mut Random(7, false);
@@ -87,7 +87,7 @@ fn no_ray_slips_through_a_closed_surface() {
     assert!(shots > 100_000, "{shots}");
 }
 
-/// A field with heights between 0 and 3 on a grid of 12 by 9 cells.
+/// Returns a field with heights between 0 and 3, on a grid of 12 by 9 cells.
 fn grid<N: Real>() -> HeightField<N, 3> {
     let random = &mut Random(3, false);
     let heights = (0..13 * 10).map(|_| N::lit(random.within(0.0, 3.0))).collect();
@@ -99,7 +99,7 @@ fn grid<N: Real>() -> HeightField<N, 3> {
     )
 }
 
-/// The field as a mesh, moved by `by`.
+/// Returns the field as a mesh, moved by `by`.
 fn meshed<N: Real>(field: &HeightField<N, 3>, by: &Vector<N, 3>) -> TriMesh<N, 3> {
     let (mut points, mut triangles) = (Vec::new(), Vec::new());
     for part in 0..field.num_parts() {
@@ -124,7 +124,7 @@ fn through_grid<N: Real>(world: f64) -> usize {
         let part = u32::try_from(random.bits() % u64::from(field.num_parts())).expect("few");
         let local = meshed_corners(&field, part);
         let target = on_side(random, &local);
-        // A ray at the border of the field may miss by rounding.
+        // A ray at the border of the field may miss because of rounding.
         let inner = target.x.abs() < N::lit(29.0) && target.z.abs() < N::lit(21.0);
         if !inner {
             continue;
@@ -159,7 +159,8 @@ fn no_ray_slips_through_a_grid() {
     assert!(shots > 100_000, "{shots}");
 }
 
-/// A closed line around a middle, a filled mesh of the same outline, their points and the middle.
+/// Returns a closed line around a centre, a filled mesh of the same outline, their points, and the
+/// centre.
 fn round<N: Real>(offset: f64) -> (Polyline<N, 2>, TriMesh<N, 2>, Vec<Point<N, 2>>, Point<N, 2>) {
     let middle = Point::<N, 2>::new(N::lit(offset), N::lit(-offset));
     let corner = |index: u32| {
@@ -199,7 +200,7 @@ fn no_ray_slips_through_a_closed_line() {
     }
 }
 
-/// The hits of all parts, tested one by one.
+/// Returns the hits of all parts, each tested on its own.
 fn brute<N: Space<D>, const D: usize>(
     parts: &Pieces<N, D>,
     ray: &Ray<N, D>,

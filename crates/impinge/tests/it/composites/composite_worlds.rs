@@ -1,5 +1,5 @@
-//! Tests composites in worlds: manifolds per patch, contact ids, events, one-sided and two-sided surfaces, angular
-//! predictions, shapes that touch themselves or are deformed.
+//! Tests composites in worlds: manifolds per patch, contact ids, events, one-sided and two-sided
+//! surfaces, angular predictions, and shapes that touch themselves or are deformed.
 
 use crate::support::scene_stage;
 use crate::support::slides;
@@ -33,7 +33,7 @@ fn cube<N: Real + Space<3>>(half: f64) -> ShapeHandle<N, 3> {
     ShapeHandle::new(Cuboid::new(v(half, half, half)))
 }
 
-/// A world whose contacts have the prediction 0.02.
+/// A world whose contact queries have the prediction 0.02.
 struct Stage<N: Space<D>, const D: usize> {
     world: World<N, D>,
 }
@@ -126,7 +126,7 @@ fn names_last_while_parts_and_features_do() {
     let mut stage = Stage::<f64, 3>::new();
     let floor = grid::<f64>(10, 1.0, [0.0; 3], Pattern::Slash, |_, _| 0.0);
     let floor = stage.add(at(0.0, 0.0, 0.0), ShapeHandle::new(floor));
-    // The position is such that all four corners stay within their triangles.
+    // At this position all four corners stay within their triangles.
     let cube = stage.add(at(0.35, 0.49, 0.12), cube(0.9));
     stage.world.set_position(cube, at(0.35, 0.89, 0.12));
     stage.update();
@@ -151,7 +151,8 @@ fn names_last_while_parts_and_features_do() {
     assert!(ids(&stage).iter().all(|id| !before.contains(id)), "new contacts have new names");
 }
 
-/// A surface of two planes that meet along z, with the given slopes: a roof, a valley or a cliff.
+/// Returns a surface of two planes with these slopes, which meet along z: a roof, a valley or a
+/// cliff.
 fn fold(left: f64, right: f64) -> TriMesh<f64, 3> {
     let slope = move |x: f64, _: f64| if x < 0.0 { -x * left } else { x * right };
     grid::<f64>(12, 0.5, [0.0; 3], Pattern::Zigzag, slope)
@@ -184,7 +185,7 @@ fn a_ball_rolls_over_a_ridge_without_a_jump() {
     let steep = (1.0_f64 + 0.25).sqrt();
     let mut last: Option<Vector<f64, 3>> = None;
     for step in -100..=100 {
-        // The middle of the ball keeps the distance 0.49 from the roof.
+        // The centre of the ball keeps the distance 0.49 from the roof.
         let s = f64::from(step) * 0.01;
         let turn = 0.49 * 0.5_f64.atan();
         let (x, y, normal_x) = if s.abs() <= turn {
@@ -210,7 +211,7 @@ fn a_ball_rolls_over_a_ridge_without_a_jump() {
     }
 }
 
-/// A table top with a wall down to the floor: two right angles, one convex and one concave.
+/// Returns a table top with a wall down to the floor: two right angles, one convex and one concave.
 fn cliff() -> TriMesh<f64, 3> {
     let mesh = grid::<f64>(16, 0.5, [0.0; 3], Pattern::Zigzag, |_, _| 0.0);
     let profile = |x: f64| -> [f64; 2] {
@@ -282,7 +283,8 @@ fn a_box_in_a_corner_touches_each_wall() {
 #[test]
 fn one_side_and_two() {
     let floor = || grid::<f64>(8, 0.5, [0.0; 3], Pattern::Slash, |_, _| 0.0);
-    // The winding of the grid decides whether +y is its front; a one-sided grid lets bodies pass from the other side.
+    // The winding of the grid decides whether its front faces up. A one-sided grid lets bodies pass
+    // from the back.
     for (shape, is_one_sided) in [(floor(), false), (floor().one_sided(), true)] {
         let front = shape.normal(0).expect("an area").y;
         let mut stage = Stage::<f64, 3>::new();
@@ -489,7 +491,7 @@ fn meshes_lie_on_meshes() {
 }
 
 fn rope(height: f64) -> Vec<Point<f64, 2>> {
-    // A line to the right and back, `height` above.
+    // A line to the right and back again, `height` above the first half.
     let out = (0..8).map(|i| Point::<f64, 2>::new(f64::from(i) * 0.5, 0.0));
     let back = (0..8).rev().map(|i| Point::<f64, 2>::new(f64::from(i) * 0.5 + 0.2, height));
     out.chain(back).collect()
@@ -625,7 +627,7 @@ fn a_wave_lifts_a_box_that_keeps_its_names() {
 
 #[test]
 fn points_that_turning_brings_near_lie_on_other_parts() {
-    // A box that leans: one side touches, and the other comes down when the box rotates.
+    // A tilted box: one side touches, and the other comes down when the box rotates.
     let lean = turned([0.05, 0.5, 0.1], [0.0, 0.0, 0.02]);
     let floor = ShapeHandle::new(grid::<f64>(10, 0.3, [0.0; 3], Pattern::Slash, |_, _| 0.0));
     let mut stage = Stage::<f64, 3>::new();

@@ -1,4 +1,4 @@
-//! Tests parts, paths and searches of nested compounds against flattened lists.
+//! Compares parts, paths and searches of nested compounds with flat lists.
 
 use crate::support::part_search;
 use crate::support::query_support;
@@ -32,7 +32,7 @@ fn hills<N: Real>(seed: u64) -> HeightField<N, 3> {
     HeightField::<N, 3>::new(4, 5, heights, Vector::<N, 3>::new(N::TWO, N::ONE, N::TWO))
 }
 
-/// Convex solids, a height field, and compounds of such children down to a depth.
+/// Returns convex solids, a height field, and compounds of such children up to a nesting depth.
 fn children<N: Real>(random: &mut Poses, depth: usize) -> Vec<Child<N>> {
     let [a, b, c] = [0, 1, 2].map(|_| Point::from(random.vector::<N, 3>()));
     let mut children: Vec<Child<N>> = vec![
@@ -50,7 +50,7 @@ fn children<N: Real>(random: &mut Poses, depth: usize) -> Vec<Child<N>> {
     children
 }
 
-/// The solids with their poses and paths, found by walking down the children.
+/// Returns the solids of all children with their poses and paths.
 fn flattened<N: Real>(
     children: &[Child<N>],
     outer: &Isometry3<N>,
@@ -103,7 +103,7 @@ fn parts_are_those_of_the_children_in_a_row() {
     check_parts::<f64>();
 }
 
-/// Points of all parts, in the frame of the whole.
+/// Returns points of all parts, in the frame of the compound.
 fn points_of<N: Real>(compound: &Compound3<N>, random: &mut Poses) -> Vec<(u32, Point<N, 3>)> {
     let mut points = Vec::new();
     for number in 0..compound.num_parts() {
@@ -147,7 +147,7 @@ fn searches_of_nested_compounds_miss_nothing() {
     check_searches::<f64>(1e6);
 }
 
-/// If no child is a composite, the search finds exactly the children of a scan.
+/// If no child is a composite, a search finds exactly the children that a scan finds.
 #[test]
 fn searches_of_flat_compounds_find_what_looking_at_all_children_finds() {
     let mut random = Random::new(33);
@@ -188,8 +188,8 @@ fn bad_children_are_refused() {
     let error = error.expect_err("NaN");
     assert_eq!(error, ShapeError::ChildPoseNotFinite { index: 1 }, "named");
     assert_eq!(error.to_string(), "the position of child 1 is not finite", "in words");
-    // A line of two cells, doubled 30 times, gives 2^31 parts; twice as many exceed the limit of
-    // indices.
+    // A line of two cells, doubled 30 times, gives 2^31 parts. Doubled again, it exceeds the limit
+    // of indices.
     let line =
         ShapeHandle::new(HeightField::<f32, 2>::new(vec![0.0; 3], Vector::<f32, 2>::new(1.0, 1.0)));
     let mut nested = Compound2::<f32>::new(vec![(Isometry2::identity(), line)]);
@@ -223,8 +223,8 @@ fn unbounded_children_are_found_everywhere() {
     assert_eq!(compound.aabb(&Pose::identity()), Aabb::unbounded(), "placed");
 }
 
-/// The box of a placed compound is the union of its children's boxes as placed, not the box of a
-/// box.
+/// The box of a placed compound is the union of its children's boxes at their placed poses, and not
+/// the box around a rotated box.
 #[test]
 fn placed_boxes_are_tight() {
     let capsule = ShapeHandle::new(Capsule::<f64, 2>::new(2.0, 0.5));
@@ -270,7 +270,7 @@ fn surfaces_and_neighbours_are_those_of_the_child() {
     assert_eq!(compound.child_of_part(6), (2, 1), "the same");
 }
 
-/// A solid and one of its corners, with small numbers that are whole half of the time.
+/// Returns a solid and one of its corners. Coordinates are small, and whole in half of the cases.
 fn cornered<N: Real, const D: usize>(random: &mut Poses) -> (ShapeHandle<N, D>, Vector<N, D>) {
     let grid = N::lit([1.0, 1.0 / 1024.0][usize::from(random.bits() & 1 == 0)]);
     let mut corner = || random.vector::<N, D>().map(|x| (x * N::lit(4.0) / grid).round() * grid);
@@ -284,7 +284,8 @@ fn cornered<N: Real, const D: usize>(random: &mut Poses) -> (ShapeHandle<N, D>, 
     }
 }
 
-/// A compound that holds a turned child, possibly nested, one corner of which is near the origin.
+/// Returns a compound with a rotated child, possibly nested, one corner of which is near the
+/// origin.
 fn with_corner_at_origin<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     random: &mut Poses,
     turn: fn(&mut Poses) -> R,
@@ -303,7 +304,7 @@ fn with_corner_at_origin<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>
     })
 }
 
-/// A distance of zero, an intersection and a contact occur together, in either order.
+/// Asserts that a distance of zero, an intersection, and a contact occur together, in either order.
 fn check_one_fact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
@@ -345,7 +346,7 @@ fn check_corners<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     assert!((600..2700).contains(&touching), "{touching} of 3000 touch");
 }
 
-/// The turned children have a corner at the origin up to rounding, which is also a corner of the
+/// The rotated children have a corner at the origin up to rounding, which is also a corner of the
 /// other solid.
 #[test]
 fn touching_a_turned_child_is_one_fact() {

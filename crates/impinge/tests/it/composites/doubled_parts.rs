@@ -1,5 +1,5 @@
-//! Tests that parts that are listed twice, or lie on other parts, change no contact: meshes in use
-//! have many duplicates.
+//! Tests that parts that are listed twice, or lie on other parts, change no contact: many meshes in
+//! use have duplicates.
 
 use crate::support::{query_support, slides};
 
@@ -21,7 +21,8 @@ fn mesh<N: Space<3>>(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> TriMesh<N,
 
 const SQUARE: [[f64; 3]; 4] =
     [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];
-/// A square as two triangles, and with triangles that occur twice or lie on each other.
+/// A square as two triangles, and the same square with triangles that occur twice or lie on each
+/// other.
 const SHEETS: [&[[u32; 3]]; 6] = [
     &[[0, 2, 1], [0, 3, 2]],
     &[[0, 2, 1], [0, 3, 2], [0, 2, 1], [0, 3, 2]],
@@ -31,8 +32,8 @@ const SHEETS: [&[[u32; 3]]; 6] = [
     &[[0, 2, 1], [0, 2, 1], [0, 3, 2], [0, 2, 1], [0, 3, 2], [0, 3, 2]],
 ];
 
-/// Whether two depths differ by at most `room` (rounding, for curved solids also the error of an
-/// iteration), or both are `None`.
+/// Returns `true` if two depths differ by at most `room`, or both are `None`. `room` covers
+/// rounding, and for curved solids the error of an iteration.
 fn are_same_up_to(room: f64, [one, other]: [Option<f64>; 2]) -> bool {
     match (one, other) {
         (Some(one), Some(other)) => (one - other).abs() <= room,
@@ -40,17 +41,17 @@ fn are_same_up_to(room: f64, [one, other]: [Option<f64>; 2]) -> bool {
     }
 }
 
-/// Index of the sheet that is cut along both diagonals.
+/// Index of the sheet that is cut along the other diagonal.
 const OTHER_CUT: usize = 4;
 
-/// A sheet listed once and the other sheets give the same contacts.
+/// A sheet in which each triangle is listed once has the same contacts as the other sheets.
 fn rims<N: Space<3, Isometry = Isometry3<N>>>() {
     let random = &mut Random(41, false);
     let (mut met, mut at_rim) = (0, 0);
     let sheets = SHEETS.map(|triangles| mesh::<N>(&SQUARE, triangles));
     let one_sided = sheets.each_ref().map(|sheet| sheet.clone().one_sided());
     for round in 0..400 {
-        // Positions around the rim; solids are nearly level or turned at random.
+        // Positions around the rim; solids are almost level, or rotated at random.
         let angle = [0.25, 0.0, 0.004, -0.6][round % 4];
         let turn =
             if round % 3 == 0 { v(0.0, 0.0, angle) } else { random.turn3::<N>().scaled_axis() };
@@ -66,7 +67,7 @@ fn rims<N: Space<3, Isometry = Isometry3<N>>>() {
                 let once = depth(&sheets[0]);
                 met += u32::from(once.is_some());
                 at_rim += u32::from(once.is_some_and(|(_, normal)| normal.y.abs() < 0.99));
-                // The depth below a face depends on where the square is cut into triangles, so the
+                // The depth below a face depends on how the square is cut into triangles. So the
                 // sheet with the other diagonal is compared for shallow contacts only.
                 let is_deep = once.is_some_and(|(depth, _)| depth > 0.05);
                 let is_asked = |index: usize| !(index == OTHER_CUT && is_deep);
@@ -120,8 +121,7 @@ fn the_rim_above_a_floor_is_touched() {
     }
 }
 
-/// A ball whose centre is slightly beyond the rim of a sheet has a normal close to that of the
-/// face.
+/// A ball whose centre is slightly beyond the rim of a sheet has a normal close to the face normal.
 fn shallow<N: Space<3, Isometry = Isometry3<N>>>() {
     for (index, sheet) in SHEETS.map(|triangles| mesh::<N>(&SQUARE, triangles)).iter().enumerate() {
         for (x, z) in [(0.004, 0.0), (0.004, 0.004), (0.0, 0.004)] {
@@ -184,8 +184,8 @@ fn lines_that_are_listed_twice_keep_their_ends() {
     lines::<f64>();
 }
 
-/// A triangle without area that extends beyond a shared edge has the contact there that it has
-/// alone, although the solid touches a floor below it as well.
+/// A triangle without area that extends beyond a shared edge has the same contact there as it has
+/// on its own, even if the solid also touches a floor below.
 fn sticking_out<N: Space<3, Isometry = Isometry3<N>>>() {
     let mut corners = SQUARE.to_vec();
     corners.push([1.0, 0.0, 3.0]);
@@ -228,7 +228,7 @@ fn triangles_without_area_are_met_where_they_stick_out() {
     sticking_out::<f64>();
 }
 
-/// Filled triangles in 2D that are listed twice count once.
+/// Filled triangles in 2D that are listed twice have the contacts of a single one.
 #[test]
 fn filled_triangles_that_are_listed_twice_are_there_once() {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Point::<f64, 2>::from);

@@ -1,5 +1,6 @@
-//! Tests ghosts, the cells and triangles around a tile of terrain: a solid that slides over the
-//! seam of two tiles has the normals that one surface has, as two objects and as one compound.
+//! Tests ghosts: the cells and triangles around a tile of terrain. A solid that slides over the
+//! seam of two tiles has the normals of a single surface, whether the tiles are two objects or one
+//! compound.
 
 use impinge::math::{Isometry2, Isometry3, Point, Real, Vector};
 use impinge::narrow_phase::{ContactPrediction, contact_manifolds};
@@ -9,7 +10,7 @@ use impinge::shape::{
     HeightField, MeshError, Shape, ShapeHandle, TriMesh, Triangle,
 };
 
-/// Cells of a tile along each axis; a tile is as wide.
+/// Number of cells of a tile along each axis, and width of the tile.
 const CELLS: usize = 4;
 
 type Height = fn(f64, f64) -> f64;
@@ -22,7 +23,8 @@ fn wavy(x: f64, z: f64) -> f64 {
     0.3 * (0.7 * x).sin() + 0.2 * (0.9 * z + 0.4).cos()
 }
 
-/// Heights over `cells` cells from `low` along each axis, `border` more at each end, row by row.
+/// Returns heights over `cells` cells from `low` along each axis, plus `border` cells at each end,
+/// row by row.
 fn heights<N: Real>(low: [f64; 2], cells: usize, border: usize, height: Height) -> Vec<N> {
     let count = cells + 2 * border + 1;
     let at = |index: usize, low: f64| low - border as f64 + index as f64;
@@ -30,7 +32,7 @@ fn heights<N: Real>(low: [f64; 2], cells: usize, border: usize, height: Height) 
     all.map(|(row, column)| N::lit(height(at(column, low[0]), at(row, low[1])))).collect()
 }
 
-/// A square field from `low`, about its own middle.
+/// Returns a square field over these heights, in a frame with its origin at the field's centre.
 fn field<N: Real>(low: [f64; 2], cells: usize, border: usize, height: Height) -> HeightField<N, 3> {
     let (count, extent) = (cells + 2 * border + 1, N::lit((cells + 2 * border) as f64));
     let heights = heights(low, cells, border, height);
@@ -43,7 +45,7 @@ fn field<N: Real>(low: [f64; 2], cells: usize, border: usize, height: Height) ->
     if border > 0 { field.with_ghost_border() } else { field }
 }
 
-/// The mesh of a field, in whose frame the tile lies; its ghosts are those of the field.
+/// Returns the mesh of a field, in the frame of the field; its ghosts are the ghosts of the field.
 fn mesh<N: Real>(field: &HeightField<N, 3>) -> TriMesh<N, 3> {
     let columns = field.columns();
     let points = (0..field.rows() * columns).map(|at| field.point(at / columns, at % columns));
@@ -63,7 +65,7 @@ fn at3<N: Real>(x: f64, y: f64, z: f64) -> Isometry3<N> {
     Isometry3::translation(N::lit(x), N::lit(y), N::lit(z))
 }
 
-/// The four tiles around the origin, each with its place.
+/// Returns the four tiles around the origin, each with its pose.
 fn tiles<N: Real>(
     border: usize,
     height: Height,
@@ -92,7 +94,7 @@ fn solids<N: Real>() -> Vec<ShapeHandle<N, 3>> {
     ]
 }
 
-/// The normals of the contacts of a solid and a shape, from the shape to the solid.
+/// Returns the normals of the contacts of a shape and a solid, from the shape to the solid.
 fn normals<N: Real>(
     shape: &dyn Shape<N, 3>,
     at: &Isometry3<N>,
@@ -105,7 +107,7 @@ fn normals<N: Real>(
     contacts.map(|tracked| *tracked.contact.normal).collect()
 }
 
-/// The upward normals of the triangles in the cells around a place.
+/// Returns the upward normals of the triangles in the cells around a position.
 fn fronts<N: Real>(field: &HeightField<N, 3>, x: f64, z: f64) -> Vec<Vector<N, 3>> {
     let around = |at: f64| (0..2 * CELLS).filter(move |cell| (*cell as f64 - 3.5 - at).abs() < 1.5);
     let cells = around(z).flat_map(|row| around(x).map(move |column| (row, column)));
@@ -118,7 +120,8 @@ fn fronts<N: Real>(field: &HeightField<N, 3>, x: f64, z: f64) -> Vec<Vector<N, 3
     triangles.map(upward).collect()
 }
 
-/// Slides each solid over the seams; answers how many normals of tiles none of the whole field has.
+/// Slides each solid over the seams. Returns the number of contact normals on the tiles that are
+/// not normals of the whole field.
 fn bumps<N: Real>(border: usize, height: Height, is_mesh: bool, as_one: bool) -> usize {
     let whole = field::<N>([-4.0, -4.0], 2 * CELLS, 0, height);
     let tiles = tiles::<N>(border, height, is_mesh);
@@ -131,7 +134,8 @@ fn bumps<N: Real>(border: usize, height: Height, is_mesh: bool, as_one: bool) ->
     for solid in solids::<N>() {
         let low = solid.local_aabb().mins().y.as_f64();
         for step in 0..120 {
-            // Not along the diagonals of cells, and over the corner of all tiles.
+            // The path does not follow the diagonals of cells; every second step is exactly on a
+            // line through the common corner of all tiles.
             let x = -1.49 + 0.025 * f64::from(step);
             let z = 0.31 * x + if step % 2 == 0 { 0.0 } else { 0.6 };
             let pose = at3(x, height(x, z) - low - 0.02, z);
@@ -141,7 +145,7 @@ fn bumps<N: Real>(border: usize, height: Height, is_mesh: bool, as_one: bool) ->
                 tiles.iter().flat_map(|(at, tile)| normals(&**tile, at, &*solid, &pose)).collect();
             assert!(!found.is_empty(), "it touches a tile: {solid:?} at {x}, {z}");
             touching += found.len();
-            // At a ridge the surface has all normals between those of two faces.
+            // At a ridge the surface has all normals between the normals of its two faces.
             let fronts = fronts(&whole, x, z);
             let is_known = |normal: &&Vector<N, 3>| {
                 let is_near =
@@ -184,8 +188,8 @@ fn line<N: Real>(low: f64, border: usize, height: fn(f64) -> f64) -> HeightField
     if border > 0 { field.with_ghost_border() } else { field }
 }
 
-/// As [`bumps`] on two fields of the plane; only upward normals count as known, since the line is
-/// flat.
+/// Slides solids over the seam of two fields in 2D, and returns the number of contact normals that
+/// are not upward: the line is flat.
 fn line_bumps<N: Real>(border: usize) -> usize {
     let l = N::lit;
     let solids: [ShapeHandle<N, 2>; 3] = [

@@ -1,4 +1,5 @@
-//! Tests the seams of height fields by hand, and against meshes and polylines of the same parts.
+//! Tests the internal edges of height fields by hand, and against meshes and polylines of the same
+//! parts.
 
 use crate::support::part_search;
 
@@ -22,7 +23,7 @@ fn folded(rows: [f64; 3]) -> Field {
     Field::new(3, 3, heights, Vector::<f64, 3>::new(2.0, 1.0, 2.0))
 }
 
-/// The parts with a side between two points, and that side of each.
+/// Returns the parts that have a side between two points, each with that side.
 fn sides(field: &Field, a: Point<f64, 3>, b: Point<f64, 3>) -> Vec<(u32, FeatureId)> {
     let mut found = Vec::new();
     for part in (0..field.num_parts()).filter(|part| !field.is_hole(*part)) {
@@ -43,7 +44,7 @@ fn corners<N: Real>(field: &HeightField<N, 3>, part: u32) -> [Point<N, 3>; 3] {
     *part.solid.as_shape().as_shape::<Triangle<N, 3>>().expect("a triangle").corners()
 }
 
-/// Whether the parts at a side admit a normal there; all of them must agree.
+/// Returns whether the parts at a side admit a normal there; asserts that all of them agree.
 fn admitted(field: &Field, ends: [[usize; 2]; 2], normal: Vector<f64, 3>) -> bool {
     let [a, b] = ends.map(|[row, column]| field.point(row, column));
     let sides = sides(field, a, b);
@@ -141,7 +142,7 @@ fn internal_edges_may_be_kept() {
     assert!(!surface.admits(0, FeatureId::Edge(0), &v(1.0, -1.0, 1.0)), "in front only");
 }
 
-/// A mesh of the parts that are not holes, and their indices.
+/// Returns a mesh of the parts that are not holes, and their indices in the field.
 fn mesh_of<N: Real>(field: &HeightField<N, 3>) -> (TriMesh<N, 3>, Vec<u32>) {
     let numbers: Vec<_> = (0..field.num_parts()).filter(|part| !field.is_hole(*part)).collect();
     let vertices: Vec<_> = numbers.iter().flat_map(|&part| corners(field, part)).collect();
@@ -151,7 +152,7 @@ fn mesh_of<N: Real>(field: &HeightField<N, 3>) -> (TriMesh<N, 3>, Vec<u32>) {
     (if field.is_one_sided() { mesh.one_sided() } else { mesh }, numbers)
 }
 
-/// Asserts that both surfaces give the same results, and returns whether the normal was admitted.
+/// Asserts that both surfaces give equal results; returns whether they admit the normal.
 fn compare<N: Real, const D: usize>(
     (surface1, part1): (&dyn Surface<N, D>, u32),
     (surface2, part2): (&dyn Surface<N, D>, u32),
@@ -170,7 +171,7 @@ fn compare<N: Real, const D: usize>(
 /// A surface and the index of one of its parts.
 type PartOf<'a, N, const D: usize> = (&'a dyn Surface<N, D>, u32);
 
-/// Compares all features of a triangle; returns how many admit the normal and how many do not.
+/// Compares all features of a triangle. Returns how many admit the normal, and how many do not.
 fn compare_features<N: Real>(
     (side1, side2): (PartOf<'_, N, 3>, PartOf<'_, N, 3>),
     normal: &Vector<N, 3>,
@@ -205,7 +206,7 @@ fn check_against_meshes<N: Real>() {
                     continue;
                 };
                 let snapped = surface1.snapped(part, &normal).expect("an area");
-                // Also tests the normal of another face, and one between the two.
+                // Also tests the normal of another face, and a normal between the two.
                 let other = numbers[random.below(numbers.len())];
                 let other = surface1.snapped(other, &snapped).expect("an area");
                 let between = (snapped + other).try_normalize(N::lit(1e-3)).unwrap_or(normal);
@@ -227,7 +228,7 @@ fn seams_are_those_of_a_mesh_of_the_same_triangles() {
     check_against_meshes::<f64>();
 }
 
-/// Number of features that admit the normal; both surfaces must agree on each.
+/// Returns the number of features that admit the normal; asserts that both surfaces agree on each.
 fn admitted_alike<N: Real>(
     ((surface1, part1), (surface2, part2)): (PartOf<'_, N, 2>, PartOf<'_, N, 2>),
     features: &[(FeatureId, FeatureId)],
@@ -285,7 +286,8 @@ fn check_against_polylines<N: Real>() {
                     let rounding = N::lit(4.0) * N::EPSILON;
                     let is_same =
                         own.zip(other).is_some_and(|(own, other)| (own - other).norm() <= rounding);
-                    // For a normal along the segment itself only the field prefers one side.
+                    // For a normal along the segment itself, only the field prefers one of its
+                    // sides.
                     let along =
                         own.is_some_and(|own| own.dot(&normal).abs() <= N::lit(16.0) * N::EPSILON);
                     assert!(is_same || along, "part {part}, {normal}: {own:?} and {other:?}");

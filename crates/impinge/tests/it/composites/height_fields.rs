@@ -1,5 +1,5 @@
-//! Tests height fields: points and parts, searches against a scan of all parts, edits against
-//! fields made anew.
+//! Tests height fields: points and parts, searches against a scan of all parts, and edited fields
+//! against new ones.
 
 use crate::support::part_search;
 
@@ -90,8 +90,8 @@ fn points_lie_where_the_scale_puts_them() {
     }
 }
 
-/// The two triangles of each cell cover it once, are counter-clockwise seen from the front, and
-/// share the diagonal.
+/// The two triangles of a cell cover it once, are counter-clockwise seen from the front, and share
+/// the diagonal.
 #[test]
 fn triangles_cover_their_cell_under_every_scale() {
     let signs = [1.0, -1.0];
@@ -224,8 +224,8 @@ fn searches_in_the_plane_find_what_looking_at_all_parts_finds() {
     check_in_plane::<f64>();
 }
 
-/// Boxes with infinite faces, such as those of half-spaces, find parts; boxes that are not finite
-/// at all find none.
+/// Boxes with infinite faces, such as those of half-spaces, find parts. Boxes without a finite
+/// point find none.
 #[test]
 fn unbounded_probes_meet_and_infinite_ones_do_not() {
     let field = HeightField::<f32, 3>::new(2, 2, vec![0.0, 0.0, 0.0, 1.0], scale3(2.0, 1.0, 2.0));
@@ -362,7 +362,7 @@ fn a_large_field_is_made_and_searched_at_once() {
         Aabb::new(Point::<f32, 3>::new(20.0, -1.0, 20.0), Point::<f32, 3>::new(30.0, 3.0, 30.0));
     let found = part_search::overlapping(field.search(), &aabb);
     assert!((200..=300).contains(&found.len()), "{} parts", found.len());
-    // A ray straight down visits one cell, or those around a point.
+    // A vertical ray visits one cell, or the cells around a point.
     let ray = Aabb::new(Point::<f32, 3>::new(0.3, 50.0, 0.3), Point::<f32, 3>::new(0.3, 50.0, 0.3));
     let mut met = 0;
     field.search().cast(
@@ -375,6 +375,7 @@ fn a_large_field_is_made_and_searched_at_once() {
         },
     );
     assert!((1..=8).contains(&met), "{met} parts");
-    // Many times the usual time, yet far below that of an algorithm quadratic in the cells.
+    // This limit is many times the usual time, yet far below the time of an algorithm quadratic in
+    // the cells.
     assert!(made.as_secs() < 5, "{made:?}");
 }

@@ -1,5 +1,5 @@
-//! Tests that solids sliding over flat floors of many parts get the normal of the floor only, with
-//! no contact at an inner edge.
+//! Tests that solids that slide over flat floors of many parts have only the normal of the floor,
+//! with no contact at an inner edge.
 
 use crate::support::slides;
 
@@ -8,7 +8,7 @@ use impinge::math::{Isometry3, Real, Space, Vector};
 use impinge::shape::Shape;
 use slides::{Expected, PATTERNS, Random, field, grid, lowest, slide, solids3};
 
-/// Poses of the floor in the world.
+/// Returns poses of the floor in the world.
 fn frames<N: Real>() -> Vec<Isometry3<N>> {
     let lit = |x: f64| N::lit(x);
     let axis = |x: f64, y: f64, z: f64| Vector::<N, 3>::new(lit(x), lit(y), lit(z));
@@ -21,8 +21,8 @@ fn frames<N: Real>() -> Vec<Isometry3<N>> {
     ]
 }
 
-/// Orientations of a solid on the floor: resting on a face, turned about the vertical, slightly
-/// tilted, arbitrary.
+/// Returns orientations of a solid on the floor: resting on a face, rotated about the vertical,
+/// slightly tilted, arbitrary.
 fn turns<N: Real>() -> Vec<UnitQuaternion<N>> {
     let axes = [
         [0.0, 0.0, 0.0],
@@ -68,7 +68,7 @@ fn slide_all<N: Real + Space<3, Isometry = Isometry3<N>>>(
                     normal: up,
                     normal_tolerance: N::lit(1e-6),
                     depth: N::lit(depth),
-                    // Distances of curved solids are found to 2⁻⁴⁰ of the size.
+                    // Distances of curved solids are accurate to 2⁻⁴⁰ of the size.
                     depth_tolerance: N::lit(1e-11) + N::lit(16.0) * N::EPSILON * size,
                     manifolds: 1,
                 };

@@ -1,5 +1,5 @@
-//! Tests in 2D that solids sliding over a straight line of many segments, or over filled triangles,
-//! get the normal of the floor only.
+//! Tests in 2D that solids that slide over a straight line of many segments, or over filled
+//! triangles, have only the normal of the floor.
 
 use crate::support::slides;
 
@@ -26,7 +26,8 @@ fn solids<N: Real>() -> Vec<(&'static str, ShapeHandle<N, 2>)> {
     ]
 }
 
-/// Height of the lowest point of a solid with the rotation `turn` and its origin at 0.
+/// Returns the height of the lowest point of a solid with the rotation `turn` and its origin at
+/// height 0.
 fn lowest<N: Real>(solid: &dyn Shape<N, 2>, turn: UnitComplex<N>) -> N {
     let pose = Pose::from_isometry(&Isometry2::from_parts(Translation2::identity(), turn));
     let geometry = solid.geometry();
@@ -105,7 +106,7 @@ fn solids_slide_over_lines_in_double_precision() {
     over_lines::<f64>();
 }
 
-/// A slab of filled triangles with its top at y = 0.
+/// Returns a slab of filled triangles with its top at y = 0.
 fn slab<N: Real + Space<2>>(rows: u32) -> TriMesh<N, 2> {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for j in 0..=rows {

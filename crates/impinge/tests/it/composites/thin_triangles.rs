@@ -1,6 +1,6 @@
-//! Compares the nearest points of thin triangles in 3D, down to segments and points, with the exact
-//! result: of single triangles, of meshes and of faces of hulls. Errors are in units of epsilon
-//! times the size of the scene.
+//! Compares nearest points on thin triangles in 3D, down to segments and points, with the exact
+//! result. Tests single triangles, meshes and faces of hulls. Errors are in units of epsilon times
+//! the size of the scene.
 
 use std::collections::BTreeMap;
 
@@ -34,8 +34,8 @@ fn on_segment<const D: usize>(ends: [&Vector<D>; 2], p: &Vector<D>) -> Vector<D>
     between(ends, fraction(ends, p))
 }
 
-/// Distance of a point from a triangle with a proof: some point of the triangle is as near, and a
-/// plane at that distance separates the triangle from the point.
+/// Returns the distance of a point from a triangle, with a proof: a point of the triangle is at
+/// that distance, and a plane at that distance separates the triangle from the point.
 fn exact_distance(corners: &[[f64; 3]; 3], p: &[f64; 3]) -> f64 {
     let (corners, p) = (corners.map(|corner| exact(&corner)), exact(p));
     let length = |at: usize| norm(&sub(&corners[(at + 1) % 3], &corners[at])).to_f64();
@@ -86,7 +86,7 @@ fn mixed(random: &mut Random, [a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] + (b[axis] - a[axis]) * u + (c[axis] - a[axis]) * v)
 }
 
-/// A triangle, and two unit vectors: its thin direction and its normal.
+/// Returns a thin triangle and two unit vectors: its thin direction and its normal.
 fn triangle<N: Real>(random: &mut Random) -> ([[f64; 3]; 3], [[f64; 3]; 2]) {
     let along = if random.chance(0.2) { plain::axis(0) } else { random.unit_vector() };
     let across = plain::perpendicular(&[along, random.unit_vector()]);
@@ -117,7 +117,7 @@ fn triangle<N: Real>(random: &mut Random) -> ([[f64; 3]; 3], [[f64; 3]; 2]) {
     (corners.map(rounded::<N, 3>), [across, plain::perpendicular(&[along, across])])
 }
 
-/// A point near a triangle, and whether it lies on it up to its own rounding.
+/// Returns a point near a triangle, and whether it lies on the triangle up to its own rounding.
 fn asked(
     random: &mut Random,
     corners: &[[f64; 3]; 3],
@@ -140,7 +140,7 @@ fn asked(
     }
 }
 
-/// The worst error of each kind in units, and its case.
+/// The worst error of each kind, in units, with its case.
 #[derive(Default)]
 struct Worst(BTreeMap<&'static str, (f64, String)>);
 
@@ -159,7 +159,7 @@ impl Worst {
     }
 }
 
-/// A scene exactly, and in numbers of the scalar, scaled by `factor`.
+/// A scene with exact numbers, and with numbers of the scalar scaled by `factor`.
 struct Scene<N: Real> {
     corners: [[f64; 3]; 3],
     point: [f64; 3],
@@ -179,7 +179,7 @@ impl<N: Space<3>> Scene<N> {
         largest(&[a, b, c, self.point].map(|point| exact(&point)))
     }
 
-    /// Distance from the point to the farthest corner.
+    /// Returns the distance from the point to the farthest corner.
     fn extent(&self) -> f64 {
         largest(&self.corners.map(|corner| sub(&exact(&corner), &exact(&self.point))))
     }
@@ -224,8 +224,8 @@ impl<N: Space<3>> Scene<N> {
         self.ask_mesh(worst, truth);
     }
 
-    /// Notes the error of the distance from the mesh of the triangle, in the same units wherever
-    /// the mesh is.
+    /// Records the error of the distance from the triangle's mesh. The unit does not depend on the
+    /// position of the mesh.
     fn ask_mesh(&self, worst: &mut Worst, truth: f64) {
         let (corners, point) = &self.of_scalar;
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
@@ -269,14 +269,14 @@ fn a_needle_holds_its_own_point() {
 
 const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// Six times the signed volume of a tetrahedron.
+/// Returns six times the signed volume of a tetrahedron.
 fn volume([a, b, c, d]: [&Vector<3>; 4]) -> Quad {
     let (u, v, w) = (sub(b, a), sub(c, a), sub(d, a));
     let minor = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
     minor(1, 2) * w[0] + minor(2, 0) * w[1] + minor(0, 1) * w[2]
 }
 
-/// Tests tetrahedra on thin triangles, as solids and as closed meshes.
+/// Tests tetrahedra with a thin triangle as a face, as solids and as closed meshes.
 fn tetrahedra<N: Space<3>>(seed: u64) {
     let (mut random, mut worst, mut count) = (Random::new(seed), Worst::default(), 0);
     for _ in 0..2000 {
@@ -300,8 +300,8 @@ fn tetrahedra<N: Space<3>>(seed: u64) {
         let unit = N::EPSILON.as_f64() * largest(&[wide[0], wide[1], wide[2], wide[3], asked]);
         let found = solid.signed_distance_to_local_point(&narrow(point)).as_f64();
         let what = || format!("{corners:?} and {point:?}: {found}, not {truth}");
-        // A tetrahedron without volume uses the general algorithm. Far from the origin, planes are
-        // only as exact as the coordinates, and sharp corners multiply that error.
+        // A tetrahedron without volume uses the generic path. Far from the origin, planes are only
+        // as exact as the coordinates, and sharp corners multiply that error.
         if solid.polytope().is_some() && norm(&wide[0]).to_f64() < 100.0 {
             worst.note("tetrahedron", (found - truth).abs() / unit, what);
             count += 1;
@@ -330,7 +330,7 @@ fn tetrahedra_in_double_precision() {
     tetrahedra::<f64>(4);
 }
 
-/// Tests thin triangles in 2D and segments.
+/// Tests thin triangles in 2D, and segments.
 fn outlines<N: Space<2>>(seed: u64) {
     let (mut random, mut worst) = (Random::new(seed), Worst::default());
     for _ in 0..4000 {

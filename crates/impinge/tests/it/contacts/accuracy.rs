@@ -1,9 +1,9 @@
-//! Compares curved solids with a reference of 25 digits: distances, depths and normals are right to
-//! the rounding of the scalar, not only to the tolerance of an iteration. The hardest pairs are
-//! cylinders and cones whose axes nearly coincide; for these the settings are changed little by
-//! little towards larger errors.
+//! Compares curved solids with a reference of 25 digits. Distances, depths and normals must be
+//! accurate to the rounding of the scalar, not only to the tolerance of an iteration. The hardest
+//! pairs are cylinders and cones whose axes almost coincide; their parameters are changed in small
+//! steps toward larger errors.
 //!
-//! The full table, of all kinds and beside another library, is `bench/accuracy.md`.
+//! `bench/accuracy.md` has the full table, of all kinds and with another library.
 
 use crate::support::samples::samples;
 use impinge::math::na::{Quaternion, Translation, UnitQuaternion};
@@ -19,7 +19,7 @@ use impinge_reference::random::Random;
 
 const KINDS: usize = 7;
 
-/// A solid for the library and for the reference; kinds 0 to 3 are curved.
+/// Returns a solid for the library and for the reference; kinds 0 to 3 are curved.
 fn solid<N: Space<3>>(kind: usize, random: &mut Random) -> (ShapeHandle<N, 3>, Solid<3>) {
     let sizes: [f64; 3] = std::array::from_fn(|_| random.single(0.2, 1.5));
     let [x, y, z] = sizes;
@@ -46,7 +46,7 @@ fn solid<N: Space<3>>(kind: usize, random: &mut Random) -> (ShapeHandle<N, 3>, S
     }
 }
 
-/// A random quaternion of the scalar whose squared length is 1 to half a rounding error.
+/// Returns a random quaternion of the scalar whose squared length is 1 up to half a rounding error.
 fn quaternion<N: Real>(random: &mut Random) -> [f64; 4] {
     loop {
         let q = random.quaternion().map(|x| N::lit(x).as_f64());
@@ -57,8 +57,8 @@ fn quaternion<N: Real>(random: &mut Random) -> [f64; 4] {
     }
 }
 
-/// The worst error of the signed distance, and of the separation along the normal, relative to the
-/// size of the scene, over pairs with at least one curved solid.
+/// Returns the worst error of the signed distance and of the separation along the normal, relative
+/// to the size of the scene, over pairs with at least one curved solid; also the case.
 fn worst<N: Space<3>>(seed: u64, rounds: usize) -> (f64, String) {
     let (mut random, mut worst) = (Random::new(seed), (0.0, String::new()));
     for (kind1, kind2, round) in pairs(rounds) {
@@ -67,7 +67,8 @@ fn worst<N: Space<3>>(seed: u64, rounds: usize) -> (f64, String) {
         let [q1, q2] = [(); 2].map(|()| quaternion::<N>(&mut random));
         let pose1 = Pose::from_quaternion([0.0; 3], q1);
         let mut at2 = scale(&random.unit_vector(), 8.0);
-        // Moved along the normal: near or shallow; every third pair has nearly equal centres.
+        // The second solid is moved along the normal: near, or shallow. Every third pair has almost
+        // equal centres.
         let truth = signed_distance(&solid1, &pose1, &solid2, &Pose::from_quaternion(at2, q2));
         let gap = [random.magnitude(1e-3, 8), -random.magnitude(1e-3, 6)][round % 2];
         let way = gap - truth.distance.to_f64();
@@ -111,7 +112,7 @@ fn curved_solids_in_single_precision() {
     assert!(error <= 1e-6, "off by {error} of the size: {what}");
 }
 
-/// Two cylinders or cones with nearly the same axis.
+/// Two cylinders or cones with almost the same axis.
 #[derive(Clone, Debug)]
 struct Coaxial {
     are_cones: [bool; 2],
@@ -121,12 +122,13 @@ struct Coaxial {
     at: [f64; 3],
 }
 
-/// The number rounded to the scalar.
+/// Returns the number rounded to the scalar.
 fn single<N: Real>(x: f64) -> f64 {
     N::lit(x).as_f64()
 }
 
-/// A quaternion of the scalar near `q`, of length 1 as precisely as from [`quaternion`].
+/// Returns a quaternion of the scalar near `q`, whose length is 1 as precisely as that of
+/// [`quaternion`].
 fn turn<N: Real>(q: [f64; 4], random: &mut Random) -> [f64; 4] {
     for wobble in 0..100 {
         let wobble = N::EPSILON.as_f64() * f64::from(wobble.min(2));
@@ -157,7 +159,7 @@ impl Coaxial {
         Self { are_cones: [(); 2].map(|()| random.chance(0.5)), sizes, turns, at }
     }
 
-    /// A copy with sizes, position and rotations changed a little.
+    /// Returns a copy with slightly different sizes, position and rotations.
     fn changed<N: Real>(&self, random: &mut Random) -> Self {
         let strength = random.magnitude(1e-6, 18);
         let mut change = |x: f64, by: f64| single::<N>(x + by * strength * random.range(-1.0, 1.0));
@@ -180,8 +182,8 @@ impl Coaxial {
         }
     }
 
-    /// Error in units: by how much the best separation exceeds that of the contact, or the
-    /// contact's normal separates less than its depth says.
+    /// Returns the error in units: the amount by which the best separation exceeds that of the
+    /// contact, or by which the contact's normal separates less than its depth says.
     fn units<N: Space<3>>(&self) -> f64 {
         let ((shape1, solid1), (shape2, solid2)) = (self.solid::<N>(0), self.solid::<N>(1));
         let pose1 = Pose::from_quaternion([0.0; 3], self.turns[0]);
@@ -197,7 +199,8 @@ impl Coaxial {
     }
 }
 
-/// The worst error found by changing a few bad settings at random and keeping the worse ones.
+/// Changes the parameters of a few bad cases at random and keeps the worse ones. Returns the worst
+/// error and its case.
 fn worst_coaxial<N: Space<3>>(seed: u64) -> (f64, String) {
     const KEPT: usize = 3;
     let (tries, changes) = (samples(15), samples(15));

@@ -1,4 +1,4 @@
-//! Tests contact ids through a world, and the contacts that kinematics predict for the next step.
+//! Tests contact ids in a world, and the contacts that kinematics predict for the next step.
 
 use crate::support::scene_stage;
 
@@ -19,8 +19,8 @@ fn cuboid<N: Real, const D: usize>(half: [f64; D]) -> ShapeHandle<N, D> {
     ShapeHandle::new(Cuboid::new(Vector::<N, D>::from_fn(|axis, _| N::lit(half[axis]))))
 }
 
-/// A pose `x` along the floor at a height, rotated about an axis; `tangent` is that of half the
-/// angle.
+/// Returns the pose at `x` along the floor and at `height`, rotated about `axis`. `tangent` is the
+/// tangent of half the rotation angle.
 fn pose<N: Play<D>, const D: usize>(
     x: f64,
     height: f64,
@@ -34,7 +34,8 @@ fn pose<N: Play<D>, const D: usize>(
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
 const ACROSS: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// A world after an update, with a cube resting on a floor that is added first or last.
+/// A world after its first update, with a cube that rests on a floor; the floor is added first or
+/// last.
 struct Floor<N: Play<D>, const D: usize> {
     world: World<N, D>,
     floor: CollisionObjectHandle,
@@ -80,7 +81,7 @@ fn contacts_of<N: Play<D>, const D: usize>(
     manifolds.iter().flat_map(|manifold| manifold.contacts()).copied().collect()
 }
 
-/// A box and a half-space, both with the upper face at height zero.
+/// Returns a box and a half-space, both with their upper face at height zero.
 fn floors<N: Play<D>, const D: usize>() -> [ShapeHandle<N, D>; 2] {
     let mut half = [20.0; D];
     half[1] = 2.0;
@@ -90,10 +91,11 @@ fn floors<N: Play<D>, const D: usize>() -> [ShapeHandle<N, D>; 2] {
     [cuboid(half), ShapeHandle::new(high)]
 }
 
-/// Contact ids persist for a thousand steps, while the cube slides, sinks and rises, and rotates.
+/// Contact ids persist for a thousand steps while the cube slides, sinks and rises, and rotates.
 fn names_last<N: Play<D>, const D: usize>(turn: impl Fn(f64) -> ([f64; 3], f64)) {
     for (index, shape) in floors::<N, D>().iter().enumerate() {
-        // The origin of the half-space is on its surface, that of the box is 2 below it.
+        // The origin of the half-space is on its surface; the origin of the box is 2 below its
+        // upper face.
         let lift = if index == 0 { 0.0 } else { -2.0 };
         for is_floor_first in [true, false] {
             let mut scene = Floor::<N, D>::new(shape, is_floor_first);
@@ -127,7 +129,7 @@ fn names_outlast_a_thousand_steps() {
     names_last::<f64, 2>(rocking);
     names_last::<f32, 3>(rocking);
     names_last::<f64, 3>(rocking);
-    // Turns slowly by half a turn; in 2D there is no rotation about the vertical.
+    // Rotates slowly by half a turn. In 2D there is no rotation about the vertical.
     let spinning = |step: f64| (UP, 0.003 * step);
     names_last::<f32, 3>(spinning);
     names_last::<f64, 3>(spinning);
@@ -156,8 +158,7 @@ fn names_outlast_shapes<N: Play<D>, const D: usize>() {
     assert!(!first.contains(&round[0]), "which is no corner");
 }
 
-/// Contacts that begin again have new ids, also if the pair was queried for something else in
-/// between.
+/// Contacts that begin again have new ids, even if other queries of the pair ran in between.
 fn names_end_with_contacts<N: Play<D>, const D: usize>() {
     let [floor, _] = floors::<N, D>();
     let mut scene = Floor::<N, D>::new(&floor, false);
@@ -165,7 +166,7 @@ fn names_end_with_contacts<N: Play<D>, const D: usize>() {
     let pair = (floor.min(cube), floor.max(cube));
     let mut seen = scene.ids();
     let near = pose::<N, D>(0.0, 0.49, (ACROSS, 0.0));
-    // Raised a little, so that the broad phase keeps the pair; far; and very far.
+    // The cube is raised slightly, so that the broad phase keeps the pair; far; and very far.
     for height in [0.7, 3.0, 1e6] {
         scene.world.set_position(cube, pose::<N, D>(0.0, height, (ACROSS, 0.0)));
         scene.world.update();
@@ -241,9 +242,10 @@ fn names_are_never_given_twice() {
     names_are_unique::<f64, 3>();
 }
 
-/// Moves poses and predicts contacts; both need the isometry type of the dimension.
+/// Moves poses and predicts contacts. Both need the isometry type of the dimension.
 trait Move<const D: usize>: Play<D> {
-    /// The pose moved by a linear and an angular velocity about its origin for `time`.
+    /// Returns the pose after a motion for `time` with a linear velocity and an angular velocity
+    /// about its origin.
     fn moved(at: &Self::Isometry, motion: &([f64; D], [f64; 3]), time: f64) -> Self::Isometry;
 
     fn predict(
@@ -279,7 +281,7 @@ impl<N: Real> Move<3> for N {
     }
 }
 
-/// Two solids in contact, and the motions of both.
+/// Two solids in contact, with the motion of each.
 struct Case<N: Play<D>, const D: usize> {
     name: &'static str,
     shapes: [ShapeHandle<N, D>; 2],
@@ -288,8 +290,8 @@ struct Case<N: Play<D>, const D: usize> {
 }
 
 impl<N: Move<D>, const D: usize> Case<N, D> {
-    /// Pairs of the contact predicted from time zero for `time` and the contact found then, sorted
-    /// by descending depth at time zero.
+    /// Returns pairs of contacts at `time`: the prediction from time zero, and the contact computed
+    /// then. Sorted by descending depth at time zero.
     fn predicted(&self, time: f64) -> Vec<[Contact<N, D>; 2]> {
         let mut world = World::<N, D>::new(N::lit(0.02));
         let query = GeometricQueryType::Contacts(N::lit(0.1), N::ZERO);
@@ -312,8 +314,8 @@ impl<N: Move<D>, const D: usize> Case<N, D> {
         both
     }
 
-    /// For points, lines and planes fixed to their solids the prediction is exact, up to the error
-    /// `loss` of the query that it is compared with.
+    /// Asserts that predictions are exact for points, lines and planes fixed to their solids, up to
+    /// the error `loss` of the query for comparison.
     fn check_exact(&self, loss: f64) {
         for time in [0.08, 0.04, 0.02] {
             for [predicted, found] in self.predicted(time) {
@@ -324,8 +326,9 @@ impl<N: Move<D>, const D: usize> Case<N, D> {
         }
     }
 
-    /// Halving the time divides the error of the deepest contact at least by three: it is of second
-    /// order, for which the limit is four. Returns whether the errors exceed rounding.
+    /// Asserts that the prediction error of the deepest contact is of second order: halving the
+    /// time divides it by four in the limit, and by at least three here. Returns whether the errors
+    /// exceed rounding.
     fn check_second_order(&self) -> bool {
         let rounding = 256.0 * N::EPSILON.as_f64();
         let errors = [0.08, 0.04, 0.02].map(|time| {
@@ -354,7 +357,7 @@ fn motion<const D: usize>(seed: u32) -> ([f64; D], [f64; 3]) {
     (velocity, spin)
 }
 
-/// Predictions for all kinds of features that both dimensions have.
+/// Tests predictions for all kinds of features that exist in both dimensions.
 fn kinematics_predict<N: Move<D>, const D: usize>() {
     let turned = (ACROSS, 0.1);
     let level = (ACROSS, 0.0);
@@ -391,7 +394,7 @@ fn kinematics_of_flat_and_round_solids_are_exact() {
     kinematics_predict::<f64, 3>();
 }
 
-/// Predictions in 3D for crossing edges and round solids.
+/// Tests predictions in 3D for crossing edges and round solids.
 fn kinematics_predict_in_space<N: Move<3>>() {
     let cylinder = SceneShape::Cylinder { half_height: 0.5, radius: 0.25 };
     let (cube, cylinder) = (cuboid::<N, 3>([0.5; 3]), shape_of::<N, 3>(&cylinder, 1.0));
@@ -410,10 +413,11 @@ fn kinematics_predict_in_space<N: Move<3>>() {
             .check_exact(256.0 * N::EPSILON.as_f64());
         let poses = [at(0.0, 0.0, (ACROSS, 1.0)), at(0.0, 0.48, ([1.0, 0.0, 0.0], 0.8))];
         let shapes = [cylinder.clone(), cylinder.clone()];
-        // The search finds the contact to half the digits, on both solids.
+        // The search finds the contact on both solids to half of the digits.
         let loss = 8.0 * N::EPSILON.as_f64().sqrt();
         Case { name: "crossed cylinders", shapes, poses, motions }.check_exact(loss);
-        // The solids lean on their rims, whose lowest point moves around as the solid rotates.
+        // The solids lean on their rims, and the lowest point of a rim moves around as the solid
+        // rotates.
         for (name, shape) in [("rim of a cylinder", &cylinder), ("rim of a cone", &cone)] {
             let poses = [at(0.0, 0.0, (ACROSS, 0.0)), at(0.0, 0.55, (ACROSS, 0.2))];
             let shapes = [plane.clone(), shape.clone()];

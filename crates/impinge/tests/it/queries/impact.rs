@@ -24,7 +24,7 @@ fn floor() -> Plane<f64, 2> {
     Plane::new(Unit::new_unchecked(V2::y()))
 }
 
-/// The impact of a moving shape on one that stays at the origin.
+/// Returns the impact of a moving shape with a shape that rests at the origin.
 fn onto(
     still: &dyn Shape<f64, 2>,
     place: Isometry2<f64>,
@@ -100,7 +100,7 @@ fn the_longest_time_is_included() {
     assert_eq!((touching(0.0), touching(-1.0)), (Some(0.0), None), "the start is a moment");
 }
 
-/// A longest time that is negative or NaN gives no impact, whatever the start and the speed.
+/// A maximum time that is negative or NaN gives no impact, whatever the start and the speed.
 #[test]
 fn there_is_no_time_before_the_start() {
     let ball = Ball::new(1.0_f64);
@@ -198,7 +198,7 @@ fn what_is_not_finite_never_hits() {
     assert_eq!(impact(&moving1, &moving2, &ImpactOptions::new()), None, "no difference");
 }
 
-/// Speeds from the least to the greatest numbers: the unit of time does not matter.
+/// Tests speeds from the least to the greatest numbers: the unit of time must not matter.
 #[test]
 fn speeds_of_every_size() {
     let ball = Ball::new(1.0);
@@ -230,7 +230,7 @@ fn only_differences_count() {
     assert_eq!(cast(0.0, 1e6), Some(6.75), "both fast");
 }
 
-/// A mover that just passes, and one that just hits.
+/// A mover that narrowly passes, and one that narrowly hits.
 #[test]
 fn grazing_passes() {
     let (ball, square) = (Ball::new(1.0), Cuboid::new(V2::new(1.0, 1.0)));

@@ -58,7 +58,7 @@ where
         let away = random.direction::<N, D>() * N::lit(5.0);
         let places =
             [origin, origin + away].map(|at| Isometry::from_parts(at.into(), (self.turn)(random)));
-        // One is sent at the other or past it, and both drift.
+        // One body is sent at the other one or past it, and both drift.
         let drift = random.vector::<N, D>() * N::lit(0.5);
         let aim = away + random.vector::<N, D>() * N::lit(2.0);
         let velocities = [drift + aim, drift + random.vector::<N, D>() * N::lit(0.25)];
@@ -78,7 +78,7 @@ where
     R: AbstractRotation<N, D> + Copy,
     ConstantVelocities<N, D>: RigidMotion<N, D>,
 {
-    /// Signed distance of the shapes at two poses, minus the target distance.
+    /// Returns the signed distance of the shapes at two poses, minus the target distance.
     fn gap(&self, m1: &Isometry<N, R, D>, m2: &Isometry<N, R, D>) -> N {
         let found = contact(m1, &*self.shapes[0], m2, &*self.shapes[1], N::INFINITY);
         found.map_or(-N::INFINITY, |found| -found.depth) - self.options.target_distance
@@ -113,7 +113,8 @@ where
         let is_at_start = found.is_some_and(|found| found.status.is_at_start());
         assert!(!is_at_start || end == N::ZERO, "{found:?} {what}");
         if start <= noise {
-            // The policy decides whether a start in contact counts, but its status is determined.
+            // The policy decides whether a start in contact is an impact, but its status is
+            // determined.
             let is_named = found.is_none_or(|found| found.toi > N::ZERO || is_at_start);
             assert!(is_named, "{found:?} starts at {start} {what}");
             let status = found.map(|found| found.status);
@@ -127,7 +128,7 @@ where
         assert!(!is_at_start, "{found:?} starts at {start} {what}");
         for look in 0..LOOKS {
             let share = N::lit(f64::from(look) / f64::from(LOOKS));
-            // Times all along the path, and ever closer to its end.
+            // Samples the whole path, and more densely near its end.
             for time in [end * share, end * (N::ONE - share * share * share)] {
                 let before = gap(time);
                 assert!(before > -noise, "{before} at {time}, before {found:?} {what}");
@@ -162,7 +163,7 @@ where
         self.check(found.as_ref(), &|time| self.straight(time), self.noise())
     }
 
-    /// Rounding error of the separation, which is larger for curved solids.
+    /// Returns the rounding error of the separation, which is larger for curved solids.
     fn noise(&self) -> N {
         max(N::EPSILON * N::lit(1024.0), N::lit(1e-9)) * self.extent()
     }
@@ -188,7 +189,7 @@ where
     }
 }
 
-/// A conversion of a motion into the form in which it is passed.
+/// A conversion of a motion into the form in which a test passes it.
 type Told<N, const D: usize> = fn(ConstantVelocities<N, D>) -> Box<dyn RigidMotion<N, D>>;
 
 /// A motion that gives only its positions and bounds.
@@ -292,13 +293,13 @@ where
     assert!(worst.0 < N::lit(1024.0), "epsilon off: {worst:?}");
 }
 
-/// Whether the solid has a unique normal at each of its points.
+/// Returns `true` if the solid has a unique normal at each of its points.
 fn is_round(kind: ShapeKind) -> bool {
     use ShapeKind::{Ball, Capsule, Ellipsoid, Rounded, SupportMap, TaperedCapsule};
     matches!(kind, Ball | Capsule | Ellipsoid | Rounded | SupportMap | TaperedCapsule)
 }
 
-/// The outermost point of a rotated solid in a direction; `None` for half-spaces.
+/// Returns the outermost point of a rotated solid in a direction; `None` for half-spaces.
 fn outermost<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     turn: &R,

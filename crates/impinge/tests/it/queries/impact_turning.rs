@@ -37,7 +37,7 @@ fn spins(place: Isometry2<f64>, angular: f64) -> Turning2<f64> {
     Turning2::<f64>::new(place, V2::zeros(), angular)
 }
 
-/// The half-plane opposite to the normal (x, y), with its boundary through its origin.
+/// Returns the half-plane opposite to the normal (x, y), with its boundary through its origin.
 fn half_plane(x: f64, y: f64) -> Plane<f64, 2> {
     Plane::new(Unit::new_unchecked(V2::new(x, y)))
 }
@@ -49,7 +49,7 @@ fn rod(from: f64, to: f64) -> Segment<f64, 2> {
 /// The motion and the shape of a body.
 type Body<'a, N, const D: usize> = (&'a dyn RigidMotion<N, D>, &'a dyn Shape<N, D>);
 
-/// The impact, which must be equal in both orders.
+/// Returns the impact; asserts that both orders give the same one.
 fn both<N: Space<D>, const D: usize>(
     one: Body<'_, N, D>,
     two: Body<'_, N, D>,
@@ -104,7 +104,7 @@ fn a_rod_swings_against_a_wall() {
 
 #[test]
 fn the_centre_of_a_turn_may_be_anywhere() {
-    // One rod, given once from its middle and once from a frame far away from it.
+    // The same rod, given once from its middle and once from a frame far away from it.
     let wall = half_plane(0.0, -1.0);
     let wall = (&Turning2::still(at(7.0, 2.0_f64.sqrt())) as &dyn RigidMotion<f64, 2>, &wall as _);
     for shift in [1.0, -40.0] {
@@ -137,7 +137,7 @@ fn a_half_plane_turns_and_a_box_flies() {
     assert_near(found, first_touch((&turns, &plane), (&flies, &cuboid), 10.0));
 }
 
-/// First time of contact: by scanning so many times that none is missed, then by bisection.
+/// Returns the first time of contact: a dense scan finds an interval, and bisection refines it.
 fn first_touch(one: Body<'_, f64, 2>, two: Body<'_, f64, 2>, end: f64) -> f64 {
     let touch = |time: f64| {
         distance(&one.0.position_at(time), one.1, &two.0.position_at(time), two.1) <= 0.0
@@ -473,7 +473,7 @@ fn box2d_115_sweep() {
     assert!(near(least + 1e-6).expect("so near") > 0.999, "at the end");
 }
 
-/// The impact of a composite is that of its first part, which the result reports.
+/// The impact of a composite is the impact of its first part, which the result reports.
 #[test]
 fn composites() {
     let parts = [
@@ -548,7 +548,7 @@ fn within_the_tolerance_bodies_count_as_touching() {
         let gap = 2.0_f64.sqrt() - 2.0 * early.sin();
         assert!(early < exact && gap > 0.0 && gap <= tolerance, "{early}, {gap} of {tolerance}");
     }
-    // The start is within the tolerance, so it counts as touching.
+    // The start is within the tolerance, so the solids touch.
     let still = Turning2::still(at(0.0, 0.0));
     let options = FOR_EVER.with_tolerance(0.125);
     let cast = |v: V2| {
@@ -560,8 +560,8 @@ fn within_the_tolerance_bodies_count_as_touching() {
     assert_eq!(cast(V2::y()), None, "separating");
 }
 
-/// The end of a rod passes a wall by a tiny gap, and only bounds of its speed are known: a gap below a millionth of the
-/// size counts as contact.
+/// The end of a rod passes a wall by a tiny gap, and only bounds of its speed are known. A gap
+/// below a millionth of the size is a contact.
 #[test]
 fn what_grazes_within_a_millionth_touches() {
     let (rod, wall) = (rod(0.0, 2.0), half_plane(0.0, -1.0));

@@ -13,7 +13,7 @@ use impinge::shape::{
 };
 use impinge::world::{CollisionGroups, CollisionWorld};
 
-/// Nested compounds around a shape, each moved along the first axis.
+/// Returns nested compounds around a shape, each moved along the first axis.
 fn nest<N: Space<D>, const D: usize>(mut shape: ShapeHandle<N, D>, deep: u32) -> ShapeHandle<N, D> {
     let pose =
         Pose::from_translation(Vector::<N, D>::from_fn(|row, _| N::lit([0.25, 0.0, 0.0][row])));
@@ -24,7 +24,7 @@ fn nest<N: Space<D>, const D: usize>(mut shape: ShapeHandle<N, D>, deep: u32) ->
     shape
 }
 
-/// Runs in a thread with 2 MiB of stack, the default of threads.
+/// Runs `run` in a thread with a stack of 2 MiB, the default of threads.
 fn on_small_stack(run: impl FnOnce() + Send + 'static) {
     let thread = thread::Builder::new().stack_size(2 << 20).spawn(run);
     thread.expect("a thread").join().expect("it ends well");

@@ -31,7 +31,7 @@ struct Setting {
     turned: bool,
 }
 
-/// A rotating motion from a pose, with the given angular speed.
+/// Returns a motion that rotates from a pose with a given angular speed.
 type Spin<N, R, const D: usize> = fn(&Isometry<N, R, D>, N) -> Box<dyn RigidMotion<N, D>>;
 
 /// The shapes, rotation and motion that differ by dimension.
@@ -158,7 +158,7 @@ struct Two<'a, N: Real, R, const D: usize> {
     g1: &'a dyn Shape<N, D>,
     m2: &'a Isometry<N, R, D>,
     g2: &'a dyn Shape<N, D>,
-    /// Whether shapes and poses are equal, so that the order is undefined.
+    /// Returns `true` if shapes and poses are equal, so that the order is undefined.
     same: bool,
 }
 

@@ -71,7 +71,7 @@ fn check_point<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     (1, u32::from(hollow.is_inside))
 }
 
-/// All queries of whether the point is inside agree, and so do the projections.
+/// Asserts that all queries agree on whether the point is inside, and that all projections agree.
 fn consistent<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     solid: &Solid<N, D>,
     m: &Isometry<N, R, D>,

@@ -65,7 +65,7 @@ where
     check_normal(expected, found.normal.map(Real::as_f64), exact)
 }
 
-/// The separation along the normal equals the signed distance up to the tolerance.
+/// Asserts that the separation along the normal equals the signed distance up to the tolerance.
 fn check_normal<Q: AbstractRotation<f64, D>, const D: usize>(
     expected: &Expected,
     normal: Vector<f64, D>,
@@ -133,8 +133,8 @@ fn run_any(case: &Value, expected: [Expected; 2]) -> Option<Vec<String>> {
     Some(complaints)
 }
 
-/// The case with the tests' own shapes for the kinds that exist in both forms; `None` if there is
-/// none.
+/// Returns the case with the tests' own shapes, for the kinds that have both forms; `None` if the
+/// case has no such kind.
 fn by_support(case: &Value) -> Option<Value> {
     let mut twin = case.clone();
     for name in ["shape1", "shape2"] {
@@ -192,7 +192,7 @@ fn narrow_phase_failures_of_others() {
             let size = case["size"].as_f64().expect("a number");
             let pair = case["pair"].to_string();
             let curved = pair.contains("cylinder") || pair.contains("cone");
-            // For curved solids the reference value itself is only known up to a bound.
+            // For curved solids the reference itself is known only up to a bound.
             let bound = case["reference_bound"].as_f64().unwrap_or(0.0).abs();
             let tolerances = if curved {
                 [1e-3 * size, 1e-9 * size + bound]
@@ -205,7 +205,8 @@ fn narrow_phase_failures_of_others() {
     judge(&results, 1600);
 }
 
-/// Time of impact of a case with one scalar, in both orders.
+/// Computes the time of impact of a case with one scalar, in both orders, and compares it with the
+/// expected one.
 fn cast<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     case: &Value,
     scalar: &str,
@@ -237,7 +238,7 @@ fn cast<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     Some(complaints)
 }
 
-/// Compares the normal at the impact, in both orders, if the case gives it.
+/// Compares the normal at the impact with the expected one, in both orders, if the case has one.
 fn cast_normal<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     case: &Value,
     scalar: &str,

@@ -1,5 +1,5 @@
-//! Tests laws of every pair of solids that hold whatever the right result is: each pair of kinds,
-//! in both orders, both dimensions and both scalars, from far apart to one inside the other.
+//! Tests laws that every pair of solids must satisfy, without expected results: for each pair of
+//! kinds, in both orders, both dimensions and both scalars, from far apart to one inside the other.
 
 use crate::support::query_support;
 use crate::support::samples::samples;
@@ -85,7 +85,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R,
     }
 }
 
-/// The contact of a pair at any distance.
+/// Returns the contact of a pair at any distance.
 fn contact_of<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     [solid1, solid2]: &[Placed<N, R, D>; 2],
 ) -> Option<Contact<N, D>> {
@@ -112,7 +112,7 @@ fn precision<N: Real, const D: usize>(setting: &Setting) -> N {
     max(of_alike::<N, D>(setting), N::EPSILON * N::lit(ratio))
 }
 
-/// Error allowed for solids of similar sizes.
+/// Returns the error allowed for solids of similar sizes.
 fn of_alike<N: Real, const D: usize>(setting: &Setting) -> N {
     let kinds = setting.kinds;
     let curved = |kind| matches!(kind, ShapeKind::Cylinder | ShapeKind::Cone);
@@ -183,7 +183,7 @@ fn check<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     check_geometry(setting, pair, &found);
 }
 
-/// The points, the normal and the depth of a contact are consistent.
+/// Asserts that the points, the normal and the depth of a contact are consistent.
 fn check_geometry<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
@@ -206,7 +206,8 @@ fn check_geometry<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize
     }
 }
 
-/// Moving the second solid slightly less or more than the depth decides whether the solids touch.
+/// Asserts that the solids touch after a move of slightly less than the depth, and not after
+/// slightly more.
 fn check_toggle<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     setting: &Setting,
     pair: &[Placed<N, R, D>; 2],
@@ -294,7 +295,7 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
 ) -> bool {
     let random = &mut Random(setting.seed ^ 7, false);
     let mut v = [random.vector::<N, D>(), random.vector::<N, D>()];
-    // Half of the pairs are sent at each other.
+    // Half of the movers are sent at the other solid.
     if setting.seed.is_multiple_of(2) {
         v[0] = (pair[1].pose.translation.vector - pair[0].pose.translation.vector) + v[0];
     }
@@ -309,7 +310,8 @@ fn check_impact<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize>(
     );
     assert_eq!(found, swapped, "swapped {setting:?}");
     if signed(&pair[0], &pair[1]) <= N::ZERO {
-        // Whether such a start counts depends on the velocities; see `queries/impact.rs`.
+        // Whether there is an impact at such a start depends on the velocities; see
+        // `queries/impact.rs`.
         assert!(found.is_none_or(|time| time == N::ZERO), "touching at the start {setting:?}");
         return found.is_some();
     }

@@ -15,7 +15,7 @@ use query_support::random::Random;
 const PLACES: [(f64, f64); 6] =
     [(1.0, 0.0), (1.0, 1e6), (1e-3, 40.0), (1e6, 0.0), (1e-18, 0.0), (1e25, -3e25)];
 
-/// Triangles of very different sizes in random order, a tenth of them without area.
+/// Returns triangles of very different sizes in random order, a tenth of them without area.
 fn soup<N: Real>(random: &mut Random, (size, offset): (f64, f64), count: u32) -> TriMesh<N, 3> {
     let by = Vector::<N, 3>::repeat(N::lit(offset));
     let mut vertices = Vec::new();
@@ -51,7 +51,7 @@ fn aimed<N: Real>(random: &mut Random, mesh: &TriMesh<N, 3>, size: f64) -> Ray<N
     }
 }
 
-/// The first hit, found by casting at each part alone.
+/// Returns the first hit, by a cast at each part alone.
 fn slow<N: Space<D>, const D: usize>(
     shape: &impl CompositeShape<N, D>,
     batch: &RayBatch<'_, N, D>,

@@ -385,7 +385,7 @@ fn rays_that_are_not_finite_hit_nothing() {
     }
 }
 
-/// Rounding may put the crossing of a ray that starts on a segment before its start.
+/// Rounding may place the crossing of a ray that starts on a segment before the start of the ray.
 #[test]
 fn a_ray_that_starts_on_a_turned_segment_hits_it() {
     let capsule = Capsule::<f32, 2>::new(1.0, 0.0);

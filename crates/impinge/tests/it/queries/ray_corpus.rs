@@ -1,4 +1,4 @@
-//! Runs the bugs of other libraries with rays and points.
+//! Runs cases of rays and points that other libraries got wrong.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::na::{Quaternion, UnitQuaternion};
@@ -62,7 +62,7 @@ fn pose3<N: Real>(value: &Value) -> Isometry3<N> {
     Isometry3::from_parts(vector::<N, 3>(&value["t"]).into(), rotation)
 }
 
-/// A flat height field or a mesh.
+/// Returns a flat height field or a mesh.
 fn surface<N: Real>(shape: &Value) -> Option<ShapeHandle<N, 3>> {
     match shape["type"].as_str()? {
         "heightfield" => {
@@ -203,7 +203,7 @@ fn check_point<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     }
 }
 
-/// The case with the corners of its triangle in every order.
+/// Returns the case with the corners of its triangle in every order.
 fn reordered(case: &Value) -> Vec<Value> {
     let orders = ["abc", "acb", "bac", "bca", "cab", "cba"];
     let reorder = |order: &str| {

@@ -14,7 +14,7 @@ fn point<N: Real, const D: usize>(coordinates: [f64; D]) -> Point<N, D> {
     Point::from(Vector::<f64, D>::from(coordinates).map(N::lit))
 }
 
-/// One shape of each kind, all with their top at y = 1 above the origin.
+/// Returns one shape of each kind, all with their top at y = 1 above the origin.
 fn common<N: Real, const D: usize>(
     left: Point<N, D>,
     right: Point<N, D>,
@@ -58,7 +58,7 @@ fn cube_corners<N: Real>() -> Vec<Point<N, 3>> {
     (0..8).map(|bits| point([sign(bits, 0), sign(bits, 1), sign(bits, 2)])).collect()
 }
 
-/// A ray downwards along y from `height`, with a direction of length `length`.
+/// Returns a ray downwards along y from `height`, with a direction of length `length`.
 fn falling<N: Real, const D: usize>(height: f64, length: f64) -> Ray<N, D> {
     let (mut origin, mut dir) = (Vector::<f64, D>::zeros(), Vector::<f64, D>::zeros());
     (origin[1], dir[1]) = (height, -length);
@@ -82,7 +82,7 @@ fn check_kind<N: Space<D>, const D: usize>(shape: &ShapeHandle<N, D>) {
     }
 }
 
-/// The identity as an isometry whose rotation type exists in every dimension.
+/// Returns the identity as an isometry, whose rotation type exists in every dimension.
 fn no_pose<N: Real, const D: usize>()
 -> impinge::math::Isometry<N, impinge::math::na::Rotation<N, D>, D>
 where
@@ -135,7 +135,7 @@ fn every_kind_is_hit_from_above() {
     kinds(&space_kinds::<f64>(), &space);
 }
 
-/// A cube as a hull gives the results of a cuboid, also at corners and edges and along faces.
+/// A cube as a hull gives the results of a cuboid, even at corners and edges and along faces.
 fn cube<N: Real>() {
     let hull = ConvexHull::<N>::from_points(&cube_corners());
     let cuboid = Cuboid::<N, 3>::new(Vector::<N, 3>::repeat(N::ONE));

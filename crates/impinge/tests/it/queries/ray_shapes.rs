@@ -23,8 +23,8 @@ impl<N: Real, const D: usize> Shot<N, D> {
     }
 }
 
-/// A random ray from up to two sizes away, with a direction of any length. Some rays aim at the
-/// middle, more of them in 3D.
+/// Returns a random ray from up to two sizes away, with a direction of any length. Some rays aim at
+/// the centre, more of them in 3D.
 fn shoot<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     rng: &mut Rng,
     m: &Isometry<N, R, D>,
@@ -48,8 +48,8 @@ fn shoot<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     Shot { ray, origin: tip, dir: toward }
 }
 
-/// Time and level at which the line is deepest in the solid, by ternary search: a convex function
-/// has one minimum.
+/// Returns the time and level at which the line is deepest in the solid, by ternary search: a
+/// convex function has one minimum.
 fn deepest<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> (f64, f64) {
     let speed = shot.dir.norm();
     let (mut low, mut high) = (0.0, 12.0 * solid.size / speed);
@@ -60,7 +60,7 @@ fn deepest<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> (
     (low, solid.at(&shot.at(low)))
 }
 
-/// Time between two times at which the sign of the level changes, by bisection.
+/// Returns the time, between two times, at which the sign of the level changes, by bisection.
 fn crossing<N: Real, const D: usize>(
     solid: &Solid<N, D>,
     shot: &Shot<N, D>,
@@ -82,7 +82,7 @@ struct Expected {
     hollow: Option<f64>,
 }
 
-/// The expected hit; `None` if it is too close to call, or so far away that rounding decides.
+/// Returns the expected hit; `None` if rounding decides, because it is too close or too far away.
 fn expected<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> Option<Expected> {
     let unclear = 0.02 * solid.size;
     let start = solid.at(&shot.origin);
@@ -107,8 +107,8 @@ fn expected<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>) -> 
     near(t).then_some(Expected { hit: true, solid: t, hollow: Some(t) })
 }
 
-/// Least error that rounding explains: a few units in the last place of the greatest length. Shapes
-/// found by iteration stop at 2⁻⁴⁰ of it.
+/// Returns the least error that rounding explains: a few units in the last place of the greatest
+/// length. Shapes found by iteration stop at 2⁻⁴⁰ of that length.
 fn rounding<N: Real, const D: usize>(solid: &Solid<N, D>, shot: &Shot<N, D>, far: f64) -> f64 {
     let iterated = ["ellipsoid", "round box"].contains(&solid.name);
     let unit = N::EPSILON.as_f64().max(if iterated { 1e-12 } else { 0.0 });

@@ -18,7 +18,7 @@ fn power_of_two(k: i32) -> f64 {
     if k < 0 { 1.0 / power(k.unsigned_abs()) } else { power(k.unsigned_abs()) }
 }
 
-/// Whether `x * scale` and `y` have the same bits, up to the sign of zero.
+/// Returns `true` if `x * scale` and `y` have the same bits, up to the sign of zero.
 fn is_scaled<N: Real>(x: N, y: N, scale: N) -> bool {
     (x * scale).bits() == y.bits() || x == N::ZERO && y == N::ZERO
 }
@@ -62,7 +62,7 @@ fn check_worlds<N: Play<D>, const D: usize>(
     scale: N,
     place: &str,
 ) -> usize {
-    // Compared as text: the handles of two worlds differ, but print alike.
+    // Compared as text: handles of two worlds differ, but their text is the same.
     let events = [usual, scaled]
         .map(|world| format!("{:?} {:?}", world.contact_events(), world.proximity_events()));
     assert_eq!(events[0], events[1], "{place}");

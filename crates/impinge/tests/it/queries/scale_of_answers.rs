@@ -14,7 +14,7 @@ use query_support::random::Random;
 /// Exponents of the factors.
 const POWERS: [i32; 5] = [-20, -7, 5, 9, 20];
 
-/// A corner on a grid of spacing 0.25.
+/// Returns a random corner on a grid of spacing 0.25.
 fn corner<const D: usize>(random: &mut Random) -> [f64; D] {
     std::array::from_fn(|_| (random.signed() * 4.5).round() * 0.25)
 }
@@ -44,7 +44,7 @@ impl<const D: usize> Draw<D> {
         Vector::<N, D>::from(sizes)
     }
 
-    /// The shape of this kind among those of both dimensions.
+    /// Returns a shape of this kind, of the kinds that exist in both dimensions.
     fn shape<N: Space<D>>(&self, scale: f64) -> Option<ShapeHandle<N, D>> {
         let p = self.points::<N>(scale);
         Some(match self.kind {
@@ -106,7 +106,7 @@ fn answers2<N: Space<2, Isometry = Isometry2<N>>>(
     (lengths, plain, words)
 }
 
-/// The results of [`answers2`] in 3D.
+/// Returns the results of [`answers2`], in 3D.
 fn answers3<N: Space<3, Isometry = Isometry3<N>>>(
     shapes: [&dyn Shape<N, 3>; 2],
     offset: Vector<N, 3>,
@@ -142,14 +142,14 @@ fn answers3<N: Space<3, Isometry = Isometry3<N>>>(
     (lengths, plain, words)
 }
 
-/// Whether all numbers are in proportion to the bit, up to the sign of zero.
+/// Returns `true` if all numbers are in proportion to the bit, up to the sign of zero.
 fn are_scaled<N: Real>(usual: &[N], scaled: &[N], scale: N) -> bool {
     let is_scaled =
         |(a, b): (&N, &N)| (*a * scale).bits() == b.bits() || *a == N::ZERO && *b == N::ZERO;
     usual.len() == scaled.len() && usual.iter().zip(scaled).all(is_scaled)
 }
 
-/// Compares the results for random shapes with those for the shapes at other scales.
+/// Compares the results for random shapes with the results for the same shapes at other scales.
 fn hold<N: Space<D>, const D: usize>(
     seed: u64,
     answers: impl Fn([&dyn Shape<N, D>; 2], Vector<N, D>, N) -> (Vec<N>, Vec<N>, String),
@@ -212,7 +212,7 @@ fn segments_that_cross_and_touch_have_the_depth_of_the_crossing() {
     check::<f64>();
 }
 
-/// Height fields over one row of heights.
+/// Returns height fields over one row of heights.
 #[test]
 fn height_fields_scale() {
     let random = &mut Random(55, false);

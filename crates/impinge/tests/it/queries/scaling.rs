@@ -1,5 +1,5 @@
 //! Compares scaled shapes with their scaled points, and tests how the cost of contacts grows with
-//! the parts within reach.
+//! the number of parts near the other solid.
 
 use crate::support::query_support;
 
@@ -16,7 +16,8 @@ use query_support::random::Random;
 
 type Handle<N, const D: usize> = ShapeHandle<N, D>;
 
-/// Farthest extent of each part along a direction; a shape that is no composite is its only part.
+/// Returns the extent of each part along a direction; a shape that is not a composite is its only
+/// part.
 fn reaches<N: Real, const D: usize>(shape: &Handle<N, D>, direction: &Vector<N, D>) -> Vec<f64> {
     let reach = |pose: &Pose<N, D>, geometry: Geometry<'_, N, D>| {
         let map = geometry.as_support_map().expect("convex");
@@ -55,7 +56,7 @@ fn check<N: Real, const D: usize>(shape: &Handle<N, D>, factors: [f64; D], rando
     }
 }
 
-/// The error of scaling the shape through its handle, not through its type.
+/// Returns the error of scaling the shape by its handle, and not by its type.
 fn refused<const D: usize>(shape: &Handle<f64, D>, factors: [f64; D]) -> ScaleError {
     shape.scaled(&Vector::<f64, D>::from(factors)).expect_err("no such shape")
 }

@@ -114,7 +114,8 @@ fn corners2<N: Space<2, Isometry = Isometry2<N>>>() {
     }
 }
 
-/// Whether a segment has an end among the points; other shapes always contain the shared corner.
+/// Returns whether a segment has an end among the points; other shapes always contain the shared
+/// corner.
 fn is_in<N: Space<D>, const D: usize>(shape: &ShapeHandle<N, D>, points: &[Point<N, D>]) -> bool {
     shape
         .as_shape::<Segment<N, D>>()
@@ -183,7 +184,7 @@ fn holds(triangle: &Piece, p: [i64; 2]) -> bool {
     triangle.len() == 3 && !(signs.contains(&1) && signs.contains(&-1))
 }
 
-/// Whether two pieces have a point in common, exactly.
+/// Returns whether two pieces have a point in common, exactly.
 fn meet(one: &Piece, other: &Piece) -> bool {
     let mut pairs =
         sides(one).into_iter().flat_map(|a| sides(other).into_iter().map(move |b| (a, b)));

@@ -16,8 +16,8 @@ use world_stage::{Stage, add, ball, contacts, cube, near, step};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// The scene with all positions on a grid that `f32` resolves a million units away (1/8), moved by
-/// a shift on that grid: all differences of positions keep their bits.
+/// Returns the scene with all positions on a grid that `f32` resolves a million units away (1/8),
+/// moved by a shift on that grid: all differences of positions keep their bits.
 fn shifted<const D: usize>(mut scene: Scene<D>, shift: f64) -> Scene<D> {
     let on_grid = |x: f64| (x * 8.0).round() / 8.0;
     for wave in scene.objects.iter_mut().flat_map(|object| &mut object.motion.place) {

@@ -16,12 +16,12 @@ use Proximity::{Disjoint, Intersecting, WithinMargin};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// The proximity events of the last update, as old and new status.
+/// Returns the proximity events of the last update, as old and new status.
 fn transitions<N: Space<D>, const D: usize>(world: &World<N, D>) -> Vec<(Proximity, Proximity)> {
     world.proximity_events().iter().map(|event| (event.prev_status, event.new_status)).collect()
 }
 
-/// The ids of all contacts of a pair.
+/// Returns the ids of all contacts of a pair.
 fn ids<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     handle1: CollisionObjectHandle,

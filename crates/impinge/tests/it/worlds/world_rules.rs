@@ -54,7 +54,7 @@ fn groups_decide_who_meets<N: Stage<D>, const D: usize>() {
     assert_eq!(world.contact_pairs().count(), 1, "not even in the broad phase");
 }
 
-/// Filter that accepts pairs whose indices have the same parity.
+/// A filter that accepts pairs whose indices have equal parity.
 struct Parity;
 
 impl<N: Real, T> dim2::world::BroadPhasePairFilter<N, T> for Parity {
@@ -131,7 +131,7 @@ fn filters_hear_of_new_pairs_that_the_groups_allow() {
 
 type Log = Vec<(Vec<ContactEvent>, Vec<ProximityEvent>, usize)>;
 
-/// Random walks of a swarm; returns the log of all events and contacts.
+/// Plays random walks of a swarm; returns the log of all events and contacts.
 fn swarm<N: Stage<D>, const D: usize>(margin: f64) -> Log {
     let mut random = Random::new(11);
     let mut world = World::<N, D>::new(N::lit(margin));
@@ -163,7 +163,7 @@ fn margins_never_change_an_answer<N: Stage<D>, const D: usize>() {
     let events: usize = log.iter().map(|(contacts, near, _)| contacts.len() + near.len()).sum();
     assert!(events > 200, "much happens: {events}");
     for margin in [0.02, 0.5, 8.0] {
-        // Compared as text: the handles of two worlds differ, but print alike.
+        // Compared as text: handles of two worlds differ, but their text is the same.
         let other = swarm::<N, D>(margin);
         assert_eq!(format!("{other:?}"), format!("{log:?}"), "margin {margin}");
     }
@@ -192,8 +192,8 @@ fn order_is_canonical<N: Stage<D>, const D: usize>() {
     assert_eq!(world.contact_manifolds().count(), pairs.len(), "each with a contact");
 }
 
-/// The contacts of one object equal those of all pairs that contain it, seen from its side. Stale
-/// handles and objects that no update has seen have none.
+/// The contacts of an object equal the contacts of all pairs that contain it, with the object as
+/// the first solid. Stale handles, and objects that no update has seen, have none.
 fn an_object_sees_its_pairs_from_its_side<N: Stage<D>, const D: usize>() {
     let (mut random, mut world) = (Random::new(5), World::<N, D>::new(N::lit(0.02)));
     for number in 0..60 {

@@ -17,7 +17,7 @@ use ContactEvent::{Started, Stopped};
 
 type World<N, const D: usize> = CollisionWorld<N, D, ()>;
 
-/// Two cubes side by side, with a gap.
+/// Returns two cubes side by side, with a gap.
 fn table<N: Stage<D>, const D: usize>() -> ShapeHandle<N, D> {
     let legs = [-1.5, 1.5].map(|x| (N::on_x(x), cube(1.0)));
     ShapeHandle::new(Compound::new(legs.to_vec()))
@@ -27,19 +27,19 @@ fn capsule<N: Real, const D: usize>() -> ShapeHandle<N, D> {
     ShapeHandle::new(Capsule::<N, D>::new(N::ONE, N::HALF))
 }
 
-/// A shape for each representation of contacts.
+/// Returns a shape for each representation of contacts.
 fn shapes<N: Stage<D>, const D: usize>() -> [ShapeHandle<N, D>; 4] {
     [ball(1.0), cube(1.0), capsule(), table()]
 }
 
-/// The pose at height `y`, moved sideways by `x`.
+/// Returns the pose at height `y`, moved sideways by `x`.
 fn above<N: Stage<D>, const D: usize>(x: f64, y: f64) -> N::Isometry {
     let mut coordinates = [0.0; D];
     (coordinates[0], coordinates[1]) = (x, y);
     N::at(coordinates)
 }
 
-/// All points of a pair.
+/// Returns all contact points of a pair.
 fn points<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     one: CollisionObjectHandle,
@@ -81,8 +81,7 @@ fn check_readers<N: Space<D>, const D: usize>(
     assert_eq!(seen.collect::<Vec<_>>(), all, "seen from the second");
 }
 
-/// Computing a pair between updates gives the result of an update for it and leaves everything else
-/// unchanged.
+/// A pair computed between updates has the result of an update, and everything else is unchanged.
 fn a_pair_is_computed_as_an_update_would<N: Stage<D>, const D: usize>() {
     for reuses in [false, true] {
         for (index, shape) in shapes::<N, D>().into_iter().enumerate() {
@@ -231,7 +230,7 @@ fn an_object_with_itself_is_a_pair<N: Stage<D>, const D: usize>() {
     assert_eq!(points(&world, knot, knot), after, "as the update has it");
 }
 
-/// A world of two shapes, the second one at a pose.
+/// Returns a world of two shapes, the second one at a pose.
 fn two<N: Stage<D>, const D: usize>(
     shapes: [&ShapeHandle<N, D>; 2],
     at: N::Isometry,
@@ -243,7 +242,7 @@ fn two<N: Stage<D>, const D: usize>(
     (world, [one, other])
 }
 
-/// Contacts with skins equal those of shapes rounded by the same radius.
+/// Contacts with skins equal the contacts of shapes rounded by the same radius.
 fn skins_round_shapes<N: Stage<D>, const D: usize>() {
     let (skins, slack) = ([0.25, 0.125], N::lit(64.0) * N::EPSILON);
     let rounded = |shape: &ShapeHandle<N, D>, radius: f64| -> ShapeHandle<N, D> {
@@ -278,7 +277,7 @@ fn skins_round_shapes<N: Stage<D>, const D: usize>() {
     assert!((all_pairs / 4..all_pairs).contains(&touching), "{touching} of {all_pairs} touch");
 }
 
-/// The deepest contact of a pair.
+/// Returns the deepest contact of a pair.
 fn deepest<N: Space<D>, const D: usize>(
     world: &World<N, D>,
     one: CollisionObjectHandle,
@@ -341,7 +340,7 @@ fn skins_grow_parts_of_composites<N: Stage<D>, const D: usize>() {
             assert_eq!((contact.normal[1], point.part1), (N::ONE, 1), "up, from the second part");
         }
         assert_eq!(world.contacts_with(floor).count(), 1 << (D - 1), "the lower face");
-        // The skins also count between updates.
+        // The skins apply between updates too.
         world.set_position(solid, above::<N, D>(1.5, 1.875));
         assert!(world.update_pair(one, two), "kept");
         check_readers_of_pair(&world, one, two);

@@ -1,5 +1,5 @@
-//! Follows hulls, boxes and meshes step by step: the contacts of a world, which updates many pairs
-//! in one batch, equal to the bit those of a generator for each pair alone, also when both reuse
+//! Follows hulls, boxes and meshes step by step. The contacts of a world, which updates many pairs
+//! in one batch, equal to the bit those of a generator for each single pair, even when both reuse
 //! contacts.
 //!
 //! The generator of a pair has the same history, but only gets poses and shapes.
@@ -55,7 +55,7 @@ impl Place {
     }
 }
 
-/// A patch of uneven triangles, about as large as the other shapes.
+/// Returns a patch of uneven triangles, about as large as the other shapes.
 fn mesh<N: Space<3>>(noise: &mut Noise, scale: f64) -> ShapeHandle<N, 3> {
     let mut vertex = |n: u32| {
         let [x, z] = [n % 4, n / 4].map(|k| f64::from(k) * 0.6 - 0.9);
@@ -92,13 +92,13 @@ fn shape<N: Space<3>>(noise: &mut Noise, kind: usize, scale: f64) -> ShapeHandle
     ShapeHandle::new(Cuboid::new(scaled([0.5, 0.4, 0.6])))
 }
 
-/// Contacts and kinematics of manifolds as text, without the ids.
+/// Returns the contacts and kinematics of manifolds as text, without the ids.
 fn facts<N: Real>(manifolds: &[&ContactManifold<N, 3>]) -> Vec<String> {
     let contacts = manifolds.iter().flat_map(|manifold| manifold.contacts());
     contacts.map(|tracked| format!("{:?} {:?}", tracked.contact, tracked.kinematic)).collect()
 }
 
-/// The facts about a pair in a world.
+/// Returns the text of the contacts of a pair in a world.
 fn said_of<N: Space<3>>(
     world: &CollisionWorld<N, 3, ()>,
     [one, other]: [CollisionObjectHandle; 2],
@@ -117,7 +117,8 @@ struct Twins<N: Space<3>> {
     twin: PairManifoldGenerator<N, 3>,
 }
 
-/// Size of a step: mostly small; every sixteenth step jumps, and some steps do not move.
+/// Returns the size of a step: mostly small. Every sixteenth step is a jump, and some steps do not
+/// move.
 fn size(noise: &mut Noise, step: usize) -> f64 {
     const SIZES: [f64; 8] = [1e-3, 3e-4, 1e-3, 0.0, 1e-5, 2e-3, 1e-3, 1e-7];
     let is_jump = step % 16 == 15;

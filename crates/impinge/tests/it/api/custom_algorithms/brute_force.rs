@@ -7,7 +7,7 @@ use super::dim::broad_phase::{BroadPhase, BroadPhaseError, ProxyHandle};
 use super::dim::math::{Point, Real};
 use super::dim::query::Ray;
 
-/// Broad phase with exact boxes: no margin, and no state but the boxes and the pairs.
+/// A broad phase with exact boxes, without a margin. Its only state is the boxes and the pairs.
 #[derive(Clone, Debug)]
 pub(super) struct BruteForce<N: Real, T> {
     /// Proxies by index; an index is never reused.
@@ -101,7 +101,7 @@ impl<N: Real, T> BroadPhase<N, Aabb<N>, T> for BruteForce<N, T> {
         self.find_mut(handle).map(|_| ())
     }
 
-    /// Does nothing: `update` asks the filter about all pairs anyway.
+    /// Does nothing, because `update` calls the filter for all pairs in any case.
     fn deferred_recompute_all_proximities(&mut self) {}
 
     fn update(

@@ -8,7 +8,7 @@ use super::dim::query::Proximity;
 use super::dim::shape::{Ball, Shape};
 use super::generators::Policy;
 
-/// Proximity of two balls; its update returns `false` for all other solids.
+/// The proximity of two balls; `update` returns `false` for all other solids.
 #[derive(Clone, Debug)]
 pub(super) struct OwnNearness(Proximity);
 
@@ -22,8 +22,8 @@ impl<N: Real> ProximityDetector<N, DIM> for OwnNearness {
         b: &dyn Shape<N, DIM>,
         margin: N,
     ) -> bool {
-        // An arbitrary wrong value: the result of a detector whose update returned `false` must not
-        // be used.
+        // An arbitrary wrong value, because the result of a detector whose `update` returned
+        // `false` must not be used.
         self.0 = Proximity::Intersecting;
         let (Some(a), Some(b)) = (a.as_shape::<Ball<N>>(), b.as_shape::<Ball<N>>()) else {
             return false;

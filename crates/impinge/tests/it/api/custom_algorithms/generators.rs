@@ -1,5 +1,5 @@
-//! A custom contact algorithm: it treats two balls itself and leaves all other solids to the
-//! library.
+//! A custom contact algorithm, which computes the contacts of two balls and leaves all other solids
+//! to the library.
 
 use super::dim::math::{DIM, Isometry, Point, Real, Unit};
 use super::dim::narrow_phase::{
@@ -12,12 +12,12 @@ use super::dim::query::{
 use super::dim::shape::{Ball, FeatureId, Shape};
 use super::standalone::{at, vector};
 
-/// Contacts of two balls; its update returns `false` for all other solids.
+/// The contacts of two balls; `update` returns `false` for all other solids.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OwnBalls<N: Real> {
-    /// Id of the pair's contact, once it has been allocated.
+    /// Contact id of the pair, once it has been allocated.
     pair: Option<u64>,
-    /// How often the balls have begun to touch.
+    /// Number of times that the balls have begun to touch.
     touches: u32,
     manifold: ContactManifold<N>,
 }
@@ -85,12 +85,12 @@ impl<N: Real> ContactManifoldGenerator<N, DIM> for OwnBalls<N> {
     }
 }
 
-/// Algorithms that a custom dispatcher gives to pairs.
+/// The algorithms that the custom dispatcher assigns to pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Policy {
     /// [`OwnBalls`] for two balls, the library's boxed algorithm for other pairs.
     Balls,
-    /// [`OwnBalls`] for all pairs, although it refuses most of them.
+    /// [`OwnBalls`] for all pairs, although its `update` refuses most of them.
     OnlyBalls,
     /// No algorithm.
     Nothing,
@@ -111,9 +111,9 @@ impl<N: Real> ContactDispatcher<N, DIM> for Policy {
     }
 }
 
-/// A kinematic made from public parts reproduces the contact at the poses it was made for; with the
-/// second ball moved a quarter turn around the first and 0.5 further out, the normal turns with it
-/// and the depth falls from 0.25 to -0.25.
+/// A kinematic made from public parts reproduces the contact at the poses for which it was made.
+/// With the second ball moved a quarter turn around the first and 0.5 farther away, the normal
+/// turns with it and the depth falls from 0.25 to -0.25.
 fn own_kinematics<N: Real>() {
     let (ball1, ball2) = (Ball::new(N::ONE), Ball::new(N::HALF));
     let (here, there) = (at::<N>(0.0, 0.0), at::<N>(1.25, 0.0));

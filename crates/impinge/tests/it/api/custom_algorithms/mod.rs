@@ -1,7 +1,7 @@
 //! Custom algorithms and shapes, written against `impinge::dim2` and `impinge::dim3`.
 //!
-//! Each source is compiled twice, with `dim` standing for one of the two modules. The tests thereby
-//! show that code for one dimension is right for the other once the numbers are adapted.
+//! Each source is compiled twice, with `dim` as an alias for one of the two modules. So code
+//! written for one dimension also works in the other, once its numbers are adapted.
 
 #![allow(clippy::duplicate_mod, reason = "once for each dimension")]
 

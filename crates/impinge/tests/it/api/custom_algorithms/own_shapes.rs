@@ -1,4 +1,4 @@
-//! Tests that custom shapes work in every query: an ellipsoid known by its support points, and a
+//! Tests that custom shapes work in every query: an ellipsoid that only has support points, and a
 //! crate that delegates to a box.
 
 use super::dim::bounding_volume::Aabb;
@@ -46,7 +46,7 @@ impl<N: Real> Shape<N, DIM> for Ellipsoid<N> {
     }
 }
 
-/// A box behind a custom type.
+/// A box wrapped in a custom type.
 #[derive(Clone, Debug)]
 struct Crate<N: Real> {
     walls: Cuboid<N>,
@@ -64,7 +64,7 @@ impl<N: Real> Shape<N, DIM> for Crate<N> {
     }
 }
 
-/// One solid of each kind, about 1 large.
+/// Returns one solid of each kind, each of a size near 1.
 fn others<N: Real>() -> Vec<Box<dyn Shape<N, DIM>>> {
     let point = |x: f64, y: f64| Point::from(vector::<N>(x, y));
     vec![
@@ -78,7 +78,7 @@ fn others<N: Real>() -> Vec<Box<dyn Shape<N, DIM>>> {
     ]
 }
 
-/// Bound on the error of searches by support points.
+/// Returns the error bound of searches by support points.
 fn tolerance<N: Real>() -> f64 {
     if N::EPSILON.as_f64() < 1e-10 { 1e-7 } else { 2e-3 }
 }
@@ -90,12 +90,12 @@ fn check_near<N: Real>(a: N, b: N, what: &str) {
 
 #[track_caller]
 fn check_close<N: Real>(a: &Vector<N>, b: &Vector<N>, what: &str) {
-    // Where the distance has its minimum it changes with the square of the offset, so points and
-    // directions are known only to the root of the tolerance.
+    // Near its minimum the distance changes with the square of the offset. So points and directions
+    // are known only to the square root of the tolerance.
     assert!((a - b).norm().as_f64() <= tolerance::<N>().sqrt(), "{what}: {a} and {b}");
 }
 
-/// Every query gives the same result for two shapes that are the same set of points.
+/// Asserts that every query gives the same result for two shapes that are the same set of points.
 fn check_twins<N: Real>(own: &dyn Shape<N, DIM>, known: &dyn Shape<N, DIM>) {
     for (index, other) in others::<N>().iter().enumerate() {
         let other = &**other;
@@ -135,8 +135,8 @@ fn check_contact<N: Real>(
     let both = [own, known].map(|shape| contact(here, shape, there, other, prediction));
     if let [Some(a), Some(b)] = &both {
         check_near(a.depth, b.depth, &format!("depth of {what}"));
-        // A shape deep inside may have several shortest ways out, so only shallow overlaps fix the
-        // normal.
+        // A deep overlap may have several shortest ways out, so normals are compared only for
+        // shallow ones.
         if a.depth < N::lit(0.25) {
             check_close(&a.normal, &b.normal, &format!("normal of {what}"));
         }
@@ -195,7 +195,7 @@ fn ellipsoids<N: Real>() {
     check_twins::<N>(&round, &ball);
     check_points_and_rays::<N>(&round, &ball);
 
-    // An ellipsoid with radii 2 and 0.5: its distances along the axes follow by hand.
+    // Distances of an ellipsoid with radii 2 and 0.5 along its axes, computed by hand.
     let long = Ellipsoid { radii: vector::<N>(1.0, -0.5) + Vector::repeat(N::ONE) };
     let (here, there) = (at::<N>(0.0, 0.0), at::<N>(4.0, 0.0));
     check_near(distance(&here, &long, &there, &ball), N::ONE, "2 + 1 + 1 = 4");
@@ -211,8 +211,8 @@ fn ellipsoids<N: Real>() {
     check_near(hit.expect("hits").toi, N::lit(1.5), "3 at speed 2");
 }
 
-/// The manifold of a custom round shape on a floor keeps one point with the same contact id while
-/// the shape moves along the floor.
+/// A custom round shape that moves along a floor keeps a manifold of one point with the same
+/// contact id.
 fn manifolds<N: Real>() {
     let (round, floor) = (Ellipsoid { radii: Vector::repeat(N::ONE) }, cube::<N>(3.0));
     let (mut generator, mut ids) = (PairManifoldGenerator::<N>::default(), IdAllocator::new());
@@ -263,7 +263,7 @@ fn in_worlds<N: Real>() {
     assert!(shape.as_ref().as_shape::<Ball<N>>().is_none(), "and nothing else");
 }
 
-/// A shape that delegates to another one gives the same bits.
+/// A shape that delegates to another one gives the other shape's results, to the bit.
 fn crates<N: Real>() {
     let walls = Cuboid::new(vector::<N>(1.0, 0.5) + Vector::repeat(N::lit(0.25)));
     let own = Crate { walls, content: "apples" };

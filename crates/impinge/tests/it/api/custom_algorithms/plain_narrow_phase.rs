@@ -1,5 +1,5 @@
-//! A custom narrow phase: a sorted list of pairs, each with a boxed algorithm, all computed at
-//! every update.
+//! A custom narrow phase: a sorted list of pairs, each with a boxed algorithm, all of which are
+//! computed at every update.
 
 use std::collections::BTreeMap;
 
@@ -65,7 +65,7 @@ impl<N: Real> PlainNarrowPhase<N> {
     }
 }
 
-/// Pushes events for each difference between the state of a pair before and after an update.
+/// Pushes an event for each difference between the states of a pair before and after an update.
 fn note<N: Real>(
     (collider1, collider2): Key,
     entry: &mut Entry<N>,
@@ -138,7 +138,7 @@ impl<N: Real, T> NarrowPhase<N, DIM, T> for PlainNarrowPhase<N> {
     fn handle_change(&mut self, _: &mut Events, objects: &CollisionObjects<N, T>, handle: Handle) {
         let mine = self.pairs.iter_mut().filter(|(key, _)| key.0 == handle || key.1 == handle);
         for (key, entry) in mine {
-            // The pairs of removed objects have been removed before this call.
+            // The world has removed the pairs of removed objects before this call.
             let both = objects.get(key.0).zip(objects.get(key.1)).expect("both live");
             entry.work = Work::new(both.0, both.1);
         }

@@ -10,14 +10,14 @@ use super::dim::narrow_phase::{
 use super::dim::query::Proximity;
 use super::dim::shape::{Ball, Cuboid};
 
-/// The vector whose first two coordinates are given; the others are zero.
+/// Returns the vector with these first two coordinates; the others are zero.
 pub(super) fn vector<N: Real>(x: f64, y: f64) -> Vector<N> {
     let mut vector = Vector::<N>::zeros();
     (vector[0], vector[1]) = (N::lit(x), N::lit(y));
     vector
 }
 
-/// The pose at `(x, y)` without rotation.
+/// Returns the pose at `(x, y)`, without rotation.
 pub(super) fn at<N: Real>(x: f64, y: f64) -> Isometry<N> {
     Isometry::from_parts(Translation::from(vector::<N>(x, y)), Rotation::identity())
 }
@@ -26,8 +26,8 @@ pub(super) fn cube<N: Real>(half: f64) -> Cuboid<N> {
     Cuboid::new(Vector::repeat(N::lit(half)))
 }
 
-/// A cube slides 1/16 above a floor: depth and normal are as computed by hand, the contact ids stay
-/// the same, and the boxed algorithm gives the same manifolds as the plain one.
+/// A cube slides 1/16 above a floor. Depth and normal have the values computed by hand, the contact
+/// ids persist, and the boxed algorithm gives the same manifolds as the generator.
 fn contacts_alone<N: Real>() {
     let dispatcher = DefaultContactDispatcher::new();
     let (floor, cube) = (cube::<N>(2.0), cube::<N>(0.5));

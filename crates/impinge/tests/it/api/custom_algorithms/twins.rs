@@ -1,6 +1,6 @@
 //! Two worlds play the same scene: one with the default parts, and one whose phases and algorithms
-//! are exchanged on the way. Both must report the same contacts, proximities and events at every
-//! step, also at the steps of an exchange.
+//! are exchanged while it plays. Both must report the same contacts, proximities and events at
+//! every step, even at a step with an exchange.
 
 use std::collections::BTreeMap;
 
@@ -18,10 +18,10 @@ use super::generators::Policy;
 use super::plain_narrow_phase::PlainNarrowPhase;
 use crate::support::scene_stage::{Play, Player, World, assert_views_agree};
 
-/// The uids of two handles; those of the same objects are equal in both worlds.
+/// The uids of two handles. An object has the same uid in both worlds.
 type Key = (usize, usize);
 
-/// The parts that are exchanged before the update of a step.
+/// The part that is exchanged before the update of a step.
 #[derive(Clone, Copy, Debug)]
 enum Exchange {
     Algorithms(Policy),
@@ -52,7 +52,7 @@ impl Exchange {
     }
 }
 
-/// The pairs that have contacts, each with its largest depth.
+/// Returns the pairs that have contacts, each with its largest depth.
 fn touching<N: Real>(world: &World<N, DIM>) -> BTreeMap<Key, f64> {
     assert_views_agree(world);
     let pairs = world.contact_manifolds().map(|(a, b, manifold)| {
@@ -62,7 +62,7 @@ fn touching<N: Real>(world: &World<N, DIM>) -> BTreeMap<Key, f64> {
     pairs.collect()
 }
 
-/// The pairs of the contact events: `true` for started, `false` for stopped.
+/// Returns the pairs of the contact events, with `true` for started and `false` for stopped.
 fn told<N: Real>(world: &World<N, DIM>) -> Vec<(Key, bool)> {
     let key = |event: &ContactEvent| {
         let (a, b) = event.handles();
@@ -81,7 +81,7 @@ fn nearness<N: Real>(world: &World<N, DIM>) -> BTreeMap<Key, Proximity> {
 struct Twins<N: Play<DIM>> {
     usual: Player<N, DIM>,
     other: Player<N, DIM>,
-    /// The pair of each contact id that was seen: an id must never pass to another pair.
+    /// The pair of each contact id so far: an id must never belong to a second pair.
     names: BTreeMap<ContactId, Key>,
     events: usize,
 }
@@ -111,7 +111,7 @@ impl<N: Play<DIM>> Twins<N> {
         let (usual, other) = (&self.usual.world, &self.other.world);
         other.validate().expect("the parts agree");
         assert_eq!(told(usual), told(other), "{place}");
-        // Compared as text: the handles of two worlds differ, but print alike.
+        // Compared as text: handles of two worlds differ, but their text is the same.
         let near = [usual, other].map(|world| format!("{:?}", world.proximity_events()));
         assert_eq!(near[0], near[1], "{place}");
         assert_eq!(nearness(usual), nearness(other), "{place}");
@@ -146,7 +146,7 @@ fn exchanges<N: Play<DIM>>(scene: &Scene<DIM>) {
     assert!(twins.events > 60, "{} events", twins.events);
 }
 
-/// The scene of sparse drift with all objects turned into balls, every fifth of which is a sensor.
+/// Returns the scene `sparse_drift` with a ball for each object; every fifth object is a sensor.
 fn balls() -> Scene<DIM> {
     let mut scene = sparse_drift::<DIM>(150);
     for (index, object) in scene.objects.iter_mut().enumerate() {
@@ -204,7 +204,7 @@ fn pairs_without_algorithm<N: Play<DIM>>() {
     }
 }
 
-/// Pairs whose algorithm refuses them have no contacts and no events. Every third object is no
+/// Pairs whose algorithm refuses them have no contacts and no events. Every third object is not a
 /// ball, so that such pairs occur.
 fn pairs_that_are_refused<N: Play<DIM>>() {
     let mut scene = balls();

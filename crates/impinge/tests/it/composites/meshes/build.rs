@@ -48,7 +48,7 @@ fn new_panics_in_words() {
     let _ = mesh::<f32, 3>(&SQUARE, &[[0, 1, 9]]);
 }
 
-/// Compares neighbours with a scan of all sides of all triangles.
+/// Compares the neighbours of triangles with a scan of all sides of all triangles.
 fn check_neighbors<N: Space<D>, const D: usize>(mesh: &TriMesh<N, D>) {
     let ends = |triangle: u32, side: u32| {
         let corners = mesh.triangles()[triangle as usize];
@@ -115,7 +115,7 @@ fn open_flat_and_odd_meshes() {
     check_neighbors(&flipped);
 }
 
-/// A band of eight quadrilaterals with half a twist: its windings cannot all agree.
+/// A band of eight quadrilaterals with half a twist, whose windings cannot all agree.
 #[test]
 fn a_moebius_strip_has_one_seam_too_many() {
     let mut vertices = Vec::new();
@@ -210,7 +210,8 @@ fn triangles_without_area_have_no_normal() {
     }
 }
 
-/// All corners lie in the box and the sphere, and the box is not much larger than the least one.
+/// Asserts that all corners lie in the box and the sphere, and that the box is not much larger than
+/// the smallest one.
 fn check_boxes<N: Space<3>>(mesh: &TriMesh<N, 3>, looseness: N) {
     let mut random = Random::new(5);
     for _ in 0..20 {

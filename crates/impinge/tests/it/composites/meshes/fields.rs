@@ -1,5 +1,5 @@
-//! Tests that a height field has the normals of the mesh of its triangles, and of the line of its
-//! segments.
+//! Tests that a height field admits the same normals as the mesh of its triangles, or the line of
+//! its segments.
 
 use impinge::math::{Real, Space, Vector};
 use impinge::shape::{CompositeShape, FeatureId, HeightField, PartSolid, Polyline, TriMesh};
@@ -7,7 +7,7 @@ use impinge_reference::random::Random;
 
 use super::{mesh, surface, vector};
 
-/// Corners of all parts, in order.
+/// Returns the corners of all parts, in order.
 fn corners<N: Real, const D: usize>(shape: &dyn CompositeShape<N, D>) -> Vec<[f64; D]> {
     let of_part = |part| match shape.part(part).solid {
         PartSolid::Triangle(triangle) => triangle.corners().to_vec(),
@@ -18,7 +18,8 @@ fn corners<N: Real, const D: usize>(shape: &dyn CompositeShape<N, D>) -> Vec<[f6
     all.map(|corner| std::array::from_fn(|axis| corner[axis].as_f64())).collect()
 }
 
-/// Both surfaces admit the same normals at all features: random ones, and those of the parts.
+/// Asserts that both surfaces admit the same normals at all features: random normals, and the
+/// normals of parts.
 fn compare<N: Space<D>, const D: usize>(
     field: &dyn CompositeShape<N, D>,
     twin: &dyn CompositeShape<N, D>,

@@ -14,7 +14,7 @@ fn open<N: Space<D>, const D: usize>(vertices: &[[f64; D]]) -> Polyline<N, D> {
     Polyline::open(points(vertices))
 }
 
-/// The upward normal tilted by `degrees` to the right.
+/// Returns the upward normal tilted by `degrees` to the right.
 fn leaning<N: Real>(degrees: f64) -> Vector<N, 2> {
     let (sine, cosine) = degrees.to_radians().sine_cosine();
     vector([sine, cosine])
@@ -59,7 +59,7 @@ fn a_straight_joint_has_the_normals_of_its_segments_only() {
 
 #[test]
 fn bends_and_ends() {
-    // Uphill, downhill, and out of the valley.
+    // A line that goes uphill, downhill, and out of the valley.
     let line = open::<f64, 2>(&[[0.0, 0.0], [1.0, 1.0], [2.0, 0.0], [3.0, 1.0]]);
     let admits = |part, feature, degrees| surface(&line).admits(part, feature, &leaning(degrees));
     for (part, end) in [(0, END), (1, START)] {

@@ -30,7 +30,7 @@ fn mesh<N: Space<D>, const D: usize>(
     TriMesh::new(points(vertices), triangles.to_vec())
 }
 
-/// A mesh of the given triangles, each with its own three vertices.
+/// Returns a mesh of the same triangles, in which each triangle has its own three vertices.
 fn soup<N: Space<D>, const D: usize>(mesh: &TriMesh<N, D>) -> TriMesh<N, D> {
     let corner = |&vertex: &u32| mesh.vertices()[vertex as usize];
     let vertices = mesh.triangles().iter().flatten().map(corner).collect();
@@ -47,8 +47,9 @@ fn surface<N: Real, const D: usize>(shape: &dyn CompositeShape<N, D>) -> &dyn Su
     shape.surface().expect("the parts hang together")
 }
 
-/// A grid of squares in the plane of the first two coordinates, each cut into two counter-clockwise
-/// triangles: `2 (i + side j)` and the next one form the square at (i, j).
+/// Returns a grid of squares in the plane of the first two coordinates, each cut into two
+/// counter-clockwise triangles. Triangles `2 (i + side j)` and the next one form the square at (i,
+/// j).
 fn grid<const D: usize>(side: u32, at: impl Fn(f64, f64) -> [f64; D]) -> GridOf<D> {
     let numbers = || (0..=side).flat_map(|j| (0..=side).map(move |i| (i, j)));
     let vertices = numbers().map(|(i, j)| at(f64::from(i), f64::from(j))).collect();
@@ -62,7 +63,7 @@ fn grid<const D: usize>(side: u32, at: impl Fn(f64, f64) -> [f64; D]) -> GridOf<
 
 type GridOf<const D: usize> = (Vec<[f64; D]>, Vec<[u32; 3]>);
 
-/// The vertex feature of a part at a position.
+/// Returns the vertex feature of a part's corner at a position.
 fn corner_at<N: Real, const D: usize>(mesh: &TriMesh<N, D>, part: u32, at: [f64; D]) -> FeatureId {
     let corners = mesh.triangles()[part as usize].map(|v| mesh.vertices()[v as usize].coords);
     let found = (0..3).find(|&corner| corners[corner as usize] == vector(at));

@@ -1,4 +1,4 @@
-//! Tests that deformed meshes equal meshes made anew.
+//! Tests that deformed meshes equal new meshes.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Real, Space, Vector};
@@ -14,8 +14,8 @@ fn probe<N: Real, const D: usize>(random: &mut Random) -> Aabb<N, D> {
     Aabb::new(corner, corner + size)
 }
 
-/// Compares the searches of a tree with those of one made anew, which other tests compare with a
-/// scan of all boxes.
+/// Compares the searches of a refitted tree with those of a new one, which other tests compare with
+/// a scan of all boxes.
 fn check_search<N: Space<D>, const D: usize>(tree: &BoxTree<N, D>, random: &mut Random) {
     tree.validate().expect("sound");
     let anew = BoxTree::from_boxes(tree.boxes());
@@ -32,7 +32,7 @@ fn moved_meshes_are_like_new_ones() {
     let (mut vertices, triangles) = grid(20, |x, y| [x - 10.0, y - 10.0, 0.0]);
     let mut cloth = TriMesh::<f32, 3>::new(points(&vertices), triangles.clone()).one_sided();
     for step in 0..24 {
-        // First small moves, then large ones, after which the order of the tree no longer fits.
+        // First small moves, then large ones, after which the order of the tree is useless.
         let reach = if step < 8 { 0.3 } else { 12.0 };
         for vertex in &mut vertices {
             vertex.iter_mut().for_each(|x| *x = (*x + random.range(-reach, reach)) * 0.9);

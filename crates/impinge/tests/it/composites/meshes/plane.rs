@@ -10,7 +10,7 @@ fn floor<N: Real>() -> TriMesh<N, 2> {
     mesh(&vertices, &triangles)
 }
 
-/// The outward normal of a side on the border of the square; `None` for an inner side.
+/// Returns the outward normal of a side on the border of the square; `None` for an inner side.
 fn border(mesh: &TriMesh<f64, 2>, part: u32, side: usize) -> Option<Vector<f64, 2>> {
     let corners = mesh.triangles()[part as usize].map(|v| mesh.vertices()[v as usize]);
     let (a, b) = (corners[side], corners[(side + 1) % 3]);
@@ -82,7 +82,7 @@ fn a_hollow_corner_has_only_the_normals_of_its_sides() {
 fn snapping_finds_the_border_in_reach() {
     let floor = floor::<f64>();
     let whole = surface(&floor);
-    // The last square: its first triangle is at the right border, its second one at the top.
+    // The last square: its first triangle is at the right border, its second triangle at the top.
     let snapped = |part, x, y| whole.snapped(part, &unit([x, y]));
     assert_eq!(snapped(17, 0.5, 1.0), Some(unit([0.0, 1.0])), "on top");
     assert_eq!(snapped(16, 0.5, 1.0), Some(unit([1.0, 0.0])), "its only border");

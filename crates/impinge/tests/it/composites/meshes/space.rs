@@ -19,7 +19,7 @@ fn features(parts: u32) -> impl Iterator<Item = (u32, FeatureId)> {
     (0..parts).flat_map(of_part)
 }
 
-/// The parts of a floor that are not at its border, whose normals no border affects.
+/// Iterates over the parts of a floor that are not at its border.
 fn middle(side: u32) -> impl Iterator<Item = u32> {
     let inner = 1..side - 1;
     let squares = inner.clone().flat_map(move |j| inner.clone().map(move |i| i + side * j));
@@ -58,7 +58,7 @@ fn a_flat_floor_has_its_normal_only() {
     check_flat(&mesh::<f32, 3>(&vertices, &triangles), &parts);
 }
 
-/// The long side of the first square has a vertex in its middle, and is closed by a triangle
+/// The long side of the first square has a vertex at its midpoint, and is closed by a triangle
 /// without area.
 #[test]
 fn a_filler_without_area_is_no_seam() {
@@ -89,7 +89,7 @@ fn a_filler_without_area_is_no_seam() {
     assert_eq!(whole.snapped(2, &unit([0.0, 1.0, 1.0])), None, "the filler has no face");
 }
 
-/// Two squares that meet along the x axis; the one at negative y slopes down by `degrees`.
+/// Returns two squares that meet along the x axis; the one at negative y slopes down by `degrees`.
 fn roof<N: Real>(degrees: f64) -> TriMesh<N, 3> {
     let (sine, cosine) = degrees.to_radians().sine_cosine();
     let vertices = [
@@ -103,7 +103,7 @@ fn roof<N: Real>(degrees: f64) -> TriMesh<N, 3> {
     mesh(&vertices, &[[0, 1, 2], [0, 2, 3], [0, 4, 5], [0, 5, 1]])
 }
 
-/// The upward normal tilted by `degrees` towards negative y.
+/// Returns the upward normal tilted by `degrees` toward negative y.
 fn leaning<N: Real>(degrees: f64) -> Vector<N, 3> {
     let (sine, cosine) = degrees.to_radians().sine_cosine();
     vector([0.0, -sine, cosine])
@@ -169,7 +169,7 @@ fn borders_have_what_points_out_of_the_face() {
     assert!(!surface(&roof).admits(1, FeatureId::Edge(1), &leaning(-91.0)), "from below");
 }
 
-/// A pyramid without base, with its tip at the origin.
+/// Returns a pyramid without a base, with its apex at the origin.
 fn pyramid<N: Real>(depth: f64, sides: u32) -> TriMesh<N, 3> {
     let around = |i: u32| {
         let (sine, cosine) =
@@ -207,7 +207,7 @@ fn a_corner_has_the_cone_over_the_normals_around_it() {
     }
 }
 
-/// Mirrors a normal of the tip; negated, the result is a normal of the pit's back.
+/// Mirrors a normal at the apex. Negated, the result is a normal of the back of the pit.
 fn pit_mirror(v: &Vector<f64, 3>) -> Vector<f64, 3> {
     vector([-v.x, -v.y, v.z])
 }
@@ -223,7 +223,7 @@ fn edges_of_a_sphere_have_its_normals_and_no_others() {
         let EdgeNeighbor::Triangle { index, is_flipped: false } = mesh.neighbor(part, edge) else {
             panic!("{part} has a neighbour at {edge}")
         };
-        // Sides within a square, where its two triangles meet, are flat.
+        // An edge within a square, where its two triangles meet, is flat.
         let is_flat = normal(part).dot(&normal(index)) > 0.999_99;
         assert_eq!(admits(outward), !is_flat, "{part} {edge}: away from the middle");
         assert!(admits(normal(part)), "{part} {edge}: its own");
@@ -234,8 +234,8 @@ fn edges_of_a_sphere_have_its_normals_and_no_others() {
     }
 }
 
-/// Whether the feature is the highest along the normal among all triangles at it; `None` if this is
-/// too close to tell.
+/// Returns whether the feature is the highest along the normal among all triangles at it; `None` if
+/// the heights are too close to decide.
 fn is_highest(mesh: &TriMesh<f64, 3>, ends: &[usize], normal: &Vector<f64, 3>) -> Option<bool> {
     let at = mesh.vertices()[ends[0]].coords.dot(normal);
     let around = mesh.triangles().iter().filter(|t| ends.iter().all(|&e| t.contains(&number(e))));
@@ -304,7 +304,7 @@ fn internal_edges_may_be_kept() {
     assert!(!whole.faces(9, &vector([0.0, 0.0, -1.0]).into()), "still one side");
 }
 
-/// A wall that stands on a floor: three triangles at one edge.
+/// A wall that stands on a floor: three triangles share an edge.
 #[test]
 fn a_wall_on_a_floor() {
     let vertices =

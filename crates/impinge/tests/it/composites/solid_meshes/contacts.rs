@@ -1,5 +1,5 @@
-//! Compares contacts with solid meshes with brute force, for shapes inside and across the surface; also impacts, points
-//! and rays.
+//! Compares contacts with solid meshes with brute force, for shapes inside and across the surface.
+//! Also tests impacts, points and rays.
 
 use super::{P3, V3, at, ball, cuboid, inverted, joined, skin, solid};
 use crate::support::query_support;
@@ -14,7 +14,8 @@ use impinge::shape::{Ball, Compound, Cuboid, Shape, ShapeHandle, TriMesh};
 use query_support::random::Random;
 use query_support::samples::{SPACE, sample3};
 
-/// Distance to the nearest of all triangles, and how far the solid reaches behind the plane through the nearest point.
+/// Returns the distance to the nearest triangle, and how far the solid extends behind the plane
+/// through the nearest point.
 fn brute<N: Space<3>>(mesh: &TriMesh<N, 3>, m2: &Isometry3<N>, solid: &dyn Shape<N, 3>) -> (N, N) {
     let here = Isometry3::identity();
     let mut nearest = N::INFINITY;
@@ -62,7 +63,7 @@ fn against_brute_force<N: Space<3>>() {
             }
             assert_eq!(found.is_some(), holds == Some(true), "{m2:?} {middle:?}");
             if let Some(found) = found {
-                // Parts that are equally near may give different normals.
+                // Parts at equal distances may give different normals.
                 let gap = distance(
                     &Isometry3::identity(),
                     &skin((mesh.vertices().to_vec(), mesh.triangles().to_vec())),

@@ -1,4 +1,4 @@
-//! Compares a solid mesh of a convex solid with the hull of its vertices: both have the same
+//! Compares a solid mesh of a convex solid with the hull of its vertices, which has the same
 //! distances.
 
 use super::{Soup, ball, cuboid, solid};
@@ -22,7 +22,7 @@ fn twins<N: Space<3>>(soup: Soup<N>) -> Twins<N> {
     Twins { hull: ConvexHull::try_from_points(&soup.0).expect("a volume"), mesh: solid(soup) }
 }
 
-/// Compares the distances of both from a solid, in both orders.
+/// Compares the distances of both twins from a solid, in both orders.
 fn compare<N: Space<3>>(
     twins: &Twins<N>,
     m1: &Isometry3<N>,
@@ -60,7 +60,7 @@ fn compare<N: Space<3>>(
     of_mesh == N::ZERO
 }
 
-/// Moving by the depth of the contact separates the two, and both orders agree.
+/// Asserts that moving by the depth of the contact separates the two, and that both orders agree.
 fn check_way_out<N: Space<3>>(
     Twins { mesh, hull }: &Twins<N>,
     m1: &Isometry3<N>,
@@ -73,7 +73,7 @@ fn check_way_out<N: Space<3>>(
     assert_eq!(back, *found, "in both roles");
     let off = found.world1 - found.normal.into_inner() * found.depth - found.world2;
     assert!(off.norm() <= noise, "{found:?}");
-    // For a solid wholly inside, the depth is at least the exact one of the hull.
+    // For a solid that is entirely inside, the depth is at least the exact depth of the hull.
     let exact = contact(m1, hull, m2, other, N::ZERO).map_or(N::ZERO, |exact| exact.depth);
     let is_convex = other.geometry().as_composite().is_none();
     assert!(
@@ -87,7 +87,7 @@ fn check_way_out<N: Space<3>>(
     }
 }
 
-/// Whether the solid meets the surface of the mesh.
+/// Returns `true` if the solid intersects the surface of the mesh.
 fn crosses<N: Space<3>>(
     mesh: &TriMesh<N, 3>,
     m1: &Isometry3<N>,
@@ -152,7 +152,7 @@ fn resting<N: Space<3>>() {
                     "{found:?} at {place:?}"
                 );
                 assert_eq!(found == N::ZERO, expected <= N::ZERO, "{found:?} at {place:?}");
-                // The nearest wall is the one along the axis, or all are equally near.
+                // The nearest wall is the wall along the axis, or all walls are equally near.
                 let depth =
                     contact(&here, &twins.mesh, &m2, other, N::ZERO).map(|found| found.depth);
                 let depth = depth.unwrap_or(-found);

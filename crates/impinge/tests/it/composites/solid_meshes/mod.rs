@@ -14,28 +14,28 @@ use impinge::shape::{Ball, Cuboid, TriMesh};
 type V3 = Vector<f64, 3>;
 type P3 = Point<f64, 3>;
 
-/// Vertices and triangles.
+/// The vertices and triangles of a surface.
 type Soup<N> = (Vec<Point<N, 3>>, Vec<[u32; 3]>);
 
-/// Surface of a box around a point.
+/// Returns the surface of a box around a point.
 fn cuboid<N: Real>(half: [f64; 3], middle: [f64; 3]) -> Soup<N> {
     let lit = |xs: [f64; 3]| Vector::<N, 3>::from(xs.map(N::lit));
     let surface = surfaces::cuboid(&Cuboid::new(lit(half)));
     (surface.vertices.iter().map(|corner| corner + lit(middle)).collect(), surface.triangles)
 }
 
-/// Surface of a ball around the origin.
+/// Returns the surface of a ball around the origin.
 fn ball<N: Real>(radius: f64, subdivisions: u32) -> Soup<N> {
     let surface = surfaces::ball(&Ball::new(N::lit(radius)), subdivisions);
     (surface.vertices, surface.triangles)
 }
 
-/// The surface with all windings reversed.
+/// Returns the surface with all windings reversed.
 fn inverted<N: Real>((corners, triangles): Soup<N>) -> Soup<N> {
     (corners, triangles.iter().map(|&[a, b, c]| [a, c, b]).collect())
 }
 
-/// Several surfaces as one.
+/// Returns one surface that consists of several.
 fn joined<N: Real>(bodies: &[Soup<N>]) -> Soup<N> {
     let (mut corners, mut triangles) = (Vec::new(), Vec::new());
     for (own, named) in bodies {

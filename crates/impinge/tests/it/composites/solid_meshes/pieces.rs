@@ -11,7 +11,8 @@ use impinge::shape::{
 
 type Found = Option<(f64, Vector<f64, 3>)>;
 
-/// Distance, and depth and normal of the contact with prediction 0; both orders must agree.
+/// Returns the distance, and the depth and normal of the contact with prediction 0. Asserts that
+/// both orders agree.
 fn between(one: &dyn Shape<f64, 3>, place: [f64; 3], other: &dyn Shape<f64, 3>) -> (f64, Found) {
     let (here, there) = (Isometry3::identity(), at(place));
     let near = distance(&here, one, &there, other);
@@ -37,7 +38,8 @@ fn a_part_inside_is_enough() {
     assert_eq!((near, found), (0.0, Some((1.25, V3::x()))), "the other ball is far outside");
     let seen = witness(&at([0.0; 3]), &body, &at([3.0, 0.0, 0.0]), &pair, 1.0).expect("near");
     assert_eq!((seen.distance, seen.part2), (-1.25, 0));
-    // One part crosses the surface and one is deep inside: the deeper one gives the contact.
+    // A part that crosses the surface and a part that is deep inside: the contact is that of the
+    // deeper one.
     let pair = Compound::new(vec![(at([0.0; 3]), small()), (at([4.0, 0.0, 0.0]), small())]);
     let (_, found) = between(&body, [0.0, 2.0, 0.0], &pair);
     assert_eq!(found, Some((2.25, V3::y())));
@@ -136,7 +138,7 @@ fn half_spaces_have_no_inside_in_a_body() {
 #[test]
 fn sides_of_a_body_are_outside() {
     let (body, small) = (solid(block()), Ball::new(0.5));
-    // As long as the ball overlaps the surface, it does not matter on which side its centre is.
+    // While the ball overlaps the surface, it does not matter on which side its centre is.
     for (place, depth) in [(4.25, 0.25), (3.75, 0.75), (3.5, 1.0), (3.25, 1.25)] {
         assert_eq!(
             between(&body, [place, 0.0, 0.0], &small),
@@ -144,7 +146,7 @@ fn sides_of_a_body_are_outside() {
             "{place}"
         );
     }
-    // A plate thinner than the ball: the shorter way out counts.
+    // A plate thinner than the ball: the contact is along the shorter way out.
     let plate = solid(cuboid([4.0, 0.0625, 4.0], [0.0; 3]));
     for (place, depth, up) in [(0.5, 0.0625, 1.0), (0.25, 0.3125, 1.0), (-0.125, 0.4375, -1.0)] {
         let found = between(&plate, [0.3, place, 0.1], &small).1;
@@ -160,7 +162,7 @@ fn sides_of_a_body_are_outside() {
 #[test]
 fn slivers_and_doubled_triangles() {
     let (corners, mut triangles) = block();
-    // A triangle and its reverse, and triangles without area along an edge, all with existing
+    // Adds a triangle and its reverse, and triangles without area along an edge, all with existing
     // corners.
     let [a, b, c] = triangles[0];
     triangles.extend([[a, b, c], [a, c, b], [a, b, b], [b, a, a]]);

@@ -1,6 +1,6 @@
-//! Random solids of all kinds, each with a function for the distance of a point from its surface,
-//! computed in `f64` by the reference or by hand. The convex ones also have their description for
-//! the precise reference.
+//! Random solids of all kinds. Each has a function for the distance of a point from its surface,
+//! computed in `f64` by the reference or by hand. Convex solids also have a description for the
+//! precise reference.
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Space, Unit, Vector};
@@ -21,19 +21,19 @@ type Off<const D: usize> = Box<dyn Fn(&[f64; D]) -> f64>;
 
 pub(crate) struct Form<N: Real, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
-    /// Description for messages.
+    /// Description of the solid, for messages.
     pub(crate) text: String,
     /// The solid as the precise reference knows it; `None` for composites.
     pub(crate) precise: Option<precise::Solid<D>>,
     offs: Vec<Off<D>>,
-    /// Greatest distance of a point from the local origin; zero for a half-space.
+    /// Greatest distance of a point of the solid from the local origin; zero for a half-space.
     pub(crate) reach: f64,
-    /// Error allowed for points beside the deepest one: a rounded part that leans is treated as
+    /// Error allowed for points beside the deepest one: a rounded part with a tilt is treated as
     /// flat up to its end.
     pub(crate) beside: f64,
 }
 
-/// 1 / cosine - 1 of atan(1/2), the largest angle by which a part may lean.
+/// 1 / cosine - 1 of atan(1/2), the largest tilt of a part that is treated as flat.
 const LEANING: f64 = 0.1181;
 
 impl<N: Real, const D: usize> Form<N, D> {
@@ -46,7 +46,7 @@ impl<N: Real, const D: usize> Form<N, D> {
         Self { precise: Some(precise), ..self }
     }
 
-    /// A solid that the reference knows, inflated by a radius.
+    /// Creates the form of a solid that the reference knows, inflated by a radius.
     fn known<S: Shape<N, D>>(shape: S, solid: &Solid<D>, inflation: f64) -> Self {
         let reach = solid.bounding_radius();
         let reach = if reach.is_finite() { reach + inflation } else { 0.0 };
@@ -58,20 +58,22 @@ impl<N: Real, const D: usize> Form<N, D> {
         }
     }
 
-    /// A composite of solids that the reference knows.
+    /// Creates the form of a composite of solids that the reference knows.
     fn composite<S: Shape<N, D>>(shape: S, parts: &[Solid<D>]) -> Self {
         let reach = parts.iter().map(Solid::bounding_radius).fold(0.0, f64::max);
         let offs = parts.iter().map(|part| metered(part, 0.0)).collect();
         Self::new(shape, format!("{parts:?}"), reach, offs)
     }
 
-    /// Distance of a local point from the surface; for a composite, from that of its nearest part.
+    /// Returns the distance of a local point from the surface; for a composite, from the surface of
+    /// its nearest part.
     pub(crate) fn off(&self, point: &[f64; D]) -> f64 {
         self.offs.iter().map(|off| off(point).abs()).fold(f64::INFINITY, f64::min)
     }
 }
 
-/// The solid for the precise reference; `None` for solids of revolution, which exist in 3D only.
+/// Returns the solid for the precise reference; `None` for solids of revolution, which exist in 3D
+/// only.
 fn with_all_digits<const D: usize>(solid: &Solid<D>) -> Option<precise::Solid<D>> {
     match solid {
         Solid::Rounded { vertices, radius } => {
@@ -90,9 +92,9 @@ fn metered<const D: usize>(solid: &Solid<D>, inflation: f64) -> Off<D> {
 /// Range of the sizes of random solids.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sizes {
-    /// Lengths lie between this and 16 times as much.
+    /// Lengths lie between `least` and `16 * least`.
     pub(crate) least: f64,
-    /// Whether half of the lengths are zero and corners lie on a line or coincide; polygons and
+    /// Whether half of the lengths are zero, and corners lie on a line or coincide. Polygons and
     /// hulls are exempt.
     pub(crate) zeros: bool,
 }
@@ -111,7 +113,7 @@ impl Draw<'_> {
         self.length::<N>()
     }
 
-    /// A length that is not zero.
+    /// Returns a random length that is not zero.
     fn length<N: Real>(&mut self) -> f64 {
         N::lit(self.random.magnitude(self.sizes.least, 4)).as_f64()
     }
@@ -120,7 +122,7 @@ impl Draw<'_> {
         std::array::from_fn(|_| self.size::<N>())
     }
 
-    /// Corners of a triangle or tetrahedron that is not thin.
+    /// Returns the corners of a triangle or tetrahedron that is not thin.
     fn corners<N: Real, const D: usize, const K: usize>(&mut self) -> [[f64; D]; K] {
         if self.sizes.zeros {
             return self.corners_of_line::<N, D, K>();
@@ -143,7 +145,7 @@ impl Draw<'_> {
 }
 
 impl Draw<'_> {
-    /// Corners on a line through the origin; some of them may coincide.
+    /// Returns corners on a line through the origin, some of which may coincide.
     fn corners_of_line<N: Real, const D: usize, const K: usize>(&mut self) -> [[f64; D]; K] {
         let limit = self.length::<N>();
         let end = self.random.vector::<D>(limit).map(|x| N::lit(x).as_f64());
@@ -165,7 +167,7 @@ fn up<const D: usize>(length: f64) -> [f64; D] {
 
 const COMMON: usize = 12;
 
-/// The solid of kind `kind` among those of both dimensions.
+/// Returns a random solid of kind `kind`, of the kinds that exist in both dimensions.
 fn common<N: Space<D>, const D: usize>(kind: usize, draw: &mut Draw<'_>) -> Form<N, D> {
     let (half, radius, sizes) = (draw.size::<N>(), draw.size::<N>(), draw.sizes::<N, D>());
     let cuboid = || Cuboid::new(vector::<N, D>(&sizes));
@@ -218,10 +220,11 @@ fn common<N: Space<D>, const D: usize>(kind: usize, draw: &mut Draw<'_>) -> Form
     }
 }
 
-/// Distance from the surface of an ellipsoid to first order, which suffices near the surface.
+/// Returns the distance from the surface of an ellipsoid to first order, which suffices near the
+/// surface.
 fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
     if half_axes.contains(&0.0) {
-        // The surface of a flat ellipsoid is all of it.
+        // A flat ellipsoid consists of its surface.
         let solid = precise::Solid::ellipsoid(half_axes);
         return Box::new(move |point| off_precise(&solid, point));
     }
@@ -235,14 +238,15 @@ fn off_ellipsoid<const D: usize>(half_axes: [f64; D]) -> Off<D> {
     })
 }
 
-/// Distance of a local point from the surface of a solid, by the precise reference, which is slow.
+/// Returns the distance of a local point from the surface of a solid, by the precise reference,
+/// which is slow.
 fn off_precise<const D: usize>(solid: &precise::Solid<D>, point: &[f64; D]) -> f64 {
     let (place, origin) = (precise::Pose::at(*point), precise::Pose::at([0.0; D]));
     let dot = precise::Solid::ball(0.0);
     precise::signed_distance(&dot, &place, solid, &origin).distance.to_f64()
 }
 
-/// The union of balls along the second axis whose radii change linearly.
+/// Returns the union of balls along the second axis whose radii change linearly.
 fn tapered<N: Space<D>, const D: usize>(half: f64, radii: [f64; 2]) -> Form<N, D> {
     let [low, high] = radii.map(N::lit);
     let shape = TaperedCapsule::<N, D>::new(N::lit(half), low, high);
@@ -419,7 +423,7 @@ fn cross([a, b, c, _]: &[[f64; 3]; 4]) -> [f64; 3] {
     [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]]
 }
 
-/// Hull of ten random points around the origin.
+/// Returns a hull of ten random points around the origin.
 fn hull<N: Real>(draw: &mut Draw<'_>, inflation: f64) -> Form<N, 3> {
     let sizes: [f64; 3] = std::array::from_fn(|_| draw.length::<N>());
     let corners: Vec<[f64; 3]> = (0..10)
@@ -436,7 +440,7 @@ fn hull<N: Real>(draw: &mut Draw<'_>, inflation: f64) -> Form<N, 3> {
     Form::known(hull, &solid, 0.0)
 }
 
-/// Triangles over a square of four cells; `height` gives the height of each vertex.
+/// Returns triangles over a square of four cells; `height` returns the height of each vertex.
 fn floor<N: Real>(half: f64, height: impl Fn(usize) -> f64) -> Form<N, 3> {
     let corner = |index: usize| {
         let at = |step: usize| half * [-1.0, 0.0, 1.0][step];
@@ -457,7 +461,7 @@ fn meshed<N: Real>(corners: &[[f64; 3]], triangles: Vec<[u32; 3]>) -> Form<N, 3>
     Form::composite(mesh, &parts)
 }
 
-/// A world point in the frame of the solid at a pose, by the pose's own matrix.
+/// Returns a world point in the frame of the solid at `pose`, by the matrix of `pose`.
 pub(crate) fn local<N: Real, const D: usize>(pose: &Pose<N, D>, point: &Point<N, D>) -> [f64; D] {
     let away = point.coords.map(N::as_f64) - pose.translation.map(N::as_f64);
     pose.rotation.map(N::as_f64).tr_mul(&away).into()

@@ -32,14 +32,14 @@ const UNITS: f64 = 64.0;
 /// of a ring are nearly equally good, the search ends with an iteration along the ring.
 const ROUND: f64 = 5e7;
 
-/// Greatest error of the points of two kinds, in units.
+/// Returns the greatest error of the points of two kinds, in units.
 fn allowed<N: Real>(names: [&str; 2]) -> f64 {
     let round = ["cylinder", "cone", "tapered", "compound"];
     let is_round = names.iter().any(|name| round.iter().any(|round| name.contains(round)));
     if is_round && N::EPSILON.as_f64() < 1e-10 { ROUND } else { UNITS }
 }
 
-/// How many pairs of each two kinds are tested.
+/// Returns the number of pairs that are tested for each two kinds.
 fn rounds() -> usize {
     samples(2)
 }
@@ -262,8 +262,8 @@ fn in_space<N: Real>(seed: u64) {
     stage.check(seed);
 }
 
-/// The contact point of an upright cone on a solid with flat faces is its apex, however little the
-/// axis leans.
+/// The contact point of an upright cone on a solid with flat faces is its apex, however small the
+/// tilt of its axis.
 fn apex<N: Real>() {
     let mut random = Random::new(5);
     let sizes = Vector::<N, 3>::new(N::lit(5.0), N::TWO, N::lit(5.0));

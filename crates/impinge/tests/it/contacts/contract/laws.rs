@@ -13,7 +13,7 @@ use super::report::Report;
 use super::scene::{SCENES, Scene, Stage};
 use super::tolerances::{is_curved, is_of_revolution, is_promised, points_promised, promised};
 
-/// A scene, and the report that takes its violations.
+/// A scene, and the report that collects its violations.
 pub(crate) struct Judge<'a, N: Real, R, const D: usize> {
     pub(crate) stage: &'a Stage<N, R, D>,
     pub(crate) scene: &'a Scene<N, R, D>,
@@ -23,7 +23,7 @@ pub(crate) struct Judge<'a, N: Real, R, const D: usize> {
     pub(crate) report: &'a mut Report,
 }
 
-/// The point of the largest depth.
+/// Returns the point of the greatest depth; `None` if there are no points.
 fn deepest<N: Real, const D: usize>(points: &Points<N, D>) -> Option<&TrackedContact<N, D>> {
     points.iter().reduce(
         |best, point| {
@@ -32,13 +32,13 @@ fn deepest<N: Real, const D: usize>(points: &Points<N, D>) -> Option<&TrackedCon
     )
 }
 
-/// Whether both have equal contacts and kinematics, whatever the ids.
+/// Returns `true` if both have equal contacts and kinematics, whatever the ids.
 pub(crate) fn are_same<N: Real, const D: usize>(one: &Points<N, D>, two: &Points<N, D>) -> bool {
     one.len() == two.len()
         && one.iter().zip(two).all(|(a, b)| a.contact == b.contact && a.kinematic == b.kinematic)
 }
 
-/// For each point, the index of the earlier point with its id.
+/// Returns, for each point, the index of the earlier point with the same id; `None` for a new id.
 pub(crate) fn kept<N: Real, const D: usize>(
     before: &Points<N, D>,
     after: &Points<N, D>,
@@ -86,7 +86,7 @@ where
         solids.map(|form| form.precise.as_ref().expect("the reference knows all convex kinds"))
     }
 
-    /// Separation along a normal by the precise reference; `None` for two half-spaces.
+    /// Returns the separation along a normal by the precise reference; `None` for two half-spaces.
     fn along(&self, normal: &[f64; D]) -> Option<Quad> {
         let ([one, two], poses) =
             (self.solids(), self.scene.poses.each_ref().map(self.stage.precise));
@@ -107,7 +107,7 @@ where
         truth.is_settled(1e-17).then_some(truth)
     }
 
-    /// A length of the pair: epsilon times it is the unit of depths.
+    /// Returns a length of the pair. Depths are measured in units of epsilon times this length.
     fn size(&self) -> f64 {
         let at = self.scene.poses.each_ref().map(|pose| pose.translation.vector.map(N::as_f64));
         self.scene.forms[0].reach + self.scene.forms[1].reach + (at[1] - at[0]).norm()

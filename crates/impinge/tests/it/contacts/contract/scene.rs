@@ -180,7 +180,7 @@ where
         }
     }
 
-    /// The scene scaled by a power of two.
+    /// Returns the scene scaled by a power of two.
     pub(crate) fn scaled(&self, scene: &Scene<N, R, D>, scale: f64) -> Scene<N, R, D> {
         let recipes = scene.recipes.map(|recipe| {
             let sizes = Sizes { least: recipe.sizes.least * scale, ..recipe.sizes };
@@ -225,7 +225,7 @@ where
     }
 }
 
-/// A prediction: mostly `wide`; else zero, exactly the distance, or slightly less than it.
+/// Returns a prediction: mostly `wide`; else zero, exactly the distance, or slightly less than it.
 fn limit<N, R, const D: usize>(
     forms: &[Form<N, D>; 2],
     poses: &[Isometry<N, R, D>; 2],
@@ -257,7 +257,7 @@ where
         self.forms.each_ref().map(|form| &*form.shape)
     }
 
-    /// The poses after a small step of the second solid.
+    /// Returns the poses after a small step of the second solid.
     pub(crate) fn moved(&self) -> [Isometry<N, R, D>; 2] {
         let mut poses = self.poses.clone();
         poses[1].translation.vector += self.step;
@@ -273,7 +273,8 @@ where
         N::EPSILON.as_f64() * (size + (at[1] - at[0]).norm() + at[0].norm())
     }
 
-    /// Whether the solids are equal and at the same position, so that their order is undefined.
+    /// Returns `true` if the solids are equal and at the same position, so that their order is
+    /// undefined.
     pub(crate) fn is_twin(&self) -> bool {
         let [shape1, shape2] = self.shapes().map(|shape| format!("{shape:?}"));
         let [pose1, pose2] = &self.poses;

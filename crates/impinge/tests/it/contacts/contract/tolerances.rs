@@ -2,17 +2,17 @@
 
 use impinge::math::Real;
 
-/// Solids for which the reference has to search for the normal.
+/// Returns `true` for solids for which the reference has to search for the normal.
 pub(crate) fn is_curved(name: &str) -> bool {
     ["cylinder", "cone", "ellipsoid", "tapered"].iter().any(|curved| name.contains(curved))
 }
 
-/// Solids of revolution with flat ends.
+/// Returns `true` for solids of revolution with flat ends.
 pub(crate) fn is_of_revolution(name: &str) -> bool {
     name.contains("cylinder") || name.contains("cone")
 }
 
-/// Greatest error of the depth of two kinds, in units.
+/// Returns the greatest error of the depth of two kinds, in units.
 pub(crate) fn promised<N: Real, const D: usize>(names: [&str; 2]) -> f64 {
     let is_double = N::EPSILON.as_f64() < 1e-10;
     let of_revolution = names.iter().any(|name| is_of_revolution(name));
@@ -23,8 +23,8 @@ pub(crate) fn promised<N: Real, const D: usize>(names: [&str; 2]) -> f64 {
     }
 }
 
-/// Whether the least depth is guaranteed; it is not for a solid that is much smaller than a ball of a tapered capsule
-/// and lies around its middle.
+/// Returns `true` if the least depth is guaranteed. It is not for a solid much smaller than a ball
+/// of a tapered capsule, inside the middle of that ball.
 pub(crate) fn is_promised(names: [&str; 2], is_swallowed: bool) -> bool {
     !(is_swallowed && names.iter().any(|name| name.contains("tapered")))
 }
@@ -54,7 +54,7 @@ const KNOWN: [(&str, usize); 1] = [
     ("5 scaled, capsule and capsule", 3),
 ];
 
-/// Whether the law is known to be violated.
+/// Returns `true` if the law is known to be violated.
 pub(crate) fn is_known<const D: usize>(law: &str) -> bool {
     KNOWN.contains(&(law, D))
 }

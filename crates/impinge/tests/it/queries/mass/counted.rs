@@ -33,7 +33,8 @@ fn found<const D: usize>(mass: &Mass<D>) -> Found<D> {
     (mass.measure, Vector::<f64, D>::from(mass.center), tensor)
 }
 
-/// Mass properties from a count of the points of a solid's box that are inside.
+/// Returns mass properties from a count of the grid points in a solid's box that are inside the
+/// solid.
 fn count<const D: usize>(
     shape: &dyn Shape<f64, D>,
     is_inside: impl FnMut(&[f64; D]) -> bool,
@@ -53,7 +54,7 @@ fn check<const D: usize>(
     assert_alike(&unit(shape), &count(shape, is_inside), 1.2e-2, name);
 }
 
-/// Decides with the level functions that other tests have for the solids whether points are inside.
+/// Decides whether points are inside by the level functions of other tests.
 fn by_levels<const D: usize>(make: fn(&mut Rng) -> Vec<solids::Solid<f64, D>>)
 where
     f64: Inertia<D>,
@@ -79,7 +80,7 @@ fn solids_of_random_sizes() {
     by_levels::<3>(solids::space_solids);
 }
 
-/// Decides with the library's point queries whether points are inside.
+/// Decides whether points are inside by the library's point queries.
 fn by_points<R, const D: usize>(shapes: &Shapes<f64, D>, origin: &Isometry<f64, R, D>)
 where
     f64: Inertia<D>,
@@ -90,7 +91,7 @@ where
     }
 }
 
-/// The shapes of the table of all shapes that have a volume.
+/// Returns the shapes of the table of all shapes that have a volume.
 fn solids_of<const D: usize>(mut shapes: Shapes<f64, D>) -> Shapes<f64, D> {
     let others = [
         "segment",
@@ -137,7 +138,7 @@ fn solids_of_space() {
     by_points(&shapes, &Isometry3::identity());
 }
 
-/// A nested, placed compound against a count of the whole; the children do not overlap.
+/// Compares a nested, placed compound with a count of the whole; the children do not overlap.
 #[test]
 fn compounds_with_densities() {
     use impinge::dim3::math::Isometry;

@@ -16,8 +16,8 @@ use super::{Inertia, assert_alike, p3, unit, wide};
 
 type V3 = Vector<f64, 3>;
 
-/// Scaling a shape by a power of two scales the result exactly; shapes with a measure of their own
-/// dimension are tested separately.
+/// Scaling a shape by a power of two scales its mass properties exactly. Segments and flat
+/// triangles, whose measure is a length or an area, are tested separately.
 fn scales_exactly<N: Inertia<D>, const D: usize>(table: fn(N) -> Shapes<N, D>) {
     let (plain, mut tried) = (table(N::ONE), 0);
     for power in [0.0625, 1024.0, 1.0 / 1_048_576.0] {
@@ -52,7 +52,7 @@ fn powers_of_two_scale_exactly() {
     scales_exactly::<f64, 3>(shape_table::space);
 }
 
-/// The mass of a segment scales with its length and that of a flat triangle with its area.
+/// The mass of a segment scales with its length, and the mass of a flat triangle with its area.
 #[test]
 fn rods_and_plates_scale_by_their_own_measure() {
     let corners =
@@ -193,7 +193,7 @@ fn inertia_about_other_points() {
     assert!((both.inertia() - 2.0 * about).abs() < 1e-13, "in 2D");
 }
 
-/// Far from the origin only digits of the coordinates are lost, and the coordinates here are exact.
+/// Far from the origin precision is lost only in the coordinates, which are exact here.
 fn far_away<N: Inertia<2> + Inertia<3>>() {
     let grid = |x: f64| (x * 8.0).round() / 8.0;
     let corners: Vec<[f64; 3]> = (0..12_u32)

@@ -12,7 +12,7 @@ use super::{Inertia, assert_alike, p2, p3, unit};
 
 type V3 = Vector<f64, 3>;
 
-/// Vertices and triangles of a box around a point, optionally with reversed windings.
+/// Returns the vertices and triangles of a box around a point, optionally with reversed windings.
 fn cuboid(half: [f64; 3], at: [f64; 3], is_inverted: bool) -> (Vec<Point<f64, 3>>, Vec<[u32; 3]>) {
     let surface = surfaces::cuboid(&Cuboid::new(V3::from(half)));
     let vertices = surface.vertices.iter().map(|vertex| vertex + V3::from(at)).collect();

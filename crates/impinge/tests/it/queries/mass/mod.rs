@@ -13,7 +13,7 @@ use impinge::shape::Shape;
 /// Mass properties at density one in `f64`: mass, centre, and inertia about the centre.
 pub(super) type Found<const D: usize> = (f64, Vector<f64, D>, Matrix<f64, D>);
 
-/// The inertia of a dimension as a matrix; in 2D only one element is not zero, the moment.
+/// Returns the inertia as a matrix; in 2D only the element of the moment is not zero.
 pub(super) trait Inertia<const D: usize>: Space<D> {
     fn inertia_of(body: &MassProperties<Self, D>) -> Matrix<f64, D>;
 }
@@ -34,12 +34,12 @@ pub(super) fn wide<N: Inertia<D>, const D: usize>(body: &MassProperties<N, D>) -
     (body.mass().as_f64(), body.center_of_mass().coords.map(N::as_f64), N::inertia_of(body))
 }
 
-/// Mass properties of a shape at density one.
+/// Returns the mass properties of a shape at density one.
 pub(super) fn unit<N: Inertia<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Found<D> {
     wide(&mass_properties(shape, N::ONE).unwrap_or_else(|error| panic!("{error}: {shape:?}")))
 }
 
-/// Asserts that both are equal up to a share of the size of each value.
+/// Asserts that the mass properties are equal up to a fraction of the size of each value.
 #[track_caller]
 pub(super) fn assert_alike<const D: usize>(
     found: &Found<D>,

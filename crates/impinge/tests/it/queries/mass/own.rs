@@ -17,7 +17,7 @@ use super::{Found, Inertia, assert_alike, p3, unit, wide};
 
 type V3 = Vector<f64, 3>;
 
-/// A solid of the library behind its support points, mapped by a matrix.
+/// A solid of the library known only by its support points, mapped by a matrix.
 #[derive(Debug)]
 struct Hidden<S, N: Real, const D: usize> {
     solid: S,
@@ -51,7 +51,7 @@ where
     unit(&Hidden { solid, map })
 }
 
-/// Mass properties of a solid whose points are all multiplied by a matrix.
+/// Returns the mass properties of a solid whose points are all multiplied by a matrix.
 fn mapped<const D: usize>(found: &Found<D>, map: &Matrix<f64, D>, determinant: f64) -> Found<D> {
     let half_trace = found.2.trace() / (D as f64 - 1.0);
     let second = Matrix::<f64, D>::from_diagonal_element(half_trace) - found.2;
@@ -137,7 +137,7 @@ fn flat_and_broken_solids_of_space() {
     assert!(matches!(refused, Err(MassError::NotFinite { .. })), "{refused:?}");
 }
 
-/// A solid that gives its own mass properties.
+/// A solid that returns its own mass properties.
 #[derive(Debug)]
 struct Known(f64);
 

@@ -10,8 +10,8 @@ fn doubles<N: Real, const D: usize>(points: &[Point<N, D>]) -> Vec<[f64; D]> {
     points.iter().map(|point| core::array::from_fn(|axis| point[axis].as_f64())).collect()
 }
 
-/// Depth of a point in the hull of two balls: the union of balls whose centres and radii change
-/// linearly.
+/// Returns the depth of a point in the hull of two balls: the union of balls whose centres and
+/// radii change linearly.
 fn depth_in_club<const D: usize>(
     p: &Vector<f64, D>,
     [a, b]: [Vector<f64, D>; 2],
@@ -43,7 +43,7 @@ fn assert_second_order(what: &str, truth: f64, measure: impl Fn(u32) -> f64) {
     assert!((0.0..5e-4).contains(&relative), "{what}: off by {relative} at last");
 }
 
-/// The shape at twice its size, and at sizes far from 1.
+/// Tests the shape at twice its size, and at sizes far from 1.
 const POWERS: [f64; 3] = [2.0, 1.0 / 1_048_576.0, 1_073_741_824.0];
 
 const COUNTS: [u32; 8] = [0, 3, 4, 5, 7, 8, 13, 30];

@@ -54,8 +54,8 @@ fn check_convex<N: Real>(surface: &TriangleSurface<N>, size: f64) {
     }
 }
 
-/// Greatest depth of a point of the triangles below the surface, whose vertices must be on it.
-/// `depth` is positive inside.
+/// Returns the greatest depth of a point of the triangles below the surface. Asserts that the
+/// vertices are on the surface. `depth` is positive inside.
 fn widest_gap<N: Real>(
     surface: &TriangleSurface<N>,
     size: f64,

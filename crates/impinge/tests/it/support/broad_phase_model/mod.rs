@@ -83,7 +83,8 @@ impl<N: Space<D>, const D: usize> Model<N, D> {
         }
     }
 
-    /// The events that an update must report and the pairs for which it must call the filter.
+    /// Returns the events that an update must report and the pairs for which it must call the
+    /// filter.
     fn update(&mut self) -> (Vec<Event>, Vec<(u32, u32)>) {
         self.apply_waiting();
         let (mut events, mut asked, mut decided) = (Vec::new(), Vec::new(), BTreeMap::new());
@@ -158,8 +159,8 @@ fn uid(handle: ProxyHandle) -> u32 {
     u32::try_from(handle.uid()).expect("small")
 }
 
-/// A coordinate on a grid of quarters; every third one is moved by 1/3, so that `f32` does not
-/// represent it exactly.
+/// Returns a coordinate on a grid of quarters; every third one is moved by 1/3, so that `f32` does
+/// not represent it exactly.
 fn coordinate<N: Real>(random: &mut Random, size: u32) -> N {
     let quarters = N::lit(f64::from(random.below(size * 4)) / 4.0);
     if random.one_in(3) { quarters + N::lit(1.0 / 3.0) } else { quarters }
@@ -185,8 +186,8 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         }
     }
 
-    /// A box: mostly about one cell large, some of extent zero, a few large, a few unbounded, some
-    /// beyond the range of `f32`.
+    /// Returns a box: mostly about one cell large, some of extent zero, a few large, a few
+    /// unbounded, some beyond the range of `f32`.
     fn random_box(&mut self) -> Aabb<N, D> {
         let random = &mut self.random;
         let kind = random.below(60);
@@ -327,7 +328,7 @@ impl<N: Space<D>, const D: usize> Run<N, D> {
         }
     }
 
-    /// The uids of objects known to the last update whose exact box passes.
+    /// Returns the uids of objects known to the last update whose exact box passes.
     fn expected(&self, pass: impl Fn(&Aabb<N, D>) -> bool) -> Vec<u32> {
         let known = self.model.objects.iter().filter_map(|(uid, o)| Some((*uid, o.known?.0)));
         known.filter(|(_, exact)| pass(exact)).map(|(uid, _)| uid).collect()

@@ -60,7 +60,7 @@ impl<N: Space<D>, const D: usize> Pieces<N, D> {
         Self::new(triangles.iter().map(place).collect())
     }
 
-    /// A chain of segments.
+    /// Returns a chain of segments.
     pub fn chain(points: &[Point<N, D>]) -> Self {
         let one = |ends: &[Point<N, D>]| Piece::Segment(Segment::new(ends[0], ends[1]));
         Self::new(points.windows(2).map(|ends| (Pose::identity(), one(ends))).collect())

@@ -27,13 +27,13 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Clone, const D: usize> Maker<N, R,
         R::identity()
     }
 
-    /// A random pose up to `reach` away, rotated half of the time.
+    /// Returns a random pose up to `reach` away, rotated half of the time.
     pub fn place(&self, random: &mut Random, reach: N) -> Isometry<N, R, D> {
         let turn = if random.bits() & 1 == 0 { R::identity() } else { (self.turn)(random) };
         Isometry::from_parts((random.vector::<N, D>() * reach).into(), turn)
     }
 
-    /// A bounded solid of a random kind.
+    /// Returns a bounded solid of a random kind.
     pub fn solid(&self, random: &mut Random, scale: N) -> ShapeHandle<N, D> {
         let kinds = self.kinds.iter().filter(|kind| **kind != ShapeKind::Plane);
         let kinds: Vec<_> = kinds.copied().collect();

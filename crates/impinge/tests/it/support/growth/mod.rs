@@ -114,7 +114,7 @@ where
     }
 }
 
-/// Random heights of a rough surface.
+/// Returns random heights of a rough surface.
 fn heights(random: &mut Random, count: u32) -> Vec<f64> {
     (0..count).map(|_| 0.3 * random.unit()).collect()
 }

@@ -6,7 +6,7 @@ use impinge::math::{Point, Real, Vector};
 use impinge::shape::{CompositeShape, PartSearch};
 use impinge_reference::random::Random;
 
-/// A random number from -1 to 1 with few digits, so that touching is common.
+/// Returns a random number from -1 to 1 with few digits, so that touching is common.
 pub fn coarse(random: &mut Random) -> f64 {
     f64::from(u32::try_from(random.below(65)).expect("few")) / 32.0 - 1.0
 }
@@ -15,7 +15,7 @@ pub fn coarse_vector<N: Real, const D: usize>(random: &mut Random) -> Vector<N, 
     Vector::<N, D>::from_fn(|_, _| N::lit(coarse(random)))
 }
 
-/// A random box in the region of `around`, often flat or a point.
+/// Returns a random box in the region of `around`, often flat or a point.
 pub fn probe<N: Real, const D: usize>(random: &mut Random, around: &Aabb<N, D>) -> Aabb<N, D> {
     let reach = around.half_extents();
     let stretch = N::lit(if random.below(2) == 0 { 1.25 } else { 1.0 });
@@ -61,7 +61,7 @@ fn time<N: Real, const D: usize>(
     (enter <= leave).then_some(enter)
 }
 
-/// The parts that a search found, sorted by index; each may occur once only.
+/// Returns the parts that a search found, sorted by index; each may occur once only.
 fn sorted<T>(mut found: Vec<(u32, T)>) -> Vec<(u32, T)> {
     found.sort_by_key(|(part, _)| *part);
     for two in found.windows(2) {
@@ -131,7 +131,7 @@ impl<N: Real, const D: usize> Boxes<N, D> {
         Self { of_parts, around }
     }
 
-    /// Random queries, each compared with a scan of all boxes.
+    /// Compares random queries with a scan of all boxes.
     pub fn check(&self, search: &dyn PartSearch<N, D>, random: &mut Random, count: usize) -> Found {
         let mut found = Found::default();
         assert!(search.bounds().contains(&self.around), "{:?} leaves out parts", search.bounds());

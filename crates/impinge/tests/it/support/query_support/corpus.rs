@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::Placed;
 use super::solids;
 
-/// All cases of a file.
+/// Returns all cases of a file.
 pub fn cases(text: &str) -> Vec<Value> {
     let file: Value = serde_json::from_str(text).expect("the corpus is JSON");
     file["cases"].as_array().expect("a list of cases").clone()
@@ -29,7 +29,7 @@ pub fn number<N: Real>(value: &Value) -> N {
     N::lit(value.as_f64().expect("a number"))
 }
 
-/// The number under the first of two names, or under the second if that is missing.
+/// Returns the number with the first of two names, or with the second if the first is missing.
 fn either<N: Real>(value: &Value, name1: &str, name2: &str) -> N {
     number(value.get(name1).unwrap_or(&value[name2]))
 }
@@ -46,7 +46,7 @@ fn points<N: Real, const D: usize>(value: &Value) -> Vec<Point<N, D>> {
     value.as_array().expect("a list of points").iter().map(point).collect()
 }
 
-/// The shapes of both dimensions; `None` for shapes that do not exist in this one.
+/// Returns a shape of a kind that exists in both dimensions; `None` for other kinds.
 fn common<N: Real, const D: usize>(value: &Value) -> Option<Box<dyn Shape<N, D>>> {
     Some(match value["type"].as_str().expect("a name") {
         "ball" => Box::new(Ball::new(either(value, "radius", "r"))),
@@ -103,7 +103,7 @@ pub fn shape3<N: Real>(value: &Value) -> Option<Box<dyn Shape<N, 3>>> {
     })
 }
 
-/// A flat height field, optionally with all cells but the first removed.
+/// Returns a flat height field, optionally with all cells but the first removed.
 fn height_field<N: Real>(value: &Value) -> HeightField<N, 3> {
     let count =
         |name: &str| usize::try_from(value[name].as_u64().expect("a whole number")).expect("few");
@@ -118,7 +118,7 @@ fn height_field<N: Real>(value: &Value) -> HeightField<N, 3> {
     }
 }
 
-/// A mesh of vertices and triangles.
+/// Returns a mesh of vertices and triangles.
 pub fn tri_mesh<N: Real>(value: &Value) -> TriMesh<N, 3> {
     let name = |index: &Value| u32::try_from(index.as_u64().expect("whole")).expect("few");
     let triangles = value["indices"].as_array().expect("a list").iter();
@@ -126,17 +126,17 @@ pub fn tri_mesh<N: Real>(value: &Value) -> TriMesh<N, 3> {
     TriMesh::new(points(&value["vertices"]), triangles.collect())
 }
 
-/// The hull of points in 2D.
+/// Returns the hull of points in 2D.
 pub fn polygon<N: Real>(points: &[Point<N, 2>]) -> Box<dyn Shape<N, 2>> {
     Box::new(ConvexPolygon::from_points(points))
 }
 
-/// The hull of points in 3D.
+/// Returns the hull of points in 3D.
 pub fn hull<N: Real>(points: &[Point<N, 3>]) -> Box<dyn Shape<N, 3>> {
     Box::new(ConvexHull::from_points(points))
 }
 
-/// The rotation that takes the y axis to the axis of a shape in the corpus.
+/// Returns the rotation that takes the y axis to the axis of a shape in the corpus.
 fn standing<N: Real>(shape: &Value) -> UnitQuaternion<N> {
     match shape.get("axis").and_then(Value::as_str) {
         Some("z") => UnitQuaternion::from_axis_angle(&Vector::<N, 3>::x_axis(), N::frac_pi_2()),

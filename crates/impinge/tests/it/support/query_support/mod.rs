@@ -18,7 +18,7 @@ pub struct Placed<N: Real, R, const D: usize> {
 }
 
 impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Placed<N, R, D> {
-    /// The point farthest along a world direction. Panics for half-spaces.
+    /// Returns the point farthest along a world direction. Panics for half-spaces.
     pub fn support(&self, direction: &Vector<N, D>) -> Point<N, D> {
         let local = self.pose.rotation.inverse_transform_vector(direction);
         let map = self.shape.geometry().as_support_map().expect("not a half-space");

@@ -16,13 +16,13 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number from -1 to 1, with so few digits that both scalars represent it exactly.
+    /// Returns a number from -1 to 1, with so few digits that both scalars represent it exactly.
     pub fn signed(&mut self) -> f64 {
         let high = u32::try_from(self.bits() >> 44).expect("20 bits");
         f64::from(high) / f64::from(1 << 19) - 1.0
     }
 
-    /// A number from `low` to `high`.
+    /// Returns a number from `low` to `high`.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.signed() * 0.5 + 0.5)
     }
@@ -32,7 +32,7 @@ impl Random {
         if self.1 && self.bits() & 1 == 0 { 0.0 } else { 1.0 }
     }
 
-    /// A random vector in the unit ball that is longer than 0.1.
+    /// Returns a random vector in the unit ball that is longer than 0.1.
     pub fn vector<N: Real, const D: usize>(&mut self) -> Vector<N, D> {
         loop {
             let v = Vector::<f64, D>::from_fn(|_, _| self.signed());

@@ -45,18 +45,18 @@ pub const SPACE: [ShapeKind; 13] = [
 /// Makes a random solid of a kind, about `scale` large.
 pub type Sample<N, const D: usize> = fn(ShapeKind, &mut Random, N) -> Box<dyn Shape<N, D>>;
 
-/// A random point up to `scale` away from the origin.
+/// Returns a random point up to `scale` away from the origin.
 fn point<N: Real, const D: usize>(random: &mut Random, scale: N) -> Point<N, D> {
     let v = random.vector::<N, D>() * scale;
     Point::from(v.map(|x| x * N::lit(random.size_or_zero())))
 }
 
-/// A random size between a fifth of `scale` and all of it.
+/// Returns a random size between a fifth of `scale` and all of it.
 fn size<N: Real>(random: &mut Random, scale: N) -> N {
     N::lit(random.within(0.2, 1.0) * random.size_or_zero()) * scale
 }
 
-/// The kinds of both dimensions.
+/// Returns a solid of a kind that exists in both dimensions.
 fn common<N: Real, const D: usize>(
     kind: ShapeKind,
     random: &mut Random,
@@ -94,7 +94,7 @@ fn common<N: Real, const D: usize>(
     }
 }
 
-/// A rounded solid of a random kind of both dimensions.
+/// Returns a rounded solid of a random kind of both dimensions.
 fn rounded<N: Real, const D: usize>(random: &mut Random, scale: N) -> Box<dyn Shape<N, D>> {
     let radius = size(random, scale);
     let extents = Vector::<N, D>::from_fn(|_, _| size(random, scale));
@@ -115,7 +115,7 @@ pub fn sample2<N: Real>(kind: ShapeKind, random: &mut Random, scale: N) -> Box<d
     }
 }
 
-/// A convex octagon, counter-clockwise.
+/// Returns a convex octagon, counter-clockwise.
 fn octagon<N: Real>(random: &mut Random, scale: N) -> Vec<Point<N, 2>> {
     let stretch = [random.within(0.4, 1.0), random.within(0.4, 1.0)];
     (0..8)

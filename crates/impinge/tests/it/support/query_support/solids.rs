@@ -32,7 +32,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for RoundHull<N, D> {
 }
 
 impl<N: Real, const D: usize> RoundHull<N, D> {
-    /// A box inflated by a radius.
+    /// Returns a box inflated by a radius.
     pub fn cuboid(half_extents: &Vector<N, D>, rounding: N) -> Self {
         let corner = |signs: usize| {
             Point::from(Vector::<N, D>::from_fn(|axis, _| {
@@ -58,7 +58,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
     }
 }
 
-/// The box of a support map, from its support points along the axes.
+/// Returns the box of a support map, from its support points along the axes.
 fn box_of<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> Aabb<N, D> {
     let (mut mins, mut maxs) = (Point::origin(), Point::origin());
     for axis in 0..D {

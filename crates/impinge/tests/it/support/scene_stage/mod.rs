@@ -19,9 +19,9 @@ pub(crate) type World<N, const D: usize> = CollisionWorld<N, D, usize>;
 
 /// A scalar and dimension in which scenes can be played.
 pub(crate) trait Play<const D: usize>: Space<D> {
-    /// The pose of a placement whose lengths are multiplied by `scale`.
+    /// Returns the pose of a placement whose lengths are multiplied by `scale`.
     fn pose_of(placement: &Placement<D>, scale: f64) -> Self::Isometry;
-    /// The shapes of one dimension; `None` for those of every dimension.
+    /// Returns a shape of a kind that exists in this dimension only; `None` for other kinds.
     fn own_shape(shape: &SceneShape<D>, scale: f64) -> Option<ShapeHandle<Self, D>>;
 }
 
@@ -76,7 +76,7 @@ fn all_points<N: Real, const D: usize>(points: &[[f64; D]], scale: f64) -> Vec<P
     points.iter().map(|point| Point::from(scaled(point, scale))).collect()
 }
 
-/// A shape of a scene whose lengths are multiplied by `scale`.
+/// Returns a shape of a scene whose lengths are multiplied by `scale`.
 pub(crate) fn shape_of<N: Play<D>, const D: usize>(
     shape: &SceneShape<D>,
     scale: f64,
@@ -139,8 +139,8 @@ pub(crate) struct PlayerMark {
 }
 
 impl<N: Play<D>, const D: usize> Player<N, D> {
-    /// A world without objects, before the first step, in which all lengths are those of the scene
-    /// times `scale`.
+    /// Returns a world without objects, before the first step. All of its lengths are the lengths
+    /// of the scene times `scale`.
     pub(crate) fn new(scene: Scene<D>, scale: f64) -> Self {
         let handles = vec![None; scene.objects.len()];
         let world = World::new(N::lit(scene.margin * scale));

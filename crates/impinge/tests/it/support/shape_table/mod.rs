@@ -49,7 +49,7 @@ fn common<N: Space<D>, const D: usize>(s: N, corners: &[Point<N, D>; 3]) -> Shap
     ]
 }
 
-/// The shapes in 2D.
+/// Returns the shapes in 2D.
 pub(crate) fn plane<N: Real>(s: N) -> Shapes<N, 2> {
     let p = |x: f64, y: f64| Point::<N, 2>::new(N::lit(x) * s, N::lit(y) * s);
     let corners = [p(-1.0, -0.5), p(1.0, -0.25), p(0.25, 1.0)];
@@ -70,7 +70,7 @@ pub(crate) fn plane<N: Real>(s: N) -> Shapes<N, 2> {
     shapes
 }
 
-/// The shapes in 3D.
+/// Returns the shapes in 3D.
 pub(crate) fn space<N: Real>(s: N) -> Shapes<N, 3> {
     let p =
         |x: f64, y: f64, z: f64| Point::<N, 3>::new(N::lit(x) * s, N::lit(y) * s, N::lit(z) * s);

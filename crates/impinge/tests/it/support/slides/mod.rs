@@ -25,7 +25,7 @@ impl Random {
         u32::try_from((self.0 >> 33) % u64::from(n)).expect("below")
     }
 
-    /// A random number from -1 to 1.
+    /// Returns a random number from -1 to 1.
     pub fn unit(&mut self) -> f64 {
         f64::from(self.below(1 << 20)) / f64::from(1 << 19) - 1.0
     }
@@ -98,14 +98,14 @@ pub fn grid<N: Real + Space<3>>(
     TriMesh::new(vertices, triangles)
 }
 
-/// A flat height field as large as the floor of [`grid`], around the origin.
+/// Returns a flat height field as large as the floor of [`grid`], around the origin.
 pub fn field<N: Real>(n: usize, cell: f64) -> HeightField<N, 3> {
     let size = N::lit(n as f64 * cell);
     let heights = vec![N::ZERO; (n + 1) * (n + 1)];
     HeightField::<N, 3>::new(n + 1, n + 1, heights, Vector::<N, 3>::new(size, N::ONE, size))
 }
 
-/// The solids that slide in 3D.
+/// Returns the solids that slide in 3D.
 pub fn solids3<N: Real>() -> Vec<(&'static str, ShapeHandle<N, 3>)> {
     let v = |x: f64, y: f64, z: f64| Vector::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z));
     let mut random = Random::new(3);
@@ -144,7 +144,7 @@ impl<N: Space<D>, const D: usize> Sliding<N, D> {
         Self { generator: PairManifoldGenerator::default(), ids: IdAllocator::new() }
     }
 
-    /// The manifolds of two placed shapes.
+    /// Returns the manifolds of two placed shapes.
     pub fn update(
         &mut self,
         (m1, g1): (&N::Isometry, &dyn Shape<N, D>),

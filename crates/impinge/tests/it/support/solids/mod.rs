@@ -23,7 +23,7 @@ impl Rng {
         Self::scaled(seed, 1.0)
     }
 
-    /// A generator whose lengths are those of `new` times a power of two.
+    /// Returns a generator whose lengths are the lengths of `new` times a power of two.
     pub(crate) fn scaled(seed: u64, scale: f64) -> Self {
         Self { state: seed, scale }
     }
@@ -36,7 +36,7 @@ impl Rng {
         z ^ (z >> 31)
     }
 
-    /// A multiple of 1/1024 between `low` and `high`, times the scale: exact in `f32`.
+    /// Returns a multiple of 1/1024 between `low` and `high`, times the scale: exact in `f32`.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         let fraction = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
         ((low + (high - low) * fraction) * 1024.0).round() / 1024.0 * self.scale
@@ -55,7 +55,7 @@ pub(crate) fn wide<N: Real, const D: usize>(v: &Vector<N, D>) -> Vector<f64, D> 
     v.map(N::as_f64)
 }
 
-/// A world point in the local frame of `m`, in `f64`.
+/// Converts a world point to the local frame of `m`, in `f64`.
 pub(crate) fn local<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     point: &Vector<f64, D>,
@@ -64,7 +64,7 @@ pub(crate) fn local<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     pose.rotation.map(N::as_f64).tr_mul(&(point - wide(&pose.translation)))
 }
 
-/// A world direction in the local frame of `m`, in `f64`.
+/// Converts a world direction to the local frame of `m`, in `f64`.
 pub(crate) fn turned_back<N: Real, R: AbstractRotation<N, D>, const D: usize>(
     m: &Isometry<N, R, D>,
     direction: &Vector<N, D>,
@@ -104,8 +104,8 @@ impl<N: Real, const D: usize> Solid<N, D> {
         (self.level.0)(point)
     }
 
-    /// The point at which the boundary is crossed from the centre along a direction; `None` if
-    /// there is none.
+    /// Returns the point at which the boundary is crossed from the centre along a direction; `None`
+    /// if there is none.
     pub(crate) fn boundary(&self, direction: &Vector<f64, D>) -> Option<Vector<f64, D>> {
         let (mut low, mut high) = (0.0, 4.0 * self.size / direction.norm());
         if self.at(&(self.center + direction * high)) < 0.0 {
@@ -229,7 +229,7 @@ pub(crate) fn common<N: Real, const D: usize>(rng: &mut Rng) -> Vec<Solid<N, D>>
     solids
 }
 
-/// A tapered capsule: the union of balls whose centres and radii change linearly.
+/// Returns a tapered capsule: the union of balls whose centres and radii change linearly.
 fn club<N: Real, const D: usize>(rng: &mut Rng) -> Solid<N, D> {
     let (a, b) = (rng.vector::<D>(2.0), rng.vector::<D>(2.0));
     let (first, second) = (rng.between(0.25, 1.0), rng.between(0.25, 1.0));
@@ -345,7 +345,7 @@ pub(crate) fn space_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 3>> {
     solids
 }
 
-/// A tetrahedron around the origin.
+/// Returns a tetrahedron around the origin.
 fn spike<N: Real>(rng: &mut Rng) -> Solid<N, 3> {
     let mut near = |x: f64, y: f64, z: f64| Vector::<f64, 3>::new(x, y, z) * rng.between(0.5, 2.0);
     let corners =

@@ -12,7 +12,7 @@ pub(crate) trait Stage<const D: usize>: Space<D> {
     /// The unrotated pose at these coordinates.
     fn at(coordinates: [f64; D]) -> Self::Isometry;
 
-    /// The unrotated pose at `x` on the first axis.
+    /// Returns the unrotated pose at `x` on the first axis.
     fn on_x(x: f64) -> Self::Isometry {
         let mut coordinates = [0.0; D];
         coordinates[0] = x;
@@ -44,8 +44,8 @@ pub(crate) fn cube<N: Real, const D: usize>(half: f64) -> ShapeHandle<N, D> {
     ShapeHandle::new(Cuboid::new(vector([half; D])))
 }
 
-/// The half-space whose surface goes through the origin, with its normal along an axis times
-/// `sign`.
+/// Returns the half-space whose surface goes through the origin, with its normal along an axis
+/// times `sign`.
 pub(crate) fn half_space<N: Real, const D: usize>(axis: usize, sign: f64) -> ShapeHandle<N, D> {
     let mut normal = [0.0; D];
     normal[axis] = sign;

@@ -116,7 +116,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// A random living object, if there is one.
+    /// Returns a random living object; `None` if there is none.
     pub(super) fn someone(&mut self) -> Option<(CollisionObjectHandle, Handle)> {
         let handle = (!self.alive.is_empty()).then(|| *self.random.pick(&self.alive))?;
         Some((handle, self.twins[&handle]))

@@ -157,13 +157,13 @@ impl<N: Real> Grid<3> for N {
     }
 }
 
-/// A random pose in the room, sometimes far outside.
+/// Returns a random pose in the room, sometimes far outside.
 pub(crate) fn pose<N: Grid<D>, const D: usize>(random: &mut Random) -> (N::Isometry, Pose<D>) {
     let room = if random.chance(0.05) { 40 } else { ROOM };
     N::posed(std::array::from_fn(|_| random.grid(room, 3)), random)
 }
 
-/// A random pose near another one.
+/// Returns a random pose near another one.
 pub(crate) fn pose_near<N: Grid<D>, const D: usize>(
     from: &Pose<D>,
     random: &mut Random,
@@ -172,7 +172,7 @@ pub(crate) fn pose_near<N: Grid<D>, const D: usize>(
     N::posed(moved.map(|x| (x * 8.0).round() / 8.0), random)
 }
 
-/// A random size, sometimes zero.
+/// Returns a random size, sometimes zero.
 fn size(random: &mut Random) -> f64 {
     if random.chance(0.1) { 0.0 } else { 0.125 * (1 + random.below(8)) as f64 }
 }
@@ -205,7 +205,7 @@ pub(crate) fn shape<N: Grid<D>, const D: usize>(
     }
 }
 
-/// Random groups with which most objects interact with most others.
+/// Returns random groups with which most objects interact with most other objects.
 pub(crate) fn groups(random: &mut Random) -> (CollisionGroups, Groups) {
     let mut groups = CollisionGroups::new();
     if random.chance(0.5) {
@@ -233,12 +233,12 @@ pub(crate) fn query_type<N: Real>(random: &mut Random) -> (GeometricQueryType<N>
     }
 }
 
-/// A random point on the grid, in the room.
+/// Returns a random point on the grid, in the room.
 pub(crate) fn point<const D: usize>(random: &mut Random) -> [f64; D] {
     std::array::from_fn(|_| random.grid(ROOM, 3))
 }
 
-/// A random direction that is not aligned with an axis.
+/// Returns a random direction that is not aligned with an axis.
 pub(crate) fn direction<const D: usize>(random: &mut Random) -> [f64; D] {
     std::array::from_fn(|_| random.single(-1.0, 1.0))
 }

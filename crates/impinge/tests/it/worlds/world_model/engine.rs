@@ -185,7 +185,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         }
     }
 
-    /// The objects in the events of the last update.
+    /// Returns the objects in the events of the last update.
     fn named(&self) -> Vec<CollisionObjectHandle> {
         let contacts = self.world.contact_events().iter().map(ContactEvent::handles);
         let proximities = self.world.proximity_events().iter();

@@ -42,7 +42,7 @@ pub(super) fn position<N: Grid<D>, const D: usize>(random: &mut Random) -> N::Is
     N::posed(at, random).0
 }
 
-/// A convex shape, or a compound of some.
+/// Returns a convex shape, or a compound of some.
 fn shape<N: Grid<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
     if random.chance(0.8) {
         return draw::shape::<N, D>(random).0;

@@ -80,7 +80,7 @@ pub(crate) fn proximity_events(
     events.iter().map(twin).collect()
 }
 
-/// The pairs with contact points.
+/// Returns the pairs with contact points.
 pub(crate) fn touching<N: Space<D>, const D: usize, T>(
     twins: &Twins,
     world: &CollisionWorld<N, D, T>,
@@ -89,7 +89,7 @@ pub(crate) fn touching<N: Space<D>, const D: usize, T>(
     touching.map(|(a, b, _)| (twins[&a.handle()], twins[&b.handle()])).collect()
 }
 
-/// The pairs that are not disjoint.
+/// Returns the pairs that are not disjoint.
 pub(crate) fn close<N: Space<D>, const D: usize, T>(
     twins: &Twins,
     world: &CollisionWorld<N, D, T>,

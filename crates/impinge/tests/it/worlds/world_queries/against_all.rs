@@ -1,5 +1,5 @@
-//! Compares queries of random worlds with the same query of every object: the results must be equal
-//! to the bit.
+//! Compares queries of random worlds with the same query of every single object: the results must
+//! be equal to the bit.
 
 use std::cell::Cell;
 
@@ -38,7 +38,7 @@ struct Scene<N: Space<D>, const D: usize> {
 
 type Counts<N, const D: usize> = dyn Fn(&Object<N, D>) -> bool;
 
-/// A filter for the world, and the equivalent condition for the test.
+/// Returns a filter for the world, and the equivalent condition for the test.
 struct Choice<'a, N: Space<D>, const D: usize> {
     filter: Filter<'a, N, D>,
     counts: Box<Counts<N, D>>,
@@ -86,7 +86,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         N::pose_at(self.place(), self.random.range(-3.0, 3.0))
     }
 
-    /// A random point, half of the time near the middle of an object.
+    /// Returns a random point, in half of the cases near the centre of an object.
     fn point_to_ask(&mut self) -> Point<N, D> {
         let anywhere = point::<N, D>(self.place());
         let objects: Vec<_> = self.world.collision_objects().collect();
@@ -95,14 +95,14 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         if self.random.chance(0.5) { anywhere } else { Point::from(middle + beside) }
     }
 
-    /// A random greatest distance.
+    /// Returns a random maximum distance.
     fn reach(&mut self) -> N {
         if self.random.chance(0.2) { N::INFINITY } else { N::lit(self.random.range(0.0, 3.0)) }
     }
 
     fn add(&mut self, count: usize) {
         for _ in 0..count {
-            // Some objects are equal in everything but the handle.
+            // Some objects are equal in everything except the handle.
             let (pose, shape) = (self.pose(), random_shape(&mut self.random));
             for _ in 0..1 + self.random.below(6) / 5 {
                 let groups = random_groups(&mut self.random);
@@ -130,7 +130,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         self.add(8);
     }
 
-    /// Makes one change that no update has seen, or updates.
+    /// Makes a change that no update has seen, or updates the world.
     fn change_one(&mut self) {
         let handles: Vec<_> = self.world.collision_objects().map(Object::handle).collect();
         let handle = *self.random.pick(&handles[1..]);
@@ -187,7 +187,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         }
     }
 
-    /// The results of all accepted objects, sorted by key, then by handle.
+    /// Returns the results of all accepted objects, sorted by key, then by handle.
     fn ranked<A>(
         &self,
         choice: &Choice<'_, N, D>,
@@ -365,7 +365,7 @@ fn everywhere<N: Stage<D>, const D: usize>() {
     play::<N, D>(3, 1e6, true);
 }
 
-/// A query after each change, so that the last update knows few or many of the boxes.
+/// Queries after each change, so that the last update knows few or many of the boxes.
 fn changes_one_by_one<N: Stage<D>, const D: usize>() {
     let mut scene = Scene::<N, D>::new(5, 0.0, true);
     for change in 0..500 {
@@ -385,7 +385,7 @@ fn changes_one_by_one<N: Stage<D>, const D: usize>() {
     assert_eq!(scene.world.validate(), Ok(()), "the pairs after it");
 }
 
-/// Objects that moved since the last update are tested no more often than others: with any number
+/// Objects that moved since the last update are tested no more often than others. With any number
 /// of moved objects, fewer than 1.5 times as many objects are tested as with none.
 fn moved_objects_are_found_by_their_boxes<N: Stage<D>, const D: usize>() {
     let tested = [0, 100, 450, 1500].map(|moved| {

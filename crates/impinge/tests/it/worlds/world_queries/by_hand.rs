@@ -1,5 +1,5 @@
-//! Tests queries with results by hand, and edge cases: ties, limits, empty worlds, NaN,
-//! half-spaces, far away.
+//! Tests queries with results computed by hand, and edge cases: ties, limits, empty worlds, NaN,
+//! half-spaces, objects far away.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Point, Space, Vector};
@@ -15,7 +15,7 @@ fn ball<N: Space<D>, const D: usize>(radius: f64) -> ShapeHandle<N, D> {
     ShapeHandle::new(Ball::new(N::lit(radius)))
 }
 
-/// Balls of radius 1 on the first axis, and their handles.
+/// Returns a world of balls of radius 1 on the first axis, and their handles.
 fn row<N: Stage<D>, const D: usize>(places: &[f64]) -> (World<N, D>, Vec<CollisionObjectHandle>) {
     let mut world = World::new(N::lit(0.1));
     let handles = places.iter().map(|&x| add(&mut world, on_x(x), &ball(1.0))).collect();
@@ -105,7 +105,7 @@ fn casts_in_order<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// Queries see changes since the update: objects are found at their present position only.
+/// Queries see changes since the last update: objects are found at their present position only.
 fn changes_are_seen_at_once<N: Stage<D>, const D: usize>() {
     let (mut world, handles) = row::<N, D>(&[4.0, 8.0, 12.0]);
     world.update();
@@ -187,7 +187,7 @@ fn planes<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// Solids of size zero are found like others.
+/// Solids of size zero are found like any others.
 fn zero_sizes<N: Stage<D>, const D: usize>() {
     let mut world = World::<N, D>::new(N::ZERO);
     let dot = ball::<N, D>(0.0);
@@ -259,7 +259,7 @@ fn not_finite<N: Stage<D>, const D: usize>(world: &World<N, D>, bad: f64) {
     assert!(world.cast_shape(&here, &p.coords, &*own, &options, &all).is_none(), "at {bad}");
 }
 
-/// Positions a million units away that the scalar represents exactly.
+/// Tests positions a million units away that the scalar represents exactly.
 fn far_away<N: Stage<D>, const D: usize>() {
     let (mut world, handles) = row::<N, D>(&[1e6, 1e6 + 8.0, 1e6 + 16.0]);
     let (here, own) = (N::pose_at(on_x(1e6 + 4.0), 0.0), ball::<N, D>(1.0));
@@ -278,7 +278,7 @@ fn far_away<N: Stage<D>, const D: usize>() {
     }
 }
 
-/// Distances whose squares overflow or underflow.
+/// Tests distances whose squares overflow or underflow.
 fn huge_and_tiny<N: Stage<D>, const D: usize>() {
     let [large, small] = [N::MAX, N::MIN_POSITIVE].map(|limit| limit.as_f64().powf(0.75));
     for unit in [large, small, 1.0] {

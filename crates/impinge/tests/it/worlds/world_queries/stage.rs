@@ -1,4 +1,4 @@
-//! Worlds for queries, and the same queries of every object one by one.
+//! Worlds for queries, and the same queries of every single object.
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::broad_phase::{BroadPhase, BroadPhaseError, DBVTBroadPhase, ProxyHandle};
@@ -16,7 +16,7 @@ use impinge::shape::{
 use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, NearObject, QueryFilter};
 use impinge_reference::random::Random;
 
-/// The data of an object are a serial number.
+/// The data of an object: a serial number.
 pub(crate) type World<N, const D: usize> = CollisionWorld<N, D, usize>;
 pub(crate) type Object<N, const D: usize> = CollisionObject<N, D, usize>;
 pub(crate) type Filter<'a, N, const D: usize> = QueryFilter<'a, N, D, usize>;
@@ -128,7 +128,7 @@ pub(crate) fn point<N: Real, const D: usize>(coordinates: [f64; D]) -> Point<N, 
     Point::from(vector(coordinates))
 }
 
-/// The coordinates of the point at `x` on the first axis.
+/// Returns the coordinates of the point at `x` on the first axis.
 pub(crate) fn on_x<const D: usize>(x: f64) -> [f64; D] {
     core::array::from_fn(|axis| if axis == 0 { x } else { 0.0 })
 }
@@ -137,7 +137,8 @@ pub(crate) fn placed<N: Space<D>, const D: usize>(object: &Object<N, D>) -> Plac
     (object.position(), &**object.shape())
 }
 
-/// A random shape of both dimensions of a size from 0 to about 2, or a compound of three.
+/// Returns a random shape of a kind that exists in both dimensions, of a size from 0 to about 2, or
+/// a compound of three.
 pub(crate) fn random_shape<N: Stage<D>, const D: usize>(random: &mut Random) -> ShapeHandle<N, D> {
     if random.below(8) == 0 {
         let mut child = || {
@@ -161,7 +162,7 @@ fn random_solid<N: Space<D>, const D: usize>(random: &mut Random) -> ShapeHandle
     }
 }
 
-/// The half-space below zero on the last axis.
+/// Returns the half-space below zero on the last axis.
 pub(crate) fn ground<N: Space<D>, const D: usize>() -> ShapeHandle<N, D> {
     let up = Vector::<N, D>::from_fn(|axis, _| if axis + 1 == D { N::ONE } else { N::ZERO });
     ShapeHandle::new(Plane::new(Unit::new_unchecked(up)))
