@@ -100,11 +100,13 @@ impl Jolt {
     /// The default rounding radius of Jolt.
     pub const CONVEX_RADIUS: f32 = 0.05;
 
-    /// Creates a world with the objects of a scene at step 0, whose contacts are predicted up to a
-    /// distance; `None` if Jolt lacks a shape of it.
+    /// Creates a world with the objects of a scene at step 0. Contacts are computed up to the
+    /// distance `prediction`. Returns `None` if this adapter does not map a shape of the scene: it
+    /// maps balls, boxes, capsules, convex hulls, meshes and height fields.
     ///
-    /// The edges of boxes and hulls are rounded by a radius, by default [`Self::CONVEX_RADIUS`]: within
-    /// it a search for the closest points suffices. With 0 they are those of the scene.
+    /// Edges of boxes and hulls are rounded by `convex_radius`, by default [`Self::CONVEX_RADIUS`].
+    /// Within this radius Jolt needs only the closest points of the inner shapes. With 0 boxes and
+    /// hulls have the exact shape of the scene.
     #[must_use]
     pub fn new(scene: &Scene<3>, prediction: f32, convex_radius: f32) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {

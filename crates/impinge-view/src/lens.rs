@@ -167,15 +167,16 @@ impl View {
         (self.lens.distance(&local) >= self.lens.near).then(|| self.project(&local, bias))
     }
 
-    /// Projects a line; the part before the near plane is clipped.
+    /// Projects a line segment, clipped to the far side of the near plane; `None` if no part of it
+    /// remains.
     pub(crate) fn line(&self, ends: &[Point<f64>; 2], bias: f64) -> Option<[OnScreen; 2]> {
         let cut = self.cut(ends);
         let [start, end] = cut[..] else { return None };
         Some([self.project(&start, bias), self.project(&end, bias)])
     }
 
-    /// Projects the corners of a triangle; the part before the near plane is clipped: none, three or
-    /// four corners.
+    /// Projects the corners of a triangle, clipped to the far side of the near plane. Returns 0, 3
+    /// or 4 corners, in order around the clipped polygon.
     pub(crate) fn triangle(&self, corners: &[Point<f64>; 3], bias: f64) -> Vec<OnScreen> {
         self.cut(corners).iter().map(|local| self.project(local, bias)).collect()
     }

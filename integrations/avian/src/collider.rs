@@ -71,7 +71,8 @@ where
         Self::made(shape.map(ShapeHandle::new).map_err(Into::into))
     }
 
-    /// The error of the constructor, if its arguments make no shape.
+    /// Returns the collider with the shape, or with the error if a constructor of the library
+    /// rejected its arguments.
     #[must_use]
     pub fn error(&self) -> Option<ColliderError> {
         self.shape.as_ref().err().copied()
