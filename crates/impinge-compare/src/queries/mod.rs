@@ -6,7 +6,7 @@
 //! with parry's solids at its leaves. Queries about boxes run on trees of boxes alone. All
 //! contenders get the same queries, converted to their own types before the clock starts. Rivals
 //! use their best build (`medium` of `obvhs`) and, where their authors recommend it, primitives
-//! sorted in the order of the tree. All compute the normal of a hit if the library has one.
+//! sorted in the order of the tree. Where a result has a normal, all compute it.
 
 mod mesh;
 mod ncollide;
