@@ -16,9 +16,9 @@ pub(crate) struct Conveyor {
     goods: Vec<CollisionObjectHandle>,
     /// A sensor for each kind, in the order of the kinds.
     sensors: Vec<CollisionObjectHandle>,
-    /// The number of each kind that has entered its sensor.
+    /// For each kind, the number of pieces that have entered its sensor.
     entered: [usize; KINDS.len()],
-    /// The number within a sensor.
+    /// The number of pieces that are within a sensor now.
     within: usize,
     /// The distance that the belt has moved.
     way: f32,
