@@ -40,7 +40,7 @@ impl Conveyor {
     {
         for index in 0..10 {
             let kind = index * 7 % KINDS.len();
-            // Membership is the kind of an object; it may touch every group.
+            // Goods of kind n are members of group n, and may touch every group.
             let mut groups = CollisionGroups::new();
             groups.set_membership(&[kind]);
             let (position, query) = (self.position(index), ContactQuery::default());
