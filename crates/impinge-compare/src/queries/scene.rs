@@ -32,7 +32,8 @@ pub type Ray<const D: usize> = ([f32; D], [f32; D]);
 /// A solid with its placement.
 pub type Solid<const D: usize> = (SceneShape<D>, Placement<D>);
 
-/// The queries of one case; those of the first kinds are about solids, the others about boxes only.
+/// The queries of one case. The kinds from `Rays` to `Overlapping` are about solids, the others
+/// about boxes only.
 #[derive(Clone, Debug)]
 pub enum Questions<const D: usize> {
     /// The first solid that a ray hits, and the time. No ray starts in the box of a solid.
@@ -58,7 +59,7 @@ pub enum Questions<const D: usize> {
 
 /// A library that supports some kinds of queries, in one way or several.
 pub trait Library<const D: usize> {
-    /// Returns the contenders; the queries are converted already.
+    /// Returns the contenders for a kind of queries, which they convert before they are timed.
     fn contenders<'a>(&'a self, questions: &Questions<D>) -> Vec<super::race::Contender<'a>>;
 }
 
@@ -73,7 +74,7 @@ impl<const D: usize> Scene<D> {
         Self { name, objects, boxes, edge, reach }
     }
 
-    /// Returns every kind of queries, `count` of each; a fifth of that for expensive ones.
+    /// Returns `count` queries of every kind; of expensive kinds a fifth of `count`.
     pub fn questions(&self, count: usize) -> Vec<(&'static str, Questions<D>)>
     where
         f32: Space<D>,
