@@ -15,7 +15,7 @@ pub trait Scalar: Real {
     /// The number of bytes of a number.
     const BYTES: usize;
 
-    /// Returns the number of these bits: the inverse of [`Real::bits`].
+    /// Returns the number with these bits: the inverse of [`Real::bits`].
     fn of_bits(bits: u64) -> Self;
 }
 

@@ -12,7 +12,7 @@ pub(super) const PLAIN: usize = 0;
 pub(super) const INDICES: usize = 1;
 /// The low bits of residuals, which are nearly random.
 pub(super) const BITS: usize = 2;
-/// The symbols of the first number of poses; the streams of the other numbers follow.
+/// The stream of the symbols of a pose's first number; the streams of the other numbers follow it.
 pub(super) const SYMBOLS: usize = 3;
 
 /// The slowest level of deflate except the exhaustive one.

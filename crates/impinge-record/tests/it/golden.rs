@@ -29,7 +29,7 @@ fn written<N: Stage<D>, const D: usize>() -> Vec<u8> {
     scene.recorder.finish().bytes
 }
 
-/// Without the calls of version 3 the records of version 2 are equal.
+/// Returns a recording without the calls of version 3: its records are equal to those of version 2.
 fn in_version_2(bytes: &[u8]) -> Vec<u8> {
     let mut earlier = bytes.to_vec();
     earlier[8] = 2;
@@ -73,7 +73,8 @@ fn check_engine<N: Stage<D>, const D: usize>(name: &str) {
     compare::<N, D>(&bytes, &format!("version3/{name}"));
 }
 
-/// The file has these bytes, and the replay of its recording has the same bits.
+/// Asserts that the golden file has these bytes, and that the replay of its recording has the same
+/// bits.
 fn compare<N: Stage<D>, const D: usize>(bytes: &[u8], name: &str) {
     if std::env::var_os("IMPINGE_BLESS").is_some() {
         std::fs::write(file(name), bytes).expect("the golden file can be written");

@@ -120,7 +120,7 @@ fn every_sample_is_the_same_on_every_run() {
     }
 }
 
-/// Returns the minimum, the middle and the maximum.
+/// Returns the minimum, the middle and the maximum of a number control.
 fn values(control: &Control) -> Vec<ControlValue> {
     match control.kind {
         ControlKind::Number { min, max, .. } => {
