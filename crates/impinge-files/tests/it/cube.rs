@@ -146,8 +146,8 @@ pub(crate) fn gltf_buffer() -> Vec<u8> {
     bytes
 }
 
-/// Returns a file in which a node that mirrors the cube contains a node that moves and scales it:
-/// triangles must be reversed.
+/// Returns the JSON of a file in which a node that mirrors the cube contains a node that translates
+/// it: triangles must be reversed.
 fn gltf_json(buffer: &str) -> String {
     format!(
         r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],

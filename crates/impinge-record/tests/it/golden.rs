@@ -29,7 +29,8 @@ fn written<N: Stage<D>, const D: usize>() -> Vec<u8> {
     scene.recorder.finish().bytes
 }
 
-/// Returns a recording without the calls of version 3: its records are equal to those of version 2.
+/// Converts a recording to version 2 of the format: without the calls of version 3 only the version
+/// number differs.
 fn in_version_2(bytes: &[u8]) -> Vec<u8> {
     let mut earlier = bytes.to_vec();
     earlier[8] = 2;

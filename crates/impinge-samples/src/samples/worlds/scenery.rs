@@ -51,7 +51,7 @@ where
         Ok(())
     }
 
-    /// Rebuilds the scene if the count has changed.
+    /// Rebuilds the scene with the current count.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
     }

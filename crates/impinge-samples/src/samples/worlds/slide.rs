@@ -36,7 +36,8 @@ impl<const D: usize> Slide<D>
 where
     f32: Dimension<D>,
 {
-    /// Moves the box across the edges of the triangles, parallel to none of them.
+    /// Returns the position of the box, whose path crosses the edges of the triangles and is
+    /// parallel to none of them.
     fn position(&self, panel: &Panel) -> Isometry<D> {
         let way = 8.0 * to_and_fro(number(self.step) / 600.0) - 4.0;
         turned([way, 0.4 - panel.value("sunk"), 0.37 * way], 0.0)
