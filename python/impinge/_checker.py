@@ -23,7 +23,7 @@ NO_BODY = 4294967295
 class Frame(NamedTuple):
     """A frame on a joint: its pose is `parent @ origin @ motion`.
 
-    `parent` is the number of a frame, `None` for the world, and `origin` a matrix (D+1, D+1), `None` for the identity.
+    `parent` is the index of a frame, `None` for the world, and `origin` a matrix (D+1, D+1), `None` for the identity.
     A revolute joint rotates by radians about `axis` (D,), in 2D counter-clockwise without one; a prismatic joint translates
     along it. The joint value is that in `column` of the configuration times `factor`, plus `offset`.
     """
@@ -99,7 +99,7 @@ class Checker:
 
     def set_obstacles(self, shapes: Sequence[Shape], poses: PosesLike = None, ignored: ArrayLike = ()) -> None:
         """Replaces all obstacles by shapes (o,) at poses (o, D+1, D+1); `ignored` (m, 2) are pairs of a body and an obstacle,
-        each numbered from zero, that may touch."""
+        by index from zero, that may touch."""
         obstacles = list(shapes)
         placed = self._poses(poses, len(obstacles), "poses")
         may_touch = _pairs(ignored, "ignored")

@@ -233,7 +233,7 @@ class World(WorldQueries):
         """All contact points as of the last update: a structured array (m,).
 
         Fields: `first`, `second` (handles), `depth` (a length, negative where they are apart), `normal` (D,) from the first to
-        the second, `point1`, `point2` (D,) in the world frame, `part1`, `part2` (numbers of parts, such as triangles).
+        the second, `point1`, `point2` (D,) in the world frame, `part1`, `part2` (indices of parts, such as triangles).
         """
         return structured(CONTACT, self._world.contacts())
 

@@ -16,7 +16,7 @@ GROUPS = 30
 class Filter:
     """The objects that a query of a `World` considers: all, except those that are excluded here.
 
-    membership, whitelist, blacklist: numbers of groups, 0 to 29, of the query, as in `World.add`. exclude: handles of excluded
+    membership, whitelist, blacklist: indices of the groups, 0 to 29, of the query, as in `World.add`. exclude: handles of excluded
     objects, for instance the one that the query is made for.
 
     >>> import impinge

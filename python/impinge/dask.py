@@ -244,7 +244,7 @@ def _matrices(column: Any, width: int) -> NDArray[Any]:
 
 
 def _sample(unit: Any, start: int, shapes: Scene, step: int) -> tuple[NDArray[np.uint64], NDArray[Any]]:
-    """Returns the ids and boxes of a sample of the rows, one in `step`; `start` is the number of the first row."""
+    """Returns the ids and boxes of a sample of the rows, one in `step`; `start` is the index of the first row."""
     table = unit.to_table(columns=["id", "shape", "pose"])
     # Not every step-th row: rows of a grid are periodic.
     ids, picked, poses = _read(table.take(np.flatnonzero(_noise(start, len(table)) % step == 0)), shapes)

@@ -41,7 +41,7 @@ class Body:
 
 
 class NearestBodies(NamedTuple):
-    """For each configuration the least distance, and the numbers of the two bodies; the second may be a shape of the scene."""
+    """For each configuration the least distance, and the indices of the two bodies; the second may be a shape of the scene."""
 
     distance: NDArray[np.float64]
     body1: NDArray[np.int64]
@@ -141,7 +141,7 @@ class Robot:
         return checker
 
     def _nearest(self, checker: Checker, configurations: ArrayLike, first: int) -> NearestBodies:
-        """Returns the nearest bodies; the second numbers start at 0 from `first`."""
+        """Returns the nearest bodies; `first` is subtracted from the second indices."""
         distance, pair = checker.nearest(np.atleast_2d(self._checked(configurations)))
         body1, body2 = pair.astype(np.int64).T
         is_none = np.isinf(distance)

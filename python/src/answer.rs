@@ -20,7 +20,7 @@ pub(crate) enum Extent {
 }
 
 impl Extent {
-    /// The extent of arguments with a single element, or else with `len` elements.
+    /// Returns the extent of arguments: a single element if `is_lone`, otherwise `len` elements.
     pub(crate) const fn of(is_lone: bool, is_quick: bool, len: usize) -> Self {
         if is_lone { Self::Lone { is_quick } } else { Self::Many(len) }
     }

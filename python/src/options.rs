@@ -6,7 +6,7 @@ use impinge::narrow_phase::GeometricQueryType;
 use impinge::world::{CollisionGroups, GroupError};
 use pyo3::prelude::*;
 
-/// Numbers of groups; a missing list is that of new objects.
+/// Indices of groups; a missing list is that of a new object.
 #[derive(FromPyObject)]
 pub(crate) struct GroupLists {
     membership: Option<Vec<usize>>,

@@ -19,9 +19,10 @@ use crate::vectors::Vectors;
 pub(crate) enum PointQuestion {
     /// The nearest point; points inside are their own projection if `solid`.
     Project { solid: bool },
-    /// Negative inside; open surfaces have no inside, and are an error unless `surface`.
+    /// The signed distance, negative inside. Open surfaces have no inside, and are an error unless
+    /// `surface`.
     SignedDistance { surface: bool },
-    /// Whether it is inside; open surfaces are an error unless `surface`.
+    /// Whether the point is inside. Open surfaces are an error unless `surface`.
     Contains { surface: bool },
 }
 

@@ -17,7 +17,7 @@ pub(crate) trait Cornered<const D: usize>: Space<D> {
     /// Returns the vertices of the convex shapes that exist in this dimension only.
     fn own_corners(shape: &ShapeHandle<Self, D>) -> Option<Vec<Point<Self, D>>>;
 
-    /// Whether it is a tetrahedron, not a hull.
+    /// Whether the shape is a tetrahedron, not a hull.
     fn is_tetrahedron(shape: &ShapeHandle<Self, D>) -> bool;
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn vertices<'py>(py: Python<'py>, shape: &Shape) -> PyResult<Bound<'p
     run_in(shape.kind, Vertices { py, shape })
 }
 
-/// Returns the faces of a shape as numbers of vertices: (m, 3), for polylines (m, 2).
+/// Returns the faces of a shape as indices of vertices: (m, 3), for polylines (m, 2).
 ///
 /// # Errors
 /// `AttributeError` if the shape has none.

@@ -19,7 +19,8 @@ pub(crate) trait Bounding<const D: usize>: Space<D> {
     /// the shape bounds nothing, and for solids.
     fn signed_distance(shape: &ShapeHandle<Self, D>, point: &Point<Self, D>) -> Option<Self>;
 
-    /// Returns whether a point in the local frame lies inside a mesh or polyline, or on it; `None` as above.
+    /// Returns whether a point in the local frame lies inside a mesh or polyline, or on it; `None`
+    /// if the shape bounds nothing, and for solids.
     fn encloses(shape: &ShapeHandle<Self, D>, point: &Point<Self, D>) -> Option<bool>;
 
     /// Returns the kind of a surface or polyline; `None` for other shapes.
@@ -29,9 +30,9 @@ pub(crate) trait Bounding<const D: usize>: Space<D> {
 /// The kind of a shape with a surface but no interior of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Standing {
-    /// It bounds a solid.
+    /// The surface bounds a solid.
     Closed,
-    /// It bounds nothing; with the name of its kind of shape.
+    /// The surface bounds nothing; the text names its kind of shape.
     Open(&'static str),
 }
 

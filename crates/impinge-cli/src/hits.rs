@@ -20,14 +20,14 @@ pub(crate) struct Hits<H> {
 #[derive(Debug, Serialize)]
 pub(crate) struct RayHit {
     pub(crate) object: String,
-    /// In units of the direction.
+    /// The time of the hit, as a multiple of the direction.
     pub(crate) time: Number,
     /// The distance from the start to the point, in units of the world.
     pub(crate) length: Number,
     pub(crate) point: Vec<Number>,
     /// The outward normal; zero if the ray starts inside.
     pub(crate) normal: Vec<Number>,
-    /// The part that is hit; 0 for a convex shape.
+    /// The index of the part that is hit; 0 for a convex shape.
     pub(crate) part: u32,
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct RayHit {
 #[derive(Debug, Serialize)]
 pub(crate) struct CastHit {
     pub(crate) object: String,
-    /// 0 at the start and 1 at the end.
+    /// The time of the hit: 0 at the start and 1 at the end of the path.
     pub(crate) time: Number,
     /// The travelled distance, in units of the world.
     pub(crate) moved: Number,
@@ -45,7 +45,7 @@ pub(crate) struct CastHit {
     pub(crate) point: Vec<Number>,
     /// The normal from the moving shape to the object.
     pub(crate) normal: Vec<Number>,
-    /// The part that is hit; 0 for a convex shape.
+    /// The index of the part that is hit; 0 for a convex shape.
     pub(crate) part: u32,
 }
 

@@ -47,9 +47,8 @@ impl Input {
     }
 }
 
-/// Whether the bytes begin like a recording, even if it is truncated or of an unknown version: errors are
-/// then those of a recording, not of JSON.
-/// recording, not of JSON.
+/// Whether the bytes begin like a recording, also a truncated one or one of an unknown version.
+/// Errors are then those of a recording, not of JSON.
 fn is_recording(head: &[u8]) -> bool {
     !Header::read(head).is_err_and(|error| error.problem == Problem::NotARecording)
 }

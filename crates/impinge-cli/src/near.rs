@@ -18,7 +18,8 @@ const ROUNDING_ERRORS: f64 = 1024.0;
 pub(crate) struct Boxed<'a, N: Stage<D>, const D: usize, T> {
     objects: Vec<&'a CollisionObject<N, D, T>>,
     tree: BoxTree<N, D>,
-    /// The object of each box of the tree; objects without a finite box are not in the tree.
+    /// For each box of the tree, the index of its object; objects without a finite box are not in
+    /// the tree.
     owners: Vec<usize>,
 }
 
@@ -38,7 +39,7 @@ impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
         Ok(Self { objects, tree, owners })
     }
 
-    /// Returns an object by its number.
+    /// Returns the object with an index.
     pub(crate) fn object(&self, index: u32) -> &'a CollisionObject<N, D, T> {
         self.objects[index as usize]
     }
@@ -48,9 +49,10 @@ impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
         self.objects.len()
     }
 
-    /// Calls `visit` with the numbers of each two objects, the lower first, that may interact by their groups and whose
-    /// boxes are at most a distance apart. `reach` returns the distance for an object. An object that is tested against
-    /// itself is a pair too. `goes_on` is called before each object and may end the loop.
+    /// Calls `visit` with the indices of two objects, the lower first, for each pair that may
+    /// interact by its groups and whose boxes are at most a distance apart. `reach` returns this
+    /// distance for an object. An object that is tested against itself is a pair too. `goes_on` is
+    /// called before each object; the loop ends when it returns `false`.
     pub(crate) fn each(
         &self,
         reach: impl Fn(&CollisionObject<N, D, T>) -> N,
@@ -79,7 +81,7 @@ impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
     }
 }
 
-/// Converts the index of an object. A tree numbers its boxes by 32 bits.
+/// Converts the index of an object to the 32 bits that a tree uses.
 fn number(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }

@@ -31,9 +31,9 @@ const MAX_WORDS: usize = 400;
 /// Whether something touches, is hit or differs, which is the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// Nothing, or the verb has no such result: 0.
+    /// Nothing touches, or the verb has no such result: exit code 0.
     Clear,
-    /// Something: 1.
+    /// Something touches, is hit or differs: exit code 1.
     Found,
 }
 
@@ -114,7 +114,8 @@ pub(crate) fn complain(error: &CliError) {
     message(TOUCHES, "error", error);
 }
 
-/// Texts are shortened where they are made; control characters are escaped here, wherever they come from.
+/// Writes a message. Control characters are escaped here, wherever the text comes from; texts are
+/// shortened by their authors.
 fn message(style: Style, kind: &str, text: &dyn fmt::Display) {
     let text = text.to_string();
     let words = text.split_inclusive(' ').take(MAX_WORDS);

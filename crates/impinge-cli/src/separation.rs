@@ -17,19 +17,20 @@ pub(crate) struct Separation {
     pub(crate) first: String,
     pub(crate) second: String,
     pub(crate) state: State,
-    /// Zero if they touch.
+    /// The distance; zero if the objects touch.
     pub(crate) distance: Option<Number>,
-    /// Zero unless they overlap: the length of the shortest translation that separates them.
+    /// The depth: the length of the shortest translation that separates the objects; zero unless
+    /// they overlap.
     pub(crate) depth: Option<Number>,
     /// The point on the first object, in the world frame.
     pub(crate) point1: Option<Vec<Number>>,
-    /// The point on the second object.
+    /// The point on the second object, in the world frame.
     pub(crate) point2: Option<Vec<Number>>,
-    /// The unit normal from the first to the second.
+    /// The unit normal from the first object to the second.
     pub(crate) normal: Option<Vec<Number>>,
-    /// The part of the first object with the point; 0 for a convex shape.
+    /// The index of the part of the first object that contains the point; 0 for a convex shape.
     pub(crate) part1: Option<u32>,
-    /// The part of the second object.
+    /// The index of the part of the second object that contains the point; 0 for a convex shape.
     pub(crate) part2: Option<u32>,
 }
 

@@ -12,11 +12,11 @@ use crate::output::{CLEAR, NAME, NEAR, TOUCHES};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum State {
-    /// Their distance is zero.
+    /// The distance of the objects is zero.
     Touch,
-    /// They are apart, but within the clearance or margin.
+    /// The objects are apart, but within the clearance or margin.
     Near,
-    /// They are farther apart.
+    /// The objects are farther apart than the clearance or margin.
     Apart,
 }
 

@@ -18,19 +18,19 @@ fn table() -> MutexGuard<'static, ()> {
 
 /// A world of Box2D.
 ///
-/// Its bodies are dynamic, since two others never touch, without sleep; the ground is a static chain.
-/// A step sets the transforms of moved objects, makes a step of time 0, which finds pairs and updates
-/// contacts but solves and integrates nothing, and updates the list of touching contacts by the
-/// events.
+/// The bodies are dynamic and never sleep, since two bodies that are not dynamic never touch; the
+/// ground is a static chain. A step first sets the transforms of moved objects. Then it makes a
+/// step of time 0, which finds pairs and updates contacts, but solves and integrates nothing. The
+/// events update the list of touching contacts.
 ///
-/// Its prediction is 0.02 and its boxes are enlarged by up to 0.07: these are constants of Box2D.
+/// The prediction is 0.02, and boxes are enlarged by up to 0.07: both are constants of Box2D.
 #[derive(Debug)]
 pub struct Box2d {
     world: ffi::b2WorldId,
     bodies: Vec<ffi::b2BodyId>,
     moved: Vec<(ffi::b2BodyId, ffi::b2Vec2, ffi::b2Rot)>,
     contacts: Contacts<ffi::b2ContactId>,
-    /// Worlds stay on their thread.
+    /// Not `Send`: a world stays on its thread.
     thread: PhantomData<*const ()>,
 }
 
@@ -45,7 +45,8 @@ impl ContactName for ffi::b2ContactId {
 }
 
 impl Box2d {
-    /// Creates a world with the objects of a scene at step 0; `None` if Box2D lacks a shape of it.
+    /// Creates a world with the objects of a scene at step 0; `None` if this adapter does not map a
+    /// shape of the scene.
     #[must_use]
     pub fn new(scene: &Scene<2>, recycling: Recycling) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {
@@ -155,7 +156,8 @@ impl Drop for Box2d {
     }
 }
 
-/// Whether Box2D has the shape: hulls have at most 8 corners; there are no half-spaces.
+/// Whether this adapter maps the shape. Box2D's hulls have at most 8 corners, and it has no
+/// half-spaces; segments are not mapped.
 fn has(shape: &SceneShape<2>) -> bool {
     match shape {
         SceneShape::Convex { points } => points.len() <= 8,

@@ -21,25 +21,25 @@ const REST_OFFSET: f32 = 0.005;
 
 /// A world of Box3D.
 ///
-/// Its bodies are dynamic, since two others never touch, without sleep; the ground is static. A step
-/// sets the transforms of moved objects, makes a step of time 0, which finds pairs and updates
-/// contacts but solves and integrates nothing, and updates the list of touching contacts by the
-/// events.
+/// The bodies are dynamic and never sleep, since two bodies that are not dynamic never touch; the
+/// ground is static. A step first sets the transforms of moved objects. Then it makes a step of
+/// time 0, which finds pairs and updates contacts, but solves and integrates nothing. The events
+/// update the list of touching contacts.
 ///
-/// Its prediction is 0.02 and its boxes are enlarged by up to 0.07: these are constants of Box3D.
-/// Depths on a ground are greater by 0.005, another constant. The heights of its height field have 16
-/// bits.
+/// The prediction is 0.02, and boxes are enlarged by up to 0.07: both are constants of Box3D.
+/// Depths on a ground are larger by 0.005, another constant. The heights of its height fields have
+/// 16 bits.
 #[derive(Debug)]
 pub struct Box3d {
     world: ffi::b3WorldId,
     bodies: Vec<ffi::b3BodyId>,
-    /// For each object, the offset of the separation of its points.
+    /// For each object, the offset that is added to the separations of its points; see [`REST_OFFSET`].
     offsets: Vec<f32>,
     moved: Vec<(ffi::b3BodyId, ffi::b3Vec3, ffi::b3Quat)>,
     contacts: Contacts<ffi::b3ContactId>,
     meshes: Vec<*mut ffi::b3MeshData>,
     fields: Vec<*mut ffi::b3HeightFieldData>,
-    /// Worlds stay on their thread.
+    /// Not `Send`: a world stays on its thread.
     thread: PhantomData<*const ()>,
 }
 
@@ -54,7 +54,8 @@ impl ContactName for ffi::b3ContactId {
 }
 
 impl Box3d {
-    /// Creates a world with the objects of a scene at step 0; `None` if Box3D lacks a shape of it.
+    /// Creates a world with the objects of a scene at step 0; `None` if this adapter does not map a
+    /// shape of the scene.
     #[must_use]
     pub fn new(scene: &Scene<3>, recycling: Recycling) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {
@@ -243,7 +244,8 @@ impl Drop for Box3d {
     }
 }
 
-/// Whether Box3D has the shape; its cylinders and cones are hulls with a number of sides.
+/// Whether this adapter maps the shape. Cylinders and cones are not mapped: those of Box3D are
+/// hulls with a number of sides.
 const fn has(shape: &SceneShape<3>) -> bool {
     use SceneShape::{Ball, Capsule, Convex, Cuboid};
     matches!(shape, Ball { .. } | Cuboid { .. } | Capsule { .. } | Convex { .. })

@@ -117,7 +117,7 @@ pub struct CoalPairs {
     handle: NonNull<c_void>,
     count: usize,
     sets: usize,
-    /// Searches keep state.
+    /// Not `Send`: searches keep state on their thread.
     thread: PhantomData<*const ()>,
 }
 

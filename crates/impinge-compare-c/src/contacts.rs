@@ -1,11 +1,11 @@
 //! The touching contacts of a world of Box2D or Box3D, tracked by its events.
 
-/// The name of a contact.
+/// The id of a contact.
 pub(crate) trait ContactName: Copy {
     /// The index, which is reused for another contact after this one has ended.
     fn index(self) -> usize;
 
-    /// Distinguishes the contacts of one index.
+    /// The generation, which distinguishes successive contacts of one index.
     fn generation(self) -> u32;
 }
 
@@ -13,7 +13,7 @@ pub(crate) trait ContactName: Copy {
 #[derive(Debug)]
 pub(crate) struct Contacts<Name> {
     names: Vec<Name>,
-    /// For each index its position among the names, or [`NOWHERE`].
+    /// For each index of a contact, its position in the list of ids, or [`NOWHERE`].
     places: Vec<usize>,
 }
 

@@ -10,9 +10,9 @@ use oxijolt_sys::*;
 
 use crate::{Digest, sorted};
 
-/// The time of a step, which must not be 0; nothing has a velocity.
+/// The duration of a step, which must not be 0. No body has a velocity.
 const STEP: f32 = 1.0 / 60.0;
-/// One layer for all bodies, in both phases.
+/// The number of layers: one for all bodies, in both phases.
 const LAYERS: u32 = 1;
 
 /// A world of Jolt.
@@ -33,17 +33,17 @@ pub struct Jolt {
     memory: *mut JPH_TempAllocator,
     bodies: Vec<JPH_BodyID>,
     moved: Vec<(JPH_BodyID, JPH_Vec3, JPH_Quat)>,
-    /// The buffer of the listener, which has the pointer too, so there is never a reference while it
-    /// runs.
+    /// The buffer of the listener. The listener has the pointer too, so that no reference to the
+    /// buffer exists while it runs.
     heard: *mut Heard,
-    /// Worlds stay on their thread.
+    /// Not `Send`: a world stays on its thread.
     thread: PhantomData<*const ()>,
 }
 
-/// The contacts of a step.
+/// The contacts of a step, as the listener stored them.
 #[derive(Debug, Default)]
 struct Heard {
-    /// For each manifold, the pair and the end of its points.
+    /// For each manifold, the pair of indices and the end of its points in `points`.
     pairs: Vec<([u64; 2], usize)>,
     /// The position of a point on the first body, and its depth.
     points: Vec<(JPH_Vec3, f32)>,
@@ -100,11 +100,13 @@ impl Jolt {
     /// The default rounding radius of Jolt.
     pub const CONVEX_RADIUS: f32 = 0.05;
 
-    /// Creates a world with the objects of a scene at step 0, whose contacts are predicted up to a
-    /// distance; `None` if Jolt lacks a shape of it.
+    /// Creates a world with the objects of a scene at step 0. Contacts are computed up to the
+    /// distance `prediction`. Returns `None` if this adapter does not map a shape of the scene: it
+    /// maps balls, boxes, capsules, convex hulls, meshes and height fields.
     ///
-    /// The edges of boxes and hulls are rounded by a radius, by default [`Self::CONVEX_RADIUS`]: within
-    /// it a search for the closest points suffices. With 0 they are those of the scene.
+    /// Edges of boxes and hulls are rounded by `convex_radius`, by default [`Self::CONVEX_RADIUS`].
+    /// Within this radius Jolt needs only the closest points of the inner shapes. With 0 boxes and
+    /// hulls have the exact shape of the scene.
     #[must_use]
     pub fn new(scene: &Scene<3>, prediction: f32, convex_radius: f32) -> Option<Self> {
         if !scene.objects.iter().all(|object| has(&object.shape)) {
@@ -271,8 +273,8 @@ unsafe fn system(objects: usize, prediction: f32) -> *mut JPH_PhysicsSystem {
 
 static NO_GRAVITY: JPH_Vec3 = JPH_Vec3 { x: 0.0, y: 0.0, z: 0.0 };
 
-/// Whether Jolt has the shape; its half-spaces are bounded, its segments have a radius, and its
-/// cylinders and cones occur only in scenes with these.
+/// Whether this adapter maps the shape. Half-spaces of Jolt are bounded and its segments have a
+/// radius, so that both are not mapped. Cylinders and cones are not mapped either.
 const fn has(shape: &SceneShape<3>) -> bool {
     use SceneShape::{Ball, Capsule, Convex, Cuboid};
     matches!(shape, Ball { .. } | Cuboid { .. } | Capsule { .. } | Convex { .. })

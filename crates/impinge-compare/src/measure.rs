@@ -12,7 +12,7 @@ impl Times {
         self.0.push(time);
     }
 
-    /// The quantile at a percentage; NaN without times.
+    /// Returns the quantile at a percentage; NaN without times.
     pub fn quantile(&self, percent: usize) -> f64 {
         let mut times = self.0.clone();
         times.sort_unstable_by(f64::total_cmp);
@@ -20,7 +20,7 @@ impl Times {
         times.get(last * percent / 100).copied().unwrap_or(f64::NAN)
     }
 
-    /// The median.
+    /// Returns the median; NaN without times.
     pub fn median(&self) -> f64 {
         self.quantile(50)
     }
@@ -34,8 +34,9 @@ pub fn timed<R>(work: impl FnOnce() -> R) -> (f64, R) {
 }
 
 /// Runs the contenders in turn for `rounds` rounds. Each round begins with the next contender, so
-/// that none always finds the caches as the same other one left them. The first round is not kept.
-/// The times are nanoseconds divided by `operations`, the number of operations of one call.
+/// that the same contender does not always precede another and fill the caches. The first round is
+/// not timed. The times are nanoseconds divided by `operations`, the number of operations of one
+/// call.
 pub fn in_turn(
     rounds: usize,
     operations: usize,

@@ -57,7 +57,7 @@ pub enum Problem {
         /// The message of the operating system.
         message: String,
     },
-    /// It is a device, a pipe or a folder: only regular files are read.
+    /// The path is a device, a pipe or a folder: only regular files are read.
     NotAFile,
     /// A file names another file outside of the root folder. [`ReadOptions::with_root`](crate::ReadOptions::with_root)
     /// selects another root.
@@ -92,7 +92,7 @@ pub enum Problem {
         /// The given number of coordinates.
         given: usize,
     },
-    /// An element of one dimension in a scene of the other.
+    /// An element of one dimension occurs in a scene of the other.
     WrongDimension {
         /// The kind of element.
         what: &'static str,
@@ -106,14 +106,15 @@ pub enum Problem {
         /// The requested dimension.
         asked: usize,
     },
-    /// An invalid number.
+    /// A number is outside the allowed values.
     BadValue {
-        /// The kind of number, and the values that are allowed.
+        /// The kind of number, and its allowed values.
         what: &'static str,
         /// The number.
         value: f64,
     },
-    /// Members that exclude each other, or of which exactly one is required.
+    /// An object has members that exclude each other, or not exactly one of several alternatives;
+    /// the text names them.
     Members(&'static str),
     /// No shape has this name.
     UnknownShape(String),
@@ -127,11 +128,11 @@ pub enum Problem {
     EmptyMesh,
     /// A mesh with the kind `solid` is not the boundary of a volume.
     NotSolid {
-        /// The number of edges with one triangle.
+        /// The number of edges that belong to one triangle only.
         boundary_edges: usize,
-        /// The number of edges whose triangles disagree about the outside.
+        /// The number of edges at which the fronts of the two triangles disagree.
         inconsistent_edges: usize,
-        /// The number of edges with more than two triangles.
+        /// The number of edges that belong to more than two triangles.
         non_manifold_edges: usize,
     },
     /// A count exceeds the capacity of a representation.
@@ -296,25 +297,27 @@ impl<E: Into<LibraryError>> From<E> for Problem {
     }
 }
 
-/// A problem at a path of a document, before the file and the line are known.
+/// A problem and its path in a document, before the file and the line are known.
 ///
-/// The path is empty where the problem is found. Each caller that descended by a member prepends it.
+/// The path is empty where the problem is found. Each caller that descended to a member prepends
+/// the name of that member.
 #[derive(Clone, Debug)]
 pub(crate) struct Fault {
     pub(crate) path: String,
-    /// The path already begins at the document, as for a shape that is used by its name.
+    /// Whether the path already begins at the document, as for a named shape: callers then prepend
+    /// nothing.
     pub(crate) is_absolute: bool,
     pub(crate) problem: Problem,
 }
 
 impl Fault {
-    /// Marks the path as counted from the document.
+    /// Marks the path as beginning at the document, so that callers prepend nothing.
     pub(crate) const fn absolute(mut self) -> Self {
         self.is_absolute = true;
         self
     }
 
-    /// Prepends the member or index by which a containing value holds this one.
+    /// Prepends the member name or index `step` to the path, unless the path is absolute.
     pub(crate) fn within(mut self, step: &str) -> Self {
         if self.is_absolute {
             return self;

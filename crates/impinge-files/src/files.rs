@@ -19,7 +19,7 @@ pub(crate) struct Files {
     pub(crate) limits: Limits,
     /// Bytes read so far.
     bytes: usize,
-    /// Vertices and triangle corners made so far.
+    /// Elements counted so far; see [`Limits::elements`].
     elements: usize,
 }
 
@@ -58,12 +58,12 @@ impl Files {
         self.take(&self.locate(path)?)
     }
 
-    /// Like [`Self::read`], with the path in the error.
+    /// Returns the bytes of a file; the error names the path.
     pub(crate) fn read_named(&mut self, path: &Path) -> Result<Vec<u8>, FileError> {
         self.read(path).map_err(|problem| FileError::whole(path, problem))
     }
 
-    /// Returns the path without symbolic links, if it lies in one of the folders.
+    /// Returns the path without symbolic links; an error if it lies in none of the folders.
     ///
     /// A path that leads outside is rejected before the disk is accessed, so that errors do not reveal which files
     /// exist.
@@ -111,7 +111,7 @@ impl Files {
         Ok(bytes)
     }
 
-    /// Adds to the count of bytes, and checks the limit.
+    /// Adds to the number of bytes; an error if the limit is exceeded.
     pub(crate) fn count_bytes(&mut self, count: usize) -> Result<(), Problem> {
         let total = self.bytes.saturating_add(count);
         check(Limit::Bytes, total, self.limits.bytes)?;
@@ -119,7 +119,7 @@ impl Files {
         Ok(())
     }
 
-    /// Adds to the count of vertices and triangle corners, before they are made, and checks the limit.
+    /// Adds to the number of elements before they are created; an error if the limit is exceeded.
     pub(crate) fn count_elements(&mut self, count: usize) -> Result<(), Problem> {
         let total = self.elements.saturating_add(count);
         check(Limit::Elements, total, self.allowed(self.limits.elements))?;

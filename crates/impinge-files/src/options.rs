@@ -48,20 +48,25 @@ impl ReadOptions {
     }
 }
 
-/// Limits of a scene, so that small files cannot request much memory. Reading fails with
-/// [`Problem::Limit`](crate::Problem::Limit) beyond a limit.
+/// Limits of a scene, so that small files cannot request much memory. A value above a limit is the
+/// error [`Problem::Limit`](crate::Problem::Limit); a value equal to it is accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// The bytes of all files together.
+    /// The largest number of bytes of all files together.
     pub bytes: usize,
-    /// Vertices, and corners of triangles, of all meshes. A mesh that several nodes of a glTF file or several shapes
-    /// use counts for each use. Files with more bytes than this may have as many elements as bytes.
+    /// Elements that reading may create: vertices and triangle corners of glTF meshes and of mesh
+    /// shapes. glTF files also count the bytes of part names, and each index of a strip or fan as
+    /// three corners. A mesh counts once for each glTF node that uses it, and once for each shape
+    /// with another part, scale or kind. Files with more bytes than this may have as many elements
+    /// as bytes.
     pub elements: usize,
-    /// The corners of a polygon of a mesh file: triangulation takes time proportional to the square of their number.
+    /// The largest number of corners of a polygon of a mesh file. Triangulation takes time
+    /// proportional to the square of the number of corners.
     pub corners: usize,
-    /// The objects of a scene.
+    /// The largest number of objects of a scene.
     pub objects: usize,
-    /// The bytes of the names of all objects. Files with more bytes than this may have as many bytes of names.
+    /// The largest number of bytes of the names of all objects. Files with more bytes than this may
+    /// have as many bytes of names.
     pub names: usize,
 }
 

@@ -39,8 +39,8 @@ impl Source {
         let mut reader = serde_json::Deserializer::from_str(text);
         let scene = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
             let path = error.path().to_string();
-            // For a value that is not valid JSON, the path is that of the enclosing value: the step of the value
-            // itself is "?", and "." alone is the whole document.
+            // If a value is not valid JSON, its own step in the path is "?". It is removed, so that
+            // the path is that of the enclosing value. A "." alone is the whole document.
             let path = path.trim_end_matches('?').trim_end_matches('.').to_owned();
             self.syntax_error(path, error.inner())
         })?;
@@ -51,7 +51,7 @@ impl Source {
     fn syntax_error(&self, path: String, error: &serde_json::Error) -> FileError {
         let (line, column) = (error.line(), error.column());
         let message = error.to_string();
-        // The position is reported apart from the message.
+        // The error has fields for line and column, so that they are removed from the message.
         let place = format!(" at line {line} column {column}");
         let message = message.strip_suffix(&place).unwrap_or(&message).to_owned();
         let (line, column) = (line > 0).then_some((line, column.max(1))).unzip();
@@ -118,7 +118,7 @@ fn shortened(text: &str) -> String {
 struct Found {
     /// The part of the path that exists in the document.
     path: String,
-    /// Line and column.
+    /// The line and the column of the value, counted from 1.
     place: (usize, usize),
     value: String,
 }

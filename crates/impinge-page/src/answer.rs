@@ -6,7 +6,7 @@
 use impinge_samples::{Control, Entry, Readout};
 use serde::Serialize;
 
-/// The corners of a box with the lowest and the highest coordinates. `None` for an unbounded one.
+/// The lowest and the highest corner of a box; `None` for an unbounded box.
 pub type Ends = Option<[[f64; 3]; 2]>;
 
 /// The gallery.
@@ -104,18 +104,18 @@ pub struct Status {
 pub enum StatusEvent {
     /// Two objects started or stopped touching.
     Contact {
-        /// Whether they started.
+        /// `true` if they started, `false` if they stopped.
         started: bool,
-        /// The object with the smaller handle.
+        /// The index of the object with the smaller handle.
         a: usize,
-        /// The other.
+        /// The index of the object with the larger handle.
         b: usize,
     },
     /// The proximity of two objects changed.
     Proximity {
-        /// The object with the smaller handle.
+        /// The index of the object with the smaller handle.
         a: usize,
-        /// The other.
+        /// The index of the object with the larger handle.
         b: usize,
         /// The proximity before the update.
         before: &'static str,
@@ -133,13 +133,13 @@ pub struct ShapeText {
     pub text: String,
 }
 
-/// Groups: some, or all 30.
+/// A list of groups, or the word `all` for all 30.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum GroupNumbers {
     /// The word `all`.
     All(&'static str),
-    /// Their numbers.
+    /// The indices of the groups.
     Some(Vec<usize>),
 }
 
@@ -174,24 +174,24 @@ pub enum ShownQuery {
     },
 }
 
-/// A pair of an object.
+/// A pair of the described object with another object.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ShownPair {
     /// Contacts, as of the last update.
     Contacts {
-        /// The other object.
+        /// The index of the other object.
         object: usize,
         /// The number of contact points.
         contacts: usize,
-        /// The depth of the deepest contact.
+        /// The depth of the deepest contact; negative if the objects are apart.
         depth: f64,
         /// Whether there is a contact point.
         touching: bool,
     },
     /// Proximity, as of the last update.
     Proximity {
-        /// The other object.
+        /// The index of the other object.
         object: usize,
         /// The status as a word.
         status: &'static str,
@@ -201,15 +201,15 @@ pub enum ShownPair {
 /// The description of an object.
 #[derive(Clone, Debug, Serialize)]
 pub struct ObjectAnswer {
-    /// The index of its handle.
+    /// The index of the object's handle.
     pub object: usize,
-    /// Its shape.
+    /// The description of its shape.
     pub shape: ShapeText,
     /// Its data as text.
     pub label: String,
     /// The position of its origin.
     pub translation: [f64; 3],
-    /// A quaternion x, y, z, w.
+    /// The rotation, as a unit quaternion x, y, z, w.
     pub rotation: [f64; 4],
     /// Its groups.
     pub groups: ShownGroups,
@@ -226,13 +226,13 @@ pub struct ObjectAnswer {
 /// A contact of two shapes.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct ShownContact {
-    /// The point on the first.
+    /// The point on the first shape.
     pub a: [f64; 3],
-    /// The point on the second.
+    /// The point on the second shape.
     pub b: [f64; 3],
-    /// From the first to the second.
+    /// The unit normal from the first shape to the second.
     pub normal: [f64; 3],
-    /// The depth, positive where they overlap.
+    /// The depth: positive if the shapes overlap.
     pub depth: f64,
 }
 
@@ -242,7 +242,7 @@ pub struct ManifoldPoint {
     /// The contact.
     #[serde(flatten)]
     pub contact: ShownContact,
-    /// The touching features of both.
+    /// The touching features of both shapes, as text.
     pub features: String,
 }
 
@@ -253,7 +253,7 @@ pub struct ShownManifold {
     pub contacts: Vec<ManifoldPoint>,
 }
 
-/// One of the conditions for two objects to touch.
+/// The result of one of the conditions for two objects to touch.
 #[derive(Clone, Debug, Serialize)]
 pub struct Test {
     /// `groups`, `filter`, `boxes` or `distance`.
@@ -278,15 +278,15 @@ pub struct Why {
 /// The description of a pair of objects.
 #[derive(Clone, Debug, Serialize)]
 pub struct PairAnswer {
-    /// The first object.
+    /// The index of the first object.
     pub a: usize,
-    /// The second.
+    /// The index of the second object.
     pub b: usize,
     /// The distance; 0 if they touch or overlap.
     pub distance: f64,
     /// The closest points; `None` if they touch or overlap.
     pub points: Option<[[f64; 3]; 2]>,
-    /// Their contact up to the prediction.
+    /// The contact of the objects, if they are within the prediction.
     pub contact: Option<ShownContact>,
     /// The proximity as a word, by the margins of both.
     pub proximity: &'static str,
@@ -299,13 +299,13 @@ pub struct PairAnswer {
 /// The object at a point on the screen.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Picked {
-    /// The object.
+    /// The index of the object; `None` if there is none at the point.
     pub object: Option<usize>,
     /// The hit point; in 2D the nearest point of the object.
     pub point: [f64; 3],
-    /// The outward normal there; zero in 2D.
+    /// The outward normal at the hit point; zero in 2D.
     pub normal: [f64; 3],
-    /// The time of the ray.
+    /// The time of the hit, as a multiple of the direction.
     pub time: f64,
 }
 
@@ -316,9 +316,9 @@ pub struct RayHit {
     pub object: usize,
     /// The hit point.
     pub point: [f64; 3],
-    /// The outward normal there.
+    /// The outward normal at the hit point.
     pub normal: [f64; 3],
-    /// The time of the ray.
+    /// The time of the hit, as a multiple of the direction.
     pub time: f64,
     /// The feature that is hit.
     pub feature: String,

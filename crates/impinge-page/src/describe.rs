@@ -12,7 +12,7 @@ use crate::groups;
 use crate::shape_text::shape_text;
 use crate::space::{Viewed, coordinates};
 
-/// The greatest number of listed events in a status, which also has their number.
+/// The largest number of events listed in a status, which also has the number of all events.
 const MAX_EVENTS: usize = 200;
 
 /// The greatest number of bytes in the label of data that is not text.
@@ -27,7 +27,7 @@ pub(crate) fn object_of<N: Space<D>, const D: usize, T>(
     world.collision_objects().find(|object| object.handle().uid() == number as usize)
 }
 
-/// The description of an object.
+/// Returns the description of an object.
 pub(crate) fn object_answer<N: Viewed<D>, const D: usize, T: RecordData>(
     world: &CollisionWorld<N, D, T>,
     object: &CollisionObject<N, D, T>,
@@ -79,13 +79,13 @@ fn pairs<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     handle: CollisionObjectHandle,
 ) -> Vec<ShownPair> {
-    // One entry for each contact point, those of one partner consecutively.
+    // Contacts of one partner are consecutive, so that `dedup` leaves each partner once.
     let mut partners: Vec<_> =
         world.contacts_with(handle).map(|(other, _)| other.handle()).collect();
     partners.dedup();
     let contacts = partners.into_iter().filter_map(|other| {
         let pair = world.contact_pair(handle, other)?;
-        // The deepest of all manifolds of the pair.
+        // The largest depth over all manifolds of the pair.
         let deepest = pair.views().map(|view| view.deepest_contact().contact.depth).reduce(max)?;
         let (object, contacts, depth) = (other.uid(), pair.num_contacts(), deepest.as_f64());
         Some((other, ShownPair::Contacts { object, contacts, depth, touching: contacts > 0 }))

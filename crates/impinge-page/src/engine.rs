@@ -196,7 +196,8 @@ fn stage_of(header: &Header, bytes: Option<&[u8]>) -> Result<Opened, EngineError
     }
 }
 
-/// Like [`stage_of`], for a scalar and a dimension.
+/// Creates the stage of a recording in a scalar and a dimension: of all its bytes, or of a stream
+/// without bytes yet.
 fn recorded<N: Viewed<D>, const D: usize>(bytes: Option<&[u8]>) -> Result<Opened, EngineError> {
     let recorded = match bytes {
         Some(bytes) => Recorded::<N, D>::open(bytes, Registry::new())?,

@@ -30,11 +30,11 @@ pub enum EngineError {
     OfSamples(&'static str),
     /// More steps than one message may request.
     TooManySteps(u64),
-    /// No object has this number.
+    /// No object has a handle with this index.
     NoObject(u32),
     /// A pair must have two different objects.
     OneObject(u32),
-    /// The rotation has no direction: all its components are zero.
+    /// The quaternion has length zero.
     Rotation([f64; 4]),
     /// The value of a control has an invalid type, for instance a list.
     Value(String),

@@ -33,8 +33,8 @@ enum Limit<N> {
 }
 
 impl<N: Real> Limit<N> {
-    /// Proximity, if either object has a query of that type: then the prediction of the other and `skins`, the sum of
-    /// both skins, are ignored.
+    /// Returns the limit of a pair. It is a proximity if either object has a proximity query; the
+    /// prediction of the other object and `skins`, the sum of both skins, are then ignored.
     fn of(one: GeometricQueryType<N>, two: GeometricQueryType<N>, skins: N) -> Self {
         use GeometricQueryType::{Contacts, Proximity};
         match (one, two) {
@@ -107,8 +107,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         }
     }
 
-    /// Returns the manifolds of the world. There a pair has the order of the handles; points are flipped if the request
-    /// has the other order.
+    /// Returns the manifolds of the world. In a world a pair has the order of the handles; the
+    /// points are flipped if the request has the other order.
     fn manifolds(&self) -> Vec<ShownManifold> {
         let (one, two) = (self.one.handle(), self.two.handle());
         let views = self.world.contact_pair(one, two).into_iter().flat_map(ContactPair::views);
@@ -127,8 +127,9 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         ManifoldPoint { contact, features: format!("{feature1}, {feature2}") }
     }
 
-    /// Returns the result of the world as of its last update, with conditions that are tested now. They disagree after
-    /// a change without an update, and where the world has a reason without a condition: a one-sided surface.
+    /// Returns whether the two touch as of the last update, with conditions that are tested now.
+    /// The two may disagree after a change without an update, and for a one-sided surface, which is
+    /// no condition.
     fn why(&self, limit: Limit<N>, measures: &Measures<N, D>) -> Why {
         let tests =
             vec![self.groups(), self.filters(), self.boxes(), distance_test(limit, measures)];

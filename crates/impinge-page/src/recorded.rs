@@ -26,7 +26,8 @@ pub struct Recorded<N: Viewed<D>, const D: usize> {
     replay: Replay<N, D, Vec<u8>>,
     stand_ins: StandIns<N, D>,
     is_stream: bool,
-    /// The part that could not be read when it was opened; the replay does not have it after its bytes are read again.
+    /// The part that could not be read when the recording was opened. A replay of the bytes that
+    /// were kept does not report it again.
     loss: Option<Loss>,
 }
 
@@ -157,7 +158,7 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
         Err(EngineError::OfSamples("controls"))
     }
 
-    /// The next seek undoes it.
+    /// Moves an object; the next seek undoes this.
     fn drag(&mut self, object: CollisionObjectHandle, to: &N::Isometry) -> Result<(), EngineError> {
         let world = self.replay.world_mut();
         world.try_set_position(object, *to)?;

@@ -58,7 +58,8 @@ pub struct FrameRequest {
     pub layers: Vec<String>,
     /// Objects whose boxes and contacts are drawn whatever the layers are.
     pub selected: Vec<u32>,
-    /// The number of meshes that the page has.
+    /// The number of mesh ids that the page has received: meshes with smaller ids are not sent
+    /// again.
     pub known: u32,
 }
 

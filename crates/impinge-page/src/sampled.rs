@@ -19,8 +19,7 @@ where
 {
     running: Running<D>,
     entry: Entry,
-    /// The controls as the page knows them: those of the last status, with the values that it has
-    /// set since.
+    /// The controls as the page last received them, updated by the values that it has set.
     known: Vec<Control>,
 }
 
@@ -98,7 +97,8 @@ where
         Ok(())
     }
 
-    /// The page knows the value that it sets, so that the next status does not repeat it.
+    /// Sets a control. The page knows the value that it sets, so that the next status does not
+    /// repeat it.
     fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError> {
         self.running.set_control(name, value)?;
         self.drop_recording();

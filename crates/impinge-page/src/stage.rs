@@ -77,32 +77,32 @@ pub trait Source<N: Viewed<D>, const D: usize> {
     /// The world.
     fn world(&self) -> &CollisionWorld<N, D, Self::Data>;
 
-    /// As [`Stage::info`], except the common part of all stages: the dimension, the scalar, the time of a step, the
-    /// bounds and the axis up.
+    /// Returns the description of the stage, without the members common to all stages: the
+    /// dimension, the scalar, the time of a step, the bounds and the axis up.
     fn info(&self) -> Info;
 
-    /// As [`Stage::status`].
+    /// Returns the state at the current step; see [`Stage::status`].
     fn status(&mut self) -> Status;
 
-    /// As [`Stage::push`].
+    /// Appends bytes to a growing recording; an error for other stages.
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError>;
 
-    /// As [`Stage::seek`].
+    /// Goes to a step of a recording; see [`Stage::seek`].
     fn seek(&mut self, step: usize) -> Result<(), EngineError>;
 
-    /// As [`Stage::advance`].
+    /// Advances by some steps; see [`Stage::advance`].
     fn advance(&mut self, steps: u64) -> Result<(), EngineError>;
 
-    /// As [`Stage::reset`].
+    /// Goes back to the start; see [`Stage::reset`].
     fn reset(&mut self) -> Result<(), EngineError>;
 
-    /// As [`Stage::control`].
+    /// Sets a control of a sample; see [`Stage::control`].
     fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError>;
 
     /// Moves an object and updates the world.
     fn drag(&mut self, object: CollisionObjectHandle, to: &N::Isometry) -> Result<(), EngineError>;
 
-    /// Draws additions to the objects.
+    /// Draws the additions to the objects, such as queries.
     fn draw(&self, drawing: &mut DebugDrawing<N, D>, renderer: &mut dyn DebugRender<N, D>);
 
     /// The names of pair filters that have stand-ins.

@@ -7,8 +7,8 @@ use crate::answer::StepMark;
 /// The largest number of marks that are sent.
 pub(crate) const MAX_MARKS: usize = 10_000;
 
-/// Returns the marks of a recording, without steps without changes. If there are too many, neighbours are added up,
-/// at the step of the first of them.
+/// Returns the marks of a recording, without steps without changes. If there are more than
+/// [`MAX_MARKS`], neighbouring marks are added, at the step of the first of them.
 pub(crate) fn marks(of_updates: &[Mark]) -> Vec<StepMark> {
     let marks = (1..).zip(of_updates).map(|(step, mark)| step_mark(step, mark));
     let marks: Vec<_> =
@@ -31,7 +31,7 @@ fn step_mark(step: usize, mark: &Mark) -> StepMark {
     }
 }
 
-/// Returns the sum, at the step of the first.
+/// Returns the sum of two marks, at the step of the first.
 const fn sum(first: StepMark, other: StepMark) -> StepMark {
     StepMark {
         step: first.step,

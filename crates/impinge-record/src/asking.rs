@@ -27,8 +27,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(answer)
     }
 
-    /// Runs a query about those of its objects that satisfy a predicate. Predicates are code: the recording lists
-    /// the objects that do not satisfy it as excluded ones.
+    /// Runs a query about the objects that satisfy a predicate. Predicates are code, so that the
+    /// recording lists the other objects as excluded.
     ///
     /// Costs a call of the predicate for each object of the world, and four bytes for each excluded object.
     ///

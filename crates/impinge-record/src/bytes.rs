@@ -33,7 +33,7 @@ impl Sink {
         self.byte(u8::from(value));
     }
 
-    /// Writes four bytes: indices, numbers of shapes, masks.
+    /// Writes four bytes: indices of objects or shapes, masks.
     pub(crate) fn word(&mut self, value: u32) {
         self.bytes.extend(value.to_le_bytes());
     }
@@ -176,7 +176,8 @@ impl<'a> Source<'a> {
         (0..count).map(|_| self.number()).collect()
     }
 
-    /// Reads the length of a list whose elements take at least `least` bytes each (at least one).
+    /// Reads the length of a list; an error if that many elements of at least `least` bytes do not
+    /// fit the rest of the range. `least` is at least one.
     pub(crate) fn count(&mut self, least: usize) -> Result<usize, ReadError> {
         let offset = self.at;
         let count = self.word()? as usize;

@@ -26,19 +26,19 @@ pub(crate) struct ObjectData<N: Space<D>, const D: usize> {
     /// The index of its handle.
     pub(crate) index: u32,
     pub(crate) position: N::Isometry,
-    /// The number of the shape.
+    /// The index of the shape in the recording.
     pub(crate) shape: u32,
     pub(crate) groups: CollisionGroups,
     pub(crate) query_type: GeometricQueryType<N>,
     pub(crate) data: Vec<u8>,
 }
 
-/// The state from which calls rebuild a world.
+/// A snapshot of the objects, from which calls rebuild a world.
 #[derive(Clone, Debug)]
 pub(crate) struct KeyFrame<N: Space<D>, const D: usize> {
     /// The names of the filters.
     pub(crate) filters: Vec<String>,
-    /// The free indices, the next one to be used last.
+    /// The free indices; the last one is used next.
     pub(crate) vacant: Vec<u32>,
     /// The objects sorted by index.
     pub(crate) objects: Vec<ObjectData<N, D>>,
@@ -47,11 +47,11 @@ pub(crate) struct KeyFrame<N: Space<D>, const D: usize> {
 /// A record.
 #[derive(Clone, Debug)]
 pub(crate) enum Call<N: Space<D>, const D: usize> {
-    /// Defines the next shape.
+    /// Defines the next shape, whose index is the number of earlier shapes.
     Shape(ShapeData<N, D>),
     /// Adds an object, at the next index of the world.
     Add(ObjectData<N, D>),
-    /// Moves objects, all or none.
+    /// Moves objects: all of them, or none on an error.
     SetPositions(Vec<(u32, N::Isometry)>),
     SetShape {
         index: u32,
@@ -89,15 +89,15 @@ pub(crate) enum Call<N: Space<D>, const D: usize> {
     Refuse(Vec<[u32; 2]>),
     KeepEvents,
     UpdatePair([u32; 2]),
-    /// Removes objects; the index of the last one is the next to be used.
+    /// Removes objects. The index of the last one is used next.
     Remove(Vec<u32>),
     RegisterFilter(String),
     UnregisterFilter(String),
     /// Runs a query; changes nothing.
     Query(Box<QueryData<N, D>>),
-    /// The whole world; installs new phases.
+    /// The state of the whole world. Playing it installs new phases.
     KeyFrame(KeyFrame<N, D>),
-    /// An update, with the hashes of its result.
+    /// An update, with the hashes of the state after it.
     Update(Observation),
     /// The last record.
     End {
@@ -106,7 +106,7 @@ pub(crate) enum Call<N: Space<D>, const D: usize> {
 }
 
 impl<N: Recordable<D>, const D: usize> Call<N, D> {
-    /// The number of the kind of the record in the format.
+    /// Returns the code of the record's kind in the format.
     pub(crate) const fn kind(&self) -> u8 {
         match self {
             Self::Shape(_) => 1,
@@ -200,7 +200,7 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
         Ok(call)
     }
 
-    /// Reads the fields by the number of [`Self::kind`].
+    /// Reads the fields of a record, given the code of its kind ([`Self::kind`]).
     fn fields(kind: u8, source: &mut Source<'_>) -> Result<Self, ReadError> {
         Ok(match kind {
             1 => Self::Shape(source.shape()?),
@@ -341,7 +341,7 @@ impl Source<'_> {
         })
     }
 
-    /// Reads the record of version 1.
+    /// Reads the observation of an update in format version 1.
     fn first_observation(&mut self) -> Result<Observation, ReadError> {
         let (state, events) = (self.long()?, self.long()?);
         Ok(Observation { state, events, counts: None, changed: Some(self.object_hashes()?) })

@@ -57,7 +57,8 @@ impl Digest {
     }
 }
 
-/// Returns the number of the pair and the number within the pair from the id of a contact, by its `Hash`.
+/// Returns the index of the pair and the index within the pair that a contact id contains, by its
+/// `Hash`.
 pub(crate) fn id_parts(id: ContactId) -> [u64; 2] {
     let mut parts = IdParts::default();
     id.hash(&mut parts);

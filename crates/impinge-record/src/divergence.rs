@@ -5,7 +5,7 @@
 pub struct Divergence {
     /// The number of updates before the call that differs.
     pub step: usize,
-    /// The offset of the record of that call in bytes.
+    /// The offset in bytes of the record of that call.
     pub offset: usize,
     /// The kind of difference.
     pub difference: Difference,
@@ -15,19 +15,19 @@ pub struct Divergence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Difference {
-    /// An object after an update: the first by handle.
+    /// An object differs after an update: the first one in the order of handles.
     Object {
         /// The index of its handle.
         index: usize,
         /// The field of the object.
         field: ObjectField,
     },
-    /// The state after an update. The recording has no hashes of objects, since it was packed, or they all agree,
-    /// since they have only 32 bits.
+    /// The state after an update differs, but no object. Either the recording has no hashes of
+    /// objects, since it was packed, or all 32-bit hashes of objects agree by chance.
     State,
-    /// The events of an update.
+    /// The events of an update differ.
     Events,
-    /// The result of a query.
+    /// The result of a query differs.
     Answer,
 }
 

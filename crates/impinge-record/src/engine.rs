@@ -130,13 +130,14 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(is_kept)
     }
 
-    /// Takes the data of a removed object. This is not recorded, since no later step depends on it.
+    /// Removes and returns the data of a removed object; `None` if there are none. The call is not
+    /// recorded, since no later step depends on it.
     pub fn take_removed(&mut self, handle: CollisionObjectHandle) -> Option<T> {
         self.world.take_removed(handle)
     }
 
-    /// Records, after a key frame, the calls that set properties that few objects have. They change nothing in a
-    /// running world.
+    /// Records, after a key frame, the calls that set properties that few objects have, such as
+    /// skins and fixed flags. The running world is not changed.
     pub(crate) fn record_rare_facts(&mut self) {
         let mut calls = Vec::new();
         for object in self.world.collision_objects() {

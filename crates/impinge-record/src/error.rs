@@ -5,18 +5,18 @@ use core::fmt;
 use impinge::shape::{MeshError, ShapeError};
 use impinge::world::{GroupError, WorldError};
 
-/// An error of the library about the values of a file or recording: that of the constructor or method that was
-/// called.
+/// An error of the library about the values of a file or recording, as the called constructor or
+/// method returned it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LibraryError {
-    /// From the values of a shape.
+    /// An error of a shape.
     Shape(ShapeError),
-    /// From the values of a mesh or polyline.
+    /// An error of a mesh or polyline.
     Mesh(MeshError),
-    /// From the values of groups.
+    /// An error of collision groups.
     Group(GroupError),
-    /// From a call of a world.
+    /// An error of a call of a world.
     World(WorldError),
 }
 
@@ -63,7 +63,7 @@ impl From<WorldError> for LibraryError {
 pub enum RecordError {
     /// The world rejects the call.
     World(WorldError),
-    /// The shape has a type of the user, and the registry does not name it.
+    /// The shape has a type of the user, and the registry has no name for it.
     UnknownShape {
         /// The shape, as `Debug` prints it.
         shape: String,
@@ -123,9 +123,9 @@ pub enum Problem {
         /// The version of the recording.
         found: u32,
     },
-    /// The recording has worlds of another scalar.
+    /// The numbers of the recording are of another scalar than the requested one.
     Scalar {
-        /// The bytes of a number in the recording.
+        /// The number of bytes of a scalar in the recording.
         found: u8,
     },
     /// The recording has worlds of another dimension.
@@ -135,7 +135,7 @@ pub enum Problem {
     },
     /// The bytes end early, or a length exceeds the record.
     Truncated,
-    /// The checksum of a record differs from that of the bytes: some earlier byte was changed.
+    /// The checksum of a record is wrong: this record or an earlier byte was changed.
     Checksum,
     /// Compressed bytes of a packed recording are damaged.
     Compression,
@@ -153,7 +153,7 @@ pub enum Problem {
         /// The field.
         what: &'static str,
     },
-    /// A shape refers to a number that is not defined before it.
+    /// A shape has the index of a child that is not defined before it.
     NoSuchShape(u32),
     /// A call names an object that does not exist.
     NoSuchObject(u32),

@@ -78,7 +78,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// Reads the header of a recording of any scalar and dimension. Its checksum is that of the first record and is
+    /// Reads the header of a recording of any scalar and dimension. The checksum of the header is
     /// not verified.
     ///
     /// # Errors
@@ -95,7 +95,8 @@ impl Header {
         Self::fields(&mut Source::new(bytes, 0..bytes.len()))
     }
 
-    /// Whether bytes whose header cannot be read, with this error, are the beginning of a valid header.
+    /// Whether bytes whose header cannot be read, because of this error, may be the beginning of a
+    /// valid header.
     ///
     /// ```
     /// use impinge_record::{Header, Recorder, Registry};

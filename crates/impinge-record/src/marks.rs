@@ -6,14 +6,14 @@ use impinge::world::CollisionWorld;
 use crate::call::Call;
 use crate::space::Recordable;
 
-/// The numbers of events of an update.
+/// The numbers of events of each kind in an update.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EventCounts {
-    /// Pairs that started touching.
+    /// The number of pairs that started touching.
     pub started: u32,
-    /// Pairs that stopped touching.
+    /// The number of pairs that stopped touching.
     pub stopped: u32,
-    /// Pairs whose proximity changed.
+    /// The number of pairs whose proximity changed.
     pub proximities: u32,
 }
 
@@ -58,15 +58,16 @@ impl EventCounts {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mark {
-    /// Added objects, without those of the initial state and of key frames.
+    /// The number of added objects, without those of the initial state and of key frames.
     pub added: u32,
-    /// Objects removed.
+    /// The number of removed objects.
     pub removed: u32,
-    /// Set positions: an object that is set twice counts twice.
+    /// The number of set positions: an object whose position is set twice counts twice.
     pub moved: u32,
-    /// Other changes: of shapes, groups, query types, data, filters, skins and fixed objects.
+    /// The number of other changes: of shapes, groups, query types, data, filters, skins and fixed
+    /// flags.
     pub changed: u32,
-    /// Queries.
+    /// The number of queries.
     pub queries: u32,
     /// The events of the update; `None` in recordings of version 1.
     pub events: Option<EventCounts>,
@@ -101,20 +102,22 @@ impl Mark {
     }
 }
 
-/// Converts a count of items that take bytes of a recording or are pairs of a world.
+/// Converts a count to 32 bits. Counted items take bytes of the recording or are pairs of a world,
+/// so that counts fit.
 fn small(count: usize) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
 
-/// A position before a step, from which a world can be rebuilt.
+/// A key frame, or the beginning: a position in the recording from which a world can be rebuilt.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FrameMark {
-    /// The number of earlier updates.
+    /// The number of updates before the key frame.
     pub(crate) step: usize,
-    /// The offset of its record.
+    /// The offset of the key frame's record.
     pub(crate) offset: usize,
-    /// The first step at which a world that is rebuilt here has the events of the recording. In the update
-    /// after this position all pairs start; later updates may keep the events of that one.
+    /// The first step at which a world that is rebuilt from this key frame has the events of the
+    /// recording. In its first update all pairs start, and `keep_events` may carry these events to
+    /// later updates.
     whole_from: usize,
 }
 
@@ -123,13 +126,13 @@ pub(crate) struct FrameMark {
 pub(crate) struct Timeline {
     /// The offset of the first record.
     pub(crate) start: usize,
-    /// One for each update.
+    /// For each update, its changes.
     pub(crate) marks: Vec<Mark>,
-    /// In order of steps; the calls since the last update have no mark yet.
+    /// The key frames, in order of their steps.
     frames: Vec<FrameMark>,
-    /// Whether the next update keeps the events of the last one.
+    /// Whether `keep_events` was called since the last update.
     keeps_events: bool,
-    /// The calls since the last update.
+    /// The changes by the calls since the last update.
     next: Mark,
 }
 
@@ -161,8 +164,8 @@ impl Timeline {
         }
     }
 
-    /// Returns the last key frame from which a step can be rebuilt with its events; the beginning, if there is
-    /// none.
+    /// Returns the last key frame from which a step can be rebuilt with its events; the beginning
+    /// of the recording if there is none.
     pub(crate) fn frame_before(&self, step: usize) -> FrameMark {
         let frames = self.frames.partition_point(|frame| frame.whole_from <= step);
         let beginning = FrameMark { step: 0, offset: self.start, whole_from: 0 };

@@ -19,7 +19,7 @@ use crate::shapes::ShapeTable;
 use crate::space::Recordable;
 use crate::state::{Observation, Observer};
 
-/// The shapes and names that records refer to.
+/// The shapes and named filters that records refer to.
 #[derive(Debug)]
 pub(crate) struct Resources<N: Recordable<D>, const D: usize, T> {
     pub(crate) shapes: ShapeTable<N, D>,
@@ -27,7 +27,7 @@ pub(crate) struct Resources<N: Recordable<D>, const D: usize, T> {
     pub(crate) margin: N,
 }
 
-/// A world, and its objects by the indices of the recording.
+/// A world, and for each index of the recording the handle of its object.
 #[derive(Debug)]
 pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     pub(crate) world: CollisionWorld<N, D, T>,
@@ -35,17 +35,19 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     observer: Observer,
     /// The pairs that the filter of the next update rejects, sorted; empty without such a filter.
     refused: Vec<[u32; 2]>,
-    /// The queries since the last update.
+    /// The queries since the last update, with their results.
     asked: Vec<Asked<N, D>>,
-    /// The queries between the last two updates.
+    /// The queries between the last two updates, with their results.
     pub(crate) queries: Vec<Asked<N, D>>,
-    /// Whether no call was applied yet: a key frame may then make the world.
+    /// Whether no call was applied yet, so that a key frame would create the world.
     is_new: bool,
-    /// Whether a key frame made the world and no update followed: the next update starts all pairs.
+    /// Whether a key frame created the world and no update followed: in the next update all pairs
+    /// start.
     is_remade: bool,
-    /// Whether the events of the last update are those of a rebuilt world, not those of the recording.
+    /// Whether the events of the last update include those of a rebuilt world, which differ from
+    /// the recorded ones.
     has_other_events: bool,
-    /// Whether the next update keeps the events of the last one.
+    /// Whether `keep_events` was called since the last update.
     keeps_events: bool,
 }
 
@@ -139,7 +141,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok(None)
     }
 
-    /// Returns the handle of the object at an index.
+    /// Returns the handle of the object at an index; an error if there is none.
     fn handle(&self, index: u32) -> Result<CollisionObjectHandle, Problem> {
         let handle = self.handles.get(index as usize).copied().flatten();
         handle.ok_or(Problem::NoSuchObject(index))
@@ -233,7 +235,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         Ok((!is_same).then_some(Difference::Answer))
     }
 
-    /// Replaces the world, as the recorder did at the key frame.
+    /// Replaces the phases of the world, as the recorder did at the key frame.
     fn begin_anew(&mut self, margin: N) {
         exchange_phases(&mut self.world, margin);
         self.observer = Observer::default();

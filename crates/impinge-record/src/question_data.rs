@@ -1,4 +1,4 @@
-//! Queries as in records: shapes are numbers.
+//! Queries as in records: each shape is an index.
 
 use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::{Point, Space, Vector};
@@ -9,7 +9,7 @@ use crate::bytes::{Sink, Source};
 use crate::error::{Problem, ReadError};
 use crate::space::Recordable;
 
-/// A query whose shape is a number.
+/// A query whose shape is given by its index in the recording.
 #[derive(Clone, Debug)]
 pub(crate) struct QueryData<N: Space<D>, const D: usize> {
     /// The question.
@@ -21,7 +21,7 @@ pub(crate) struct QueryData<N: Space<D>, const D: usize> {
     pub(crate) answer: u64,
 }
 
-/// A question whose shape is a number.
+/// A question whose shape is given by its index in the recording.
 #[derive(Clone, Debug)]
 pub(crate) enum QuestionData<N: Space<D>, const D: usize> {
     /// A ray: the first hit, or all hits.
@@ -111,7 +111,7 @@ impl Sink {
         }
     }
 
-    /// Always writes a tolerance, so that the record has one length.
+    /// Writes a shape cast. The tolerance is always written, so that the record has a fixed length.
     fn cast<N: Recordable<D>, const D: usize>(&mut self, cast: &CastData<N, D>) {
         self.byte(if cast.all { 8 } else { 7 });
         self.isometry::<N, D>(&cast.position);

@@ -60,7 +60,8 @@ pub struct Recorder<N: Recordable<D>, const D: usize, T> {
     observer: Observer,
     log: Log,
     updates: u64,
-    /// A key frame is written before each update whose number is a multiple of this.
+    /// A key frame is written before each update whose index is a positive multiple of this; never, if
+    /// `None`.
     key_frames: Option<NonZeroU64>,
 }
 
@@ -127,11 +128,13 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Self { world, margin, registry, shapes, observer, log, updates, key_frames }
     }
 
-    /// Writes a key frame before every update whose number is a multiple of `updates`: a replay then goes back by at
-    /// most as many updates. Without key frames, the default, it goes back to the start of the recording.
+    /// Writes a key frame before every update whose index is a positive multiple of `updates`: a replay then
+    /// goes back by at most as many updates. Without key frames, the default, it goes back to the
+    /// start of the recording.
     ///
-    /// A key frame takes about as many bytes as adding all objects. Its update recomputes every pair, and contacts get
-    /// new ids, as with [`Self::of_world`]; events are as without.
+    /// A key frame takes about as many bytes as adding all objects. Its update recomputes every
+    /// pair, and contacts get new ids, as with [`Self::of_world`]. Key frames do not change the
+    /// events.
     #[must_use]
     pub const fn with_key_frames(mut self, updates: NonZeroU64) -> Self {
         self.key_frames = Some(updates);
@@ -367,8 +370,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Ok(())
     }
 
-    /// Returns the free indices, the next one to be used last. Indices that were used too often to be used again come
-    /// first.
+    /// Returns the free indices; the last one is used next. Indices that can never be used again
+    /// come first.
     fn vacant(&self, objects: &[ObjectData<N, D>]) -> Vec<u32> {
         let small = |index| u32::try_from(index).expect("an index has 31 bits");
         let free: Vec<u32> = self.world.vacant_indices().map(small).collect();
@@ -407,7 +410,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Recording { bytes: self.log.bytes, world: self.world }
     }
 
-    /// Returns the number of a shape; a new shape is written before the next record.
+    /// Returns the index of a shape in the recording; a new shape is written before the next
+    /// record.
     pub(crate) fn number(&mut self, shape: &ShapeHandle<N, D>) -> Result<u32, RecordError> {
         self.shapes.number(shape, &self.registry)
     }

@@ -11,8 +11,8 @@ use impinge::world::{BroadPhasePairFilter, CollisionWorld};
 /// Registers a filter in a world.
 type Register<N, const D: usize, T> = Arc<dyn Fn(&mut CollisionWorld<N, D, T>) + Send + Sync>;
 
-/// Shapes of user types and pair filters, by name. A recording contains the names; the program that
-/// replays it must register the same objects under these.
+/// Shapes of user types and pair filters, by name. A recording contains only the names. The program
+/// that replays it must register equal shapes and filters under these names.
 ///
 /// ```
 /// use impinge::dim2::world::CollisionObject;
@@ -68,7 +68,7 @@ impl<N: Space<D>, const D: usize, T> Registry<N, D, T> {
         self.shapes.get(name)
     }
 
-    /// Returns the name of a shape, the first one if it has several.
+    /// Returns the name of a shape; the first one if it has several names, `None` if it has none.
     pub(crate) fn name_of(&self, shape: &ShapeHandle<N, D>) -> Option<&str> {
         let mut shapes = self.shapes.iter();
         shapes.find(|(_, own)| own.is_same(shape)).map(|(name, _)| name.as_str())

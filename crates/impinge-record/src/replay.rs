@@ -79,7 +79,7 @@ pub struct Loss {
     pub error: ReadError,
 }
 
-/// The reason why the reading of records ended without damage.
+/// How reading ended without an error.
 #[derive(Debug)]
 enum Reading {
     /// The last record was read.

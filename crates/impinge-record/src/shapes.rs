@@ -1,4 +1,4 @@
-//! The shapes of a recording: each is stored once and has a number.
+//! The shapes of a recording: each is stored once and has an index.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ struct SizedShape<N: Space<D>, const D: usize> {
     parts: usize,
 }
 
-/// Shapes by number.
+/// Shapes by index.
 #[derive(Clone, Debug)]
 pub(crate) struct ShapeTable<N: Space<D>, const D: usize> {
     shapes: Vec<SizedShape<N, D>>,
@@ -36,7 +36,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         Self { shapes: Vec::new() }
     }
 
-    /// Returns the shape of a number, if it is defined already.
+    /// Returns the shape with an index; an error if it is not defined yet.
     pub(crate) fn get(&self, number: u32) -> Result<&ShapeHandle<N, D>, Problem> {
         let shape = self.shapes.get(number as usize);
         Ok(&shape.ok_or(Problem::NoSuchShape(number))?.handle)
@@ -66,7 +66,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         data.make(&|number| self.get(number).cloned())
     }
 
-    /// Returns the depth of a shape of this data, and the number of parts of the shapes within it.
+    /// Returns the nesting depth of a shape of this data, and the number of parts of its children.
     fn check(&self, data: &ShapeData<N, D>) -> Result<[usize; 2], Problem> {
         let (mut depth, mut parts) = (0, 0_usize);
         for number in data.inner() {
@@ -78,7 +78,7 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
         if is_simple { Ok([depth as usize, parts]) } else { Err(Problem::TooComplex) }
     }
 
-    /// Assigns the next number to a shape made of some data.
+    /// Assigns the next index to a shape made of some data.
     fn push(&mut self, data: &ShapeData<N, D>, handle: ShapeHandle<N, D>) -> Result<(), Problem> {
         let [depth, inner] = self.check(data)?;
         let own = handle.geometry().as_composite().map_or(1, |parts| parts.num_parts() as usize);
@@ -88,12 +88,13 @@ impl<N: Recordable<D>, const D: usize> ShapeTable<N, D> {
     }
 }
 
-/// The shapes that a recorder has seen. They are kept alive: their addresses are their identities.
+/// The shapes that a recorder has written. They are kept alive, since their addresses identify
+/// them.
 #[derive(Clone, Debug)]
 pub(crate) struct KnownShapes<N: Space<D>, const D: usize> {
     table: ShapeTable<N, D>,
-    /// For each address the number of the shape. It is used for look-ups only: nothing depends on the order of
-    /// addresses.
+    /// For each address, the index of the shape. It is used for look-ups only: nothing depends on
+    /// the order of addresses.
     numbers: BTreeMap<usize, u32>,
     /// The shapes that are not written yet.
     pub(crate) unwritten: Vec<ShapeData<N, D>>,
@@ -105,7 +106,7 @@ impl<N: Recordable<D>, const D: usize> KnownShapes<N, D> {
         Self { table: ShapeTable::new(), numbers: BTreeMap::new(), unwritten: Vec::new() }
     }
 
-    /// Returns the number of a shape; a new one if it was not seen before.
+    /// Returns the index of a shape; a new index if the shape was not seen before.
     pub(crate) fn number<T>(
         &mut self,
         shape: &ShapeHandle<N, D>,

@@ -37,10 +37,10 @@ pub(crate) struct Observation {
 /// The state that is kept from one update to the next.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Observer {
-    /// The number of the pair of the first contact. Numbers of pairs are relative to it, since they
-    /// continue after an exchange of phases.
+    /// The index of the pair of the first contact. Indices of pairs are hashed relative to it,
+    /// since they continue after the phases are replaced.
     first_pair: Option<u64>,
-    /// The hashes by index; zero for indices that never had an object.
+    /// For each index of an object, its two hashes; zero for indices that never had an object.
     known: Vec<[u32; 2]>,
 }
 
@@ -207,7 +207,7 @@ fn events_hash<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D,
     digest.finish()
 }
 
-/// Returns a number for each status that does not depend on the order of the library's variants.
+/// Returns a code for each proximity that does not depend on the order of the library's variants.
 const fn proximity_number(proximity: Proximity) -> u64 {
     match proximity {
         Proximity::Intersecting => 2,

@@ -1,16 +1,16 @@
-//! Slow and obvious answers that impinge's tests are held against.
+//! Slow and simple reference implementations, with which impinge's tests compare its results.
 //!
-//! Nothing here shares code with the library: vectors are plain arrays of `f64`, distances are
-//! found by trying every direction that can matter, and the world looks at every pair at every
-//! update. Whoever doubts an answer of the library asks here, and whoever doubts an answer of this
-//! crate can check it with a pencil.
+//! Nothing here shares code with the library. Vectors are plain arrays of `f64`, distances are
+//! found by testing every direction that can matter, and the world computes every pair at every
+//! update. Results of the library are compared with those of this crate; results of this crate can
+//! be verified by hand.
 //!
 //! - [`geometry`]: poses, convex solids, signed distance, points, rays, boxes
 //! - [`mass`]: area or volume, centre and inertia by counting points
 //! - [`precise`]: signed distance with about 25 digits
 //! - [`world`]: the naive collision world and its event log
 //! - [`random`]: the small deterministic generator that all tests share
-//! - [`topology`]: is this list of faces really a convex hull?
+//! - [`topology`]: tests whether a list of faces is a convex hull
 #![forbid(unsafe_code)]
 
 pub mod geometry;

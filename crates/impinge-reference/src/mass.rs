@@ -1,21 +1,21 @@
-//! Mass, centre and inertia by counting: no formula knows a shape.
+//! Mass, centre and inertia by counting sample points: no formula for any shape is used.
 
 use crate::random::Random;
 
-/// The integrals over a body of density one.
+/// Integrals over a body of density one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mass<const D: usize> {
-    /// Its area, or its volume.
+    /// The area in 2D, the volume in 3D.
     pub measure: f64,
-    /// The mean of its points.
+    /// The centre of mass.
     pub center: [f64; D],
-    /// The integrals of the products of two coordinates, about the centre.
+    /// The second moments about the centre: the integral of the product of coordinates i and j.
     pub seconds: [[f64; D]; D],
 }
 
 impl<const D: usize> Mass<D> {
-    /// The inertia tensor about the centre: in the plane the upper left of that of a thin plate, whose trace is the
-    /// moment of inertia.
+    /// Returns the inertia tensor about the centre. In 2D this is the upper left part of the tensor
+    /// of a thin plate: its trace is the moment of inertia.
     #[must_use]
     pub fn inertia(&self) -> [[f64; D]; D] {
         let trace: f64 = (0..D).map(|axis| self.seconds[axis][axis]).sum();
@@ -26,10 +26,11 @@ impl<const D: usize> Mass<D> {
     }
 }
 
-/// Counts the points of a box that are in a body: one at random in each of `cells` along each axis.
+/// Estimates the integrals over a body within a box. The box is divided into `cells` along each
+/// axis, and one random point of each cell is tested.
 ///
-/// Only cells that the surface crosses are uncertain: of a body that fills about half of the box the measure is off by
-/// about `cells` to the power of −(D + 1) / 2, as a share of it.
+/// Only cells that the surface crosses add an error. For a body that fills about half of the box,
+/// the relative error of the measure is about `cells` to the power of −(D + 1) / 2.
 pub fn counted<const D: usize>(
     low: &[f64; D],
     high: &[f64; D],
@@ -43,7 +44,7 @@ pub fn counted<const D: usize>(
     let total = (0..D).fold(1, |total, _| total * cells);
     for index in 0..total {
         let mut rest = index;
-        // About the low corner of the box, to keep digits.
+        // Coordinates are relative to the low corner of the box, which saves digits.
         let place: [f64; D] = std::array::from_fn(|axis| {
             let step = rest % cells;
             rest /= cells;

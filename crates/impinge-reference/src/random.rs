@@ -1,27 +1,27 @@
-//! The small deterministic generator of all tests: the same numbers on every machine, in every
-//! build.
+//! The small deterministic generator of all tests: it gives the same numbers on every machine and
+//! in every build.
 //!
 //! `SplitMix64` (Guy Steele, Doug Lea, Christine Flood: Fast Splittable Pseudorandom Number
-//! Generators, 2014): a counter that is mixed well. Nothing but the four operations and the square
-//! root is used, so the values are the same to the last bit.
+//! Generators, 2014): a counter whose bits are mixed. Only the four operations and the square root
+//! are used, so that the values have the same bits everywhere.
 
 use crate::geometry::Pose;
 use crate::geometry::vector::{axis, norm, perpendicular, scale};
 
-/// A stream of random values that is determined by its seed.
+/// A stream of random values, determined by its seed.
 #[derive(Clone, Debug)]
 pub struct Random {
     state: u64,
 }
 
 impl Random {
-    /// The stream of this seed. Neighbouring seeds give unrelated streams.
+    /// Creates the stream of a seed. Neighbouring seeds give unrelated streams.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// 64 random bits.
+    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.state;
@@ -30,25 +30,25 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A multiple of 2^-53 in [0, 1).
+    /// Returns a multiple of 2^-53 in [0, 1).
     pub fn share(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A number in [low, high), or `low` if the interval is empty.
+    /// Returns a number in [low, high), or `low` if the interval is empty.
     pub fn range(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.share()
     }
 
-    /// A number in [low, low * 2^doublings) in which all powers of two are equally likely; `low`
-    /// itself if there are no doublings.
+    /// Returns a number in [low, low * 2^doublings) in which all powers of two are equally likely;
+    /// `low` if `doublings` is 0.
     pub fn magnitude(&mut self, low: f64, doublings: u32) -> f64 {
         let Ok(count @ 1..) = usize::try_from(doublings) else { return low };
         let doubled = (0..self.below(count)).fold(low, |value, _| 2.0 * value);
         doubled * (1.0 + self.share())
     }
 
-    /// A whole number in 0..count.
+    /// Returns an integer in 0..count.
     ///
     /// # Panics
     /// If `count` is zero.
@@ -58,42 +58,42 @@ impl Random {
         usize::try_from(self.bits() % count).expect("it is below a usize")
     }
 
-    /// True with this probability.
+    /// Returns `true` with this probability.
     pub fn chance(&mut self, probability: f64) -> bool {
         self.share() < probability
     }
 
-    /// One of the items.
+    /// Returns a random item of the slice.
     ///
     /// # Panics
-    /// If there are none.
+    /// If the slice is empty.
     pub fn pick<'a, T>(&mut self, items: &'a [T]) -> &'a T {
         &items[self.below(items.len())]
     }
 
-    /// A multiple of 2^-k in [-limit, limit]: sums and differences of a few of them are exact in
-    /// `f32` too.
+    /// Returns a multiple of 2^-k in [-limit, limit]. Sums and differences of a few such numbers
+    /// are exact in `f32` too.
     pub fn grid(&mut self, limit: u32, k: u32) -> f64 {
         let steps = u64::from(limit) << k;
         let step = self.bits() % (2 * steps + 1);
         (step as f64 - steps as f64) / (1u64 << k) as f64
     }
 
-    /// A number in [low, high) or the `f32` next to it toward zero: representable in `f32` without
-    /// rounding, as long as it is within the normal range of `f32`.
+    /// Returns a number in [low, high), rounded toward zero to an `f32`. Exact for numbers in the
+    /// normal range of `f32`.
     pub fn single(&mut self, low: f64, high: f64) -> f64 {
         f32_toward_zero(self.range(low, high))
     }
 
-    /// A vector with all components in [-limit, limit).
+    /// Returns a vector with all components in [-limit, limit).
     pub fn vector<const D: usize>(&mut self, limit: f64) -> [f64; D] {
         std::array::from_fn(|_| self.range(-limit, limit))
     }
 
-    /// A direction; all are equally likely.
+    /// Returns a unit vector, distributed uniformly over all directions.
     pub fn unit_vector<const D: usize>(&mut self) -> [f64; D] {
-        // Points of the cube are drawn until one lies in the ball; the innermost ones would lose
-        // digits.
+        // Points of the cube are drawn until one lies in the ball. Points near its centre are
+        // rejected too, since they would lose digits.
         loop {
             let v = self.vector::<D>(1.0);
             let length = norm(&v);
@@ -103,12 +103,12 @@ impl Random {
         }
     }
 
-    /// A unit quaternion `[x, y, z, w]`; all rotations are equally likely.
+    /// Returns a unit quaternion `[x, y, z, w]`, distributed uniformly over all rotations.
     pub fn quaternion(&mut self) -> [f64; 4] {
         self.unit_vector()
     }
 
-    /// The rows of a rotation matrix of the plane or of space; all rotations are equally likely.
+    /// Returns the rows of a rotation matrix, distributed uniformly over all rotations of 2D or 3D.
     ///
     /// # Panics
     /// Unless D is 2 or 3.
@@ -120,8 +120,8 @@ impl Random {
             rows[1] = perpendicular(&[first]);
             return rows;
         }
-        // The part of a second direction that is perpendicular to the first, and the cross product
-        // of both. A direction nearly along the first one is drawn again.
+        // The second row is the perpendicular component of a random direction, the third the cross
+        // product. A direction nearly parallel to the first row is drawn again.
         loop {
             let cross = perpendicular::<D>(&[first, self.unit_vector()]);
             let length = norm(&cross);
@@ -133,13 +133,14 @@ impl Random {
         }
     }
 
-    /// A random rotation, and a translation with all components in [-limit, limit).
+    /// Returns a pose with a random rotation, and a translation with all components in [-limit,
+    /// limit).
     pub fn pose<const D: usize>(&mut self, limit: f64) -> Pose<D> {
         Pose { rotation: self.rotation(), translation: self.vector(limit) }
     }
 }
 
-/// The nearest `f32` toward zero, for values in the normal range of `f32`.
+/// Rounds toward zero to an `f32`, for values in the normal range of `f32`.
 fn f32_toward_zero(value: f64) -> f64 {
     let dropped = 52 - 23;
     f64::from_bits(value.to_bits() >> dropped << dropped)

@@ -1,15 +1,15 @@
-//! Is this list of faces the convex hull that it claims to be?
+//! Tests whether a list of faces is the convex hull of its vertices.
 //!
-//! Faces are lists of vertex indices, counter-clockwise as seen from outside. Nothing is repaired
-//! and nothing is assumed: each property is counted or measured on its own.
+//! Faces are lists of vertex indices, counter-clockwise seen from outside. Input is not repaired,
+//! and each property is tested separately.
 
 use crate::geometry::vector::{add, dot, norm, perpendicular, scale, sub};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What is wrong with a list of faces, before any length is measured.
+/// A fault of a list of faces or of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A face has less than three vertices, or a polygon has.
+    /// A face or polygon has fewer than three vertices.
     TooFewVertices {
         /// The index of the face; zero for a polygon.
         face: usize,
@@ -19,40 +19,40 @@ pub enum Fault {
         /// The index of the face.
         face: usize,
     },
-    /// A face, or a polygon, meets the same vertex twice.
+    /// A face or polygon contains a vertex twice.
     RepeatedVertex {
         /// The index of the face; zero for a polygon.
         face: usize,
     },
-    /// Two faces run along the same edge in the same direction.
+    /// Two faces have the same edge in the same direction.
     EdgeTwice {
-        /// The vertices of the edge in that direction.
+        /// The vertex indices of the edge in that direction.
         edge: (usize, usize),
     },
-    /// No face runs along this edge in the opposite direction.
+    /// No face has this edge in the opposite direction.
     OpenEdge {
-        /// The vertices of the edge in the direction that a face has.
+        /// The vertex indices of the edge in the direction of its face.
         edge: (usize, usize),
     },
-    /// Vertices minus edges plus faces is not two: several pieces, a handle, or a vertex where
-    /// pieces meet.
+    /// Vertices minus edges plus faces is not two. There are several components, a handle, or a
+    /// vertex that joins components.
     Euler {
-        /// The number of vertices of faces.
+        /// The number of vertices that faces use.
         vertices: usize,
-        /// The number of edges, each counted once for both directions.
+        /// The number of edges; both directions count as one edge.
         edges: usize,
         /// The number of faces.
         faces: usize,
     },
-    /// The corners of a face, or of a polygon, enclose no area.
+    /// A face or polygon has zero area.
     NoArea {
         /// The index of the face; zero for a polygon.
         face: usize,
     },
 }
 
-/// Checks that the faces form one closed surface like that of a ball, each edge used once in each
-/// direction.
+/// Checks that the faces form one closed surface without handles, in which each edge occurs once in
+/// each direction.
 ///
 /// # Errors
 /// The first [`Fault`] in the order of the faces.
@@ -94,16 +94,16 @@ fn check_face(vertices: &[[f64; 3]], face: &[usize], index: usize) -> Result<(),
     Ok(())
 }
 
-/// The directed edges of a face.
+/// Returns the directed edges of a face.
 fn around(face: &[usize]) -> impl Iterator<Item = (usize, usize)> + '_ {
     (0..face.len()).map(|k| (face[k], face[(k + 1) % face.len()]))
 }
 
-/// Whether the faces at each vertex form a single closed fan: walking from face to face about the
-/// vertex meets all of them. Needs a closed surface.
+/// Whether the faces at each vertex form a single closed fan: a walk around the vertex from face to
+/// face visits all of them. The surface must be closed.
 fn vertices_have_one_fan(faces: &[Vec<usize>]) -> bool {
-    // For each vertex: from the next vertex of a face at it to the previous one, where the
-    // neighbour face begins.
+    // For each vertex, a map between its neighbours: from the next vertex of each face to the
+    // previous one, at which the adjacent face continues.
     let mut turns: BTreeMap<usize, BTreeMap<usize, usize>> = BTreeMap::new();
     for face in faces {
         for k in 0..face.len() {
@@ -120,8 +120,7 @@ fn vertices_have_one_fan(faces: &[Vec<usize>]) -> bool {
     })
 }
 
-/// Twice the area of a face, along its normal: the sum of the cross products about its first
-/// corner.
+/// Returns a vector along the outward normal whose length is twice the area of the face.
 fn area(vertices: &[[f64; 3]], face: &[usize]) -> [f64; 3] {
     let origin = vertices[face[0]];
     let mut sum = [0.0; 3];
@@ -132,15 +131,15 @@ fn area(vertices: &[[f64; 3]], face: &[usize]) -> [f64; 3] {
     sum
 }
 
-/// How far the farthest of `points` lies in front of the plane of a face; negative if all lie
-/// strictly inside, minus infinity if there are no points or no faces.
+/// Returns the largest height of a point above the plane of a face. Negative if all points lie
+/// strictly inside; minus infinity if there are no points or no faces.
 ///
-/// With `points` the vertices themselves this measures convexity: zero (up to rounding, or up to
-/// how far faces with more than three corners are from flat) if and only if a closed surface is
-/// convex and its faces look outward.
+/// With the vertices as `points` this tests convexity. The result is zero, up to rounding and the
+/// deviation of faces from a plane, if and only if a closed surface is convex and its faces are
+/// oriented outwards.
 ///
 /// # Panics
-/// If a face names a vertex that does not exist; [`check_surface`] tells before.
+/// If a face has the index of a vertex that does not exist, which [`check_surface`] reports.
 #[must_use]
 pub fn highest_above(vertices: &[[f64; 3]], faces: &[Vec<usize>], points: &[[f64; 3]]) -> f64 {
     let mut highest = f64::NEG_INFINITY;
@@ -154,7 +153,7 @@ pub fn highest_above(vertices: &[[f64; 3]], faces: &[Vec<usize>], points: &[[f64
     highest
 }
 
-/// The volume that a closed surface encloses; negative if its faces look inward.
+/// Returns the volume that a closed surface encloses; negative if its faces are oriented inwards.
 #[must_use]
 pub fn volume(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> f64 {
     let Some(origin) = faces.first().map(|face| vertices[face[0]]) else { return 0.0 };
@@ -162,8 +161,8 @@ pub fn volume(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> f64 {
     faces.iter().map(cone).sum::<f64>() / 6.0
 }
 
-/// Checks that a closed polygon, counter-clockwise, has at least three corners, all different, and
-/// encloses an area.
+/// Checks that a closed counter-clockwise polygon has at least three distinct corners and encloses
+/// an area.
 ///
 /// # Errors
 /// The [`Fault`], with face 0.
@@ -180,7 +179,7 @@ pub fn check_polygon(corners: &[[f64; 2]]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The area that a closed polygon encloses; positive if it is counter-clockwise.
+/// Returns the area that a closed polygon encloses; positive if it is counter-clockwise.
 #[must_use]
 pub fn polygon_area(corners: &[[f64; 2]]) -> f64 {
     let Some(origin) = corners.first() else { return 0.0 };
@@ -189,10 +188,9 @@ pub fn polygon_area(corners: &[[f64; 2]]) -> f64 {
     corners.windows(2).map(cross).sum::<f64>() / 2.0
 }
 
-/// How far the farthest of `points` lies to the right of an edge of a closed polygon: the twin of
-/// [`highest_above`] in the plane. With the corners themselves as points it is zero (up to
-/// rounding) if and only if a polygon that passes [`check_polygon`] is convex and
-/// counter-clockwise.
+/// Returns the largest distance of a point to the right of an edge of a closed polygon. With the
+/// corners as `points`, a polygon that passes [`check_polygon`] gives zero, up to rounding, if and
+/// only if it is convex and counter-clockwise.
 #[must_use]
 pub fn farthest_outside(corners: &[[f64; 2]], points: &[[f64; 2]]) -> f64 {
     let mut farthest = f64::NEG_INFINITY;
@@ -254,7 +252,7 @@ mod tests {
             check_surface(&vertices, &faces),
             Err(Fault::Euler { vertices: 8, edges: 12, faces: 8 })
         );
-        // Glued at one vertex: the vertex has two fans.
+        // Two surfaces joined at one vertex: this vertex has two fans.
         let glued: Vec<Vec<usize>> = faces
             .iter()
             .map(|face| face.iter().map(|&i| if i == 4 { 1 } else { i }).collect())

@@ -18,11 +18,11 @@ use crate::{Isometry, SampleError, TIME_STEP, World};
 const ITERATIONS: usize = 20;
 const GRAVITY: f32 = 10.0;
 const FRICTION: f32 = 0.5;
-/// A penetration that is not corrected, so that contacts persist.
+/// The penetration depth that is not corrected, so that contacts persist.
 const SLOP: f32 = 0.005;
 /// The share of a deeper penetration that is corrected in a step.
 const RECOVERY: f32 = 0.2;
-/// Bodies slower than this are not moved.
+/// A body keeps its position while both its speed and its angular velocity are below this.
 const REST_SPEED: f32 = 0.03;
 
 /// A moving body. It has the inertia of a cube, which is the same about every axis.
@@ -30,9 +30,9 @@ const REST_SPEED: f32 = 0.03;
 struct Body<const D: usize> {
     /// The object of the world.
     object: CollisionObjectHandle,
-    /// Zero for a body of infinite mass.
+    /// The inverse of the mass; zero for a body of infinite mass.
     inverse_mass: f32,
-    /// Equal about every axis.
+    /// The inverse of the moment of inertia, which is equal about every axis.
     inverse_inertia: f32,
     /// The velocity of the centre, per second.
     velocity: Vector<f32, D>,
@@ -46,7 +46,7 @@ struct Row<const D: usize> {
     id: ContactId,
     /// Indices of bodies; `None` for an object that does not move.
     bodies: [Option<usize>; 2],
-    /// The point relative to both centres.
+    /// The vectors from the centres of both bodies to the contact point.
     arms: [Vector<f32, D>; 2],
     normal: Vector<f32, D>,
     /// The target speed of separation along the normal; negative while there is a gap.
@@ -68,7 +68,7 @@ struct Impulse<const D: usize> {
 pub(crate) struct Bodies<const D: usize> {
     /// In the order in which they were added.
     bodies: Vec<Body<D>>,
-    /// The index of each object.
+    /// For each object of a body, the index in `bodies`.
     indices: BTreeMap<CollisionObjectHandle, usize>,
     /// The impulses of the last step by contact id, which persists while the contact moves.
     impulses: BTreeMap<ContactId, Impulse<D>>,
@@ -147,7 +147,8 @@ where
         point: &ContactPoint<f32, D>,
     ) -> Row<D> {
         let contact = &point.contact;
-        // The middle between the two surface points, so that both bodies have the same lever.
+        // The contact acts at the midpoint of the two surface points. Both bodies get their impulse
+        // at this one point, so that opposite impulses preserve angular momentum.
         let middle = (contact.world1.coords + contact.world2.coords) * 0.5;
         let depth = contact.depth;
         // A gap may be closed within a step; a penetration is corrected slowly, which keeps piles stable.
@@ -184,7 +185,7 @@ where
         row.impulse.friction = friction;
     }
 
-    /// Returns the velocity of the second body at the point, relative to the first.
+    /// Returns the velocity, at the contact point, of the second body relative to the first.
     fn relative_velocity(&self, row: &Row<D>) -> Vector<f32, D> {
         let velocity = |side: usize| {
             let body = row.bodies[side].map(|index| &self.bodies[index]);
@@ -194,7 +195,8 @@ where
         velocity(1) - velocity(0)
     }
 
-    /// Returns the impulse along a direction that changes the relative speed by 1 (the effective mass).
+    /// Returns the effective mass: the impulse along `direction` that changes the relative speed
+    /// along it by 1.
     fn mass(&self, row: &Row<D>, direction: &Vector<f32, D>) -> f32 {
         let inverse = |side: usize| {
             let body = row.bodies[side].map(|index| &self.bodies[index]);
@@ -205,13 +207,15 @@ where
         1.0 / (inverse(0) + inverse(1))
     }
 
-    /// Applies an impulse to the second body at the point, and the opposite to the first.
+    /// Applies an impulse to the second body at the contact point, and the opposite impulse to the
+    /// first.
     fn apply(&mut self, row: &Row<D>, impulse: &Vector<f32, D>) {
         for (side, sign) in [(0, -1.0), (1, 1.0)] {
             if let Some(index) = row.bodies[side] {
                 let (body, push) = (&mut self.bodies[index], impulse * sign);
                 body.velocity += push * body.inverse_mass;
-                // The rotation is in the plane of lever and impulse: an antisymmetric matrix in both dimensions.
+                // The impulse rotates the body in the plane of `arms[side]` and `push`: an
+                // antisymmetric matrix in 2D and 3D.
                 let moment = push * row.arms[side].transpose();
                 body.spin += (moment - moment.transpose()) * body.inverse_inertia;
             }

@@ -203,7 +203,7 @@ impl Panel {
         }
     }
 
-    /// The word of a choice; none if there is no choice of this name.
+    /// Returns the word of a choice; the empty word if there is no choice of this name.
     #[must_use]
     pub fn chosen(&self, name: &str) -> &'static str {
         match self.find(name) {
@@ -212,13 +212,13 @@ impl Panel {
         }
     }
 
-    /// The value of a flag; `false` if there is no flag of this name.
+    /// Returns the value of a flag; `false` if there is no flag of this name.
     #[must_use]
     pub fn is_set(&self, name: &str) -> bool {
         matches!(self.find(name), Some(ControlKind::Flag { value: true }))
     }
 
-    /// Whether a button was pressed since the last call.
+    /// Returns whether a button was pressed, and resets it: the next call returns `false`.
     pub fn take_press(&mut self, name: &str) -> bool {
         self.pressed.remove(name)
     }

@@ -10,17 +10,17 @@ use crate::{Isometry, World};
 /// The circumference of a circle of radius 1.
 pub(crate) const TAU: f32 = core::f32::consts::TAU;
 
-/// A vector.
+/// Returns a vector of the dimension.
 pub(crate) fn vector<const D: usize>(xyz: [f32; 3]) -> Vector<f32, D> {
     Vector::<f32, D>::from_fn(|axis, _| xyz[axis])
 }
 
-/// A point.
+/// Returns a point of the dimension.
 pub(crate) fn point<const D: usize>(xyz: [f32; 3]) -> Point<f32, D> {
     Point::from(vector::<D>(xyz))
 }
 
-/// A position without a rotation.
+/// Returns a position without a rotation.
 pub(crate) fn at<const D: usize>(xyz: [f32; 3]) -> Isometry<D>
 where
     f32: Space<D>,
@@ -76,18 +76,18 @@ pub(crate) fn scattered(index: usize, stream: usize) -> f32 {
     (position - position.floor()) as f32
 }
 
-/// A triangle wave of period 1 between 0 and 1.
+/// Returns a triangle wave of period 1 between 0 and 1.
 pub(crate) fn to_and_fro(phase: f32) -> f32 {
     1.0 - (2.0 * (phase - phase.floor()) - 1.0).abs()
 }
 
-/// A count as a scalar.
+/// Converts a count to a scalar.
 #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
 pub(crate) const fn number(count: usize) -> f32 {
     count as f32
 }
 
-/// The direction upwards.
+/// Returns the unit vector upwards, along y.
 pub(crate) fn up<const D: usize>() -> Unit<Vector<f32, D>> {
     Unit::new_unchecked(vector([0.0, 1.0, 0.0]))
 }

@@ -1,15 +1,15 @@
 //! Scenes as data, shared by tests, examples and benchmarks.
 //!
-//! A scene is a list of objects and, for each, a motion that is a pure function of the number of the
-//! step: a test can look at step 57 without the 56 before it, and two worlds that are stepped
-//! alternately see the same thing.
+//! A scene is a list of objects, each with a motion that is a pure function of the step number. So
+//! a test can compute step 57 without the 56 steps before it, and two worlds that are stepped
+//! alternately get the same input.
 //!
 //! Everything is computed in `f64` with `+ − × ÷ √` and rounding alone, so that a scene is the same
-//! on every platform. Positions and sizes are then rounded to `f32`: worlds of either scalar see the
-//! same numbers. Turns are given by a direction and a tangent (see [`Placement`]), from which each
-//! reader computes the rotation to the precision of its own scalar.
+//! on every platform. Positions and sizes are then rounded to `f32`, so that worlds of both scalars
+//! get equal numbers. A rotation is stored as an axis and a tangent (see [`Placement`]), from which
+//! each reader computes it in the precision of its own scalar.
 //!
-//! Nothing here knows the library: shapes and groups are plain numbers.
+//! This crate does not depend on the library: shapes and groups are plain numbers.
 
 #![forbid(unsafe_code)]
 
@@ -32,35 +32,35 @@ pub use scenes::{
 };
 pub use shape::SceneShape;
 
-/// Objects and how they move.
+/// A scene: objects and their motions.
 #[derive(Clone, Debug, Default)]
 pub struct Scene<const D: usize> {
-    /// One or two words, for tables and messages.
+    /// The name, one or two words, for tables and messages.
     pub name: &'static str,
-    /// The loosening of bounding volumes that suits the scene.
+    /// The margin of the broad phase that suits the scene.
     pub margin: f64,
-    /// The objects; those not alive yet are among them.
+    /// The objects, including those that are not alive yet.
     pub objects: Vec<SceneObject<D>>,
-    /// How many steps make a run. Motions are defined beyond.
+    /// The number of steps of a run. Motions are defined for later steps too.
     pub steps: u32,
 }
 
 /// One object of a scene.
 #[derive(Clone, Debug)]
 pub struct SceneObject<const D: usize> {
-    /// What it is.
+    /// The shape, in its local frame.
     pub shape: SceneShape<D>,
-    /// What is asked of its pairs.
+    /// The query type of its pairs.
     pub query: SceneQuery,
-    /// With whom it interacts.
+    /// The collision groups.
     pub groups: SceneGroups,
-    /// Where it is at each step.
+    /// The motion: the placement at each step.
     pub motion: Motion<D>,
-    /// The steps at which it exists.
+    /// The steps at which the object is alive.
     pub alive: Range<u32>,
 }
 
-/// What is asked of the pairs of an object.
+/// The query type of the pairs of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SceneQuery {
     /// Contact points.
@@ -70,44 +70,44 @@ pub enum SceneQuery {
         /// The prediction as an angle in radians.
         angular: f64,
     },
-    /// How near others are.
+    /// The proximity to other objects.
     Proximity {
-        /// Farther apart is disjoint.
+        /// The margin: objects farther apart are disjoint.
         margin: f64,
     },
 }
 
-/// Lists of group numbers from 0 to 29.
+/// Collision groups as lists of indices from 0 to 29.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SceneGroups {
     /// The groups that the object belongs to.
     pub membership: &'static [usize],
-    /// The groups with which it interacts.
+    /// The groups with which the object interacts.
     pub whitelist: &'static [usize],
-    /// The groups with which it does not; wins over the whitelist.
+    /// The groups with which the object does not interact; it overrides the whitelist.
     pub blacklist: &'static [usize],
 }
 
-/// All groups that exist.
+/// The indices of all groups.
 const ALL: [usize; 30] = [
     0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25,
     26, 27, 28, 29,
 ];
 
 impl SceneGroups {
-    /// Member of all, whitelists all, blacklists none.
+    /// A member of all groups, which whitelists all groups and blacklists none.
     pub const EVERYBODY: Self = Self { membership: &ALL, whitelist: &ALL, blacklist: &[] };
 }
 
 impl<const D: usize> SceneObject<D> {
-    /// An object that interacts with everybody, at all steps.
+    /// Creates an object that interacts with every object and is alive at all steps.
     fn new(shape: SceneShape<D>, query: SceneQuery, motion: Motion<D>) -> Self {
         Self { shape, query, groups: SceneGroups::EVERYBODY, motion, alive: 0..u32::MAX }
     }
 }
 
 impl<const D: usize> Scene<D> {
-    /// Where an object is at a step; the same answer for the same arguments, always.
+    /// Returns the placement of an object at a step: a pure function of the arguments.
     ///
     /// # Panics
     /// If there is no object of this index.
@@ -116,7 +116,7 @@ impl<const D: usize> Scene<D> {
         self.objects[object].motion.at(step)
     }
 
-    /// Whether an object exists at a step.
+    /// Whether an object is alive at a step.
     ///
     /// # Panics
     /// If there is no object of this index.
@@ -125,7 +125,8 @@ impl<const D: usize> Scene<D> {
         self.objects[object].alive.contains(&step)
     }
 
-    /// The least and the greatest corner of a box around an object at a step; `None` for a plane.
+    /// Returns the least and the greatest corner of a box around an object at a step; `None` for a
+    /// plane.
     ///
     /// # Panics
     /// If there is no object of this index.
@@ -135,7 +136,7 @@ impl<const D: usize> Scene<D> {
     }
 }
 
-/// The value rounded to `f32`, as every world will see it.
+/// Rounds a value to `f32`, as worlds of both scalars get it.
 #[expect(clippy::cast_possible_truncation, reason = "rounds to nearest, as documented")]
 fn rounded(value: f64) -> f64 {
     f64::from(value as f32)

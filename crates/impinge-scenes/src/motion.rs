@@ -1,8 +1,8 @@
-//! Motion as a pure function of the number of the step.
+//! Motions as pure functions of the step number.
 
 use crate::{Placement, rounded};
 
-/// A number that runs to and fro between two bounds at constant speed: a triangle wave.
+/// A triangle wave: a number that moves back and forth between two bounds at constant speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
     /// The lower bound.
@@ -11,26 +11,26 @@ pub struct Wave {
     pub high: f64,
     /// The value at step 0, within the bounds.
     pub start: f64,
-    /// The change per step, of either sign, until the first bound is met.
+    /// The change per step, of either sign, until the value reaches a bound.
     pub speed: f64,
 }
 
 impl Wave {
-    /// A number that stays.
+    /// Creates a constant.
     #[must_use]
     pub fn rest(at: f64) -> Self {
         let at = rounded(at);
         Self { low: at, high: at, start: at, speed: 0.0 }
     }
 
-    /// A number that runs between bounds from a start within them.
+    /// Creates a wave between two bounds, from a start within them.
     #[must_use]
     pub fn new(bounds: (f64, f64), start: f64, speed: f64) -> Self {
         let (low, high) = (rounded(bounds.0), rounded(bounds.1));
         Self { low, high, start: rounded(start).clamp(low, high), speed: rounded(speed) }
     }
 
-    /// The value at a step, rounded to `f32`.
+    /// Returns the value at a step, rounded to `f32`.
     #[must_use]
     pub fn at(&self, step: u32) -> f64 {
         let width = self.high - self.low;
@@ -40,43 +40,43 @@ impl Wave {
         let way = self.start - self.low + self.speed * f64::from(step);
         let lap = way - (way / (2.0 * width)).floor() * (2.0 * width);
         let folded = if lap > width { 2.0 * width - lap } else { lap };
-        // Rounding may have left the bounds by a unit in the last place.
+        // Rounding may exceed a bound by a unit in the last place.
         rounded(self.low + folded).clamp(self.low, self.high)
     }
 }
 
-/// Waves in all directions and a turn that goes to and fro.
+/// A motion: a wave for each coordinate, and a rotation about a fixed axis whose angle is a wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<const D: usize> {
-    /// The translation, by coordinate.
+    /// The translation, one wave for each coordinate.
     pub place: [Wave; D],
-    /// The axis of the turn, of length 1; (0, 0, 1) in the plane.
+    /// The unit vector along the axis of the rotation; (0, 0, 1) in 2D.
     pub axis: [f64; 3],
-    /// The tangent of half the angle.
+    /// The tangent of half the angle of the rotation.
     pub tangent: Wave,
 }
 
 impl<const D: usize> Motion<D> {
-    /// An object that stays where it is, not turned.
+    /// Creates the motion of an object at rest at a point, without a rotation.
     #[must_use]
     pub fn rest(at: [f64; D]) -> Self {
         Self::translation(at.map(Wave::rest))
     }
 
-    /// An object that moves but does not turn.
+    /// Creates the motion of an object that moves without a rotation.
     #[must_use]
     pub fn translation(place: [Wave; D]) -> Self {
         Self { place, axis: [0.0, 0.0, 1.0], tangent: Wave::rest(0.0) }
     }
 
-    /// The same motion frozen at step 0.
+    /// Returns a constant motion: the placement at step 0.
     #[must_use]
     pub fn frozen(&self) -> Self {
         let stop = |wave: &Wave| Wave::rest(wave.start);
         Self { place: self.place.each_ref().map(stop), tangent: stop(&self.tangent), ..*self }
     }
 
-    /// Where the object is at a step.
+    /// Returns the placement of the object at a step.
     #[must_use]
     pub fn at(&self, step: u32) -> Placement<D> {
         Placement {

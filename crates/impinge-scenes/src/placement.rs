@@ -1,30 +1,30 @@
-//! Where an object is and how it is turned.
+//! Placements: positions and rotations of objects.
 
 use crate::rounded;
 
-/// A rigid placement: a turn about the local origin, then a translation.
+/// A rigid placement: a rotation about the local origin, then a translation.
 ///
-/// The turn is given by Cayley's rational parametrisation: a unit vector, the axis, and the tangent
-/// of half the angle. So it needs no trigonometry, and a reader gets a rotation that is as exact as
-/// its own scalar: [`Placement::<2>::complex`], [`Placement::<3>::quaternion`].
+/// The rotation is given by Cayley's rational parametrisation: a unit vector along the axis, and
+/// the tangent of half the angle. It needs no trigonometry, and each reader computes a rotation
+/// that is accurate to its own scalar: [`Placement::<2>::complex`], [`Placement::<3>::quaternion`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<const D: usize> {
-    /// The image of the local origin.
+    /// The world position of the local origin.
     pub translation: [f64; D],
-    /// The axis, of length 1; (0, 0, 1) in the plane.
+    /// The unit vector along the axis of the rotation; (0, 0, 1) in 2D.
     pub axis: [f64; 3],
-    /// The tangent of half the angle of the turn, counter-clockwise about the axis.
+    /// The tangent of half the angle of the rotation, counter-clockwise about the axis.
     pub tangent: f64,
 }
 
 impl<const D: usize> Placement<D> {
-    /// A translation alone.
+    /// Creates a placement without a rotation.
     #[must_use]
     pub fn at(translation: [f64; D]) -> Self {
         Self { translation: translation.map(rounded), axis: [0.0, 0.0, 1.0], tangent: 0.0 }
     }
 
-    /// A local vector turned as the object is.
+    /// Rotates a vector from the local to the world frame.
     #[must_use]
     pub fn turned(&self, local: &[f64; D]) -> [f64; D] {
         let v: [f64; 3] = std::array::from_fn(|i| if i < D { local[i] } else { 0.0 });
@@ -36,7 +36,7 @@ impl<const D: usize> Placement<D> {
         std::array::from_fn(|i| v[i] + 2.0 * (inner[i] + outer[i]) / squared)
     }
 
-    /// A local point, in the world.
+    /// Transforms a point from the local to the world frame.
     #[must_use]
     pub fn point(&self, local: &[f64; D]) -> [f64; D] {
         let turned = self.turned(local);
@@ -45,7 +45,7 @@ impl<const D: usize> Placement<D> {
 }
 
 impl Placement<2> {
-    /// The turn as a complex number of modulus 1: cosine and sine.
+    /// Returns the rotation as a unit complex number: cosine and sine.
     #[must_use]
     pub fn complex(&self) -> [f64; 2] {
         let squared = self.tangent * self.tangent;
@@ -54,7 +54,7 @@ impl Placement<2> {
 }
 
 impl Placement<3> {
-    /// The turn as a quaternion `(i, j, k, w)` of norm 1.
+    /// Returns the rotation as a unit quaternion `(i, j, k, w)`.
     #[must_use]
     pub fn quaternion(&self) -> [f64; 4] {
         let w = 1.0 / (1.0 + self.tangent * self.tangent).sqrt();
@@ -63,7 +63,7 @@ impl Placement<3> {
     }
 }
 
-/// The cross product.
+/// Returns the cross product.
 pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn quarter_turns_by_hand() {
-        // Half of a right angle has the tangent 1.
+        // The tangent 1 belongs to half of a right angle.
         let turn =
             |axis: [f64; 3]| Placement::<3> { axis, tangent: 1.0, ..Placement::at([0.0; 3]) };
         let close = |a: [f64; 3], b: [f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! Numbers without a pattern, the same on every platform.
+//! Pseudorandom numbers, which are the same on every platform.
 
 /// `SplitMix64`: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators" (2014).
 #[derive(Clone, Debug)]
@@ -7,7 +7,7 @@ pub struct Random {
 }
 
 impl Random {
-    /// The sequence of a seed.
+    /// Creates the sequence of a seed.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
@@ -20,19 +20,19 @@ impl Random {
         mixed ^ (mixed >> 31)
     }
 
-    /// From 0 up to, not including, 1.
+    /// Returns a number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         // 53 bits fill the fraction of an f64 exactly.
         let scale = 1.0 / f64::from(1_u32 << 27) / f64::from(1_u32 << 26);
         (self.bits() >> 11) as f64 * scale
     }
 
-    /// From `low` up to `high`.
+    /// Returns a number in [`low`, `high`), up to rounding.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    /// A whole number below `bound`.
+    /// Returns an integer in 0..`bound`.
     ///
     /// # Panics
     /// If `bound` is zero.
@@ -40,19 +40,20 @@ impl Random {
         usize::try_from(self.bits() % (bound as u64)).expect("below a usize")
     }
 
-    /// A unit vector: a point of the unit ball, found by trial, pushed to the surface.
+    /// Returns a unit vector. Points of a cube are drawn until one lies in the unit ball, which is
+    /// then normalized.
     pub fn direction<const D: usize>(&mut self) -> [f64; D] {
         loop {
             let v: [f64; D] = std::array::from_fn(|_| self.between(-1.0, 1.0));
             let squared: f64 = v.iter().map(|x| x * x).sum();
-            // At least a sixth of the trials end here.
+            // At least a sixth of the drawn points are accepted.
             if (0.01..=1.0).contains(&squared) {
                 return v.map(|x| x / squared.sqrt());
             }
         }
     }
 
-    /// Brings the items into another order: neighbours in space shall not be neighbours in memory.
+    /// Shuffles the items, so that neighbours in space are not neighbours in memory.
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.below(last + 1));
@@ -60,10 +61,11 @@ impl Random {
     }
 }
 
-/// The positive number whose `D`-th power is `x ≥ 0`.
+/// Returns the `D`-th root of `x ≥ 0`.
 ///
-/// Newton's iteration from above falls monotonically; it gains a factor `D / (D − 1)` at least while
-/// far away, so the cap is never reached by a number that counts objects.
+/// Newton's iteration from above decreases monotonically. While far from the root, each step
+/// divides the error by at least `D / (D − 1)`, so that counts of objects never reach the limit of
+/// iterations.
 pub(crate) fn root<const D: usize>(x: f64) -> f64 {
     let degree = D as f64;
     let mut guess = if x > 1.0 { x } else { 1.0 };

@@ -2,29 +2,29 @@
 
 use crate::Placement;
 
-/// What an object is, in its local frame.
+/// The shape of an object, in its local frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneShape<const D: usize> {
     /// A ball around the local origin.
     Ball {
-        /// Its radius.
+        /// The radius.
         radius: f64,
     },
     /// A box around the local origin.
     Cuboid {
-        /// Half its edges.
+        /// Half the extent along each axis.
         half_extents: [f64; D],
     },
-    /// The half-space behind a plane through the local origin.
+    /// A half-space behind a plane through the local origin.
     Plane {
-        /// The unit normal, out of the half-space.
+        /// The outward unit normal.
         normal: [f64; D],
     },
-    /// All points near a segment along the second axis.
+    /// All points within `radius` of a segment along the second axis.
     Capsule {
         /// Half the length of the segment.
         half_height: f64,
-        /// How near.
+        /// The radius.
         radius: f64,
     },
     /// A segment.
@@ -37,56 +37,58 @@ pub enum SceneShape<const D: usize> {
         /// Its corners.
         corners: [[f64; D]; 3],
     },
-    /// The convex hull of points, which span all dimensions.
+    /// The convex hull of points that span all dimensions.
     Convex {
-        /// The points; not all need be corners of the hull.
+        /// The points; some may be inside the hull.
         points: Vec<[f64; D]>,
     },
-    /// A solid cylinder around the second axis; in space only.
+    /// A solid cylinder around the second axis; 3D only.
     Cylinder {
         /// Half the distance of the caps.
         half_height: f64,
-        /// Its radius.
+        /// The radius.
         radius: f64,
     },
-    /// A solid cone around the second axis, apex up; in space only.
+    /// A solid cone around the second axis with its apex up; 3D only.
     Cone {
-        /// Half the distance of apex and base, which are as far from the local origin.
+        /// Half the distance between apex and base; the local origin is midway.
         half_height: f64,
         /// The radius of the base.
         radius: f64,
     },
-    /// A surface of triangles; in space only.
+    /// A surface of triangles; 3D only.
     TriMesh {
         /// The corners of the triangles.
         vertices: Vec<[f64; D]>,
-        /// Three vertices each, counter-clockwise seen from outside.
+        /// Three vertex indices per triangle, counter-clockwise seen from outside.
         triangles: Vec<[u32; 3]>,
     },
-    /// A line from each vertex to the next; in the plane only.
+    /// A chain of segments from each vertex to the next; 2D only.
     Polyline {
         /// The vertices.
         vertices: Vec<[f64; D]>,
     },
-    /// A surface over a grid that lies symmetrically around the second axis; in the plane, a line.
+    /// A surface given by heights over a grid that is centred on the second axis; in 2D, a
+    /// polyline.
     ///
     /// Each cell is divided along the diagonal from its lower row and column to its higher ones.
     HeightField {
-        /// The numbers of rows, along the third axis, and columns, along the first; in the plane there
+        /// The numbers of rows, along the third axis, and of columns, along the first. In 2D there
         /// is one row.
         counts: [usize; 2],
         /// The heights, row by row.
         heights: Vec<f64>,
-        /// The extents of the whole field; by the second the heights are multiplied.
+        /// The extents of the whole field. The second is the factor of the heights.
         extents: [f64; D],
     },
 }
 
 impl<const D: usize> SceneShape<D> {
-    /// The least and the greatest corner of a box around the placed shape; `None` for a plane.
+    /// Returns the least and the greatest corner of a box around the placed shape; `None` for a
+    /// plane.
     ///
-    /// The smallest such box, but for cylinders, cones and height fields, whose local box is taken
-    /// instead.
+    /// The box is the smallest one, except for cylinders, cones and height fields: for these it is
+    /// the box around the placed local box.
     #[must_use]
     pub fn aabb(&self, placement: &Placement<D>) -> Option<([f64; D], [f64; D])> {
         match self {
@@ -115,7 +117,7 @@ impl<const D: usize> SceneShape<D> {
     }
 }
 
-/// The corners of the local box of a height field, those of the plane twice.
+/// Returns the corners of the local box of a height field; in 2D each corner occurs twice.
 fn corners<const D: usize>(heights: &[f64], extents: &[f64; D]) -> [[f64; D]; 8] {
     let bounds = (f64::INFINITY, f64::NEG_INFINITY);
     let (low, high) = heights.iter().fold(bounds, |(low, high), h| (low.min(*h), high.max(*h)));
@@ -129,12 +131,12 @@ fn corners<const D: usize>(heights: &[f64], extents: &[f64; D]) -> [[f64; D]; 8]
     })
 }
 
-/// `height` along the second axis and `width` along the others.
+/// Returns a vector with `height` along the second axis and `width` along the others.
 fn upright<const D: usize>(height: f64, width: f64) -> [f64; D] {
     std::array::from_fn(|i| if i == 1 { height } else { width })
 }
 
-/// Half the edges of the box around a placed cuboid.
+/// Returns the half extents of the axis-aligned box around a placed cuboid.
 fn reach<const D: usize>(placement: &Placement<D>, half_extents: &[f64; D]) -> [f64; D] {
     let mut reach = [0.0; D];
     for axis in 0..D {

@@ -1,4 +1,4 @@
-//! What the scenes say of themselves, counted.
+//! Counts what the doc comments of the scenes claim.
 
 use impinge_scenes::{
     Placement, Scene, SceneQuery, SceneShape, SolidKind, aligned_pile, asteroids, crowd,
@@ -8,7 +8,7 @@ use impinge_scenes::{
     vehicles_field, vehicles_mesh,
 };
 
-/// The pairs of living objects whose boxes meet, by sweeping along the first axis.
+/// Returns the pairs of living objects whose boxes overlap, by a sweep along the first axis.
 fn box_pairs<const D: usize>(scene: &Scene<D>, step: u32) -> Vec<(usize, usize)> {
     let alive = (0..scene.objects.len()).filter(|&n| scene.is_alive(n, step));
     let mut boxes: Vec<_> =
@@ -31,7 +31,8 @@ fn mean_neighbours<const D: usize>(scene: &Scene<D>, step: u32) -> f64 {
     2.0 * box_pairs(scene, step).len() as f64 / alive as f64
 }
 
-/// A world point, in the local frame of a placement: the turn undone by the opposite tangent.
+/// Transforms a point from the world to the local frame of a placement: the negated tangent inverts
+/// the rotation.
 fn local<const D: usize>(placement: &Placement<D>, world: &[f64; D]) -> [f64; D] {
     let back = Placement { tangent: -placement.tangent, ..*placement };
     back.turned(&std::array::from_fn(|i| world[i] - placement.translation[i]))
@@ -45,7 +46,7 @@ fn holds<const D: usize>(scene: &Scene<D>, object: usize, step: u32, world: &[f6
     (0..D).all(|i| point[i].abs() <= half_extents[i])
 }
 
-/// Each box holds the points halfway to its neighbours on the grid, so it touches them all.
+/// Each box contains the points halfway to its neighbours on the grid, so that it touches them all.
 fn check_pile<const D: usize>(count: usize, expected_pairs: usize) {
     let scene: Scene<D> = pile(count);
     assert_eq!(scene.objects.len(), count, "size");
@@ -124,7 +125,7 @@ fn ten_boxes_and_one_rock_in_a_hundred_move() {
     assert_eq!(moving(&few_asteroids_moving::<3>(3000)), 30, "rocks");
 }
 
-/// The distance between the places of an object at two steps.
+/// Returns the distance between the positions of an object at two steps.
 fn distance<const D: usize>(scene: &Scene<D>, object: usize, steps: [u32; 2]) -> f64 {
     let [a, b] = steps.map(|step| scene.placement(object, step).translation);
     (0..D).map(|i| (b[i] - a[i]) * (b[i] - a[i])).sum::<f64>().sqrt()
@@ -143,7 +144,8 @@ fn a_shaken_object_hops_about_its_start() {
             sum += distance(&scene, n, [step, step + 1]);
             turns.push(at.tangent);
         }
-        // Independent places in a square of width 0.002 are 0.001 apart in the mean, in a cube 0.0013.
+        // Two independent points in a square of width 0.002 are 0.001 apart on average, in a cube
+        // 0.0013.
         let mean = sum / 2000.0;
         assert!((0.001..0.0018).contains(&mean), "a step has {mean} in the mean");
         turns.sort_by(f64::total_cmp);
@@ -215,7 +217,8 @@ fn all_kinds_of_shapes_are_there_with_both_queries() {
     check::<3>(8);
 }
 
-/// The height of a field at the vertex nearest to a point, with the number of parts of the field.
+/// Returns the height of a field at the vertex nearest to a point, and the number of parts of the
+/// field.
 fn ground<const D: usize>(shape: &SceneShape<D>, at: &[f64; D]) -> (f64, usize) {
     let SceneShape::HeightField { counts: [rows, columns], heights, extents } = shape else {
         panic!("the ground is a field")
@@ -249,7 +252,7 @@ fn solids_stay_on_the_ground() {
     check::<3>(20_000..20_500);
 }
 
-/// The mesh and the field are the same surface.
+/// The mesh and the height field are equal surfaces.
 #[test]
 fn both_grounds_are_one() {
     let (mesh, field) = (terrain_mesh::<3>(3), terrain_field::<3>(3));
@@ -271,8 +274,8 @@ fn both_grounds_are_one() {
     );
 }
 
-/// The vertices of the ground that the box vehicles hold in their lower third, and those below or above
-/// their boxes, both in the mean over the boxes.
+/// Returns two averages over the box vehicles: the number of ground vertices within their lower
+/// third, and of those below or above their boxes.
 fn vertices_under_boxes<const D: usize>(scene: &Scene<D>, step: u32) -> [f64; 2] {
     let (SceneShape::TriMesh { vertices, .. } | SceneShape::Polyline { vertices }) =
         &scene.objects[0].shape
@@ -307,7 +310,7 @@ fn vehicles_lie_along_the_ground() {
     assert!((1e-5..1e-3).contains(&moves(&trembling_vehicles_field(60))), "in place");
 }
 
-/// The heights of the vertices of a field.
+/// Returns the heights of the vertices of a field.
 fn vertices<const D: usize>(shape: &SceneShape<D>) -> Vec<[f64; D]> {
     let SceneShape::HeightField { counts: [rows, columns], heights, extents } = shape else {
         panic!("the ground is a field")
@@ -326,8 +329,8 @@ fn vertices<const D: usize>(shape: &SceneShape<D>) -> Vec<[f64; D]> {
     vertices.collect()
 }
 
-/// Plates have room, cover as many vertices as their size says, and half of these are above their
-/// undersides.
+/// Checks that plates do not overlap, cover the expected number of vertices, and that half of these
+/// are above their undersides.
 fn check_plates<const D: usize>(half: f64) {
     let scene = plates::<D>(20, half);
     let ground = vertices(&scene.objects[0].shape);
@@ -364,7 +367,7 @@ fn solids_on_the_plain_slide_by_a_tenth() {
     fn check<const D: usize>() {
         for kind in SolidKind::all::<D>() {
             let scene = solids_on_plain::<D>(30, *kind);
-            // Where one turns back, it goes less far.
+            // A solid that reverses within a step moves less far.
             let far = (1..=30).filter(|n| (0.099..0.101).contains(&distance(&scene, *n, [4, 5])));
             assert!(far.count() > 20, "{kind:?} in {D} dimensions");
             let pairs = box_pairs(&scene, 4);
@@ -372,7 +375,7 @@ fn solids_on_the_plain_slide_by_a_tenth() {
                 pairs.len() == 30 && pairs.iter().all(|pair| pair.0 == 0),
                 "{kind:?}: {pairs:?}"
             );
-            // The box around a cylinder is not its least one.
+            // The box of a cylinder is not the smallest one.
             let exact = (1..=30).filter(|_| *kind != SolidKind::Cylinder);
             let lows: Vec<_> = exact.map(|n| scene.aabb(n, 4).expect("bounded").0[1]).collect();
             assert!(
@@ -426,7 +429,8 @@ fn the_room_has_walls_and_areas() {
     }
 }
 
-/// Every scene: the same when made again, in `f32`, and never beyond its bounds.
+/// Checks that a scene is equal when made again, that its numbers are exact in `f32`, and that
+/// motions stay within their bounds.
 fn check_motion<const D: usize>(make: impl Fn() -> Scene<D>) {
     let (scene, again) = (make(), make());
     for step in [0, 1, 33, 99, 1_000_000] {

@@ -1,9 +1,10 @@
-//! A small solver, scenes of solids at rest, and how well contacts carry them.
+//! A small solver, scenes of solids at rest, and measures of how well contacts support them.
 //!
-//! [`Solver`] is what an engine has around a collision library, in two hundred lines. [`stacks2`] and [`stacks3`]
-//! are scenes as plain numbers, [`pairs2`] and [`pairs3`] pairs to be shaken; [`play`] and [`shake`] measure whether
-//! the solids rest and whether contacts keep their ids and places. Contacts come from a [`ContactSource`]:
-//! [`Impinge`] is the one of this library, another one has its own.
+//! [`Solver`] is a minimal rigid-body solver for use with a collision library. [`stacks2`] and
+//! [`stacks3`] are scenes as plain numbers, [`pairs2`] and [`pairs3`] are pairs to be shaken.
+//! [`play`] and [`shake`] measure whether the solids rest, and whether contacts keep their ids and
+//! positions. Contacts come from a [`ContactSource`]: [`Impinge`] is that of this library; others
+//! can be implemented.
 
 #![forbid(unsafe_code)]
 #![expect(clippy::disallowed_types, reason = "maps are looked up by id here, and never walked")]

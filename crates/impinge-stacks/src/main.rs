@@ -1,4 +1,4 @@
-//! How well impinge's contacts carry stacks: two tables.
+//! Prints two tables that measure how well impinge's contacts support stacks.
 //!
 //! ```text
 //! cargo run --release -p impinge-stacks --no-default-features -- [WORD...] [OPTION...]
@@ -44,7 +44,7 @@ fn main() {
     tables::<f32>(&arguments);
 }
 
-/// The words of the command line; `None` if one is not understood.
+/// Parses the words of the command line; `None` if a word is unknown.
 fn read() -> Option<Arguments> {
     let mut arguments = Arguments::default();
     let mut words = std::env::args().skip(1);

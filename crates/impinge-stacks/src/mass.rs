@@ -1,4 +1,4 @@
-//! Masses of the solids of scenes, in closed form, at density 1.
+//! Mass properties of the solids of scenes, in closed form, at density 1.
 
 use core::f64::consts::PI;
 
@@ -9,9 +9,9 @@ use impinge_scenes::{Placement, SceneShape};
 
 use crate::{Mass, Solid};
 
-/// Solids whose mass is known.
+/// Solids with known mass properties.
 pub trait Weighed<const D: usize> {
-    /// Mass, center and inertia.
+    /// Returns mass, centre and inertia.
     ///
     /// # Panics
     /// If the solid has no volume, such as a mesh.
@@ -37,7 +37,7 @@ impl Weighed<3> for Solid<3> {
     }
 }
 
-/// The masses of the parts together, by Steiner's theorem.
+/// Returns the sum of the mass properties of the parts, by Steiner's theorem.
 fn sum<const D: usize>(
     solid: &Solid<D>,
     mass: fn(&SceneShape<D>) -> Mass<D>,
@@ -84,7 +84,7 @@ fn of_plane(shape: &SceneShape<2>) -> Mass<2> {
     }
 }
 
-/// Triangles from the origin to each side.
+/// Sums the triangles from the origin to each side.
 fn polygon(points: &[[f64; 2]]) -> Mass<2> {
     let hull = plane::convex_hull(&rounded(points)).expect("the points span the plane");
     let corner = |n: usize| Vector::<f64, 2>::from(points[hull[n % hull.len()]]);
@@ -170,12 +170,12 @@ fn finished<const D: usize>(
     Mass { mass, center: core::array::from_fn(|n| center[n]), inertia: (*inertia).into() }
 }
 
-/// The inertia tensor of a unit mass at a point.
+/// Returns the inertia tensor of a unit mass at a point.
 fn steiner(at: &Vector<f64, 3>) -> Matrix<f64, 3> {
     Matrix::<f64, 3>::identity() * at.dot(at) - at * at.transpose()
 }
 
-/// The scalar of which the library is always built.
+/// The scalar with which the library is always compiled.
 #[expect(clippy::cast_possible_truncation, reason = "rounds to nearest")]
 fn rounded<const D: usize>(points: &[[f64; D]]) -> Vec<Point<f32, D>> {
     points.iter().map(|point| Point::from(point.map(|x| x as f32))).collect()
@@ -207,7 +207,7 @@ mod tests {
         (0..8).map(|n| core::array::from_fn(|axis| sign(n, axis) * half[axis])).collect()
     }
 
-    /// A circle of many corners at a height.
+    /// Returns the corners of a regular polygon with many corners, at a height.
     fn ring(radius: f64, height: f64) -> impl Iterator<Item = [f64; 3]> {
         (0..400).map(move |n| {
             let (sine, cosine) = (f64::from(n) * PI / 200.0).sin_cos();
@@ -224,7 +224,7 @@ mod tests {
         let hull = Solid::One(SceneShape::Convex { points: corners(half) }).mass();
         assert!(close(&whole, &hull, 1e-6), "{hull:?}");
         let part = SceneShape::Cuboid { half_extents: [0.5, 0.5, 1.5] };
-        // The lower half is turned by half a turn, which changes nothing.
+        // The lower half is rotated by half a turn, which does not change its shape.
         let turned =
             Placement { axis: [0.0, 1.0, 0.0], tangent: 1e9, ..Placement::at([0.0, -0.5, 0.0]) };
         let halves = vec![(Placement::at([0.0, 0.5, 0.0]), part.clone()), (turned, part)];

@@ -1,4 +1,4 @@
-//! Where a solver finds the impulse that a contact had a step ago.
+//! Look-up of the impulse that a contact had in the previous step.
 
 use core::hash::Hash;
 use std::collections::HashMap;
@@ -7,39 +7,39 @@ use impinge::math::{Vector, min};
 
 use crate::{Body, Contact, Impulse, Turn};
 
-/// The impulses of the last step.
+/// The impulses of the previous step.
 #[derive(Clone, Debug)]
 pub enum Memory<N: Turn<D>, const D: usize, K> {
-    /// By the ids of contacts: what an engine does.
+    /// Found by the ids of contacts, as in an engine.
     Ids(HashMap<K, Impulse<N, D>>),
-    /// By places, without regard to ids: pairs of points of the same two bodies, nearest first. Shows which
-    /// part of an unrest comes from ids.
+    /// Found by positions, without ids: points of the same two bodies are paired, nearest first.
+    /// The comparison shows how much of an instability is due to ids.
     Places(Vec<Place<N, D>>),
 }
 
-/// Where a contact was, and its impulse.
+/// The position of a contact, and its impulse.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<N: Turn<D>, const D: usize> {
     bodies: [usize; 2],
-    /// The point on either body, in its own frame.
+    /// The point on each body, in the frame of that body.
     own: [Vector<N, D>; 2],
     impulse: Impulse<N, D>,
 }
 
 impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Memory<N, D, K> {
-    /// Nothing yet, to be found by ids.
+    /// Creates an empty memory with look-up by ids.
     #[must_use]
     pub fn by_ids() -> Self {
         Self::Ids(HashMap::new())
     }
 
-    /// Nothing yet, to be found by places.
+    /// Creates an empty memory with look-up by positions.
     #[must_use]
     pub fn by_place() -> Self {
         Self::Places(Vec::new())
     }
 
-    /// The impulses that contacts start from, in their order.
+    /// Returns the start impulse of each contact, in order; zero for a contact that is not found.
     pub(crate) fn recalled(
         &self,
         bodies: &[Body<N, D>],
@@ -60,7 +60,7 @@ impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Memory<N, D, K> {
         }
     }
 
-    /// Keeps the impulses of a step.
+    /// Stores the impulses of a step.
     pub(crate) fn store(
         &mut self,
         bodies: &[Body<N, D>],
@@ -85,7 +85,7 @@ impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Memory<N, D, K> {
     }
 }
 
-/// The points of a contact in the frames of its bodies.
+/// Returns the points of a contact in the frames of its bodies.
 pub(crate) fn own_points<N: Turn<D>, const D: usize, K>(
     bodies: &[Body<N, D>],
     contact: &Contact<N, D, K>,
@@ -93,7 +93,7 @@ pub(crate) fn own_points<N: Turn<D>, const D: usize, K>(
     [0, 1].map(|n| N::local_point(&bodies[contact.bodies[n]].pose, &contact.points[n]))
 }
 
-/// How far a point of a contact went from where it was on the body on which it went less.
+/// Returns the distance that a contact point has moved, on the body on which it has moved less.
 pub(crate) fn way<N: Turn<D>, const D: usize>(
     [old1, old2]: &[Vector<N, D>; 2],
     [new1, new2]: &[Vector<N, D>; 2],
@@ -101,7 +101,8 @@ pub(crate) fn way<N: Turn<D>, const D: usize>(
     min((old1 - new1).norm(), (old2 - new2).norm())
 }
 
-/// New contacts and old places of the same bodies, each at most once, nearest first.
+/// Returns pairs of a new contact and an old one of the same bodies, as indices. Each occurs at
+/// most once; the nearest are paired first.
 fn nearest_pairs<N: Turn<D>, const D: usize, K>(
     bodies: &[Body<N, D>],
     contacts: &[Contact<N, D, K>],

@@ -1,4 +1,4 @@
-//! Runs of scenes, and what is measured in them.
+//! Runs of scenes, and their measures.
 
 use std::time::Instant;
 
@@ -8,30 +8,32 @@ use impinge_scenes::Random;
 use crate::watch::{Counts, Watch};
 use crate::{Body, Contact, ContactSource, Kind, Solver, Stack, Stage, bodies_of};
 
-/// How many steps at the end of a run show whether the solids are at rest.
+/// The number of steps at the end of a run in which rest is measured.
 pub const LAST: usize = 120;
 
-/// How a scene went.
+/// The measures of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outcome {
-    /// The largest sum of kinetic energies in the last steps, beside solids that go on as they began.
+    /// The largest total kinetic energy in the last steps, relative to the initial velocities of
+    /// the solids.
     pub energy: f64,
-    /// How far the center of a solid is at most, at the end, from where it would be if it had gone on as it began:
-    /// along the ground.
+    /// The largest horizontal distance, at the end, of a centre from the position that it would
+    /// have with its initial velocity.
     pub drift: f64,
-    /// How far a solid sank at most.
+    /// The largest distance by which a solid has sunk.
     pub sunk: f64,
-    /// The largest difference of a center's velocity from the one with which it began.
+    /// The largest difference of the velocity of a centre from its initial velocity.
     pub max_speed: f64,
-    /// The contacts of the second half of the run, or of all of it for solids that slide.
+    /// The counts of contacts in the second half of the run; for solids that slide, in all steps
+    /// but the first.
     pub counts: Counts,
-    /// Pairs that ceased to touch in the last steps.
+    /// The number of pairs that stopped touching in the last steps.
     pub parted: usize,
-    /// Milliseconds of finding contacts in a step.
+    /// The mean time of computing contacts, in milliseconds per step.
     pub time: f64,
 }
 
-/// Plays a scene.
+/// Simulates a scene for `steps` steps, and returns its measures.
 pub fn play<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
     stack: &Stack<D>,
     source: &mut S,
@@ -67,7 +69,7 @@ pub fn play<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
 }
 
 impl Outcome {
-    /// The numbers for tables, with their names.
+    /// Returns the measures with their names, as columns of a table.
     #[must_use]
     pub fn columns(&self) -> [(&'static str, String); 10] {
         let Self { energy, drift, sunk, max_speed, counts, parted, time } = self;
@@ -120,8 +122,8 @@ impl Outcome {
     }
 }
 
-/// Shakes the upper solid of a pair: each step it is off its place by up to `shake` in every direction, and turned
-/// by as many radians.
+/// Shakes the upper solid of a pair: in each step it is displaced from its position at rest by up
+/// to `shake` along each axis, and rotated by up to `shake` radians about each axis.
 pub fn shake<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
     pair: &Stack<D>,
     source: &mut S,

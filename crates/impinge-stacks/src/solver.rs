@@ -1,12 +1,13 @@
 //! A sequential-impulse solver: Erin Catto, "Iterative Dynamics with Temporal Coherence" (2005).
 //!
-//! Contacts come as plain data, from any library. Each gets the impulse that its id had a step ago, then all are
-//! solved in turn, several times: the normal impulse pushes only, the friction is at most `friction` times as
-//! large. Overlap beyond the slop is pushed out by Baumgarte's method; gaps may close within a step. Gyroscopic
-//! torques are left out.
+//! Contacts are plain data, from any library. Each contact starts with the impulse that its id had
+//! in the previous step. Then all contacts are solved in turn, several times: the normal impulse is
+//! never negative, and the friction impulse is at most `friction` times the normal impulse.
+//! Penetrations beyond the slop are corrected by Baumgarte's method; gaps may close within a step.
+//! Gyroscopic torques are omitted.
 //!
-//! An iteration solves all friction, then all normals: what is solved last is met best, and bodies shall above all not
-//! sink into each other.
+//! An iteration solves all friction constraints, then all normal constraints: the constraints
+//! solved last have the smallest error, and penetration is the worse error.
 
 use core::hash::Hash;
 
@@ -14,71 +15,73 @@ use impinge::math::{Vector, max};
 
 use crate::{Memory, Turn};
 
-/// A rigid body; one that is fixed has the inverse mass and inertia zero.
+/// A rigid body. A fixed body has zero inverse mass and inertia.
 #[derive(Clone, Copy, Debug)]
 pub struct Body<N: Turn<D>, const D: usize> {
-    /// Where its own frame is.
+    /// The pose of the body frame in the world frame.
     pub pose: N::Isometry,
-    /// The center of mass, in its own frame.
+    /// The centre of mass, in the body frame.
     pub center: Vector<N, D>,
-    /// The velocity of the center of mass.
+    /// The velocity of the centre of mass, in the world frame.
     pub velocity: Vector<N, D>,
     /// The angular velocity, in the world frame.
     pub spin: N::Spin,
-    /// One over the mass.
+    /// The inverse mass.
     pub inverse_mass: N,
-    /// The inverse inertia about the center of mass, in its own frame.
+    /// The inverse inertia tensor about the centre of mass, in the body frame.
     pub inverse_inertia: N::Inertia,
 }
 
-/// A contact of two bodies.
+/// A contact point of two bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact<N: Turn<D>, const D: usize, K> {
     /// The indices of the bodies.
     pub bodies: [usize; 2],
-    /// The point on either body, in the world frame.
+    /// The point on each body, in the world frame.
     pub points: [Vector<N, D>; 2],
     /// The unit normal from the first body to the second.
     pub normal: Vector<N, D>,
-    /// The penetration; minus the distance of bodies that are apart.
+    /// The penetration depth; minus the distance if the bodies are apart.
     pub depth: N,
-    /// Names the contact from step to step.
+    /// The id, by which the contact is found in the next step.
     pub id: K,
 }
 
-/// The impulse that a contact had at the end of a step.
+/// The impulse of a contact at the end of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Impulse<N: Turn<D>, const D: usize> {
-    /// Along the normal, at least zero.
+    /// The impulse along the normal, zero or more.
     pub normal: N,
-    /// Within the plane of contact, in the world frame: bases of that plane may differ from step to step.
+    /// The friction impulse in the contact plane, in the world frame: the basis of the plane may
+    /// differ from step to step.
     pub friction: Vector<N, D>,
 }
 
-/// The constants of a solver, and the impulses of its last step.
+/// The parameters of a solver, and the impulses of its last step.
 #[derive(Clone, Debug)]
 pub struct Solver<N: Turn<D>, const D: usize, K> {
     /// The length of a step in seconds.
     pub step: N,
-    /// The acceleration of all bodies.
+    /// The gravitational acceleration.
     pub gravity: Vector<N, D>,
-    /// Coulomb's coefficient.
+    /// Coulomb's coefficient of friction.
     pub friction: N,
-    /// How often all contacts are solved in a step.
+    /// The number of iterations over all contacts in a step.
     pub iterations: usize,
-    /// Every other iteration takes the contacts in reverse order. In one order alone the errors that are left
-    /// all point one way, and a tall stack leans.
+    /// Whether every other iteration takes the contacts in reverse order. With one order the
+    /// remaining errors all have the same direction, and a tall stack leans.
     pub alternates: bool,
-    /// The share of the overlap beyond the slop that goes in a step.
+    /// The fraction of the penetration beyond the slop that is corrected in a step.
     pub baumgarte: N,
-    /// An overlap that stays, so that contacts last.
+    /// The penetration that is not corrected, so that contacts persist.
     pub slop: N,
     /// The impulses of the last step.
     pub memory: Memory<N, D, K>,
 }
 
 impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Solver<N, D, K> {
-    /// 60 steps a second, 10 iterations, gravity 10 along the second axis, friction 0.5.
+    /// The defaults: 60 steps per second, 10 iterations, gravity 10 along the negative second axis,
+    /// friction 0.5.
     #[must_use]
     pub fn new(memory: Memory<N, D, K>) -> Self {
         let mut gravity = Vector::<N, D>::zeros();
@@ -88,7 +91,7 @@ impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Solver<N, D, K> {
         Self { step, gravity, friction, iterations: 10, alternates: true, baumgarte, slop, memory }
     }
 
-    /// Moves the bodies on by a step; `contacts` are those of their present poses.
+    /// Advances the bodies by a step; `contacts` are those at their current poses.
     pub fn step(&mut self, bodies: &mut [Body<N, D>], contacts: &[Contact<N, D, K>]) {
         for body in bodies.iter_mut().filter(|body| body.inverse_mass != N::ZERO) {
             body.velocity += self.gravity * self.step;
@@ -115,7 +118,7 @@ impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Solver<N, D, K> {
         }
     }
 
-    /// Solves each constraint once.
+    /// Runs one iteration over all constraints.
     fn iterate(
         &self,
         constraints: &mut [Constraint<N, D>],
@@ -153,32 +156,33 @@ impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Solver<N, D, K> {
     }
 }
 
-/// A body as a contact has it.
+/// The data of a body at a contact.
 struct Side<N: Turn<D>, const D: usize> {
-    /// From the center of mass to the contact.
+    /// The vector from the centre of mass to the contact point.
     arm: Vector<N, D>,
     inverse_mass: N,
     inertia: N::Inertia,
 }
 
-/// One direction in which a contact acts on its bodies.
+/// A constraint along one direction at a contact (a row of the Jacobian).
 #[derive(Clone, Copy)]
 struct Row<N: Turn<D>, const D: usize> {
     direction: Vector<N, D>,
-    /// The torques of a unit impulse on either body, which both are taken as pushed along `direction`.
+    /// The torques of a unit impulse along `direction` about the centre of each body.
     torques: [N::Spin; 2],
-    /// The spins that these make.
+    /// The changes of angular velocity by these torques.
     responses: [N::Spin; 2],
-    /// The impulse that changes the relative speed by 1.
+    /// The effective mass: the impulse that changes the relative speed by 1.
     mass: N,
 }
 
-/// A contact as the solver has it: a row along the normal, then those of friction.
+/// The constraints of a contact: a row along the normal, then the rows of friction.
 struct Constraint<N: Turn<D>, const D: usize> {
     bodies: [usize; 2],
     rows: [Row<N, D>; D],
     impulses: [N; D],
-    /// The speed at which the bodies must part at least; negative while there is a gap to close.
+    /// The minimum speed of separation along the normal; negative while there is a gap, which may
+    /// close.
     parting: N,
 }
 
@@ -192,14 +196,14 @@ impl<N: Turn<D>, const D: usize> Row<N, D> {
         Self { direction, torques, responses, mass }
     }
 
-    /// How fast the second body leaves the first along the row.
+    /// Returns the speed of the second body relative to the first along the row.
     fn speed(&self, [first, second]: [&Body<N, D>; 2]) -> N {
         self.direction.dot(&(second.velocity - first.velocity))
             + N::dot(self.torques[1], second.spin)
             - N::dot(self.torques[0], first.spin)
     }
 
-    /// Pushes the second body along the row and the first against it.
+    /// Applies an impulse along the row to the second body, and the opposite impulse to the first.
     fn push(&self, impulse: N, numbers: [usize; 2], bodies: &mut [Body<N, D>]) {
         for (side, impulse) in [-impulse, impulse].into_iter().enumerate() {
             let body = &mut bodies[numbers[side]];
@@ -222,7 +226,7 @@ impl<N: Turn<D>, const D: usize> Constraint<N, D> {
         self.change([max(wanted, N::ZERO)].into_iter(), 0, bodies);
     }
 
-    /// Stops the sliding as far as the cone of friction allows.
+    /// Reduces the sliding velocity, with impulses within the friction cone.
     fn solve_friction(&mut self, friction: N, bodies: &mut [Body<N, D>]) {
         let pair = self.bodies.map(|n| &bodies[n]);
         let mut wanted: [N; D] = core::array::from_fn(|n| {
@@ -235,7 +239,7 @@ impl<N: Turn<D>, const D: usize> Constraint<N, D> {
         self.change(wanted.into_iter().skip(1).map(|x| x * scale), 1, bodies);
     }
 
-    /// Replaces the impulses of the rows from `first` on and pushes by the differences.
+    /// Replaces the accumulated impulses of the rows from `first` on, and applies the differences.
     fn change(&mut self, wanted: impl Iterator<Item = N>, first: usize, bodies: &mut [Body<N, D>]) {
         for (n, wanted) in (first..).zip(wanted) {
             self.rows[n].push(wanted - self.impulses[n], self.bodies, bodies);
@@ -258,8 +262,8 @@ mod tests {
     use impinge::math::Real;
     use impinge_scenes::{Placement, SceneShape};
 
-    /// The lowest corners of boxes, or squares, above the half-space below zero, which is the first body: contacts
-    /// that no library made.
+    /// Returns contacts computed without a library: the lowest corners of boxes (in 2D squares)
+    /// above the half-space below zero, which is the first body.
     struct Corners;
 
     impl<N: Stage<D>, const D: usize> ContactSource<N, D> for Corners {
@@ -299,7 +303,8 @@ mod tests {
         assert_eq!((outcome.counts.new, outcome.counts.points()), (0, (1 << (D - 1)) as f64));
     }
 
-    /// Gravity leans: a box slides where the slope exceeds the friction, with the rest of the acceleration.
+    /// Gravity is tilted: a box slides if the slope exceeds the friction, with the remaining
+    /// acceleration.
     fn slides<N: Stage<D>, const D: usize>() {
         for slope in [0.4, 0.6] {
             let mut bodies: Vec<Body<N, D>> = bodies_of(&boxes());
@@ -315,7 +320,8 @@ mod tests {
         }
     }
 
-    /// Two free bodies that collide keep their momentum and their angular momentum about the origin.
+    /// The total momentum, and the angular momentum about the origin, of two free bodies that
+    /// collide are conserved.
     fn keeps_momentum<N: Stage<D>, const D: usize>() {
         let mut bodies: Vec<Body<N, D>> = bodies_of(&boxes::<D>());
         bodies[0] = bodies[1];
@@ -338,7 +344,7 @@ mod tests {
         assert!(off < 1e-4, "{before:?} {after:?}");
     }
 
-    /// The sums of momenta, and of the angular momentum about a few axes.
+    /// Returns the total momentum, and the total angular momentum about some axes.
     fn momenta<N: Stage<D>, const D: usize>(bodies: &[Body<N, D>]) -> Vec<f64> {
         let axes = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]].map(|axis| axis.map(N::lit));
         let mut sums = vec![0.0; D + axes.len()];
@@ -350,7 +356,8 @@ mod tests {
                 sums[axis] += momentum[axis].as_f64();
             }
             for (n, axis) in axes.iter().enumerate() {
-                // The inertia of a cube about every axis is a sixth of its mass.
+                // The moment of inertia of a unit cube about every axis through its centre is a
+                // sixth of its mass.
                 let own = N::dot(body.spin, N::spin(*axis)) / (N::lit(6.0) * body.inverse_mass);
                 sums[D + n] += (own + N::dot(around, N::spin(*axis))).as_f64();
             }

@@ -11,23 +11,23 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 
 use crate::{Body, Contact, Stack, Stage, shape_of};
 
-/// A distance below which all pairs have contacts.
+/// The prediction: pairs have contacts up to this distance.
 pub const PREDICTION: f64 = 0.02;
 
-/// A way to find the contacts of bodies: a collision library.
+/// A source of contacts of bodies: a collision library.
 pub trait ContactSource<N: Stage<D>, const D: usize> {
-    /// Names a contact from step to step.
+    /// The id of a contact, which persists from step to step.
     type Id: Copy + Eq + Hash;
-    /// The contacts of bodies at their present poses, ordered by the numbers of the bodies.
+    /// Returns the contacts of bodies at their current poses, ordered by the indices of the bodies.
     fn contacts(&mut self, bodies: &[Body<N, D>]) -> Vec<Contact<N, D, Self::Id>>;
 }
 
-/// How impinge is asked.
+/// The options of impinge.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choices {
-    /// How many points a manifold has at most; the library's default if `None`.
+    /// The largest number of points of a manifold; the library's default if `None`.
     pub max_points: Option<usize>,
-    /// The way up to which pairs keep their contacts.
+    /// The tolerance within which pairs reuse contacts; `None` to recompute all.
     pub reuse: Option<f64>,
 }
 
@@ -35,12 +35,12 @@ pub struct Choices {
 #[expect(missing_debug_implementations, reason = "a world has no short description")]
 pub struct Impinge<N: Stage<D>, const D: usize> {
     world: CollisionWorld<N, D, usize>,
-    /// By the number of the body.
+    /// For each body, the handle of its object.
     handles: Vec<CollisionObjectHandle>,
 }
 
 impl<N: Stage<D>, const D: usize> Impinge<N, D> {
-    /// The objects of a scene.
+    /// Creates a world with the objects of a scene.
     #[must_use]
     pub fn new(stack: &Stack<D>, choices: Choices) -> Self {
         let mut world = CollisionWorld::new(N::lit(PREDICTION));

@@ -2,16 +2,16 @@
 
 use impinge_scenes::{Placement, SceneShape};
 
-/// Solids that a solver shall bring or keep to rest, or let slide.
+/// A scene: solids that should come to rest or stay at rest, or slide.
 #[derive(Clone, Debug)]
 pub struct Stack<const D: usize> {
-    /// A few words, for tables, filters and messages.
+    /// The name, a few words, for tables, filters and messages.
     pub name: &'static str,
     /// The objects, the fixed ones first.
     pub items: Vec<Item<D>>,
-    /// Coulomb's coefficient of all pairs.
+    /// Coulomb's coefficient of friction of all pairs.
     pub friction: f64,
-    /// The iterations of the solver: a tall stack needs more.
+    /// The number of iterations of the solver; tall stacks need more.
     pub iterations: usize,
     /// Whether the solids stand, fall or slide.
     pub kind: Kind,
@@ -20,9 +20,9 @@ pub struct Stack<const D: usize> {
 /// The behaviour that a scene shows; its measures depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Solids that stand where they begin.
+    /// Solids that stand at their initial positions.
     Rest,
-    /// Solids that fall and come to rest somewhere.
+    /// Solids that fall and come to rest.
     Fall,
     /// A solid that slides without friction.
     Slide,
@@ -31,13 +31,13 @@ pub enum Kind {
 /// An object of a scene.
 #[derive(Clone, Debug)]
 pub struct Item<const D: usize> {
-    /// Its shape.
+    /// The shape.
     pub solid: Solid<D>,
-    /// Where it begins.
+    /// The initial placement.
     pub placement: Placement<D>,
-    /// Its mass for each unit of volume; zero for what is fixed.
+    /// The density; zero for a fixed object.
     pub density: f64,
-    /// The velocity with which it begins.
+    /// The initial velocity.
     pub velocity: [f64; D],
 }
 
@@ -46,23 +46,23 @@ pub struct Item<const D: usize> {
 pub enum Solid<const D: usize> {
     /// One shape.
     One(SceneShape<D>),
-    /// Shapes side by side, none of which overlaps another.
+    /// Several shapes, which do not overlap each other.
     Compound(Vec<(Placement<D>, SceneShape<D>)>),
 }
 
-/// Mass, center of mass and inertia tensor of a solid of density 1, in its own frame.
+/// Mass, centre of mass and inertia tensor of a solid of density 1, in its local frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mass<const D: usize> {
     /// The volume; in 2D the area.
     pub mass: f64,
     /// The center of mass.
     pub center: [f64; D],
-    /// The inertia tensor about the center of mass; in 2D the last number of the diagonal alone counts.
+    /// The inertia tensor about the centre of mass; 2D uses only the last entry of the diagonal.
     pub inertia: [[f64; 3]; 3],
 }
 
 impl<const D: usize> Solid<D> {
-    /// The largest edge of its box; infinite for half-spaces.
+    /// Returns the longest edge of the bounding box; infinite for half-spaces.
     #[must_use]
     pub fn extent(&self) -> f64 {
         let boxes: Vec<_> = match self {
@@ -79,18 +79,18 @@ impl<const D: usize> Solid<D> {
 }
 
 impl<const D: usize> Stack<D> {
-    /// The extents of the objects.
+    /// Returns the extents of the objects.
     #[must_use]
     pub fn extents(&self) -> Vec<f64> {
         self.items.iter().map(|item| item.solid.extent()).collect()
     }
 
-    /// An empty scene of the friction 0.5 and 10 iterations.
+    /// Creates a scene without objects, with friction 0.5 and 10 iterations.
     pub(crate) fn new(name: &'static str, kind: Kind) -> Self {
         Self { name, items: Vec::new(), friction: 0.5, iterations: 10, kind }
     }
 
-    /// The scene with a fixed object more.
+    /// Adds a fixed object.
     pub(crate) fn fixed(self, shape: SceneShape<D>, at: [f64; D]) -> Self {
         self.item(Item {
             solid: Solid::One(shape),
@@ -100,13 +100,13 @@ impl<const D: usize> Stack<D> {
         })
     }
 
-    /// The scene with a movable solid more.
+    /// Adds a movable solid.
     pub(crate) fn with(self, shape: SceneShape<D>, placement: Placement<D>) -> Self {
         let velocity = [0.0; D];
         self.item(Item { solid: Solid::One(shape), placement, density: 1.0, velocity })
     }
 
-    /// The scene with an object more.
+    /// Adds an object.
     pub(crate) fn item(mut self, item: Item<D>) -> Self {
         self.items.push(item);
         self

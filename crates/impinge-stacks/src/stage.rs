@@ -1,4 +1,4 @@
-//! Scenes as bodies of the solver and shapes of the library.
+//! Converts scenes to bodies of the solver and shapes of the library.
 
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Matrix, Point, Real, Unit, Vector};
@@ -11,17 +11,17 @@ use impinge_scenes::{Placement, SceneShape};
 use crate::mass::Weighed;
 use crate::{Body, Item, Mass, Solid, Stack, Turn};
 
-/// A scalar and dimension in which scenes can be played.
+/// A scalar and a dimension in which scenes can be simulated.
 pub trait Stage<const D: usize>: Turn<D> {
-    /// The pose of a placement.
+    /// Converts a placement to a pose.
     fn pose_of(placement: &Placement<D>) -> Self::Isometry;
-    /// The shapes of one dimension; `None` for those of every dimension.
+    /// Converts a shape that exists in one dimension only; `None` for shapes of both dimensions.
     fn own_shape(shape: &SceneShape<D>) -> Option<ShapeHandle<Self, D>>;
-    /// See [`Weighed`].
+    /// Returns the mass properties of a shape; see [`Weighed`].
     fn mass_of(solid: &Solid<D>) -> Mass<D>;
-    /// The inverse of an inertia tensor.
+    /// Returns the inverse of an inertia tensor.
     fn inverse_inertia(inertia: &[[f64; 3]; 3]) -> Self::Inertia;
-    /// The inverse inertia of what is fixed.
+    /// The inverse inertia of a fixed body.
     fn no_inertia() -> Self::Inertia;
 }
 
@@ -110,7 +110,7 @@ impl<N: Real> Stage<3> for N {
     }
 }
 
-/// The shape of an object.
+/// Returns the shape of an object.
 #[must_use]
 pub fn shape_of<N: Stage<D>, const D: usize>(solid: &Solid<D>) -> ShapeHandle<N, D> {
     match solid {
@@ -139,7 +139,7 @@ fn part_of<N: Stage<D>, const D: usize>(shape: &SceneShape<D>) -> ShapeHandle<N,
     }
 }
 
-/// The bodies of a scene, where they begin.
+/// Returns the bodies of a scene at their initial poses.
 #[must_use]
 pub fn bodies_of<N: Stage<D>, const D: usize>(stack: &Stack<D>) -> Vec<Body<N, D>> {
     stack.items.iter().map(body_of).collect()

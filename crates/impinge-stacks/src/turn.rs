@@ -1,4 +1,4 @@
-//! Rotation as a rigid-body solver needs it, in 2D and in 3D.
+//! Rotational motion for a rigid-body solver, in 2D and 3D.
 
 use core::fmt::Debug;
 use core::ops::{AddAssign, Mul};
@@ -6,7 +6,7 @@ use core::ops::{AddAssign, Mul};
 use impinge::math::na::{Quaternion, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Matrix, Point, Real, Space, Vector};
 
-/// The angular half of rigid-body motion in `D` dimensions.
+/// The rotational part of rigid-body motion in `D` dimensions.
 pub trait Turn<const D: usize>: Space<D> {
     /// An angular velocity in radians per second, or a torque, in the world frame: a number in 2D,
     /// counter-clockwise positive, and a vector in 3D.
@@ -14,33 +14,34 @@ pub trait Turn<const D: usize>: Space<D> {
     /// An inverse inertia tensor: a number in 2D, a symmetric matrix in 3D.
     type Inertia: Copy + Debug + PartialEq;
 
-    /// The spin of three components, of which 2D has the last.
+    /// Returns the spin with three components, of which 2D uses the last.
     fn spin(components: [Self; 3]) -> Self::Spin;
-    /// The torque `arm × force`.
+    /// Returns the torque `arm × force`.
     fn torque(arm: &Vector<Self, D>, force: &Vector<Self, D>) -> Self::Spin;
-    /// The velocity `spin × arm` of the end of an arm.
+    /// Returns the velocity `spin × arm` at the end of an arm.
     fn speed(spin: Self::Spin, arm: &Vector<Self, D>) -> Vector<Self, D>;
-    /// The sum of the products of components.
+    /// Returns the dot product of two spins.
     fn dot(a: Self::Spin, b: Self::Spin) -> Self;
-    /// The inverse tensor of the body's own frame, in the world frame.
+    /// Rotates an inverse inertia tensor from the body frame to the world frame.
     fn in_world(own: &Self::Inertia, pose: &Self::Isometry) -> Self::Inertia;
-    /// The change of spin that an angular impulse makes.
+    /// Returns the change of angular velocity by an angular impulse.
     fn response(inverse_inertia: &Self::Inertia, impulse: Self::Spin) -> Self::Spin;
-    /// The kinetic energy of a spin; zero where the inverse tensor is zero.
+    /// Returns the kinetic energy of a rotation; zero if the inverse tensor is zero.
     fn energy(inverse_inertia: &Self::Inertia, spin: Self::Spin) -> Self;
-    /// A local point in the world.
+    /// Transforms a point from the local to the world frame.
     fn point(pose: &Self::Isometry, local: &Vector<Self, D>) -> Vector<Self, D>;
-    /// A world point in the local frame.
+    /// Transforms a point from the world to the local frame.
     fn local_point(pose: &Self::Isometry, world: &Vector<Self, D>) -> Vector<Self, D>;
-    /// The pose after the local point `center` moved by `shift` and the body turned about it by `angle`,
-    /// up to the third power of the angle.
+    /// Returns the pose after a translation of the local point `center` by `shift` and a rotation
+    /// about it by `angle`, accurate to the third power of the angle.
     fn moved(
         pose: &Self::Isometry,
         center: &Vector<Self, D>,
         shift: &Vector<Self, D>,
         angle: Self::Spin,
     ) -> Self::Isometry;
-    /// An orthonormal basis whose first vector is `normal`; the others span the plane of contact.
+    /// Returns an orthonormal basis whose first vector is `normal`; the other vectors span the
+    /// contact plane.
     fn basis(normal: &Vector<Self, D>) -> [Vector<Self, D>; D];
 }
 

@@ -1,4 +1,4 @@
-//! How contacts change from step to step.
+//! Measures how contacts change from step to step.
 
 use core::hash::Hash;
 use std::collections::{HashMap, HashSet};
@@ -8,49 +8,51 @@ use impinge::math::Vector;
 use crate::memory::{own_points, way};
 use crate::{Body, Contact, Turn};
 
-/// A point farther than this share of the smaller solid's extent from where it was has jumped.
+/// A contact point that has moved by more than this fraction of the smaller solid's extent counts
+/// as a jump.
 pub const JUMP: f64 = 0.05;
 
-/// Counts of the contacts of some steps.
+/// Counts of contacts over some steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counts {
-    /// All contacts.
+    /// The number of contacts.
     pub contacts: usize,
-    /// Contacts whose ids did not exist a step before.
+    /// The number of contacts whose ids did not exist in the previous step.
     pub new: usize,
-    /// Contacts of a step before whose ids are gone.
+    /// The number of contacts of the previous step whose ids no longer exist.
     pub lost: usize,
-    /// Contacts whose point is farther than [`JUMP`] from its place a step before, on both solids. The place of a
-    /// contact with a new id is the nearest one of the pair.
+    /// The number of contacts that have moved by more than [`JUMP`] since the previous step, on
+    /// both solids. A contact with a new id is compared with the nearest old contact of its pair.
     pub jumps: usize,
-    /// The longest distance of a point from its place a step before, as a share of the extent.
+    /// The largest distance by which a contact has moved since the previous step, as a fraction of
+    /// the extent.
     pub farthest: f64,
-    /// Pairs of solids with contacts.
+    /// The number of pairs of solids with contacts.
     pub pairs: usize,
-    /// Pairs that have no contact any more.
+    /// The number of pairs that lost all their contacts.
     pub parted: usize,
 }
 
 impl Counts {
-    /// The share of contacts whose id is new.
+    /// Returns the fraction of contacts with new ids.
     #[must_use]
     pub fn new_share(&self) -> f64 {
         self.new as f64 / self.contacts.max(1) as f64
     }
 
-    /// The contacts whose ids are gone, as a share of all contacts.
+    /// Returns the number of lost contacts divided by that of all contacts.
     #[must_use]
     pub fn lost_share(&self) -> f64 {
         self.lost as f64 / self.contacts.max(1) as f64
     }
 
-    /// The share of contacts that jumped.
+    /// Returns the fraction of contacts that jumped.
     #[must_use]
     pub fn jump_share(&self) -> f64 {
         self.jumps as f64 / self.contacts.max(1) as f64
     }
 
-    /// The counts of both spans of time together.
+    /// Returns the counts over both periods.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self {
@@ -64,7 +66,7 @@ impl Counts {
         }
     }
 
-    /// The numbers for tables, with their names.
+    /// Returns the measures with their names, as columns of a table.
     #[must_use]
     pub fn columns(&self) -> [(&'static str, String); 3] {
         [
@@ -74,17 +76,17 @@ impl Counts {
         ]
     }
 
-    /// Contacts for each pair.
+    /// Returns the mean number of contacts per pair.
     #[must_use]
     pub fn points(&self) -> f64 {
         self.contacts as f64 / self.pairs.max(1) as f64
     }
 }
 
-/// The points of contacts in the frames of their bodies.
+/// The points of a contact in the frames of its bodies.
 type Own<N, const D: usize> = [Vector<N, D>; 2];
 
-/// The contacts of the last step, and counts since they were taken last.
+/// The contacts of the last step, and the counts since the last call of [`Watch::take`].
 #[derive(Debug)]
 pub(crate) struct Watch<N: Turn<D>, const D: usize, K> {
     /// The extents of the bodies.
@@ -100,7 +102,7 @@ impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Watch<N, D, K> {
         Self { extents, by_id, by_pair, counts: Counts::default() }
     }
 
-    /// The counts so far; they begin again at zero.
+    /// Returns the counts so far, and resets them to zero.
     pub(crate) fn take(&mut self) -> Counts {
         core::mem::take(&mut self.counts)
     }

@@ -20,7 +20,7 @@ use impinge::math::unit;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// Right, up and back: orthonormal, `back = right x up`.
+    /// The unit vectors right, up and back: orthonormal, with `back = right x up`.
     axes: [Vector<f64>; 3],
     /// The tangent of half the angle of view; zero for an orthographic camera.
     tangent: f64,
@@ -75,25 +75,25 @@ impl Camera {
         Self { framed: is_finite.then_some(bounds), ..self }
     }
 
-    /// The unit vector to the right side of the picture.
+    /// Returns the unit vector to the right side of the picture.
     #[must_use]
     pub fn right(&self) -> Vector<f64> {
         self.axes[0]
     }
 
-    /// The unit vector to the upper side of the picture.
+    /// Returns the unit vector to the upper side of the picture.
     #[must_use]
     pub fn up(&self) -> Vector<f64> {
         self.axes[1]
     }
 
-    /// The unit vector from the scene to the viewer.
+    /// Returns the unit vector from the scene to the viewer.
     #[must_use]
     pub fn back(&self) -> Vector<f64> {
         self.axes[2]
     }
 
-    /// The tangent of half the angle of view; zero for an orthographic camera.
+    /// Returns the tangent of half the angle of view; zero for an orthographic camera.
     pub(crate) fn tangent(&self) -> f64 {
         self.tangent
     }
@@ -119,7 +119,7 @@ fn unit_of_sine(v: &Vector<f64>) -> Option<Vector<f64>> {
     (v.norm_squared() > 1e-20).then(|| v / v.norm())
 }
 
-/// The axis with the smallest component of a vector.
+/// Returns the unit vector along the axis on which `v` has the component of least magnitude.
 fn least_axis(v: &Vector<f64>) -> Vector<f64> {
     let (x, y, z) = (v.x.abs(), v.y.abs(), v.z.abs());
     if y <= x && y <= z {

@@ -5,7 +5,7 @@ use crate::image::Image;
 /// The result of a comparison of two images.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// The sizes of both.
+    /// The width and height of each image.
     pub sizes: [[u32; 2]; 2],
     /// The number of pixels that differ by more than the tolerance, including those that only one image
     /// has.

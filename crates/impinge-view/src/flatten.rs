@@ -21,7 +21,8 @@ pub(crate) struct Face {
     pub(crate) normals: [Vector<f64>; 3],
     pub(crate) color: Color,
     pub(crate) what: Drawn,
-    /// Whether it belongs to no mesh, so that it has no edges of its own.
+    /// Whether the face is a single triangle, not a part of a mesh, so that it has no edges of its
+    /// own.
     pub(crate) is_alone: bool,
 }
 
@@ -75,7 +76,7 @@ fn face_of(triangle: &ColoredTriangle, lens: &Lens) -> Face {
     Face { corners, normals, color, what, is_alone: true }
 }
 
-/// The colour of edges of faces: a darker tone, and more opaque.
+/// Returns the colour of the edges of faces: a darker tone of the face, and more opaque.
 pub(crate) fn edge_color(color: Color) -> Color {
     let alpha = if color.alpha == 0 { 0 } else { color.alpha / 2 + 128 };
     Color { rgb: edge_tone(color.rgb), alpha }

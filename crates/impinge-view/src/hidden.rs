@@ -56,9 +56,9 @@ pub(crate) fn runs(ends: &[OnScreen; 2], depths: &Raster) -> Vec<Run> {
     turns.iter().zip(ends).map(run).collect()
 }
 
-/// Whether the pixel of a point and its eight neighbours are all nearer. Beside a silhouette the surface
-/// is so steep that the pixel alone is often nearer, but a neighbour on the other side of the silhouette
-/// is not.
+/// Whether the surfaces at the pixel of a point and at its eight neighbours are all nearer than the
+/// point. Beside a silhouette the surface is steep, so that the pixel itself is often nearer. A
+/// neighbour beyond the silhouette is not.
 fn is_hidden(at: &OnScreen, depths: &Raster) -> bool {
     const STEPS: [f64; 3] = [-1.0, 0.0, 1.0];
     let hides = |dx: f64, dy: f64| {
@@ -67,7 +67,8 @@ fn is_hidden(at: &OnScreen, depths: &Raster) -> bool {
     STEPS.iter().all(|dy| STEPS.iter().all(|dx| hides(*dx, *dy)))
 }
 
-/// Returns the starts of the runs, and whether they are hidden. There must be at least one sample.
+/// Returns, for each run, the index of its first sample and whether the run is hidden. There must
+/// be at least one sample.
 fn turns(hidden: &[bool]) -> Vec<(usize, bool)> {
     let mut found: Vec<(usize, bool)> = Vec::new();
     let mut index = 0;

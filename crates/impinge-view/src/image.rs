@@ -39,19 +39,19 @@ impl Image {
         Self { size, pixels: pixels.collect() }
     }
 
-    /// Width and height.
+    /// Returns the width and the height.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// All pixels, row by row from the top.
+    /// Returns all pixels, row by row from the top.
     #[must_use]
     pub fn pixels(&self) -> &[[u8; 4]] {
         &self.pixels
     }
 
-    /// The pixel in a column and a row, counted from the upper left.
+    /// Returns the pixel in a column and a row, counted from 0 at the upper left.
     ///
     /// # Panics
     ///

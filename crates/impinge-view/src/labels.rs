@@ -83,7 +83,8 @@ impl Frame {
         others.iter().any(overlaps)
     }
 
-    /// Shifts it onto a page; its upper left corner stays on the page if it is too large.
+    /// Shifts the frame onto a page. If the frame is larger than the page, its upper left corner
+    /// stays on the page.
     fn push_onto(&mut self, page: [f64; 2]) {
         for (axis, end) in page.into_iter().enumerate() {
             let beyond = larger(self.high[axis] - end, 0.0);

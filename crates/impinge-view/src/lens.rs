@@ -8,9 +8,9 @@ use impinge::dim3::math::{Point, Vector};
 pub(crate) struct Lens {
     axes: [Vector<f64>; 3],
     is_perspective: bool,
-    /// The viewer in the camera's frame; zero for an orthographic camera.
+    /// The position of the viewer in the camera's frame; zero for an orthographic camera.
     eye: Vector<f64>,
-    /// The near plane: the smallest distance from the viewer that is drawn.
+    /// The distance of the near plane from the viewer; nearer points are not drawn.
     near: f64,
     low: [f64; 2],
     high: [f64; 2],
@@ -97,7 +97,7 @@ impl Lens {
         }
     }
 
-    /// The width and height of the framed content, in the image plane.
+    /// Returns the width and the height of the framed content, in the image plane.
     pub(crate) fn size(&self) -> [f64; 2] {
         [self.high[0] - self.low[0], self.high[1] - self.low[1]]
     }
@@ -114,7 +114,7 @@ impl Lens {
         View { lens: self, scale: if scale.is_finite() { scale } else { least }, center }
     }
 
-    /// Returns a point in the camera's frame: to the right, up, and towards the viewer.
+    /// Returns a point in the camera's frame: x to the right, y up, z towards the viewer.
     fn local(&self, point: &Point<f64>) -> Vector<f64> {
         self.turned(&point.coords)
     }
@@ -124,7 +124,8 @@ impl Lens {
         Vector::new(self.axes[0].dot(v), self.axes[1].dot(v), self.axes[2].dot(v))
     }
 
-    /// The distance of a point in front of the viewer, or below the orthographic origin.
+    /// Returns the distance of a point from the viewer along the direction of view; for an
+    /// orthographic camera, from the origin of the camera's frame.
     fn distance(&self, local: &Vector<f64>) -> f64 {
         self.eye.z - local.z
     }
@@ -161,26 +162,29 @@ impl View {
         }
     }
 
-    /// Projects a point, moved nearer by a bias in pixels; `None` if it is before the near plane.
+    /// Projects a point, moved towards the viewer by `bias` pixels; `None` if it is nearer than the
+    /// near plane.
     pub(crate) fn point(&self, at: &Point<f64>, bias: f64) -> Option<OnScreen> {
         let local = self.lens.local(at);
         (self.lens.distance(&local) >= self.lens.near).then(|| self.project(&local, bias))
     }
 
-    /// Projects a line; the part before the near plane is clipped.
+    /// Projects a line segment, clipped to the far side of the near plane; `None` if no part of it
+    /// remains.
     pub(crate) fn line(&self, ends: &[Point<f64>; 2], bias: f64) -> Option<[OnScreen; 2]> {
         let cut = self.cut(ends);
         let [start, end] = cut[..] else { return None };
         Some([self.project(&start, bias), self.project(&end, bias)])
     }
 
-    /// Projects the corners of a triangle; the part before the near plane is clipped: none, three or
-    /// four corners.
+    /// Projects the corners of a triangle, clipped to the far side of the near plane. Returns 0, 3
+    /// or 4 corners, in order around the clipped polygon.
     pub(crate) fn triangle(&self, corners: &[Point<f64>; 3], bias: f64) -> Vec<OnScreen> {
         self.cut(corners).iter().map(|local| self.project(local, bias)).collect()
     }
 
-    /// Clips a polygon (or a line) by the near plane (Sutherland and Hodgman, 1974).
+    /// Clips a polygon, or a line segment, by the near plane (Sutherland and Hodgman, 1974).
+    /// Returns the corners in the camera's frame; none if nothing remains.
     fn cut(&self, corners: &[Point<f64>]) -> Vec<Vector<f64>> {
         let local: Vec<_> = corners.iter().map(|corner| self.lens.local(corner)).collect();
         let beyond = |p: &Vector<f64>| self.lens.distance(p) - self.lens.near;
@@ -216,7 +220,7 @@ impl View {
     }
 }
 
-/// The larger of two numbers; the first if they do not compare.
+/// Returns the larger number; `a` if one of the numbers is NaN.
 pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }

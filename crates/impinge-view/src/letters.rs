@@ -21,14 +21,15 @@ pub(crate) fn letter() -> Letter {
     Letter { width, ascent, descent: HEIGHT.val() as f64 - ascent }
 }
 
-/// The coverage of each pixel by a text, from 0 to 255, with one empty pixel on each side.
+/// The coverage of each pixel by a text, from 0 to 255, with an empty border of one pixel on each
+/// side.
 struct Coverage {
     size: [usize; 2],
     pixels: Vec<u8>,
 }
 
 impl Coverage {
-    /// Characters that the font lacks become question marks.
+    /// Returns the coverage of a text. Characters that the font lacks become question marks.
     fn of(text: &str) -> Self {
         let advance = get_raster_width(WEIGHT, HEIGHT);
         let size = [text.chars().count() * advance + 2, HEIGHT.val() + 2];
@@ -50,7 +51,7 @@ impl Coverage {
         self.pixels[y * self.size[0] + x]
     }
 
-    /// The largest coverage of a pixel and its neighbours.
+    /// Returns the largest coverage of a pixel and its neighbours.
     fn around(&self, x: usize, y: usize) -> u8 {
         let [width, height] = self.size;
         let rows = y.saturating_sub(1)..(y + 2).min(height);

@@ -9,7 +9,7 @@ type Pixel = [u8; 4];
 #[derive(Clone, Debug)]
 pub(crate) struct Palette {
     colors: Vec<Pixel>,
-    /// The index of the colour of each pixel value.
+    /// For each pixel value, the index of its colour.
     index: BTreeMap<Pixel, u8>,
 }
 
@@ -32,9 +32,9 @@ impl Palette {
         Some(Self { colors: index.keys().copied().collect(), index })
     }
 
-    /// Returns at most `count` colours, of 1 to 256, that represent all pixels: the box whose longest side,
-    /// times the root of the number of its pixels, is the largest is split at the median until there are
-    /// enough.
+    /// Returns at most `count` colours, of 1 to 256, that represent all pixels. Boxes of colours
+    /// are split at the median until there are enough. The next box is the one with the largest
+    /// product of its longest side and the root of its number of pixels.
     pub(crate) fn of(pixels: &[Pixel], count: usize) -> Self {
         // Sorted, so that the colours do not depend on the positions of the pixels.
         let mut counts = BTreeMap::new();
@@ -51,7 +51,7 @@ impl Palette {
             else {
                 break;
             };
-            // Each box has a single colour: there are no more colours.
+            // If every box has a single colour, no box can be split.
             if size == 0.0 {
                 break;
             }
@@ -99,7 +99,7 @@ fn extent(pixels: &[(Pixel, u32)]) -> (usize, f64) {
 /// empty.
 fn cut(pixels: &mut Vec<(Pixel, u32)>, channel: usize) -> Vec<(Pixel, u32)> {
     pixels.sort_by_key(|(pixel, _)| (pixel[channel], *pixel));
-    // By pixels, not by colours: large areas get more of the palette.
+    // Counts pixels, not colours: large areas get more colours of the palette.
     let half = pixels.iter().map(|(_, count)| count).sum::<u32>() / 2;
     let mut below = 0;
     let median = pixels.iter().position(|(_, count)| {

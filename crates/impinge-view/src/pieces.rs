@@ -13,7 +13,7 @@ use impinge::dim3::math::{Real, Vector};
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
     triangles: Vec<[OnScreen; 3]>,
-    /// In the camera's frame, one for each corner of the triangles.
+    /// The normals at the corners, in the camera's frame; `None` for an unshaded piece.
     normals: Option<[Vector<f64>; 3]>,
     color: Color,
     shows_through: bool,
@@ -21,11 +21,12 @@ pub(crate) struct Piece {
     depth: f64,
 }
 
-/// The distance by which lines are moved nearer, in pixels, so that their faces do not hide them.
+/// The bias for lines: they are moved towards the viewer by this many pixels, so that their faces
+/// do not hide them.
 pub(crate) const LINE_BIAS: f64 = 2.0;
-/// The distance for faces of layers other than objects.
+/// The bias in pixels for faces of layers other than objects.
 const FACE_BIAS: f64 = 1.0;
-/// The distance for points.
+/// The bias in pixels for points.
 const DOT_BIAS: f64 = 4.0;
 /// The rim that separates points from the background.
 const RIM: Color = Color::rgb(255, 255, 255);
@@ -95,7 +96,7 @@ fn face_piece(face: &Face, view: &View, samples: f64) -> Option<Piece> {
     Some(Piece { triangles, normals: Some(normals), color: face.color, shows_through, depth })
 }
 
-/// Whether a face is not clipped, so that its corners are those of the triangle.
+/// Whether the near plane does not clip a face, so that its corners are those of the triangle.
 fn is_whole(face: &Face, view: &View) -> bool {
     face.corners.iter().all(|corner| view.point(corner, 0.0).is_some())
 }
@@ -114,7 +115,7 @@ fn stroke_piece(stroke: &Stroke, view: &View, samples: f64) -> Option<Piece> {
     Some(Piece { triangles, normals: None, color, shows_through, depth })
 }
 
-/// Returns a rim and a disc.
+/// Returns the triangles of a point: those of its rim and of its disc.
 fn dot_pieces(dot: &Dot, view: &View, samples: f64) -> Vec<Piece> {
     let Some(center) = view.point(&dot.at, DOT_BIAS * samples) else { return Vec::new() };
     let radius = larger(view.pixels(dot.size, &dot.at) * 0.5, MIN_DOT_RADIUS * samples);

@@ -25,7 +25,8 @@ pub(crate) enum Ink {
 struct Oriented {
     corners: [OnScreen; 3],
     area: f64,
-    /// Whether pixel centres on the edge from this corner to the next are inside: top and left edges.
+    /// For each corner, whether pixel centres on the edge to the next corner are inside: top and
+    /// left edges own them.
     owns_edge: [bool; 3],
 }
 
@@ -140,8 +141,8 @@ impl Oriented {
         [whole(top, height), whole(bottom + 1.0, height)]
     }
 
-    /// Returns a range of pixels of a row that contains all inside, with one extra pixel on each
-    /// side.
+    /// Returns a range of pixels in row `y` that contains all pixels inside the triangle, with one
+    /// extra pixel on each side.
     fn columns(&self, y: usize, width: usize) -> [usize; 2] {
         let y = y as f64 + 0.5;
         let (mut left, mut right) = (0.0, width as f64);
@@ -157,7 +158,7 @@ impl Oriented {
         [whole(left, width), whole(right, width)]
     }
 
-    /// Returns the barycentric coordinates of the centre of a pixel, if it is inside.
+    /// Returns the barycentric coordinates of the centre of a pixel; `None` if it is outside.
     fn weights(&self, x: usize, y: usize) -> Option<[f64; 3]> {
         let (x, y) = (x as f64 + 0.5, y as f64 + 0.5);
         let mut areas = [0.0; 3];

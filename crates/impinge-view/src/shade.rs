@@ -9,7 +9,7 @@ const LIGHT: [f64; 3] = [-0.465, 0.675, 0.573];
 const SHADE: [f64; 3] = [0.48, 0.52, 0.60];
 /// The factors under perpendicular light: slightly warm.
 const LIT: [f64; 3] = [1.10, 1.08, 1.05];
-/// Edges have the mean of the colour of their face and this.
+/// The colour of ink: edges have the mean of it and of the colour of their face.
 const INK: [u8; 3] = [26, 32, 44];
 
 /// Returns a colour on a surface with a unit normal in the camera's frame. The zero vector counts as

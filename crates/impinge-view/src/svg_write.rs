@@ -13,7 +13,7 @@ use std::fmt::Write;
 pub(crate) struct Body {
     size: [f64; 2],
     text: String,
-    /// Colour N belongs to the classes `sN` and `fN`.
+    /// The distinct colours. The colour with index N has the classes `sN` and `fN`.
     colors: Vec<[u8; 3]>,
     layers: Vec<Layer>,
     open: Option<Open>,
@@ -206,8 +206,8 @@ pub(crate) fn document(body: Body, title: &str, description: &str) -> String {
     svg
 }
 
-/// FNV-1a, by Fowler, Noll and Vo: the id of a document, so that the styles of several documents on one page
-/// do not mix.
+/// Returns the hash FNV-1a (Fowler, Noll, Vo) of some texts. It is the id of a document, so that
+/// the styles of several documents on one page do not mix.
 fn hash(texts: &[&str]) -> u64 {
     let bytes = texts.iter().flat_map(|text| text.bytes().chain([0]));
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {

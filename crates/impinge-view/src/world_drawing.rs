@@ -8,8 +8,9 @@ use impinge::world::CollisionWorld;
 
 /// Returns a drawing for a world, with options whose sizes are for objects of length 1.
 ///
-/// They are scaled by the median of the objects' longest sides. Half-spaces are drawn up to the extent of the
-/// bounded objects, and objects have six muted colours in turn. Costs O(n log n) for n objects.
+/// The sizes are scaled by the median of the objects' longest sides. Half-spaces are drawn up to
+/// the extent of the bounded objects. Objects get six muted colours in turn. Costs O(n log n) for n
+/// objects.
 ///
 /// ```
 /// use impinge::debug_render::DebugOptions;
@@ -40,12 +41,12 @@ pub fn world_drawing<N: Space<D>, const D: usize, T>(
     DebugDrawing::new(options).with_object_color(object_color)
 }
 
-/// Lengths of a world; 1 if it has none.
+/// The lengths by which drawings of a world are scaled; 1 if the world has no bounded object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Extent {
     /// The median of the objects' longest sides, the lower one of two: a box on a floor is typical, not the floor.
     typical: f64,
-    /// The distance from the origin, along an axis, that contains all bounded objects.
+    /// The largest coordinate, by magnitude, of the boxes of all bounded objects.
     whole: f64,
 }
 

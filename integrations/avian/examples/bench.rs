@@ -1,5 +1,6 @@
-//! Steps of Avian with its own colliders, which are parry's, beside the same scenes with those of impinge. Both step in
-//! turn, in one process, on one thread; the figures are medians over the steps.
+//! Compares steps of Avian with its own colliders (parry) and with those of impinge, in equal
+//! scenes. Both step in turn, in one process, on one thread; the figures are medians over the
+//! steps.
 //!
 //! ```sh
 //! cargo run --release --example bench --features parry            # all scenes
@@ -19,12 +20,12 @@ mod scenes3;
 
 const STEPS: usize = 300;
 
-/// Durations of one step and of its narrow phase, the latter by Avian's own clock.
+/// The duration of one step, and that of its narrow phase as Avian measures it.
 #[derive(Clone, Copy, Default)]
 struct Step {
     whole: Duration,
     narrow: Duration,
-    /// Pairs that touch.
+    /// The number of touching pairs.
     touching: usize,
 }
 

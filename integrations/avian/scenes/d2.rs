@@ -9,7 +9,7 @@ use bevy_math::{Quat, Vec2};
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::prelude::*;
 
-/// Whose shapes and contacts a scene has.
+/// The collision back end of a scene: its plugins and constructors of shapes.
 pub(crate) trait Backend: 'static {
     type Collider: Component<Mutability = Mutable> + Clone;
     const NAME: &'static str;
@@ -18,7 +18,7 @@ pub(crate) trait Backend: 'static {
     fn circle(radius: f32) -> Self::Collider;
     fn rectangle(x: f32, y: f32) -> Self::Collider;
     fn capsule(radius: f32, length: f32) -> Self::Collider;
-    /// Below the origin.
+    /// Creates the half-space below the origin.
     fn half_space() -> Self::Collider;
     fn regular_polygon(radius: f32, sides: u32) -> Self::Collider;
     fn polyline(vertices: Vec<Vec2>) -> Self::Collider;
@@ -33,7 +33,7 @@ impl Backend for Impinge {
 
     fn plugins(app: &mut App) {
         let avian = PhysicsPlugins::default().build();
-        // Two back ends at once are no schedule: see the page of the crate.
+        // Avian's schedule does not allow two back ends: see the documentation of the crate.
         #[cfg(feature = "parry")]
         let avian = avian
             .disable::<ColliderBackendPlugin<Collider>>()
@@ -71,7 +71,7 @@ impl Backend for Impinge {
     }
 }
 
-/// Avian as it comes.
+/// Avian's own back end, parry.
 #[cfg(feature = "parry")]
 pub(crate) struct Parry;
 
@@ -113,7 +113,7 @@ impl Backend for Parry {
     }
 }
 
-/// An app without a window that takes one step of 1/64 s per update.
+/// Creates an app without a window that makes one step of 1/64 s per update.
 pub(crate) fn app<B: Backend>() -> App {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, TimePlugin));
@@ -136,13 +136,13 @@ pub(crate) fn velocity(app: &App, entity: Entity) -> Vec2 {
     app.world().get::<LinearVelocity>(entity).expect("it is a body").0
 }
 
-/// A static body.
+/// Adds a static body.
 pub(crate) fn fixed<B: Backend>(app: &mut App, collider: B::Collider, at: Vec2) -> Entity {
     let body = (RigidBody::Static, collider, Transform::from_translation(at.extend(0.0)));
     app.world_mut().spawn(body).id()
 }
 
-/// A dynamic body that does not go to sleep.
+/// Adds a dynamic body that does not sleep.
 pub(crate) fn dynamic<B: Backend>(app: &mut App, collider: B::Collider, at: Vec2) -> Entity {
     let at = Transform::from_translation(at.extend(0.0));
     app.world_mut().spawn((RigidBody::Dynamic, collider, at, SleepingDisabled)).id()
@@ -152,14 +152,14 @@ pub(crate) fn floor<B: Backend>(app: &mut App) -> Entity {
     fixed::<B>(app, B::rectangle(100.0, 2.0), Vec2::new(0.0, -1.0))
 }
 
-/// Squares of side 1 on each other.
+/// Adds a stack of squares of side 1.
 pub(crate) fn stack<B: Backend>(app: &mut App, at: Vec2, count: usize) -> Vec<Entity> {
     let square = B::rectangle(1.0, 1.0);
     let middle = |level: usize| at + Vec2::Y * (level as f32 + 0.5);
     (0..count).map(|level| dynamic::<B>(app, square.clone(), middle(level))).collect()
 }
 
-/// Bricks in the shape of a triangle.
+/// Adds bricks in the shape of a triangle.
 pub(crate) fn pyramid<B: Backend>(app: &mut App, base: usize) -> Vec<(Entity, Vec2)> {
     let square = B::rectangle(1.0, 1.0);
     let middle = move |row: usize, index: usize| {
@@ -170,12 +170,12 @@ pub(crate) fn pyramid<B: Backend>(app: &mut App, base: usize) -> Vec<(Entity, Ve
     places.map(|at| (dynamic::<B>(app, square.clone(), at), at)).collect()
 }
 
-/// Capsules that hang from a fixed point, each joined to the last.
+/// Adds capsules that hang from a fixed point, each joined to the previous one.
 pub(crate) fn chain<B: Backend>(app: &mut App, at: Vec2, count: usize) -> Vec<Entity> {
     let (link, length) = (B::capsule(0.1, 0.4), 0.6);
     let hook = fixed::<B>(app, B::circle(0.1), at);
     let (mut links, mut last, mut anchor) = (Vec::new(), hook, Vec2::ZERO);
-    // The y axis of a link points against x.
+    // The y axis of each link points along -x.
     let lying = Quat::from_rotation_z(core::f32::consts::FRAC_PI_2);
     for index in 0..count {
         let middle = at + Vec2::X * (length * (index as f32 + 0.5));
@@ -192,13 +192,14 @@ pub(crate) fn chain<B: Backend>(app: &mut App, at: Vec2, count: usize) -> Vec<En
     links
 }
 
-/// A line of `cells` pieces with the height given over x.
+/// Returns a polyline of `cells` segments with heights as a function of x.
 pub(crate) fn line<B: Backend>(cells: u32, side: f32, height: impl Fn(f32) -> f32) -> B::Collider {
     let at = |index: u32| index as f32 * side - side * cells as f32 / 2.0;
     B::polyline((0..=cells).map(|index| Vec2::new(at(index), height(at(index)))).collect())
 }
 
-/// A strip of `cells` rectangles of two triangles each, 1 high, with its upper side at the height 0.
+/// Returns a strip of height 1 of `cells` rectangles, each of two triangles, with its upper side at
+/// y = 0.
 pub(crate) fn strip<B: Backend>(cells: u32, side: f32) -> B::Collider {
     let at = |index: u32| index as f32 * side - side * cells as f32 / 2.0;
     let corners = (0..=cells).flat_map(|i| [Vec2::new(at(i), -1.0), Vec2::new(at(i), 0.0)]);
@@ -209,7 +210,7 @@ pub(crate) fn strip<B: Backend>(cells: u32, side: f32) -> B::Collider {
     B::trimesh(corners.collect(), (0..cells).flat_map(cell).collect())
 }
 
-/// Solids of four kinds above each other in columns.
+/// Adds solids of four kinds in columns above the floor.
 pub(crate) fn pile<B: Backend>(
     app: &mut App,
     side: usize,

@@ -9,7 +9,7 @@ use bevy_math::{Quat, Vec3};
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::prelude::*;
 
-/// Whose shapes and contacts a scene has.
+/// The collision back end of a scene: its plugins and constructors of shapes.
 pub(crate) trait Backend: 'static {
     type Collider: Component<Mutability = Mutable> + Clone;
     const NAME: &'static str;
@@ -18,7 +18,7 @@ pub(crate) trait Backend: 'static {
     fn sphere(radius: f32) -> Self::Collider;
     fn cuboid(x: f32, y: f32, z: f32) -> Self::Collider;
     fn capsule(radius: f32, length: f32) -> Self::Collider;
-    /// Below the origin.
+    /// Creates the half-space below the origin.
     fn half_space() -> Self::Collider;
     fn cylinder(radius: f32, height: f32) -> Self::Collider;
     fn convex_hull(points: Vec<Vec3>) -> Option<Self::Collider>;
@@ -33,7 +33,7 @@ impl Backend for Impinge {
 
     fn plugins(app: &mut App) {
         let avian = PhysicsPlugins::default().build();
-        // Two back ends at once are no schedule: see the page of the crate.
+        // Avian's schedule does not allow two back ends: see the documentation of the crate.
         #[cfg(feature = "parry")]
         let avian = avian
             .disable::<ColliderBackendPlugin<Collider>>()
@@ -71,7 +71,7 @@ impl Backend for Impinge {
     }
 }
 
-/// Avian as it comes.
+/// Avian's own back end, parry.
 #[cfg(feature = "parry")]
 pub(crate) struct Parry;
 
@@ -113,7 +113,7 @@ impl Backend for Parry {
     }
 }
 
-/// An app without a window that takes one step of 1/64 s per update.
+/// Creates an app without a window that makes one step of 1/64 s per update.
 pub(crate) fn app<B: Backend>() -> App {
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, TimePlugin));
@@ -136,13 +136,13 @@ pub(crate) fn velocity(app: &App, entity: Entity) -> Vec3 {
     app.world().get::<LinearVelocity>(entity).expect("it is a body").0
 }
 
-/// A static body.
+/// Adds a static body.
 pub(crate) fn fixed<B: Backend>(app: &mut App, collider: B::Collider, at: Vec3) -> Entity {
     let body = (RigidBody::Static, collider, Transform::from_translation(at));
     app.world_mut().spawn(body).id()
 }
 
-/// A dynamic body that does not go to sleep.
+/// Adds a dynamic body that does not sleep.
 pub(crate) fn dynamic<B: Backend>(app: &mut App, collider: B::Collider, at: Vec3) -> Entity {
     let body = (RigidBody::Dynamic, collider, Transform::from_translation(at), SleepingDisabled);
     app.world_mut().spawn(body).id()
@@ -152,14 +152,14 @@ pub(crate) fn floor<B: Backend>(app: &mut App) -> Entity {
     fixed::<B>(app, B::cuboid(100.0, 2.0, 100.0), Vec3::new(0.0, -1.0, 0.0))
 }
 
-/// Cubes of side 1 on each other.
+/// Adds a stack of cubes of side 1.
 pub(crate) fn stack<B: Backend>(app: &mut App, at: Vec3, count: usize) -> Vec<Entity> {
     let cube = B::cuboid(1.0, 1.0, 1.0);
     let middle = |level: usize| at + Vec3::Y * (level as f32 + 0.5);
     (0..count).map(|level| dynamic::<B>(app, cube.clone(), middle(level))).collect()
 }
 
-/// A wall of bricks in the shape of a triangle.
+/// Adds a wall of bricks in the shape of a triangle.
 pub(crate) fn pyramid<B: Backend>(app: &mut App, base: usize) -> Vec<(Entity, Vec3)> {
     let cube = B::cuboid(1.0, 1.0, 1.0);
     let middle = move |row: usize, index: usize| {
@@ -170,7 +170,7 @@ pub(crate) fn pyramid<B: Backend>(app: &mut App, base: usize) -> Vec<(Entity, Ve
     places.map(|at| (dynamic::<B>(app, cube.clone(), at), at)).collect()
 }
 
-/// Capsules that hang from a fixed point, each joined to the last.
+/// Adds capsules that hang from a fixed point, each joined to the previous one.
 pub(crate) fn chain<B: Backend>(app: &mut App, at: Vec3, count: usize) -> Vec<Entity> {
     let (link, length) = (B::capsule(0.1, 0.4), 0.6);
     let hook = fixed::<B>(app, B::sphere(0.1), at);
@@ -181,7 +181,7 @@ pub(crate) fn chain<B: Backend>(app: &mut App, at: Vec3, count: usize) -> Vec<En
         let place = Transform::from_translation(middle).with_rotation(lying);
         let next = (RigidBody::Dynamic, link.clone(), place, SleepingDisabled);
         let next = app.world_mut().spawn(next).id();
-        // The y axis of a link points against x.
+        // The y axis of each link points along -x.
         let joint = SphericalJoint::new(last, next)
             .with_local_anchor1(anchor)
             .with_local_anchor2(Vec3::Y * (length / 2.0));
@@ -192,10 +192,11 @@ pub(crate) fn chain<B: Backend>(app: &mut App, at: Vec3, count: usize) -> Vec<En
     links
 }
 
-/// Vertices and triangles of a surface.
+/// The vertices and triangles of a surface.
 pub(crate) type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// A grid of `cells` by `cells` squares of two triangles, with the height given over x and z.
+/// Returns a grid of `cells` by `cells` squares, each of two triangles, with heights as a function
+/// of x and z.
 pub(crate) fn grid(cells: u32, side: f32, height: impl Fn(f32, f32) -> f32) -> Surface {
     let half = side * cells as f32 / 2.0;
     let at = |index: u32| index as f32 * side - half;
@@ -212,7 +213,7 @@ pub(crate) fn grid(cells: u32, side: f32, height: impl Fn(f32, f32) -> f32) -> S
     (vertices, squares.flat_map(|(i, j)| cell(i, j)).collect())
 }
 
-/// A mesh of that.
+/// Returns a mesh of such a grid.
 pub(crate) fn sheet<B: Backend>(
     cells: u32,
     side: f32,
@@ -222,7 +223,7 @@ pub(crate) fn sheet<B: Backend>(
     B::trimesh(vertices, triangles)
 }
 
-/// Solids of five kinds above each other in columns.
+/// Adds solids of five kinds in columns above the floor.
 pub(crate) fn pile<B: Backend>(
     app: &mut App,
     side: usize,

@@ -1,8 +1,8 @@
-//! [impinge] as the collision back end of [Avian](https://docs.rs/avian3d/0.7), the physics
-//! engine for Bevy: Avian moves the bodies, the shapes and contacts are impinge's.
+//! [impinge] as the collision back end of [Avian](https://docs.rs/avian3d/0.7), the physics engine
+//! for Bevy: Avian moves the bodies, impinge provides shapes and contacts.
 //!
-//! [`d2`] is for `avian2d`, [`d3`] for `avian3d`. An app gains one plugin beside Avian's, and takes `Collider` from here;
-//! the constructors have the names and arguments of Avian's own.
+//! [`d2`] is for `avian2d`, [`d3`] for `avian3d`. An app adds one plugin after Avian's plugins, and
+//! uses the `Collider` of this crate. The constructors have the names and arguments of Avian's.
 //!
 //! ```
 //! use avian3d::prelude::*;
@@ -31,18 +31,21 @@
 //!
 //! # Contacts
 //!
-//! A pair of convex shapes is computed anew in each step: its contacts are a function of the poses, and its feature ids
-//! name vertices, edges and faces. Avian's solver matches points by these ids and starts from their last impulses.
+//! The contacts of a pair of convex shapes are recomputed in each step. They are a function of the
+//! poses, and their feature ids stand for vertices, edges and faces. Avian's solver matches points
+//! by these ids, and starts from the impulses of the last step.
 //!
-//! A pair with a mesh, a polyline, a height field or a compound has state in the resource [`PairContacts`]. Its two
-//! feature ids are a contact id, which the point keeps while it moves from part to part; they name no feature.
-//! Each pair is computed independently of all others.
+//! A pair with a mesh, a polyline, a height field or a compound has state in the resource
+//! [`PairContacts`]. The two feature ids of a point then encode a contact id, which the point keeps
+//! while it moves from part to part; they do not identify features. Each pair is computed
+//! independently of all others.
 //!
 //! # Errors
 //!
-//! Bad sizes do not panic. A collider with bad arguments has an [error](Collider::error), no contacts and no mass. If a
-//! shape cannot be scaled exactly, a convex hull approximates it, as Avian's trait asks. A scale of zero, infinity or NaN is
-//! refused with a line in the log, and the last scale stays.
+//! Invalid sizes do not panic. A collider with invalid arguments has an [error](Collider::error),
+//! no contacts and no mass. If a shape cannot be scaled exactly, a convex hull approximates it, as
+//! Avian's trait requires. A scale of zero, infinity or NaN is rejected with an error in the log,
+//! and the collider keeps its last scale.
 #![forbid(unsafe_code)]
 #![warn(missing_docs, missing_debug_implementations)]
 

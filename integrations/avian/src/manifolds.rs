@@ -1,4 +1,4 @@
-//! Converts impinge's contacts to numbers that both of Avian's crates take.
+//! Converts impinge's contacts to the numbers that both crates of Avian use.
 
 use core::hash::{Hash, Hasher};
 
@@ -15,29 +15,31 @@ use crate::collider::{Isometry, Vec_};
 use crate::pairs::PairState;
 use crate::scaling::Dimension;
 
-/// Two placed colliders. The frame has the world's axes and its origin at the first collider's position, so contacts
-/// far from the world's origin lose no digits.
+/// Two placed colliders. Their frame has the axes of the global frame and its origin at the first
+/// collider's position, so that contacts far from the global origin lose no digits.
 pub(crate) struct Meeting<'a, const D: usize>
 where
     f32: Dimension<D>,
 {
-    /// `None` if either is in error.
+    /// `None` if a collider has an error.
     shapes: Option<[&'a dyn Shape<f32, D>; 2]>,
-    /// Both rotations, and the position of the second relative to the first.
+    /// The poses of both colliders: the first has translation zero, the second is relative to the
+    /// first position.
     poses: [Isometry<D>; 2],
     has_parts: bool,
 }
 
-/// A point of contact as Avian has it.
+/// A contact point in the form of Avian.
 pub(crate) struct Touch<const D: usize>
 where
     f32: Dimension<D>,
 {
     /// The midpoint between the two surfaces, relative to the origin of each collider.
     pub(crate) anchors: [Vec_<D>; 2],
-    /// Positive if they overlap.
+    /// The penetration depth, positive if the shapes overlap.
     pub(crate) penetration: f32,
-    /// Avian's feature ids, by which it finds a point of the last step; neither is zero.
+    /// Avian's two feature ids, by which it matches a point with those of the last step; neither is
+    /// zero.
     pub(crate) name: [u32; 2],
 }
 
@@ -60,12 +62,13 @@ where
         self.has_parts
     }
 
-    /// Calls `read` with the manifolds of the pair up to the distance `prediction`, computed without memory; none is empty.
+    /// Calls `read` with the manifolds of the pair up to the distance `prediction`, computed
+    /// without state; none is empty.
     pub(crate) fn contacts(&self, prediction: f32, read: impl FnOnce(&[&ContactManifold<f32, D>])) {
         let Some(shapes) = self.shapes else { return read(&[]) };
         let found = f32::contacts(&self.poses, shapes, &ahead(prediction));
         match &found[..] {
-            // Two convex shapes have one at most.
+            // Two convex shapes have at most one manifold.
             [one] => read(&[one]),
             found => read(&found.iter().collect::<Vec<_>>()),
         }
@@ -90,12 +93,13 @@ where
         read(&manifolds);
     }
 
-    /// The normal of a manifold, from the first collider to the second.
+    /// Returns the normal of a manifold, from the first collider to the second; `None` if the
+    /// manifold is empty.
     pub(crate) fn normal(manifold: &ContactManifold<f32, D>) -> Option<Vec_<D>> {
         manifold.contacts().first().map(|tracked| f32::vec(&tracked.contact.normal))
     }
 
-    /// The points of a manifold.
+    /// Returns the points of a manifold.
     pub(crate) fn touches(
         &self,
         manifold: &ContactManifold<f32, D>,
@@ -110,12 +114,13 @@ where
     }
 }
 
-/// The prediction for a margin; a negative or NaN margin finds touching shapes only.
+/// Returns the prediction for a distance. A negative or NaN distance counts as zero: only touching
+/// shapes have contacts.
 fn ahead(prediction: f32) -> ContactPrediction<f32> {
     ContactPrediction::new(prediction.max(0.0), 0.0, 0.0)
 }
 
-/// `between` is the way from the first origin to the second.
+/// Converts a contact; `between` is the vector from the first origin to the second.
 fn touch<const D: usize>(
     contact: &Contact<f32, D>,
     between: &Vector<f32, D>,
@@ -152,11 +157,13 @@ fn own_name(id: ContactId) -> [u32; 2] {
     let mut hasher = Fnv(0xCBF2_9CE4_8422_2325);
     id.hash(&mut hasher);
     let hash = hasher.finish();
-    // The two upper bits are Avian's kinds of features, here zero: none. Zero in all is `UNKNOWN`.
+    // The two upper bits are Avian's kind of feature; 0 is no kind. An id of 0 would be `UNKNOWN`,
+    // so that it becomes 1.
     [hash, hash >> 32].map(|half| (half as u32 & 0x3FFF_FFFF).max(1))
 }
 
-/// The hash of Fowler, Noll and Vo, with a last step that brings the upper bits down.
+/// The hash FNV-1a of Fowler, Noll and Vo, with a final step that mixes the upper bits into the
+/// lower ones.
 struct Fnv(u64);
 
 impl Hasher for Fnv {

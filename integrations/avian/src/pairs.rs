@@ -9,22 +9,24 @@ use impinge::narrow_phase::{IdAllocator, PairManifoldGenerator};
 
 use crate::scaling::Dimension;
 
-/// Number of locks. Pairs are spread over them, so that threads seldom wait for one another.
+/// The number of locks. Pairs are distributed over them, so that threads seldom wait for each
+/// other.
 const SHARDS: usize = 256;
-/// Number of ended pairs that may be kept before a sweep.
+/// The number of ended pairs that may remain before a sweep.
 const SPARE: usize = 64;
 
-/// The two entities of a pair, in the order of Avian's graph of contacts.
+/// The two entities of a pair, in the order of Avian's contact graph.
 type Key = (Entity, Entity);
 type Shard<const D: usize> = BTreeMap<Key, Box<PairState<D>>>;
 
-/// A resource with the contacts of each pair that contains a mesh, a polyline, a height field or a compound. The plugin
-/// adds it, unless the app has one.
+/// A resource with the contacts of each pair that contains a mesh, a polyline, a height field or a
+/// compound. The plugin inserts it, unless the app already has one.
 ///
-/// Contact points keep their ids while they move over the parts, and contacts are reused while the colliders hardly move
-/// relative to each other. Pairs of convex shapes are computed anew in each step and have no state. An app that goes back in time, for
-/// rollback, keeps a clone of it beside Avian's `ContactGraph`, or [clears](Self::clear) it: then points get new names, and the
-/// solver starts those contacts from zero.
+/// Contact points keep their ids while they move over the parts, and contacts are reused while the
+/// colliders hardly move relative to each other. Pairs of convex shapes are recomputed in each step
+/// and have no state. An app with rollback stores a clone of this resource together with Avian's
+/// `ContactGraph`, or [clears](Self::clear) it. After clearing, points get new ids, and the solver
+/// starts those contacts from zero impulses.
 #[derive(Resource)]
 pub struct PairContacts<const D: usize>
 where
@@ -41,7 +43,7 @@ where
     f32: Dimension<D>,
 {
     pub(crate) generator: PairManifoldGenerator<f32, D>,
-    /// Allocates ids for this pair alone: they must differ within a pair only.
+    /// Allocates contact ids, which must be unique only within the pair.
     pub(crate) ids: IdAllocator,
 }
 
@@ -57,14 +59,15 @@ where
     }
 }
 
-/// Entities are small numbers: Fibonacci hashing of both (Knuth, volume 3, section 6.4).
+/// Returns the shard of a pair, by Fibonacci hashing of both entities (Knuth, volume 3, section
+/// 6.4): entities are small numbers.
 fn shard_of((one, other): Key) -> usize {
     let mixed =
         (one.to_bits().rotate_left(26) ^ other.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     (mixed >> 40) as usize % SHARDS
 }
 
-/// Locks a shard; a thread that panicked left its map intact.
+/// Locks a shard, also after a panic of another thread: a panic leaves the map valid.
 fn locked<T>(shard: &Mutex<T>) -> MutexGuard<'_, T> {
     shard.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -80,41 +83,44 @@ impl<const D: usize> PairContacts<D>
 where
     f32: Dimension<D>,
 {
-    /// The tolerance of `default()`: a tenth of Avian's own for contacts, in Avian's unit of length.
+    /// The default tolerance: a tenth of Avian's own for contacts, in Avian's unit of length.
     pub const TOLERANCE: f32 = 5e-4;
 
-    /// Holds no pair. Contacts are reused, with new depths, while no point of the smaller collider has moved
-    /// farther than the tolerance beside the other. Zero, and what is negative or no number, computes them each time.
+    /// Creates the resource without pairs. Contacts are reused, with new depths, while no point of
+    /// the smaller collider has moved farther than `tolerance` relative to the other. With a
+    /// tolerance that is zero, negative, infinite or NaN, contacts are recomputed in each step.
     #[must_use]
     pub fn reusing(tolerance: f32) -> Self {
         let tolerance = if tolerance.is_finite() { tolerance.max(0.0) } else { 0.0 };
         Self { shards: shards(|_| Shard::default()), tolerance }
     }
 
-    /// How many pairs are kept, those that ended lately included.
+    /// Returns the number of stored pairs, including those that ended recently.
     #[must_use]
     pub fn len(&self) -> usize {
         self.shards.iter().map(|shard| locked(shard).len()).sum()
     }
 
-    /// No pair is kept.
+    /// Whether no pair is stored.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Forgets all pairs.
+    /// Removes the state of all pairs.
     pub fn clear(&mut self) {
         self.shards = shards(|_| Shard::default());
     }
 
-    /// Calls `update` with the state of the pair `key`; holds a lock meanwhile.
+    /// Calls `update` with the state of the pair `key`, which is created if it does not exist.
+    /// Holds the lock of the pair's shard during the call.
     pub(crate) fn with<R>(&self, key: Key, update: impl FnOnce(&mut PairState<D>) -> R) -> R {
         let begin = || Box::new(PairState::new(self.tolerance));
         update(locked(&self.shards[shard_of(key)]).entry(key).or_insert_with(begin))
     }
 
-    /// Removes the pairs that are not alive, if more than twice `count`, the number of living pairs, are kept.
+    /// Removes the pairs for which `lives` returns `false`, but only if more than `2 * count +
+    /// SPARE` are stored; `count` is the number of living pairs.
     pub(crate) fn sweep(&mut self, count: usize, mut lives: impl FnMut(Key) -> bool) {
         if self.len() <= 2 * count + SPARE {
             return;

@@ -1,4 +1,4 @@
-//! Rays and points against one collider.
+//! Ray and point queries about one collider.
 
 use bevy_impinge::Glam;
 use impinge::math::{Point, Space};
@@ -12,7 +12,8 @@ impl<const D: usize> Collider<D>
 where
     f32: Dimension<D>,
 {
-    /// The time at which a ray meets the shape at a pose, and the normal there.
+    /// Returns the time at which a ray hits the shape at a pose, and the normal there; `None`
+    /// without a hit by `max_time`, or for a collider with an error.
     pub(crate) fn ray_hit(
         &self,
         pose: &Isometry<D>,
@@ -27,7 +28,9 @@ where
         Some((hit.toi, f32::vec(&pose.vector(&hit.normal))))
     }
 
-    /// The nearest point of the shape (or of its surface) at a pose, and whether the given one is inside.
+    /// Returns the nearest point of the shape at a pose, and whether the given point is inside. If
+    /// `solid`, a point inside is its own nearest point, otherwise the nearest point lies on the
+    /// surface. `None` for a collider with an error.
     pub(crate) fn nearest(
         &self,
         pose: &Isometry<D>,
@@ -42,7 +45,8 @@ where
         Some((nearest, found.is_inside))
     }
 
-    /// The point is in the shape at a pose, or on its surface.
+    /// Whether the point lies in the shape at a pose, or on its surface; `false` for a collider
+    /// with an error.
     pub(crate) fn holds(&self, pose: &Isometry<D>, point: Vec_<D>) -> bool {
         let Ok(shape) = self.shape_scaled() else { return false };
         let local = f32::pose(pose).inverse_point(&Point::from(f32::vector(point)));

@@ -1,4 +1,5 @@
-//! Scales shapes: exactly where the library can, else by the convex hull of points on the surface.
+//! Scales shapes: exactly if the library supports it, otherwise by the convex hull of scaled
+//! surface points.
 
 use bevy_impinge::{ColliderError, Glam};
 use impinge::math::{Point, Vector};
@@ -6,12 +7,12 @@ use impinge::narrow_phase::ContactPrediction;
 use impinge::query::ContactManifold;
 use impinge::shape::{ScaleError, Shape, ShapeHandle};
 
-/// Largest number of subdivisions; about 6000 points in 3D.
+/// The largest number of subdivisions: about 6000 points in 3D.
 const MAX_DETAIL: u32 = 64;
 
-/// Operations that differ by dimension; implemented for `f32` with `D` = 2 and `D` = 3.
+/// The operations that differ by dimension; implemented for `f32` with `D` = 2 and `D` = 3.
 pub trait Dimension<const D: usize>: Glam<D> {
-    /// The contacts of two placed shapes, without memory.
+    /// Computes the contacts of two placed shapes, without state.
     #[doc(hidden)]
     fn contacts(
         poses: &[Self::Isometry; 2],
@@ -19,13 +20,14 @@ pub trait Dimension<const D: usize>: Glam<D> {
         prediction: &ContactPrediction<f32>,
     ) -> Vec<ContactManifold<f32, D>>;
 
-    /// The convex hull of points.
+    /// Creates the convex hull of points.
     #[doc(hidden)]
     fn hull(points: &[Point<f32, D>]) -> Result<ShapeHandle<f32, D>, ColliderError>;
 }
 
-/// Scales a shape along its axes. A convex shape that the library cannot scale exactly, such as a capsule with oval
-/// ends, becomes the convex hull of scaled support points, which lies inside the true shape.
+/// Scales a shape along its axes. A convex shape that the library cannot scale exactly, such as a
+/// capsule whose ends would be elliptic, becomes the convex hull of scaled support points, which
+/// lies inside the exact shape.
 pub(crate) fn scaled<const D: usize>(
     shape: &ShapeHandle<f32, D>,
     scale: &Vector<f32, D>,
@@ -54,8 +56,9 @@ where
     f32::hull(&points)
 }
 
-/// Unit vectors towards the points of a grid on the surface of a square or cube, the axes included: 40 in 2D and 218 in
-/// 3D for `detail` 10. No trigonometry, so that every processor computes the same bits.
+/// Returns unit vectors through the points of a grid on the surface of a square or cube, including
+/// the axes: 40 in 2D and 218 in 3D for `detail` 10. Trigonometry is not used, so that the bits are
+/// the same on every machine.
 fn directions<const D: usize>(detail: u32) -> impl Iterator<Item = Vector<f32, D>> {
     let half = detail.clamp(1, MAX_DETAIL).div_ceil(2 * (D as u32 - 1));
     let width = 2 * half + 1;

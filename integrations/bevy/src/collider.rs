@@ -74,13 +74,14 @@ impl<const D: usize, W: WorldKey> Collider<D, W>
 where
     f32: Glam<D>,
 {
-    /// The reason why there is no shape, if the arguments of a constructor were invalid.
+    /// Returns the error if the arguments of a constructor were invalid; `None` if there is a
+    /// shape.
     #[must_use]
     pub fn error(&self) -> Option<ColliderError> {
         self.shape.as_ref().err().copied()
     }
 
-    /// The library's shape.
+    /// Returns the library's shape.
     ///
     /// # Errors
     /// The error of [`Self::error`].
@@ -88,7 +89,7 @@ where
         self.shape.as_ref().map_err(|error| *error)
     }
 
-    /// Returns the same shape for the world of another key.
+    /// Returns a collider with this shape for the world of another key.
     #[must_use]
     pub fn in_world<V: WorldKey>(self) -> Collider<D, V> {
         Collider { shape: self.shape, world: PhantomData }

@@ -41,15 +41,16 @@ where
     f32: Glam<D>,
 {
     pub(crate) world: CollisionWorld<f32, D, Entity>,
-    /// For look-ups, never iterated.
+    /// For each entity its object. Used for look-ups, never iterated.
     pub(crate) bodies: EntityHashMap<Body<D>>,
-    /// Entities with a [`ColliderProblem`](crate::ColliderProblem); for look-ups, never iterated.
+    /// For each entity with a [`ColliderProblem`](crate::ColliderProblem) its error. Used for
+    /// look-ups, never iterated.
     pub(crate) problems: EntityHashMap<ColliderError>,
     /// Entities to read again although none of their components has changed.
     pub(crate) dirty: Vec<Entity>,
     /// The pairs that ended in the last step, then those that started.
     pub(crate) events: Vec<PairEvent>,
-    /// The prediction of contacts, for each of two colliders.
+    /// The prediction of each collider; contacts of a pair exist up to twice this distance.
     pub(crate) prediction: f32,
     key: PhantomData<W>,
 }
@@ -112,7 +113,7 @@ where
         }
     }
 
-    /// [`Self::refilter`] for all entities.
+    /// Makes the next step call the [`PairFilter`](crate::PairFilter) again for all pairs.
     pub fn refilter_all(&mut self) {
         self.world.refilter_pairs();
     }

@@ -9,9 +9,10 @@ use crate::{DefaultWorld, WorldKey};
 
 /// Two entities started touching: their distance became zero.
 ///
-/// As a message it comes once per pair. As an event it is triggered twice, each time with the other entity as target,
-/// so that observers of both entities get it. In a step ended pairs come before started ones; in each part contacts
-/// come before sensors, both in the order in which the colliders were added.
+/// As a message it is written once per pair. As an event it is triggered twice, each time with one
+/// of the two entities as target, so that observers of both get it. In a step, ended pairs come
+/// before started ones. Within each of the two lists contacts come before sensors, both in the
+/// order in which the colliders were added.
 #[derive(Message, EntityEvent, Clone, Copy, Debug, PartialEq)]
 pub struct CollisionStarted<const D: usize, W: WorldKey = DefaultWorld> {
     /// The entity; in a message the one whose collider was added first.
@@ -24,8 +25,9 @@ pub struct CollisionStarted<const D: usize, W: WorldKey = DefaultWorld> {
     pub(crate) world: PhantomData<W>,
 }
 
-/// Two entities stopped touching: they separated, or one of them was removed, disabled, or is no longer allowed to
-/// collide with the other. Each [`CollisionStarted`] has exactly one. An entity of it may be despawned.
+/// Two entities stopped touching: they separated, or one of them was removed, disabled, or is no
+/// longer allowed to collide with the other. Each [`CollisionStarted`] is followed by exactly one.
+/// The entities may be despawned already.
 ///
 /// Messages and events have the same order as those of [`CollisionStarted`].
 #[derive(Message, EntityEvent, Clone, Copy, Debug, PartialEq)]
@@ -62,7 +64,7 @@ pub(crate) fn rank(entity: &Entity) -> (u32, u32) {
 }
 
 impl<const D: usize, W: WorldKey> CollidingEntities<D, W> {
-    /// The list for the world of another key, empty.
+    /// Returns an empty list for the world of another key.
     #[must_use]
     pub fn in_world<V: WorldKey>(self) -> CollidingEntities<D, V> {
         CollidingEntities { entities: Vec::new(), world: PhantomData }

@@ -89,8 +89,8 @@ pub(crate) fn settled<const D: usize>(mut scale: Vector<f32, D>) -> Vector<f32, 
     scale
 }
 
-/// Returns `old` if the new scale differs from it by rounding alone; otherwise a rotating parent would give its
-/// children a new shape in each step.
+/// Returns `old` if `new` differs from it only by rounding, otherwise `new`. Without this a
+/// rotating parent would give its children a new shape in each step.
 pub(crate) fn kept_scale<const D: usize>(
     old: Vector<f32, D>,
     new: Vector<f32, D>,

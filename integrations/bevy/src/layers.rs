@@ -33,7 +33,7 @@ impl CollisionLayers {
     /// Creates layers: a member of the first mask that interacts with members of the second.
     ///
     /// # Panics
-    /// On bit 30 or 31; [`Self::try_new`] returns it.
+    /// If bit 30 or 31 of a mask is set; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(memberships: u32, filters: u32) -> Self {
@@ -46,7 +46,7 @@ impl CollisionLayers {
     /// Creates layers: a member of the first mask that interacts with members of the second.
     ///
     /// # Errors
-    /// On bit 30 or 31 of a mask.
+    /// If bit 30 or 31 of a mask is set.
     pub fn try_new(memberships: u32, filters: u32) -> Result<Self, GroupError> {
         let groups = CollisionGroups::new().try_with_membership_by_mask(memberships)?;
         groups.try_with_whitelist_by_mask(filters)?;

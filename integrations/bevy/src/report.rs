@@ -45,8 +45,8 @@ impl<const D: usize, W: WorldKey> Collisions<D, W>
 where
     f32: Glam<D>,
 {
-    /// Lists the pairs that ended, then those that started: a pair that is in both changed its
-    /// kind.
+    /// Lists the pairs that ended, then the pairs that started. A pair that changes between contact
+    /// and proximity is in both lists.
     fn read_events(&mut self) {
         let mut events = core::mem::take(&mut self.events);
         events.clear();
@@ -81,7 +81,8 @@ where
         Some(PairEvent { is_start, entity, other, is_sensor })
     }
 
-    /// Returns the entity of an object, which may be removed if an event of the last step names it.
+    /// Returns the entity of an object. The object may be removed already if an event of the last
+    /// step names it.
     fn entity_of(&self, handle: CollisionObjectHandle) -> Option<Entity> {
         let object = self.world.collision_object(handle);
         object.or_else(|| self.world.removed_object(handle)).map(|object| *object.data())

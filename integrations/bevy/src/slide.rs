@@ -36,21 +36,22 @@ where
 {
     /// The possible motion: add it to the translation.
     pub motion: Vec_<D>,
-    /// The unused rest of the motion, without its part into the obstacles hit last; zero if all was used. Divided by
-    /// the time step and added to the speed of `motion`, it is the velocity for the next step.
+    /// The part of the motion that was not used, without its component into the obstacles hit last;
+    /// zero if all was used. The velocity for the next step is the sum of `motion` and `rest`,
+    /// divided by the time step.
     pub rest: Vec_<D>,
-    /// The hit obstacles in order, without those that the motion only grazed; their fractions are of the motion that
-    /// remained before the hit.
+    /// The hits in order, without those at which the motion is almost along the obstacle. The
+    /// fraction of a hit is that of the motion that remained before it.
     pub hits: Vec<ShapeHit<D>>,
 }
 
-/// The largest part of its length by which a motion into a wall counts as along the wall: the rounding error of a
-/// distance of a skin.
+/// A motion counts as along a wall if its component into the wall is at most this fraction of its
+/// length: the rounding error of a distance of a skin.
 const GRAZE: f32 = 1e-3;
-/// The part of its length by which a motion along a wall is lifted off it, so that rounding does not lead it into the
-/// wall: the next cast would stop at its start.
+/// A motion along a wall gets a component away from the wall of this fraction of its length.
+/// Otherwise rounding could lead it into the wall, and the next cast would stop at its start.
 const LIFT: f32 = 1e-5;
-/// The largest number of grazed walls.
+/// The largest number of hits at which the motion is almost along the wall.
 const MAX_GRAZES: usize = 4;
 
 impl<const D: usize, W: WorldKey> Collisions<D, W>
@@ -108,7 +109,7 @@ where
                 break;
             };
             done += rest * hit.fraction;
-            // Walls that are left behind no longer count.
+            // After a motion of positive length, earlier walls do not restrict the motion any more.
             if hit.fraction > 0.0 {
                 walls.clear();
             }
@@ -133,14 +134,15 @@ where
     f32::pose_of(&isometry)
 }
 
-/// Returns a motion along walls, lifted off them by [`LIFT`].
+/// Adds to a motion along walls the component [`LIFT`] away from each of them.
 fn off<const D: usize>(motion: Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
     let lift = LIFT * motion.norm();
     walls.iter().fold(motion, |motion, wall| motion + wall * lift)
 }
 
-/// Returns the part of a motion that leads into none of the walls, whose normals point at the character: along the last
-/// wall, else along the edge of the last and another wall, else zero.
+/// Returns the largest part of a motion that leads into none of the walls, whose normals point at
+/// the character. It is the projection on the last wall, else on the edge of the last and another
+/// wall, else zero.
 fn along<const D: usize>(motion: &Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
     let zero = Vector::zeros();
     let Some((last, others)) = walls.split_last() else { return *motion };

@@ -37,7 +37,7 @@ pub(super) struct Nearest {
 #[derive(Debug)]
 struct Kept {
     nearest: Nearest,
-    /// The number of the change.
+    /// The number of changes at which the pair was found.
     then: u64,
 }
 
@@ -48,9 +48,9 @@ pub(super) struct Crowd {
     /// The last handle of each index.
     handles: Vec<Handle>,
     pub(super) changes: Changes,
-    /// The number of the last change before the last update of the world.
+    /// The number of changes at the last update of the world.
     updated: u64,
-    /// The number of the last change before the last query.
+    /// The number of changes at the last query.
     asked: u64,
     /// The pairs that touched at the last update.
     touching: BTreeSet<Pair>,

@@ -11,11 +11,11 @@ use super::crowd::{Crowd, Nearest, Object, Pair, between, depth, index_of, touch
 pub(super) struct Meeting {
     /// The number of the other manager.
     pub(super) other: u64,
-    /// The numbers of the last changes of both.
+    /// The number of changes of each crowd at which `touching` was computed.
     then: [u64; 2],
     /// The pairs that touched after these changes.
     pub(super) touching: BTreeSet<Pair>,
-    /// The nearest pair, and the numbers of the changes.
+    /// The nearest pair, and the number of changes of each crowd at which it was found.
     nearest: Option<(Nearest, [u64; 2])>,
 }
 

@@ -24,16 +24,16 @@ use crate::threads::settle;
 
 const KIND: Kind = Kind { is_double: true, is_spatial: true };
 
-/// Two indices and the distance of the objects, negative where they overlap.
+/// The indices of two objects and their distance, negative if they overlap.
 type Found = (u32, u32, f64);
 
 /// Objects with shapes and transforms, by index; an index is reused after its object is removed.
 #[pyclass(module = "impinge._native")]
 pub(crate) struct Manager {
     crowd: Crowd,
-    /// A unique number.
+    /// The unique number of this manager.
     number: u64,
-    /// The cached results about the last other manager.
+    /// The cached results about the other manager of the last query.
     meeting: Option<Meeting>,
 }
 

@@ -83,14 +83,14 @@ struct Measure<'a, N: Stage<D>, const D: usize> {
     clearance: N,
 }
 
-/// The numbers of touching and near pairs, and the deepest of them in order.
+/// The counts of touching and near pairs, and the deepest of them in order.
 struct Found {
     touching: usize,
     near: usize,
     deepest: Vec<Near>,
 }
 
-/// A pair that touches or is near: its sort key, and the numbers of its objects.
+/// A pair that touches or is near: its sort key, and the indices of its objects.
 #[derive(Clone, Copy)]
 struct Near {
     /// The signed distance; negative infinity for an unbounded overlap.
@@ -100,7 +100,8 @@ struct Near {
 }
 
 impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
-    /// Finds all pairs, and keeps the `most` deepest. With `all` it ends when there are more.
+    /// Finds all pairs, and keeps the `most` deepest. With `all`, the search ends when there are
+    /// more than `most`.
     fn found(&self, most: usize, all: bool) -> Found {
         let found = RefCell::new(Found { touching: 0, near: 0, deepest: Vec::new() });
         let progress = RefCell::new(Progress::new(self.boxed.len(), "measuring pairs"));
@@ -140,7 +141,7 @@ impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
         by_distance.then_with(|| names(one).cmp(&names(other)))
     }
 
-    /// Returns a pair, if it touches or is near.
+    /// Returns a pair of objects if it touches or is near; `None` if the objects are farther apart.
     fn near(&self, objects: [u32; 2]) -> Option<Near> {
         let [object1, object2] = objects.map(|object| self.boxed.object(object));
         // Proximity decides touching: it agrees with a world, while the signed distance is rounded.

@@ -68,8 +68,8 @@ impl Task for CompareHashes<'_> {
         let failed = in_file(&log.path);
         let registry = Registry::<N, D, Label>::new();
         let found = validate(&log.bytes, &registry).map_err(&failed)?;
-        // A second replay, for the number of steps and for the world in which an object has its name: validation
-        // ends at the end of the recording.
+        // A second replay counts the steps, and has the world in which a differing object has its
+        // name: validation ends at the end of the recording.
         let replay = Replay::<N, D, Label>::open(log.bytes.as_slice(), &registry);
         let mut replay = replay.map_err(&failed)?;
         let steps = replay.len();

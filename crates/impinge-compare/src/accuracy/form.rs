@@ -40,8 +40,8 @@ impl Scalar {
         }
     }
 
-    /// Returns a vector of the scalar whose length is 1 to within a hundredth of its rounding
-    /// error: the first such vector that `draw` returns, rounded.
+    /// Returns the first rounded vector of `draw` whose length is 1 to within a hundredth of the
+    /// scalar's rounding error.
     pub fn unit<const D: usize>(self, mut draw: impl FnMut() -> [f64; D]) -> [f64; D] {
         const TRIES: usize = 100_000;
         for _ in 0..TRIES {
@@ -140,7 +140,7 @@ impl Kind {
     }
 }
 
-/// Two points.
+/// Returns two points that are not near each other.
 fn apart<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 2] {
     loop {
         let limit = random.magnitude(0.1, 4);
@@ -165,7 +165,7 @@ fn wide<const D: usize>(random: &mut Random, scalar: Scalar) -> [[f64; D]; 3] {
     }
 }
 
-/// Returns corners on an ellipsoid: none is inside the hull of the others.
+/// Returns points on an ellipsoid: each is a corner of their hull.
 fn around<const D: usize>(random: &mut Random, scalar: Scalar) -> Vec<[f64; D]> {
     let axes: [f64; D] = std::array::from_fn(|_| random.magnitude(0.2, 3));
     let count = if D == 2 { 3 + random.below(6) } else { 4 + random.below(9) };
@@ -208,7 +208,7 @@ pub enum Form<const D: usize> {
     Ellipsoid {
         half_axes: [f64; D],
     },
-    /// A ball at minus the half height along the second axis, and one at plus the half height.
+    /// The hull of two balls, with centres at minus and plus the half height along the second axis.
     Tapered {
         half_height: f64,
         radii: [f64; 2],
@@ -271,20 +271,20 @@ pub struct Sample<const D: usize> {
 /// The result of a contender for a sample.
 #[derive(Clone, Copy, Debug)]
 pub enum Outcome<const D: usize> {
-    /// It has no algorithm for the pair.
+    /// The contender has no algorithm for the pair.
     Unsupported,
-    /// It has an algorithm, but finds no contact at any prediction.
+    /// The contender has an algorithm, but finds no contact at any prediction.
     Nothing {
-        /// Its distance.
+        /// The distance that the contender returns.
         distance: f64,
     },
-    /// A distance, and a contact.
+    /// The contender finds a distance and a contact.
     Found {
-        /// Not negative.
+        /// The distance, zero or more.
         distance: f64,
         /// The signed distance of the contact.
         signed: f64,
-        /// From the first solid to the second.
+        /// The normal, from the first solid to the second.
         normal: [f64; D],
     },
 }

@@ -21,23 +21,23 @@ const WRONG_SIDE: f64 = 64.0;
 pub struct Errors {
     /// The number of samples.
     pub asked: usize,
-    /// There is no algorithm for the pair.
+    /// The number of samples for which the contender has no algorithm.
     pub unsupported: usize,
-    /// No contact was found, although the distance is less than the prediction; or the contender
-    /// panicked.
+    /// The number of samples without a contact although the distance is less than the prediction,
+    /// or in which the contender panicked.
     pub missing: usize,
-    /// The result is apart where the truth is overlap, or the reverse, by more than rounding.
+    /// The number of samples reported as apart that overlap, or the reverse, by more than rounding.
     pub wrong_sign: usize,
-    /// Normals in other directions that separate as well.
+    /// The number of normals that differ from the best one but separate as well.
     pub ties: usize,
-    /// The error of the distance where the solids are apart, else of the depth; in units of
+    /// The errors of the distance if the solids are apart, otherwise of the depth, in units of
     /// rounding of the size of the scene.
     pub units: Vec<f64>,
-    /// The error relative to the distance or depth.
+    /// The errors relative to the distance or depth.
     pub relative: Vec<f64>,
-    /// The angle between the normals, in radians, without ties.
+    /// The angles between the normals and the best ones, in radians, without ties.
     pub angle: Vec<f64>,
-    /// The difference between the largest separation and that along the normal, in units of
+    /// The differences between the largest separation and that along the normal, in units of
     /// rounding of the size of the scene.
     pub loss: Vec<f64>,
 }

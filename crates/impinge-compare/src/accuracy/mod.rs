@@ -34,7 +34,7 @@ pub struct Row {
     scalar: Scalar,
     kinds: [Kind; 2],
     regime: Regime,
-    /// Samples without a proved reference.
+    /// The number of samples for which the reference could not prove its result.
     dropped: usize,
     errors: [Errors; 2],
 }

@@ -10,15 +10,15 @@ use super::form::{Form, Kind, Placement, Sample, Scalar};
 /// The distance of the solids of a sample; `R` is the sum of their bounding radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Regime {
-    /// At 1 to 8 R.
+    /// The solids are 1 to 8 R apart.
     Far,
-    /// At 1e-4 to 1e-1 R.
+    /// The solids are 1e-4 to 1e-1 R apart.
     Near,
-    /// Zero up to rounding of the position.
+    /// The distance is zero up to rounding of the position.
     Touching,
-    /// Overlapping by 1e-4 to 1e-1 R.
+    /// The solids overlap by 1e-4 to 1e-1 R.
     Shallow,
-    /// One approximately at the centre of the other.
+    /// One solid is approximately at the centre of the other.
     Deep,
 }
 
@@ -79,11 +79,11 @@ pub struct Dimension<const D: usize> {
 /// The kind of a rotation.
 #[derive(Clone, Copy, Debug)]
 pub enum Turn {
-    /// Any.
+    /// A rotation by any angle.
     Free,
-    /// One that takes axes to axes.
+    /// A rotation that maps axes to axes.
     Aligned,
-    /// By less than 1e-1, down to 1e-6.
+    /// A rotation by less than 1e-1 radians, down to 1e-6.
     Slight,
 }
 
@@ -98,7 +98,7 @@ pub struct Known<const D: usize> {
 /// The largest number of draws of a pair until its regime holds.
 const TRIES: usize = 12;
 
-/// Draws a pair of these kinds in a regime; `None` if there seems to be none, as for the depth of
+/// Draws a pair of these kinds in a regime; `None` if no draw is in the regime, as for the depth of
 /// two segments in 3D.
 pub fn draw<const D: usize>(
     dimension: Dimension<D>,

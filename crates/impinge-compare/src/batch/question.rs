@@ -24,9 +24,9 @@ const VELOCITY: [f64; 3] = [-1.0, -0.5, 0.25];
 pub struct Question {
     /// The name.
     pub name: &'static str,
-    /// In one call.
+    /// Runs the query for all pairs in one call.
     pub in_batch: fn(&PairBatch<'_, f64>, &mut Vec<f64>),
-    /// Pair by pair.
+    /// Runs the query pair by pair.
     pub one_by_one: fn(&Batch, &mut Vec<f64>),
 }
 

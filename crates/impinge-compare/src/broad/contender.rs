@@ -27,7 +27,7 @@ pub trait Contender<const D: usize> {
 /// The contenders of a case, the first of which is impinge.
 pub type Contenders<const D: usize> = Vec<Box<dyn Contender<D>>>;
 
-/// Combines two numbers to one, in either order.
+/// Combines two indices to one key, which does not depend on their order.
 pub fn key(a: u32, b: u32) -> u64 {
     u64::from(a.min(b)) << 32 | u64::from(a.max(b))
 }
@@ -112,11 +112,12 @@ pub fn race<const D: usize>(
     rows.collect()
 }
 
-/// Counts the wrong results of each contender, in the worst of the compared steps.
+/// Counts the wrong results of each contender, and keeps the maximum over the compared steps.
 ///
-/// Every two boxes that overlap must be a pair: one that a contender lacks and another has counts. Boxes
-/// that are near may be a pair, depending on when they were enlarged last. A fat AABB extends at most two
-/// margins beyond the box within, so pairs with a gap of more than four margins are stale, and count too.
+/// Every two boxes that overlap must be a pair: a pair that one contender lacks and another has is
+/// counted. Boxes that are near may be a pair, depending on when they were enlarged last. A fat
+/// AABB extends at most two margins beyond its box. So a pair with a gap of more than four margins
+/// is stale, and is counted too.
 fn compare<const D: usize>(cells: &[Cell<D>], contenders: &mut Contenders<D>, lanes: &mut [Lane]) {
     let gap = |key: &u64| cells[(key >> 32) as usize].gap(&cells[(key & 0xffff_ffff) as usize]);
     let mut overlapping = Vec::new();

@@ -1,9 +1,10 @@
 //! The suite of broad phases: every contender gets the new boxes of moved objects, updates, and lists the
 //! changes; this is timed, in milliseconds per step. All contenders with fat AABBs use a margin of 0.05.
 //!
-//! The number of results is that of the pairs, most of which are near rather than overlapping. It depends
-//! on the rules by which boxes are enlarged. `compare` defines which results count as different. Contenders
-//! without events do less than the others: they do not report which pairs started and stopped.
+//! Results are pairs, most of which are near rather than overlapping: their number depends on the
+//! rules by which boxes are enlarged. `compare` defines which results count as different.
+//! Contenders without events do less work than the others, since they do not report which pairs
+//! started and stopped.
 
 mod contender;
 mod obvhs_tree;

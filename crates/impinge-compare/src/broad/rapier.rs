@@ -1,8 +1,9 @@
 //! The broad phase of rapier, used as in its `CollisionPipeline`: colliders without bodies are moved,
 //! the broad phase gets the list of these, and returns events.
 //!
-//! Only the pipeline can clear the flags of changes. This is worked around in favour of rapier: the
-//! colliders are copies of one whose flags are clear, and from then on only their positions change.
+//! Only a pipeline can clear the change flags of a collider, and running one would cost rapier
+//! time. Therefore all colliders are copies of a template whose flags a pipeline has cleared. Later
+//! steps change their translations alone.
 
 use super::rapier::prelude::*;
 
@@ -20,7 +21,7 @@ pub struct Rapier {
     handles: Vec<ColliderHandle>,
     modified: Vec<ColliderHandle>,
     events: Vec<BroadPhasePairEvent>,
-    /// By index of the handle, which is part of the handle.
+    /// The index of the box for each collider index (the first part of a handle).
     numbers: Vec<u32>,
     held: Held,
     /// Whether boxes are passed directly, without a look-up of colliders.
@@ -67,7 +68,7 @@ impl Rapier {
             self.numbers.resize(index + 1, u32::MAX);
         }
         self.numbers[index] = n;
-        // Insertion sets all flags.
+        // Insertion sets all change flags; the copy has none.
         self.colliders[handle] = collider;
         self.colliders.take_modified();
         // New boxes are not passed directly: the update would take the box for that of the collider
@@ -101,8 +102,8 @@ impl Rapier {
     }
 }
 
-/// Returns a collider whose flags of changes a pipeline has cleared; fixed ones would ignore each
-/// other.
+/// Returns a collider whose change flags a pipeline has cleared. It accepts collisions of fixed
+/// colliders, which by default have none with each other.
 fn template() -> Collider {
     let mut colliders = ColliderSet::new();
     let ball = ColliderBuilder::ball(1.0).active_collision_types(ActiveCollisionTypes::all());

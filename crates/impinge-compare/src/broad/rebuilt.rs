@@ -10,7 +10,7 @@ use rstar::{AABB, RTree, RTreeObject};
 use super::contender::{Contender, key};
 use super::swarm::{Cell, Change};
 
-/// A box with its number.
+/// A box with its index.
 #[derive(Clone, Copy, Debug)]
 pub struct Leaf<const D: usize> {
     number: u32,
@@ -18,13 +18,13 @@ pub struct Leaf<const D: usize> {
     cell: Cell<D>,
 }
 
-/// Returns the boxes with their numbers.
+/// Returns the boxes with their indices.
 pub fn leaves<const D: usize>(cells: &[Cell<D>]) -> Vec<Leaf<D>> {
     (0..).zip(cells).map(|(number, cell)| Leaf { number, node: 0, cell: *cell }).collect()
 }
 
 impl<const D: usize> Leaf<D> {
-    /// The number of the box.
+    /// Returns the index of the box.
     pub fn number(&self) -> u32 {
         self.number
     }
@@ -63,12 +63,12 @@ pub struct Rebuilt<const D: usize> {
 }
 
 impl<const D: usize> Rebuilt<D> {
-    /// rstar.
+    /// Creates the contender with a tree of rstar.
     pub fn rstar(cells: &[Cell<D>]) -> Self {
         Self { name: "rstar (rebuilt)", find: by_rstar, leaves: leaves(cells), found: Vec::new() }
     }
 
-    /// bvh.
+    /// Creates the contender with a tree of bvh.
     pub fn bvh(cells: &[Cell<D>]) -> Self {
         Self { name: "bvh (rebuilt)", find: by_bvh, leaves: leaves(cells), found: Vec::new() }
     }

@@ -45,11 +45,12 @@ pub fn is_borderline<const D: usize>(a: &Cell<D>, b: &Cell<D>, distance: f64) ->
 /// The sizes and positions of the boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Half extents 0.35 to 0.65, about three neighbours each.
+    /// Boxes of half extents 0.35 to 0.65, with about three neighbours each.
     Alike,
-    /// These, times 1 + 99·X¹⁰ (bepuphysics' benchmark), about three neighbours each.
+    /// Boxes of half extents 0.35 to 0.65 times 1 + 99·X¹⁰ for a random X (bepuphysics' benchmark),
+    /// with about three neighbours each.
     Mixed,
-    /// Half extents 0.55 on a grid of spacing 1; each stays within 0.1 of its grid point.
+    /// Boxes of half extents 0.55 on a grid of spacing 1. Each stays within 0.1 of its grid point.
     Pile,
 }
 
@@ -64,7 +65,7 @@ pub struct Plan {
     pub stride: usize,
     /// The mean distance of a moving box in a step.
     pub pace: f64,
-    /// Whether boxes that are close in space have close numbers.
+    /// Whether boxes that are close in space have close indices.
     pub is_sorted: bool,
     /// The number of boxes that are removed in a step, each replaced by a new one elsewhere.
     pub replaced: usize,
@@ -75,7 +76,7 @@ pub struct Plan {
 pub struct Change<const D: usize> {
     /// The boxes that moved.
     pub moved: Vec<(u32, Cell<D>)>,
-    /// The removed boxes, with the new ones that take their numbers.
+    /// The removed boxes, with the new ones that take their indices.
     pub replaced: Vec<(u32, Cell<D>)>,
 }
 

@@ -42,7 +42,7 @@ pub struct Coal {
 }
 
 impl Coal {
-    /// `None` if it lacks one of the shapes.
+    /// Creates the contender; `None` if Coal lacks one of the shapes.
     pub fn new(pair: &Pair<3>, poses: &Poses<3>) -> Option<Self> {
         let [first, second] = pair.forms().map(solid);
         let all = |set: &Vec<Placement<3>>| set.iter().map(pose).collect::<Vec<_>>();

@@ -37,9 +37,10 @@ pub struct Terrain {
 pub struct Solid<const D: usize> {
     pub name: &'static str,
     pub form: Form<D>,
-    /// Directions for laying it flat: outward normals of faces, or perpendicular to an axis.
+    /// Directions by which the solid can be laid flat: outward normals of faces, or perpendicular
+    /// to an axis.
     pub flats: Vec<[f64; D]>,
-    /// A version of size about 1, for a ground that is paired with another ground.
+    /// A version of size about 1, for pairs of two grounds; `None` for other solids.
     pub patch: Option<Form<D>>,
 }
 
@@ -48,7 +49,8 @@ impl<const D: usize> Solid<D> {
         Self { name, form, flats, patch: None }
     }
 
-    /// Whether it is wider than high: it is not moved, and many solids are paired with the same one.
+    /// Whether the solid is a ground, wider than high: it is not moved, and many solids are paired
+    /// with the same one.
     pub fn is_ground(&self) -> bool {
         matches!(self.form, Form::HalfSpace) || self.patch.is_some()
     }

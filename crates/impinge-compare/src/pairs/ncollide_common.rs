@@ -77,7 +77,7 @@ fn fresh(shape1: &dyn Shape<f32>, shape2: &dyn Shape<f32>) -> Option<Kept> {
 }
 
 impl Ncollide {
-    /// `None` if it lacks one of the shapes.
+    /// Creates the contender; `None` if ncollide lacks one of the shapes.
     pub fn new(pair: &Pair<DIM>, poses: &Poses<DIM>) -> Option<Self> {
         let [first, second] = pair.forms().map(shape);
         let all = |set: &Vec<Placement<DIM>>| set.iter().map(isometry).collect::<Vec<_>>();

@@ -56,7 +56,7 @@ fn shape(form: &Form<DIM>) -> Option<SharedShape> {
 }
 
 impl Parry {
-    /// `None` if it lacks one of the shapes.
+    /// Creates the contender; `None` if parry lacks one of the shapes.
     pub fn new(pair: &Pair<DIM>, poses: &Poses<DIM>) -> Option<Self> {
         let [first, second] = pair.forms().map(shape);
         let all = |set: &Vec<Placement<DIM>>| set.iter().map(pose).collect::<Vec<_>>();

@@ -67,7 +67,7 @@ pub struct Poses<const D: usize> {
     pub first: Vec<Placement<D>>,
     /// Two unrelated sets in the regime.
     pub second: [Vec<Placement<D>>; 2],
-    /// The first of these sets, slightly moved, differently in each.
+    /// Copies of the first set, each slightly moved in another way.
     pub moved: Vec<Vec<Placement<D>>>,
     /// Velocities of the second solids of the first set: towards the first, slightly to the side.
     pub velocities: Vec<[f64; D]>,

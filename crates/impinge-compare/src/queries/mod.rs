@@ -1,12 +1,12 @@
-//! The suite of queries: rays, moving solids, points and boxes against many objects, and rays against one
-//! mesh.
+//! The suite of queries: rays, moving solids, points and boxes against many objects, and rays
+//! against one mesh.
 //!
-//! Two scenes, each in 2D and 3D: a dense one with short rays, and one with a fifth of the density and
-//! long rays. The queries of the first kinds are about solids, and run on whole worlds, or on a tree with
-//! the solids of parry; the others are about boxes only, and run on trees. Every contender has the same
-//! numbers, and its own copy of the queries before the clock runs. Rivals use their best build (`medium`
-//! of `obvhs`) and, where recommended, the primitives in the order of the tree. All return the normal
-//! where there is one.
+//! There are two scenes, each in 2D and 3D: a dense one with short rays, and one with a fifth of
+//! the density and unbounded rays. Queries about solids run on a whole world, or on a tree of boxes
+//! with parry's solids at its leaves. Queries about boxes run on trees of boxes alone. All
+//! contenders get the same queries, converted to their own types before the clock starts. Rivals
+//! use their best build (`medium` of `obvhs`) and, where their authors recommend it, primitives
+//! sorted in the order of the tree. Where a result has a normal, all compute it.
 
 mod mesh;
 mod ncollide;

@@ -49,7 +49,8 @@ pub fn ray((from, to): &([f32; 3], [f32; 3]), reach: f32) -> Ray {
     Ray::new(Vec3A::from(*from), Vec3A::from(*to), 0.0, reach)
 }
 
-/// Returns the hit, by the order of the primitives.
+/// Converts a hit: returns the index of the primitive, by `order`, and the time; `None` without a
+/// hit.
 pub fn answer(hit: &RayHit, is_hit: bool, order: &[u32]) -> Option<(u32, f32)> {
     is_hit.then(|| (order[hit.primitive_id as usize], hit.t))
 }

@@ -3,14 +3,15 @@
 use crate::measure::{Times, in_turn};
 use crate::table::Row;
 
-/// One result: at most one for a query for the first or the nearest, any number for others.
+/// A result of one query. A query for the first hit or the nearest object has at most one; other
+/// queries have any number.
 #[derive(Clone, Copy, Debug)]
 pub struct Answer {
     /// The index of the query.
     pub query: u32,
-    /// The object or the triangle.
+    /// The index of the object or, for rays against a mesh, of the triangle.
     pub id: u32,
-    /// The time or the distance; zero if there is none.
+    /// The time of the hit, or the distance; zero for queries whose results have neither.
     pub key: f32,
 }
 
@@ -34,7 +35,8 @@ impl<'a> Contender<'a> {
         Self { name, ask: Box::new(ask) }
     }
 
-    /// Creates a contender for the best result of each query: its number and its key.
+    /// Creates a contender for the best result of each query. `ask` returns the index of the
+    /// object, and its time or distance; `None` if nothing is found.
     pub fn best<Q>(
         name: &'static str,
         queries: Vec<Q>,
@@ -52,7 +54,8 @@ impl<'a> Contender<'a> {
         })
     }
 
-    /// Creates a contender for all results of each query; it calls back with their numbers.
+    /// Creates a contender for all results of each query. `ask` calls back with the index of each
+    /// object found.
     pub fn all<Q>(
         name: &'static str,
         queries: Vec<Q>,

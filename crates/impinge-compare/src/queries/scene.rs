@@ -17,7 +17,7 @@ pub struct Scene<const D: usize> {
     pub objects: Vec<(SceneShape<D>, Placement<D>)>,
     /// The boxes of the objects, which are the only content of the trees.
     pub boxes: Vec<Corners<D>>,
-    /// An edge of the cube.
+    /// The edge of the cube.
     edge: f64,
     /// The length of rays and shape casts.
     pub reach: f32,
@@ -32,13 +32,14 @@ pub type Ray<const D: usize> = ([f32; D], [f32; D]);
 /// A solid with its placement.
 pub type Solid<const D: usize> = (SceneShape<D>, Placement<D>);
 
-/// The queries of one case; those of the first kinds are about solids, the others about boxes only.
+/// The queries of one case. The kinds from `Rays` to `Overlapping` are about solids, the others
+/// about boxes only.
 #[derive(Clone, Debug)]
 pub enum Questions<const D: usize> {
-    /// The first solid that a ray hits, and the time; no ray starts in the box of one.
+    /// The first solid that a ray hits, and the time. No ray starts in the box of a solid.
     Rays(Vec<Ray<D>>, f32),
-    /// The first solid that a moving one hits, and the time; it starts apart from all boxes, and
-    /// moves along the unit vector.
+    /// The first solid that a moving solid hits, and the time. The moving solid starts apart from
+    /// all boxes and moves along the unit vector.
     Casts(Vec<(Solid<D>, [f32; D])>, f32),
     /// The solid nearest to a point, and its distance; no point is in a box.
     Nearest(Vec<[f32; D]>),
@@ -58,7 +59,7 @@ pub enum Questions<const D: usize> {
 
 /// A library that supports some kinds of queries, in one way or several.
 pub trait Library<const D: usize> {
-    /// Returns the contenders; the queries are converted already.
+    /// Returns the contenders for a kind of queries, which they convert before they are timed.
     fn contenders<'a>(&'a self, questions: &Questions<D>) -> Vec<super::race::Contender<'a>>;
 }
 
@@ -73,7 +74,7 @@ impl<const D: usize> Scene<D> {
         Self { name, objects, boxes, edge, reach }
     }
 
-    /// Returns every kind of queries, `count` of each; a fifth of that for expensive ones.
+    /// Returns `count` queries of every kind; of expensive kinds a fifth of `count`.
     pub fn questions(&self, count: usize) -> Vec<(&'static str, Questions<D>)>
     where
         f32: Space<D>,

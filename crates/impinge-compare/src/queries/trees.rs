@@ -19,7 +19,7 @@ pub struct BvhTree<const D: usize> {
     tree: Bvh<f32, D>,
 }
 
-/// A box with its number.
+/// A box with its index.
 #[derive(Clone, Debug)]
 struct Leaf<const D: usize> {
     id: u32,

@@ -35,7 +35,7 @@ fn lines(measured: &[Measured]) -> String {
     lines
 }
 
-/// Medians over boxes by contender.
+/// For each contender, pairs of a number of boxes and the median time.
 type Curves<'a> = BTreeMap<&'a str, Vec<(f64, f64)>>;
 
 /// One chart for each subject, side by side.

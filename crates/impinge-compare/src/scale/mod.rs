@@ -52,7 +52,7 @@ fn growth(subject: &str, boxes: usize, row: &Row) -> Measured {
     Measured { subject, contender, boxes, median, minimum }
 }
 
-/// Few steps for many boxes, many for few.
+/// Returns the number of steps: few for many boxes, many for few boxes.
 fn steps(count: usize, arguments: &Arguments) -> u32 {
     let most = u32::try_from(1_000_000 / count).expect("it is less than a million");
     arguments.steps.min(most.max(6))
@@ -148,7 +148,7 @@ fn race_worlds(case: &str, count: usize, mut lanes: Vec<Lane>, steps: u32) -> Ve
     lanes.into_iter().map(row).collect()
 }
 
-/// Counts the touching pairs of each that differ from the first.
+/// Returns, for each world, the number of touching pairs that differ from those of the first world.
 fn compare(cells: &[Cell<3>], lanes: &mut [Lane]) {
     let mut first = Vec::new();
     for (n, lane) in lanes.iter_mut().enumerate() {

@@ -13,11 +13,12 @@ use parry::shape::SharedShape;
 pub struct Parry {
     shapes: Vec<SharedShape>,
     pairs: BTreeMap<[usize; 2], Pair>,
-    /// The number of the newest contact.
+    /// The id of the newest contact.
     newest: u64,
 }
 
-/// The state that parry keeps for a pair from step to step. The data of a point is its number, or zero if it is new.
+/// The state that parry keeps for a pair from step to step. The data of a point is its id, or zero
+/// if it is new.
 #[derive(Default)]
 struct Pair {
     manifolds: Vec<ContactManifold<(), u64>>,
@@ -77,7 +78,7 @@ impl ContactSource<f32, DIM> for Parry {
     }
 }
 
-/// Reads the points of a manifold within the prediction, as rapier does; new ones get numbers.
+/// Reads the points of a manifold within the prediction, as rapier does; new points get ids.
 fn read(
     manifold: &mut ContactManifold<(), u64>,
     bodies: [usize; 2],

@@ -28,7 +28,7 @@ where
     world: CollisionWorld<f32, D, usize>,
     isometry: fn(&Placement<D>) -> Isometry<D>,
     parts: Vec<Part<D>>,
-    /// By number; `None` for objects that do not exist.
+    /// For each index of an object in the scene its handle; `None` for an object that is not alive.
     handles: Vec<Option<CollisionObjectHandle>>,
     gone: Vec<CollisionObjectHandle>,
     born: Vec<(usize, Isometry<D>)>,

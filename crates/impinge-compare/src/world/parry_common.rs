@@ -10,7 +10,7 @@ use parry::query::{
 use parry::shape::SharedShape;
 use parry::utils::hashmap::HashMap;
 
-/// An object, whose number is its leaf in the tree.
+/// An object, whose index is that of its leaf in the tree.
 struct Object {
     shape: SharedShape,
     pose: Pose,

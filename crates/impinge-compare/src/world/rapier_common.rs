@@ -1,6 +1,6 @@
 // Common code of both crates; included by `rapier.rs`.
 
-/// Colliders without bodies, numbered in the order of their addition, and their pipeline.
+/// Colliders without bodies, with indices in the order of their addition, and their pipeline.
 pub struct Colliders {
     islands: IslandManager,
     broad_phase: BroadPhaseBvh,
@@ -32,12 +32,12 @@ impl Colliders {
         self.put(number, numbered(collider, number));
     }
 
-    /// Reserves the number of a collider that does not exist yet.
+    /// Reserves the index of a collider that does not exist yet.
     pub fn skip(&mut self) {
         self.handles.push(ColliderHandle::invalid());
     }
 
-    /// Inserts a collider that was [`numbered`], under its number.
+    /// Inserts a collider of [`numbered`] at its index.
     pub fn put(&mut self, number: usize, collider: Collider) {
         self.handles[number] = self.colliders.insert(collider);
     }
@@ -79,7 +79,7 @@ impl Colliders {
         reading
     }
 
-    /// Returns the numbers of touching colliders, the smaller first, in order.
+    /// Returns the pairs of indices of touching colliders, the smaller index first, sorted.
     pub fn touching(&self) -> Vec<(usize, usize)> {
         let near = |pair: &&ContactPair| {
             let mut points = pair.manifolds().iter().flat_map(|manifold| &manifold.points);
@@ -105,7 +105,7 @@ impl Colliders {
     }
 }
 
-/// Returns a collider that may touch every other and stores its number.
+/// Returns a collider that may touch every other, with its index as user data.
 fn numbered(collider: ColliderBuilder, number: usize) -> Collider {
     collider.active_collision_types(ActiveCollisionTypes::all()).user_data(number as u128).build()
 }

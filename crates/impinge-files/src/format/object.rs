@@ -28,7 +28,7 @@ pub struct ObjectFile {
     /// The motion.
     #[serde(default)]
     pub motion: MotionFile,
-    /// Makes a grid of such objects.
+    /// Makes a grid of copies of the object.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repeat: Option<RepeatFile>,
 }
@@ -171,16 +171,16 @@ impl RotationOrder {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GroupsFile {
-    /// The groups that it is a member of; without, all.
+    /// The groups that the object is a member of; without, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub membership: Option<Vec<usize>>,
-    /// The groups that it interacts with; without, all.
+    /// The groups that the object interacts with; without, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub whitelist: Option<Vec<usize>>,
-    /// The groups that it does not interact with.
+    /// The groups that the object does not interact with.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blacklist: Vec<usize>,
-    /// Whether it is tested against itself.
+    /// Whether the object is tested against itself.
     #[serde(default)]
     pub self_collision: bool,
 }
@@ -194,8 +194,8 @@ pub enum QueryTypeFile {
         /// The object's share of the prediction, the distance up to which there are contact points.
         #[serde(default)]
         linear: f64,
-        /// The object's share of the angular prediction: the angle, in radians, by which the solids may rotate until
-        /// they are that near.
+        /// The object's share of the angular prediction, in radians: contact points also exist where a rotation of the
+        /// solids by this angle would bring them within the prediction.
         #[serde(default)]
         angular: f64,
     },

@@ -189,8 +189,8 @@ pub struct HeightFieldFile {
     /// Cells without surface, counted from 0, row by row.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub holes: Vec<usize>,
-    /// Cells that nothing touches and the seams beside them know, counted from 0, row by row: the border that a
-    /// tile of a terrain shares with its neighbours.
+    /// Ghost cells, counted from 0, row by row: the border that a tile of a terrain shares with its neighbours.
+    /// Nothing touches them, and their edges to other cells count as internal edges of the surface.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ghosts: Vec<usize>,
     /// 3D only: the diagonals along which cells are cut into two triangles.

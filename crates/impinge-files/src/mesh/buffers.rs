@@ -21,7 +21,8 @@ pub(super) struct Buffers {
     read: Vec<Vec<u8>>,
     /// For each buffer, its index in `read`; `None` for the binary chunk of the document.
     places: Vec<Option<usize>>,
-    /// For each file, by its path without symbolic links, the index in `read`.
+    /// For each file that was read, by its path without symbolic links, the index of its bytes in
+    /// `read`.
     files: BTreeMap<PathBuf, usize>,
 }
 
@@ -61,7 +62,7 @@ impl Buffers {
         }
     }
 
-    /// Returns the index of the bytes of a URI, which are read at the first use.
+    /// Returns the index in `read` of the bytes of a URI; reads them at the first use.
     fn resource(
         &mut self,
         uri: &str,

@@ -53,7 +53,8 @@ fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, Forma
         let frame = frame * matrix(&node);
         if let Some(mesh) = node.mesh() {
             let name = node.name().or(mesh.name()).unwrap_or_default();
-            // Many nodes may have the name of one mesh.
+            // Many nodes may use one mesh with a long name: the bytes of the copies count as
+            // elements.
             loader.files.count_elements(name.len())?;
             let mut part = NodePart { raw: RawPart::new(name), frame, first: BTreeMap::new() };
             for primitive in mesh.primitives() {
@@ -61,7 +62,8 @@ fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, Forma
             }
             parts.push(part.raw);
         }
-        // The last is visited first: so they are in the order of the file.
+        // The stack returns the last node first. Pushing children in reverse order visits them in
+        // the order of the file.
         let children: Vec<_> = node.children().map(|node| Placed { node, frame }).collect();
         open.extend(children.into_iter().rev());
     }
@@ -123,7 +125,8 @@ struct NodePart {
     raw: RawPart,
     /// From the frame of the mesh to that of the scene.
     frame: Matrix4<f64>,
-    /// For each accessor, the first vertex and the number of vertices: primitives share their vertices.
+    /// For each accessor of positions, the index of its first vertex in the part, and the number of
+    /// its vertices. Primitives share vertices.
     first: BTreeMap<usize, [u32; 2]>,
 }
 
@@ -131,7 +134,8 @@ struct NodePart {
 struct Loader<'a> {
     buffers: &'a [&'a [u8]],
     files: &'a mut Files,
-    /// The accessors that were checked, each as positions (`true`) or as indices.
+    /// The checked accessors: the index, and whether it was checked as positions (`true`) or as
+    /// indices.
     checked: BTreeSet<(usize, bool)>,
 }
 
@@ -154,8 +158,8 @@ impl Loader<'_> {
         Ok(())
     }
 
-    /// Returns the first vertex of a primitive in its part, and the number of its vertices. Adds them if no earlier
-    /// primitive has them.
+    /// Returns the index of the first vertex of a primitive in its part, and the number of its
+    /// vertices. Adds the vertices if no earlier primitive has them.
     fn vertices(
         &mut self,
         primitive: &Primitive<'_>,
@@ -188,7 +192,7 @@ impl Loader<'_> {
             self.check(accessor, false)?;
         }
         let number = accessor.map_or(count as usize, |accessor| accessor.count());
-        // Each index of a strip or fan may begin a triangle.
+        // Each index of a strip or fan may begin a triangle of three corners.
         let corners = if primitive.mode() == Mode::Triangles { 1 } else { 3 };
         self.files.count_elements(number.saturating_mul(corners))?;
         let reader = primitive.reader(|buffer| self.buffers.get(buffer.index()).copied());

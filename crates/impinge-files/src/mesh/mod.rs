@@ -38,14 +38,15 @@ use crate::{FileError, Problem, ReadOptions};
 #[derive(Clone, Debug)]
 pub struct MeshFile {
     parts: Vec<MeshPart>,
-    /// The index of the part of each name.
+    /// For each name, the index of the part.
     names: BTreeMap<String, usize>,
 }
 
 /// A part of a mesh file: triangles with finite, shared vertices.
 #[derive(Clone, Debug)]
 pub struct MeshPart {
-    /// The name in the file, or `part` if there is none; with a number if it occurs before.
+    /// The name in the file, or `part` if there is none. A suffix with a number is added if an
+    /// earlier part has the name.
     pub name: String,
     /// The vertices, in the frame of the file. No two are equal.
     pub vertices: Vec<[f64; 3]>,
@@ -59,20 +60,21 @@ impl MeshFile {
     /// Reads a file by its extension: .obj, .stl, .ply, .gltf or .glb. Buffers of a glTF file are read from its
     /// folder.
     ///
-    /// Vertices at one position are welded, polygons triangulated, and triangles dropped that are degenerate,
-    /// duplicate or without vertices; [`MeshPart::report`] counts these. Coordinates are those of the file: usually
-    /// in meters, with y or z upwards. Time is O(n log n) and memory O(n) in the bytes of the file, and in the
-    /// vertices and corners that the nodes of a glTF file make of them.
+    /// Vertices at equal positions are welded, and polygons are triangulated. Triangles that are
+    /// degenerate, duplicate or without vertices are dropped. [`MeshPart::report`] counts these
+    /// changes. Coordinates are unchanged: usually meters, with y or z upwards. Time is O(n log n)
+    /// and memory O(n) in the bytes of the file, and in the vertices and corners that the nodes of
+    /// a glTF file create.
     ///
     /// # Errors
-    /// If the file cannot be read or is not of its format, with the line where the format has lines, if it names a
-    /// file outside of its folder or asks for more than the default [`Limits`](crate::Limits), and if no triangle is
-    /// left.
+    /// If the file cannot be read, is not of its format, names a file outside of its folder,
+    /// exceeds the default [`Limits`](crate::Limits), or has no valid triangle. The error has the
+    /// line, if the format has lines.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         Self::read_with(path, &ReadOptions::new())
     }
 
-    /// [`Self::read`] with another root or other limits.
+    /// Reads a file as [`Self::read`] does, with another root or other limits.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -153,7 +155,7 @@ fn reader(extension: &str) -> Option<Reader> {
 }
 
 impl MeshPart {
-    /// Whether there are neither triangles nor defects.
+    /// Whether the part has neither triangles nor defects.
     fn is_empty(&self) -> bool {
         self.triangles.is_empty() && self.report.is_clean()
     }
@@ -162,7 +164,7 @@ impl MeshPart {
 /// Makes the names of parts unique; returns the index of the part of each name. O(n log n).
 fn unique_names(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
     let mut names = BTreeMap::new();
-    // For each name, the next number to try: smaller ones are taken.
+    // For each name, the next suffix to try: smaller suffixes are taken.
     let mut next: BTreeMap<String, usize> = BTreeMap::new();
     for (index, part) in parts.iter_mut().enumerate() {
         if part.name.is_empty() {
@@ -171,7 +173,7 @@ fn unique_names(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
         if names.contains_key(&part.name) {
             let stem = core::mem::take(&mut part.name);
             let number = next.entry(stem.clone()).or_insert(2);
-            // Terminates: there are fewer taken names than numbers.
+            // Terminates: some suffix is free, since there are finitely many names.
             part.name = loop {
                 let name = format!("{stem}.{number}");
                 *number += 1;

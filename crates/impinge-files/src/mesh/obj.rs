@@ -4,7 +4,7 @@
 use super::RawPart;
 use super::raw::{FormatError, number, words};
 
-/// The vertex has no number in the current part.
+/// The vertex does not belong to the current part yet.
 const NONE: u32 = u32::MAX;
 
 /// Returns the parts of an OBJ file. O(n) in its bytes.
@@ -46,12 +46,13 @@ fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
     }))
 }
 
-/// The parts so far. The corners of a part are its own vertices, numbered in the order of their first use.
+/// The parts so far. The corners of a part are indices into its own vertices, in the order of their
+/// first use.
 struct Reader {
     vertices: Vec<[f64; 3]>,
-    /// For each vertex of the file, its number in the current part.
+    /// For each vertex of the file, its index in the current part, or [`NONE`].
     own: Vec<u32>,
-    /// The vertices of the file that the current part uses, in its order.
+    /// For each vertex of the current part, its index in the file.
     used: Vec<usize>,
     part: RawPart,
     parts: Vec<RawPart>,
@@ -108,7 +109,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Returns the vertex of an index: from 1 upwards, or from -1 downwards from the last vertex before the line.
+    /// Returns the index of a vertex from 0, given the index in the file: from 1 upwards, or from
+    /// -1 downwards from the last vertex before the line. `None` if the vertex does not exist.
     fn vertex(&self, index: i64) -> Option<usize> {
         let distance = usize::try_from(index.unsigned_abs()).ok()?;
         let vertex =
@@ -116,7 +118,7 @@ impl Reader {
         vertex.filter(|vertex| *vertex < self.vertices.len())
     }
 
-    /// Returns the number of a vertex in the current part.
+    /// Returns the index of a vertex in the current part; adds the vertex if it is new.
     fn corner(&mut self, vertex: usize) -> u32 {
         if self.own[vertex] == NONE {
             self.own[vertex] = u32::try_from(self.used.len()).unwrap_or(NONE);

@@ -50,7 +50,7 @@ pub(super) struct RawPart {
     pub(super) lines: Vec<usize>,
     /// The lines of faces that the parser dropped because they name vertices that do not exist.
     pub(super) out_of_range: Vec<usize>,
-    /// Whether the format has no indices: each triangle has its own vertices.
+    /// Whether the format has no indices, so that each triangle has its own vertices.
     pub(super) is_soup: bool,
 }
 

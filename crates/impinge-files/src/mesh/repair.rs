@@ -8,7 +8,7 @@ use super::report::MeshReport;
 use super::topology::examine;
 use super::triangulate::Triangulator;
 
-/// The number of a vertex that does not survive welding.
+/// Marks a vertex that is dropped because a coordinate is not finite.
 const NONE: u32 = u32::MAX;
 
 /// A triangle, and the index of its face in the file.
@@ -31,7 +31,8 @@ pub(super) fn repaired(raw: RawPart) -> MeshPart {
     MeshPart { name: raw.name, vertices, triangles, report }
 }
 
-/// Returns, for each vertex, the first vertex at its position; [`NONE`] for one that is not finite.
+/// Returns, for each vertex, the index of the first vertex at its position; [`NONE`] for a vertex
+/// that is not finite.
 fn weld(raw: &RawPart, report: &mut MeshReport) -> Vec<u32> {
     let mut welded = vec![NONE; raw.vertices.len()];
     let is_finite = |index: &u32| raw.vertices[*index as usize].iter().all(|x| x.is_finite());
@@ -134,7 +135,8 @@ fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-/// Returns the used vertices, in their order, and the triangles among these.
+/// Returns the vertices that triangles use, in their order, and the triangles with indices of
+/// these.
 fn compact(raw: &RawPart, pieces: &[Piece]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let mut number = vec![NONE; raw.vertices.len()];
     pieces.iter().flat_map(|piece| piece.corners).for_each(|corner| number[corner as usize] = 0);

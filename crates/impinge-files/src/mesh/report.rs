@@ -21,19 +21,21 @@ pub struct MeshReport {
     pub non_finite_vertices: Defects,
     /// Faces that name a vertex that does not exist; they were dropped.
     pub out_of_range: Defects,
-    /// Faces with zero area, or with fewer than three corners; they were dropped. A polygon counts if it has no
-    /// triangle with positive area.
+    /// Faces with zero area, or with fewer than three corners; they were dropped. A polygon counts
+    /// if none of its triangles has positive area.
     pub degenerate: Defects,
     /// Vertices at the position of an earlier one; they were welded. In formats without indices none are counted, as
     /// each triangle has its own vertices.
     pub duplicate_vertices: Defects,
     /// Triangles with the corners of an earlier one in the same orientation; they were dropped.
     pub duplicate_triangles: Defects,
-    /// Edges with one triangle, named by its face: the surface is open there.
+    /// Edges that belong to one triangle only: the surface is open there. The defect has the index
+    /// of the triangle's face.
     pub boundary_edges: Defects,
-    /// Edges with more than two triangles, named by the first face.
+    /// Edges that belong to more than two triangles. The defect has the index of the first face.
     pub non_manifold_edges: Defects,
-    /// Edges whose two triangles disagree about the front, named by the first face.
+    /// Edges at which the fronts of the two triangles disagree. The defect has the index of the
+    /// first face.
     pub inconsistent_edges: Defects,
     /// The number of components that are connected by edges.
     pub components: usize,
@@ -81,7 +83,8 @@ impl MeshReport {
         self.is_closed() && self.non_manifold_edges.count == 0 && self.inconsistent_edges.count == 0
     }
 
-    /// Whether all faces of the file are unchanged and the edges are those of a surface, open or closed.
+    /// Whether all faces of the file were kept unchanged, and no edge is non-manifold or
+    /// inconsistent. The surface may be open or closed.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.defects().all(|(_, defects)| defects.count == 0)

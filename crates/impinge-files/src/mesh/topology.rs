@@ -7,7 +7,7 @@ use super::report::MeshReport;
 /// A side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Side {
-    /// The lower and the higher vertex.
+    /// The indices of the two vertices, the lower one first.
     ends: [u32; 2],
     triangle: u32,
     /// Whether the side goes from the lower to the higher vertex.
@@ -72,7 +72,7 @@ impl Pieces {
     }
 
     fn root(&mut self, mut triangle: u32) -> u32 {
-        // Terminates: parents have lower numbers.
+        // Terminates: the parent of a triangle has a lower index.
         while self.parent[triangle as usize] != triangle {
             let above = self.parent[triangle as usize];
             self.parent[triangle as usize] = self.parent[above as usize];

@@ -14,8 +14,9 @@ use crate::scene::about;
 
 /// Returns the collision elements of a link as one shape; `None` if there is none.
 ///
-/// A single element is a shape around its own origin, and the origin of the element becomes the frame, so that a box
-/// stays a cuboid. Several elements become a compound in the frame of the link.
+/// A single element becomes a shape around its own origin, and the frame of the link's shape is the
+/// origin of the element: so a box stays a cuboid. Several elements become a compound in the frame
+/// of the link.
 pub(super) fn solid(
     link: &Link,
     kind: MeshKind,
@@ -73,7 +74,7 @@ fn element_solid(
     })
 }
 
-/// Checks a size here, where the line of the link is known.
+/// Returns a size; an error if it is invalid. Checked here, since the line of the link is known.
 fn checked(what: &'static str, value: f64) -> Result<f64, Problem> {
     if !value.is_finite() {
         return Err(ShapeError::NotFinite { what, value }.into());

@@ -18,14 +18,14 @@ use crate::{FileError, Printable, Problem};
 pub(super) struct Tree {
     /// The names of the links, in the order of the file.
     pub(super) links: Vec<String>,
-    /// The index of the link of each name.
+    /// For each name of a link, its index.
     index: BTreeMap<String, usize>,
     joints: BTreeMap<String, TreeJoint>,
-    /// For each link the joint above it, none for the root.
+    /// For each link, the name of the joint above it; `None` for the root.
     above: Vec<Option<String>>,
-    /// The links in an order in which parents come first.
+    /// The indices of the links, sorted so that parents come before their children.
     order: Vec<usize>,
-    /// The joints that mimic others.
+    /// For each joint that mimics another, the relation between them.
     follows: BTreeMap<String, Follows>,
 }
 
@@ -40,8 +40,8 @@ struct Follows {
 
 /// A joint of a robot at a value outside the limits of its URDF file.
 ///
-/// The link below it is placed by the value all the same: limits describe the drives of a robot, while a collision
-/// checker must accept any pose.
+/// The link below the joint is placed by this value all the same. Limits describe the drives of a
+/// robot, while a collision checker must accept any pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointBeyondLimits {
     /// The prefix of the names of the robot's objects.
@@ -57,7 +57,7 @@ pub struct JointBeyondLimits {
 /// A joint above a link.
 #[derive(Debug)]
 struct TreeJoint {
-    /// The link above it.
+    /// The index of the link above the joint.
     parent: usize,
     /// The frame of the joint in the frame of the parent link.
     origin: Isometry3<f64>,
@@ -72,7 +72,7 @@ struct TreeJoint {
 enum JointMotion {
     Turn(Vector3<f64>),
     Slide(Vector3<f64>),
-    /// Fixed, or with several degrees of freedom, which are not moved.
+    /// The joint is fixed, or has several degrees of freedom, which are not moved.
     None,
 }
 
@@ -110,8 +110,8 @@ impl Tree {
         Ok(tree)
     }
 
-    /// Returns the links with parents first; the name of a link in an error if it is not connected to the root, or
-    /// there are several roots.
+    /// Returns the indices of the links, parents first. The error has the name of a link that is
+    /// not connected to the root, or of a second root.
     fn sorted(&self) -> Result<Vec<usize>, String> {
         let mut below = vec![Vec::new(); self.links.len()];
         let mut open = Vec::new();
@@ -140,8 +140,8 @@ impl Tree {
         }
     }
 
-    /// Resolves chains of mimicking joints of any length; each joint is visited once. The error has the name of a joint
-    /// that mimics one that does not exist, or itself through others.
+    /// Resolves chains of mimicking joints of any length; each joint is visited once. The error has
+    /// the name of a joint that mimics a missing joint, or itself through other joints.
     fn mimics(&self) -> Result<BTreeMap<String, Follows>, (String, Problem)> {
         let mut follows: BTreeMap<String, Follows> = BTreeMap::new();
         for name in self.joints.keys() {

@@ -25,7 +25,7 @@ use crate::{FileError, Problem};
 pub(crate) struct Robot {
     pub(crate) name: String,
     tree: Tree,
-    /// For each link its collision elements, in the frame of the link.
+    /// For each link, its collision elements in the frame of the link; `None` if it has none.
     solids: Vec<Option<LinkSolid>>,
     /// Pairs of names of links that the SRDF file disables.
     disabled: BTreeSet<[String; 2]>,

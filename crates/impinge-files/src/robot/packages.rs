@@ -15,8 +15,9 @@ pub(super) struct Packages {
 }
 
 impl Packages {
-    /// Collects the folders that the user names, those that the scene names, and the ancestors of the URDF file; of
-    /// the last two only those from which files may be read.
+    /// Collects the searched folders: those of the options, those that the scene names, and the
+    /// ancestors of the URDF file. Folders of the last two kinds are kept only if files may be read
+    /// from them.
     pub(super) fn new(file: &RobotFile, folder: &Path, urdf: &Path, files: &Files) -> Self {
         let absolute = std::path::absolute(urdf).unwrap_or_else(|_| urdf.to_owned());
         let own = absolute.parent().unwrap_or_else(|| Path::new("")).to_owned();
@@ -26,8 +27,8 @@ impl Packages {
         Self { folders: files.packages.iter().cloned().chain(readable).collect(), own }
     }
 
-    /// Resolves a `package://` path, a `file://` path, or one relative to the URDF file. The result may still be
-    /// outside of the root.
+    /// Returns the path for a `package://` name, a `file://` name, or a name relative to the URDF
+    /// file. The result may lie outside of the root, which is checked when the file is read.
     pub(super) fn find(&self, name: &str) -> Result<PathBuf, Problem> {
         if let Some(path) = name.strip_prefix("file://") {
             return Ok(PathBuf::from(path));

@@ -42,8 +42,8 @@ impl XmlFile {
         Ok(file)
     }
 
-    /// Returns the text with `visual` and `material` elements replaced by white space: collisions do not need them,
-    /// and errors in them do not matter. Lines keep their numbers.
+    /// Returns the text with `visual` and `material` elements replaced by white space. Collisions
+    /// do not need them, and errors in them must not matter. Other lines keep their line numbers.
     pub(super) fn without_visuals(&self) -> Result<String, FileError> {
         let document = self.parse()?;
         let is_visual =

@@ -13,9 +13,10 @@ const GROUPS: usize = 30;
 
 /// The groups of a scene: those that the document names, and those that disable pairs of links.
 ///
-/// Pairs of links are disabled by groups, so that a recording needs no pair filter: one link of each pair is the only
-/// member of a group that the other one blacklists. Groups for this are taken from those that the document does not
-/// name. Objects that are members of all groups are not members of these.
+/// Pairs of links are disabled by groups, so that a recording needs no pair filter. For each pair,
+/// one link is the only member of a group that the other link blacklists. These groups are taken
+/// from those that the document does not name. Objects that are members of all groups are not
+/// members of these groups.
 #[derive(Debug)]
 pub(super) struct GroupPlan {
     /// The groups that the document does not name, the highest first.
@@ -24,7 +25,7 @@ pub(super) struct GroupPlan {
     taken: BTreeSet<usize>,
 }
 
-/// Two objects, the one with the lower index first, that have no contacts.
+/// The indices of two objects that have no contacts, the lower index first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct DisabledPair([usize; 2]);
 
@@ -49,7 +50,7 @@ pub(super) struct OwnGroups {
 }
 
 impl GroupPlan {
-    /// Creates a plan in which all groups are free that the document does not name.
+    /// Creates a plan in which all groups that the document does not name are free.
     pub(super) fn new(file: &SceneFile) -> Self {
         let objects = file.objects.iter().map(|object| &object.groups);
         let meshes = file.meshes.iter().map(|meshes| &meshes.groups);
@@ -60,8 +61,9 @@ impl GroupPlan {
         Self { free, taken: BTreeSet::new() }
     }
 
-    /// Assigns groups to objects until each pair is disabled. The object with the most remaining pairs gets the next
-    /// group, which its partners blacklist: a greedy vertex cover, since there are few groups.
+    /// Assigns groups to objects until each pair is disabled. The object with the most remaining
+    /// pairs gets the next group, which its partners blacklist: a greedy vertex cover, since there
+    /// are few groups. An error if the groups do not suffice.
     pub(super) fn separate(
         &mut self,
         objects: usize,

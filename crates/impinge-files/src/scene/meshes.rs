@@ -1,4 +1,4 @@
-//! The mesh files of a scene, and the shapes that their triangles stand for.
+//! The mesh files of a scene, and the shapes made of their triangles.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,18 +14,18 @@ use crate::format::{MeshKind, MeshSource, RobotFile, ScaleFile, ShapeFile, Shape
 use crate::robot::Robot;
 use crate::{Dimension, FileError, MeshFile, MeshPart, Problem};
 
-/// Files by path, each read once. Clones share them.
+/// The mesh files that were read, by path; each is read once. Clones share the files.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshTable {
     folder: PathBuf,
     /// Reads all files of the scene.
     pub(crate) files: Files,
     meshes: BTreeMap<PathBuf, Named>,
-    /// The path without symbolic links of each path that was read.
+    /// For each path that was read, the path without symbolic links.
     real: BTreeMap<PathBuf, PathBuf>,
 }
 
-/// A file with the path by which it was named first.
+/// A mesh file, and the path by which it was named first.
 #[derive(Clone, Debug)]
 struct Named {
     path: PathBuf,
@@ -33,13 +33,13 @@ struct Named {
 }
 
 impl MeshTable {
-    /// Without meshes; paths are relative to a folder.
+    /// Creates a table without meshes; paths are relative to `folder`.
     pub(crate) fn new(folder: &Path, files: Files) -> Self {
         let (meshes, real) = (BTreeMap::new(), BTreeMap::new());
         Self { folder: folder.to_owned(), files, meshes, real }
     }
 
-    /// The file of a path, read if it was not.
+    /// Returns the file of a path; reads it at the first call.
     pub(crate) fn read(&mut self, path: &Path) -> Result<&MeshFile, FileError> {
         let path = self.folder.join(path);
         if !self.real.contains_key(&path) {
@@ -51,12 +51,12 @@ impl MeshTable {
         Ok(&self.meshes[&self.real[&path]].mesh)
     }
 
-    /// Reads the files of a robot, but for its meshes.
+    /// Reads the files of a robot, except its meshes.
     pub(crate) fn read_robot(&mut self, robot: &RobotFile) -> Result<Robot, FileError> {
         Robot::read(robot, &self.folder, &mut self.files)
     }
 
-    /// Reads a file unless it was read by another path.
+    /// Reads a file, unless it was read by another path.
     fn read_new(&mut self, path: &Path, real: &Path) -> Result<(), FileError> {
         if !self.meshes.contains_key(real) {
             let bytes = self.files.read_named(path)?;
@@ -66,7 +66,8 @@ impl MeshTable {
         Ok(())
     }
 
-    /// Reads all files that a shape and those written in it name. A shape that it has by name is read with `shapes`.
+    /// Reads all mesh files of a shape and of the inline shapes in it. A named shape is skipped: it
+    /// is read with the `shapes` of the document.
     pub(crate) fn read_all(&mut self, shape: &ShapeRef) -> Result<(), FileError> {
         match shape {
             ShapeRef::Name(_) => Ok(()),
@@ -74,7 +75,7 @@ impl MeshTable {
         }
     }
 
-    /// Reads all files that a shape and those written in it name.
+    /// Reads all mesh files of a shape and of the inline shapes in it.
     pub(crate) fn read_files(&mut self, shape: &ShapeFile) -> Result<(), FileError> {
         match shape {
             ShapeFile::MeshFile(source) => self.read(&source.path).map(|_| ()),
@@ -86,12 +87,12 @@ impl MeshTable {
         }
     }
 
-    /// The files that were read, by path.
+    /// Returns the files that were read, with their paths.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&Path, &MeshFile)> {
         self.meshes.values().map(|Named { path, mesh }| (path.as_path(), &**mesh))
     }
 
-    /// The shape of a file that was read.
+    /// Makes the shape of a file that was read before.
     pub(crate) fn shape<N: SceneSpace<D>, const D: usize>(
         &self,
         source: &MeshSource,
@@ -116,7 +117,8 @@ impl MeshTable {
 }
 
 impl MeshTable {
-    /// The parts of a file that a shape has; the file was read.
+    /// Returns the parts of a file from which a shape is made. The file must have been read; an
+    /// error if it has no part of the given name.
     fn parts(&self, source: &MeshSource) -> Result<Vec<&MeshPart>, Fault> {
         let real = &self.real[&self.folder.join(&source.path)];
         let file = &self.meshes[real].mesh;
@@ -129,14 +131,14 @@ impl MeshTable {
         }
     }
 
-    /// The vertices and corners of triangles of a shape.
+    /// Returns the number of vertices and triangle corners of a shape.
     pub(crate) fn elements(&self, source: &MeshSource) -> Result<usize, Fault> {
         let parts = self.parts(source)?.into_iter();
         Ok(parts.map(|part| part.vertices.len() + 3 * part.triangles.len()).sum())
     }
 }
 
-/// Factors that are finite and not zero.
+/// Returns the factors along the axes; an error if one is zero or not finite.
 fn scale(scale: ScaleFile) -> Result<[f64; 3], Problem> {
     let factors = scale.factors();
     match factors.into_iter().find(|factor| *factor == 0.0 || !factor.is_finite()) {
@@ -147,22 +149,24 @@ fn scale(scale: ScaleFile) -> Result<[f64; 3], Problem> {
     }
 }
 
-/// The triangles of some parts of a file, and the factors that take them to the frame of the shape.
+/// The triangles of some parts of a file, and the factors that scale them to the frame of the
+/// shape.
 struct Triangles<'a> {
     parts: Vec<&'a MeshPart>,
     scale: [f64; 3],
 }
 
 impl Triangles<'_> {
-    /// A vertex in the frame of the shape.
+    /// Returns a vertex in the frame of the shape.
     fn place<N: SceneSpace<D>, const D: usize>(&self, vertex: &[f64; 3]) -> Point<N, D> {
         Vector::<N, D>::from_fn(|axis, _| N::lit(vertex[axis] * self.scale[axis])).into()
     }
 
-    /// All parts as one mesh.
+    /// Makes one mesh of all parts.
     ///
-    /// The triangles keep their fronts, for which a scale that mirrors them has to turn them over. With
-    /// `turns_outwards` the parts that are solid and inside out are turned over too.
+    /// Triangles keep their fronts: a mirroring scale reverses their corners. With
+    /// `turns_outwards`, the triangles of parts that are inside out (negative volume) are reversed
+    /// too.
     fn mesh<N: SceneSpace<D>, const D: usize>(
         &self,
         turns_outwards: bool,
@@ -182,7 +186,7 @@ impl Triangles<'_> {
         TriMesh::try_new(vertices, triangles)
     }
 
-    /// The convex hull of some parts.
+    /// Makes the convex hull of some parts.
     fn hull<N: SceneSpace<D>, const D: usize>(
         &self,
         parts: &[&MeshPart],
@@ -192,7 +196,7 @@ impl Triangles<'_> {
         Ok(N::convex_hull(&points)?)
     }
 
-    /// The hull of each part that has triangles, as a compound.
+    /// Makes a compound of the convex hulls of all parts that have triangles.
     fn hulls<N: SceneSpace<D>, const D: usize>(&self) -> Result<ShapeHandle<N, D>, Fault> {
         let at = N::isometry(&Pose::identity());
         let parts = self.parts.iter().filter(|part| !part.triangles.is_empty());
@@ -200,7 +204,7 @@ impl Triangles<'_> {
         Ok(ShapeHandle::new(Compound::try_new(hulls.collect::<Result<_, Fault>>()?)?))
     }
 
-    /// Each part is the boundary of a volume.
+    /// Returns an error unless each part is the boundary of a volume.
     fn check_solid(&self) -> Result<(), Problem> {
         let reports = self.parts.iter().map(|part| &part.report);
         match reports.into_iter().find(|report| !report.is_solid()) {

@@ -30,8 +30,8 @@ use crate::{
     ScalarFile, SceneFile, UpAxis,
 };
 
-/// A scene: its objects by name, and the files that they are made of. The library has not validated its values yet;
-/// [`Self::world`] and [`Self::collision_world`] return an error for those that make no shape.
+/// A scene: its objects by name, and their files. The library has not validated its values yet:
+/// [`Self::world`] and [`Self::collision_world`] return an error if a shape or object is invalid.
 ///
 /// ```
 /// use impinge_files::Scene;
@@ -54,23 +54,23 @@ use crate::{
 pub struct Scene {
     source: Source,
     file: SceneFile,
-    /// The shapes of objects; the objects of a grid share one.
+    /// The shapes of objects, each with its place in the document; the objects of a grid share one.
     forms: Vec<Form>,
     objects: Vec<SceneObject>,
     meshes: MeshTable,
     joints_beyond_limits: Vec<JointBeyondLimits>,
 }
 
-/// A shape, with the path of the entry that has it.
+/// A shape, with the path of the entry of the document that contains it.
 #[derive(Clone, Debug)]
 struct Form {
     shape: ShapeRef,
     path: String,
-    /// The member of the entry that is the shape; empty for meshes and robots.
+    /// The member of the entry that contains the shape; empty for meshes and robots.
     member: &'static str,
 }
 
-/// An object before its world is made.
+/// An object, before a world is made.
 #[derive(Clone, Debug)]
 struct SceneObject {
     name: String,
@@ -96,7 +96,7 @@ pub fn load(path: &Path) -> Result<Scene, FileError> {
     load_with(path, &ReadOptions::new())
 }
 
-/// [`load`] with another root, packages, or other limits.
+/// Reads a file as [`load`] does, with another root, packages, or other limits.
 ///
 /// The root of a robot is the folder of the ROS package that its URDF file is in, if it is in one, and the folder of
 /// the file otherwise.
@@ -125,7 +125,8 @@ impl SceneFile {
         self.resolve_with(folder, &ReadOptions::new())
     }
 
-    /// [`Self::resolve`] with another root than the folder, packages, or other limits.
+    /// Resolves the scene as [`Self::resolve`] does, with another root than the folder, packages,
+    /// or other limits.
     ///
     /// # Errors
     /// As [`Self::resolve`].
@@ -139,14 +140,14 @@ impl Scene {
     /// Reads a scene file, and the mesh and robot files that it names.
     ///
     /// # Errors
-    /// With the line, the column and the path in the document: if a file cannot be read or is not of its format,
-    /// is outside of the folder of the scene, has unknown members, asks for more than the default
-    /// [`Limits`](crate::Limits), or gives two objects the same name.
+    /// If a file cannot be read, is not of its format, or is outside of the folder of the scene; if
+    /// the scene has unknown members, exceeds the default [`Limits`](crate::Limits), or gives two
+    /// objects the same name. The error has the line, the column and the path in the document.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         Self::read_with(path, &ReadOptions::new())
     }
 
-    /// [`Self::read`] with another root, packages, or other limits.
+    /// Reads a scene file as [`Self::read`] does, with another root, packages, or other limits.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -165,7 +166,7 @@ impl Scene {
         Self::from_json_with(path, text, &ReadOptions::new())
     }
 
-    /// [`Self::from_json`] with another root, packages, or other limits.
+    /// Parses a document as [`Self::from_json`] does, with another root, packages, or other limits.
     ///
     /// # Errors
     /// As [`Self::read`].

@@ -11,7 +11,7 @@ use crate::error::{Fault, Within};
 use crate::format::{QueryTypeFile, ShapeFile, ShapeRef};
 use crate::{FileError, Problem};
 
-/// An object in the form in which a world takes it.
+/// An object with the arguments of the call that adds it to a world.
 pub(super) struct PlacedObject<'a, N: SceneSpace<D>, const D: usize> {
     pub(super) object: &'a SceneObject,
     pub(super) position: N::Isometry,
@@ -26,8 +26,8 @@ impl Scene {
     /// for each object.
     ///
     /// # Errors
-    /// If the dimension differs from that of the scene, or, with the line of the value, if the library rejects a shape,
-    /// a position, a query type or the margin.
+    /// If the dimension differs from that of the scene, or if the library rejects a shape, a
+    /// position, a query type or the margin. The error has the line of the value.
     pub fn collision_world<N: SceneSpace<D>, const D: usize>(
         &self,
     ) -> Result<CollisionWorld<N, D, String>, FileError> {
@@ -133,7 +133,7 @@ impl Scene {
         Ok(PlacedObject { object, position, shape, query })
     }
 
-    /// Returns the error of an object that the world rejects.
+    /// Returns the error for an object that the world rejects.
     pub(super) fn refused(&self, object: &SceneObject, problem: Problem) -> FileError {
         let member = match &problem {
             Problem::Library(LibraryError::World(WorldError::Position { .. })) => Some("position"),

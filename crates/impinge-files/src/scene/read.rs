@@ -17,7 +17,7 @@ use crate::robot::{JointBeyondLimits, RobotLink};
 use crate::source::Source;
 use crate::{Dimension, FileError, Limit, Problem};
 
-/// The error of resolving a scene: in the document, or in a file that it names.
+/// An error of resolving a scene: a problem in the document, or an error of a file that it names.
 enum ResolveError {
     Document(Fault),
     File(FileError),
@@ -40,14 +40,14 @@ struct Collected<'a> {
     file: &'a SceneFile,
     forms: Vec<Form>,
     objects: Vec<Draft<'a>>,
-    /// The bytes of the names of the objects.
+    /// The number of bytes of the names of the objects.
     names: usize,
     disabled: BTreeSet<DisabledPair>,
     meshes: MeshTable,
     joints_beyond_limits: Vec<JointBeyondLimits>,
 }
 
-/// An object without its groups, which depend on the groups of all objects.
+/// An object without its groups, which can be computed only when all objects are known.
 struct Draft<'a> {
     name: String,
     form: usize,
@@ -82,7 +82,7 @@ impl Scene {
 }
 
 impl<'a> Collected<'a> {
-    /// Starts without objects.
+    /// Creates a collection without objects.
     const fn new(file: &'a SceneFile, meshes: MeshTable) -> Self {
         Self {
             file,
@@ -142,7 +142,8 @@ impl<'a> Collected<'a> {
         Ok(())
     }
 
-    /// Checks the limits before objects are added whose names have `names` bytes together.
+    /// Checks the limits before `objects` objects are added, whose names have `names` bytes
+    /// together.
     fn expect(&mut self, objects: usize, names: usize) -> Result<(), Problem> {
         let files = &self.meshes.files;
         let total = self.objects.len().saturating_add(objects);
@@ -214,7 +215,7 @@ impl<'a> Collected<'a> {
         self.objects.push(Draft { name, form, start, common });
     }
 
-    /// Takes the objects, with their groups.
+    /// Moves the objects out of the collection, with their groups.
     fn take_objects(&mut self) -> Result<Vec<SceneObject>, Fault> {
         self.check_names()?;
         let drafts = std::mem::take(&mut self.objects);
@@ -242,7 +243,7 @@ impl<'a> Collected<'a> {
     }
 }
 
-/// A grid of objects: the number along each axis, and the distances.
+/// A grid of objects: the count along each axis, and the distances.
 struct Grid {
     count: Vec<usize>,
     spacing: Vector3<f64>,
@@ -293,7 +294,7 @@ impl Grid {
     }
 }
 
-/// Formats indices as in names.
+/// Formats indices as they occur in names, such as `[2,0,1]`.
 fn text_of(indices: &[usize]) -> String {
     indices.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
 }

@@ -19,25 +19,26 @@ use crate::files::check;
 use crate::format::{ChildFile, DiagonalsFile, HeightFieldFile, MeshSource, ShapeFile, ShapeRef};
 use crate::{Dimension, Limit, Problem};
 
-/// The key of a shape of a file: path, part, bits of the scale, kind. Equal keys share the shape.
+/// The key of the shape of a mesh file: path, part, bits of the scale, kind. Sources with equal
+/// keys share one shape.
 type MeshKey = (PathBuf, Option<String>, [u64; 3], u8);
 
-/// Makes shapes; a named shape is made once.
+/// Makes shapes. Each named shape is made once.
 pub(super) struct Builder<'a, N: SceneSpace<D>, const D: usize> {
     dimension: Dimension,
     shapes: &'a BTreeMap<String, ShapeFile>,
     meshes: &'a MeshTable,
     made: BTreeMap<&'a str, ShapeHandle<N, D>>,
     of_files: BTreeMap<MeshKey, ShapeHandle<N, D>>,
-    /// The number of vertices and corners of the shapes of files.
+    /// The number of vertices and triangle corners of the shapes of mesh files made so far.
     elements: usize,
-    /// The names of the shapes that contain the one that is being made.
+    /// The names of the shapes that contain the one being made, to detect cycles.
     holders: Vec<&'a str>,
     depth: u32,
 }
 
 impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
-    /// Starts without shapes.
+    /// Creates a builder without shapes.
     pub(super) const fn new(
         dimension: Dimension,
         shapes: &'a BTreeMap<String, ShapeFile>,
@@ -155,7 +156,8 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         }
     }
 
-    /// Makes the shape of a file. Equal part, scale and kind share a shape.
+    /// Makes the shape of a mesh file. Sources with equal path, part, scale and kind share one
+    /// shape.
     fn mesh_file(&mut self, source: &MeshSource) -> Result<ShapeHandle<N, D>, Fault> {
         let scale = source.scale.factors().map(f64::to_bits);
         let key = (source.path.clone(), source.part.clone(), scale, source.kind as u8);
@@ -237,14 +239,15 @@ const fn kind_of(shape: &ShapeFile) -> &'static str {
     }
 }
 
-/// Puts a shape behind a handle.
+/// Wraps a shape in a handle.
 fn handle<N: SceneSpace<D>, const D: usize>(
     made: Result<impl Shape<N, D>, impl Into<Fault>>,
 ) -> Result<ShapeHandle<N, D>, Fault> {
     made.map(ShapeHandle::new).map_err(Into::into)
 }
 
-/// Returns an error at the member that gives a size, which the library names differently.
+/// Returns an error at the member of the file that gives a size; the library has another name for
+/// it.
 fn sized(error: impl Into<LibraryError>) -> Fault {
     let error = error.into();
     let member = match &error {

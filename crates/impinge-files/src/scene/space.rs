@@ -1,4 +1,4 @@
-//! The making of shapes that differs by dimension.
+//! Construction of the shapes that differ by dimension.
 
 use impinge::dim2::shape::ConvexPolygon;
 use impinge::dim3::shape::ConvexHull;

@@ -14,8 +14,8 @@ use super::{Placement, Scene, SceneSpace};
 use crate::error::Within;
 use crate::{FileError, Problem};
 
-/// The world of a scene, which is recorded and moves its objects. It dereferences to the world for reading
-/// ([`Deref`]).
+/// The world of a scene, which is recorded and moves its objects. It dereferences to the world, for
+/// reading only ([`Deref`]).
 ///
 /// ```
 /// use impinge_files::Scene;
@@ -61,7 +61,8 @@ impl Scene {
     /// shapes or filters.
     ///
     /// # Errors
-    /// As [`Self::collision_world`], and if a shape has more parts than recordings allow.
+    /// If [`Self::collision_world`] would return an error, or a shape has more parts than
+    /// recordings allow.
     pub fn world<N: SceneSpace<D>, const D: usize>(&self) -> Result<SceneWorld<N, D>, FileError> {
         let recorder = Recorder::new(N::lit(self.file.margin), Registry::new());
         let recorder = recorder.map_err(Problem::recorded).within("margin");
@@ -80,7 +81,7 @@ impl Scene {
 }
 
 impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
-    /// Writes a key frame before every update whose number is a multiple of `updates`; see
+    /// Writes a key frame before every update whose index is a positive multiple of `updates`; see
     /// [`Recorder::with_key_frames`].
     #[must_use]
     pub fn with_key_frames(self, updates: NonZeroU64) -> Self {
@@ -98,7 +99,8 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         Ok(())
     }
 
-    /// [`Self::step`] without the update, to read the positions before it.
+    /// Moves the objects as [`Self::step`] does, but does not update the world: positions can be
+    /// read before the update.
     ///
     /// # Errors
     /// As [`Self::step`].

@@ -14,11 +14,11 @@ pub(crate) const CORNERS: [[f32; 3]; 8] = [
     [0.0, 2.0, 2.0],
 ];
 
-/// Its sides, counter-clockwise seen from outside.
+/// The sides of the cube, counter-clockwise seen from outside.
 pub(crate) const QUADS: [[u32; 4]; 6] =
     [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
 
-/// Its sides as triangles.
+/// The sides of the cube as triangles.
 pub(crate) fn triangles() -> Vec<[u32; 3]> {
     QUADS.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect()
 }
@@ -138,7 +138,7 @@ pub(crate) fn ply_binary(is_little: bool) -> Vec<u8> {
     bytes
 }
 
-/// Positions, then indices of 16 bits.
+/// Returns the bytes of positions, followed by indices of 16 bits.
 pub(crate) fn gltf_buffer() -> Vec<u8> {
     let mut bytes: Vec<u8> = CORNERS.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
     let indices = triangles().into_iter().flatten();
@@ -146,7 +146,8 @@ pub(crate) fn gltf_buffer() -> Vec<u8> {
     bytes
 }
 
-/// A node that mirrors the cube contains one that moves and scales it: triangles must be reversed.
+/// Returns the JSON of a file in which a node that mirrors the cube contains a node that translates
+/// it: triangles must be reversed.
 fn gltf_json(buffer: &str) -> String {
     format!(
         r#"{{"asset": {{"version": "2.0"}}, "scene": 0, "scenes": [{{"nodes": [0]}}],

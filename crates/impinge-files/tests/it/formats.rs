@@ -37,7 +37,7 @@ fn the_shape_is_a_box_at_every_distance() {
         let world = scene.collision_world::<f64, 3>().expect("of three dimensions");
         let mesh = world.collision_objects().next().expect("one object").shape().clone();
         for step in 0..40 {
-            // Around the cube, and farther and farther away.
+            // The points lie around the cube, at growing distances.
             let (angle, far) = (f64::from(step), 2.5 + 0.1 * f64::from(step));
             let point = [1.0 + far * angle.cos(), 1.0 + far * angle.sin(), 1.0 + 0.3 * angle.cos()];
             let place = Isometry::translation(point[0], point[1], point[2]);

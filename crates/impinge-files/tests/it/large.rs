@@ -1,4 +1,5 @@
-//! Large files, timed: `cargo test --release -p impinge-files large -- --ignored --nocapture`.
+//! Measures the time of reading large files: `cargo test --release -p impinge-files large --
+//! --ignored --nocapture`.
 
 use std::fmt::Write;
 use std::time::Instant;

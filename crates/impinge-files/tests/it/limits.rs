@@ -66,7 +66,7 @@ fn a_limit_can_be_raised_and_lowered() {
 
 #[test]
 fn buffers_of_one_chunk_or_file_are_read_once() {
-    // Copied for each buffer, these would take 20 GB.
+    // If each buffer copied these bytes, they would take 20 GB.
     let buffers = vec!["{\"byteLength\": 168}"; 20_000].join(",");
     let blob = MeshFile::parse("blob.glb".as_ref(), &glb_with(&buffers, 1 << 20));
     assert_eq!(blob.expect("a cube").parts()[0].triangles.len(), 12);
@@ -180,7 +180,7 @@ fn elements_without_properties_take_no_time_and_no_memory() {
         let text = kinds(format, 60_000) + &"\n".repeat(100_000);
         let error = MeshFile::parse("kinds.ply".as_ref(), text.as_bytes()).expect_err("too many");
         assert!(matches!(*error.problem, Problem::TooMany { .. }), "{error}");
-        // The file is large enough for this number; there is nothing in the elements.
+        // The file has enough bytes for this number, but its elements are empty.
         let text = kinds(format, 20) + &"\n".repeat(40_000);
         let error =
             MeshFile::parse("kinds.ply".as_ref(), text.as_bytes()).expect_err("no triangle");

@@ -47,7 +47,7 @@ fn a_surface_inside_out_has_a_negative_volume() {
 
 #[test]
 fn a_concave_polygon_is_cut_within_its_outline() {
-    // An L of area 3, in a plane that is tilted.
+    // An L-shaped polygon of area 3, in a tilted plane.
     let l = "v 0 0 0\nv 2 0 0\nv 2 1 1\nv 1 1 1\nv 1 2 2\nv 0 2 2\nf 1 2 3 4 5 6\n";
     let file = MeshFile::parse("l.obj".as_ref(), l.as_bytes()).expect("an L");
     let part = &file.parts()[0];

@@ -34,7 +34,7 @@ fn assert_at(world: &SceneWorld<f64, 3>, name: &str, expected: [f64; 3]) {
     assert!(apart < 1e-12, "{name} is at {found:?}, not {expected:?}");
 }
 
-/// A link with a small ball.
+/// Returns a link with a small ball.
 fn link(name: &str) -> String {
     format!(
         r#"<link name="{name}"><collision><geometry><sphere radius="0.1"/></geometry></collision></link>"#
@@ -77,7 +77,8 @@ fn joints_of_all_types_move_their_links() {
     assert_at(&world, "arm/spin", [1.0, 1.0, 0.0]);
     assert_at(&world, "arm/slide", [-0.5, 1.0, 0.0]);
     assert_at(&world, "arm/weld", [-0.5, 1.0, 1.0]);
-    // Rotated about z by half a turn, then about x by a quarter turn: z of the link is y of the world.
+    // The link is rotated about z by half a turn, then about x by a quarter turn: its z axis is y
+    // of the world.
     assert_at(&world, "arm/float", [-0.5, 2.0, 1.0]);
     assert_at(&world, "arm/plane", [-0.5, 1.0, 2.0]);
     assert_at(&world, "arm/follow", [-0.5, 0.0, 0.0]);
@@ -107,7 +108,7 @@ fn joints_beyond_their_limits_are_placed_and_reported() {
     assert_at(&scene.world().expect("a world"), "r/d", [5.0, 0.0, 0.0]);
 }
 
-/// An arm of six axes, whose links are meshes of a package.
+/// Returns an arm of six axes, whose links are meshes of a package.
 fn six_axes(folder: &Path) -> String {
     let meshes = folder.join("arm_description/meshes");
     fs::create_dir_all(&meshes).expect("it is made");

@@ -4,7 +4,7 @@ use impinge::debug_render::{Color, DebugOptions, Drawn, MeshOptions, Style};
 use impinge::math::Real;
 use impinge::shape::ShapeKind;
 
-/// Bits of the flags of an instance.
+/// The bits of the flags of an instance.
 pub(crate) const TOUCHES: u32 = 1;
 pub(crate) const SENSOR: u32 = 2;
 pub(crate) const SELECTED: u32 = 4;
@@ -16,7 +16,7 @@ const SELECTION: Color = Color::rgb(242, 153, 46);
 const SENSORS: Color = Color::rgb(150, 120, 200).with_alpha(88);
 /// The colour towards which touching objects are mixed.
 const WARM: Color = Color::rgb(255, 140, 110);
-/// The share of that colour, of 256.
+/// The share of the colour `WARM` in the mixture, of 256.
 const WARMTH: u16 = 40;
 
 /// Returns the colour of a kind of shape.
@@ -34,18 +34,18 @@ const fn of_kind(kind: ShapeKind) -> Color {
     }
 }
 
-/// The properties that determine the colour of an object.
+/// The properties of an object that determine its colour.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Look {
     pub(crate) kind: ShapeKind,
-    /// The index, by which neighbours in a pile differ slightly.
+    /// The index of the object's handle: neighbours in a pile get slightly different tones by it.
     pub(crate) object: usize,
     /// The flags.
     pub(crate) flags: u32,
 }
 
 impl Look {
-    /// The colour as a word.
+    /// Returns the colour as a word.
     pub(crate) fn color(&self) -> u32 {
         let base = if self.flags & SENSOR == 0 { self.shaded() } else { SENSORS };
         if self.flags & SELECTED != 0 {
@@ -57,7 +57,7 @@ impl Look {
         word(if is_warm { mixed(base, WARM, WARMTH) } else { base })
     }
 
-    /// Returns one of four tones of the colour of the kind.
+    /// Returns one of four tones of the colour of the shape's kind.
     fn shaded(&self) -> Color {
         let base = of_kind(self.kind);
         // The order 0, 2, 1, 3: neighbours differ more.
@@ -66,13 +66,13 @@ impl Look {
     }
 }
 
-/// Red, green, blue, alpha in this order in memory.
+/// Returns the colour as a word: red, green, blue and alpha in this order in memory.
 pub(crate) const fn word(color: Color) -> u32 {
     let [red, green, blue] = color.rgb;
     u32::from_le_bytes([red, green, blue, color.alpha])
 }
 
-/// Mixes two colours: `part` of 256 of the second; the alpha of the first.
+/// Mixes two colours: `part` of 256 of the second colour, with the alpha of the first.
 fn mixed(from: Color, to: Color, part: u16) -> Color {
     let mut rgb = from.rgb;
     for (byte, goal) in rgb.iter_mut().zip(to.rgb) {
@@ -82,7 +82,7 @@ fn mixed(from: Color, to: Color, part: u16) -> Color {
     Color { rgb, ..from }
 }
 
-/// The layers of a frame in order: names, and the kinds of things drawn in them.
+/// The layers of a frame, in order: the name, and the kind of drawing in it.
 pub(crate) const LAYERS: [(&str, Drawn); 10] = [
     ("object", Drawn::Object),
     ("tight box", Drawn::TightBox),
@@ -96,7 +96,7 @@ pub(crate) const LAYERS: [(&str, Drawn); 10] = [
     ("query hit", Drawn::QueryHit),
 ];
 
-/// Returns the number of the layer of a kind of thing.
+/// Returns the index of the layer of a kind of drawing.
 pub(crate) fn layer_of(what: Drawn) -> usize {
     LAYERS.iter().position(|(_, drawn)| *drawn == what).unwrap_or(0)
 }

@@ -25,7 +25,7 @@ impl Bounds {
         is_near.then_some(Self { mins, maxs })
     }
 
-    /// The box around both.
+    /// Returns the box around both boxes.
     fn joined(self, other: Self) -> Self {
         let mut both = self;
         for axis in 0..3 {
@@ -39,7 +39,7 @@ impl Bounds {
         [0, 1, 2].map(|axis| f64::midpoint(self.mins[axis], self.maxs[axis]))
     }
 
-    /// Half the length of the diagonal.
+    /// Returns half the length of the diagonal.
     pub(crate) fn radius(&self) -> f64 {
         let halves = [0, 1, 2].map(|axis| (self.maxs[axis] - self.mins[axis]) / 2.0);
         halves.iter().map(|half| half * half).sum::<f64>().sqrt()

@@ -14,10 +14,10 @@ use crate::frame::payload::{Payload, Section};
 use crate::frame::unit_shapes::UNSCALED;
 use crate::space::{Viewed, coordinates};
 
-/// The object number of an instance that is not an object.
+/// The object index of an instance that is not an object.
 const NO_OBJECT: u32 = u32::MAX;
 
-/// The greatest number of texts: more are not legible.
+/// The largest number of texts; more would not be legible.
 const MAX_LABELS: usize = 200;
 
 /// A text in a frame.
@@ -29,11 +29,11 @@ struct Label {
     layer: u32,
 }
 
-/// Lines, triangles or points: their coordinates, with a colour and a layer each.
+/// Lines, triangles or points: their coordinates, and for each a colour and a layer.
 #[derive(Debug, Default)]
 struct Things {
     numbers: Vec<f32>,
-    /// The sizes of points; otherwise empty.
+    /// The sizes of points; empty for lines and triangles.
     sizes: Vec<f32>,
     colors: Vec<u32>,
     layers: Vec<u32>,

@@ -1,4 +1,4 @@
-//! The meshes of a stage, by number.
+//! The meshes of a stage, by id.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ struct Buffers {
     vertices: Vec<f32>,
     triangles: Vec<u32>,
     lines: Vec<u32>,
-    /// The last frame that used it.
+    /// The index of the last frame that used the mesh.
     used: u64,
 }
 
@@ -36,19 +36,19 @@ pub(crate) struct MeshSections {
     lines: Section,
 }
 
-/// Meshes by number; numbers increase and are not reused.
+/// Meshes by id. Ids increase and are not reused.
 #[derive(Debug, Default)]
 pub(crate) struct MeshTable {
-    /// The numbers of the meshes by [`ShapeMesh::id`].
+    /// For each [`ShapeMesh::id`], the id of the mesh.
     numbers: BTreeMap<u64, u32>,
     meshes: BTreeMap<u32, Buffers>,
-    /// The number of the next new mesh.
+    /// The id of the next new mesh.
     next: u32,
     frame: u64,
 }
 
 impl MeshTable {
-    /// Begins a frame: drops the meshes that no recent frame has used, and returns their numbers.
+    /// Begins a frame: drops the meshes that no recent frame has used, and returns their ids.
     pub(crate) fn begin(&mut self) -> Vec<u32> {
         self.frame += 1;
         let (frame, numbers, mut dropped) = (self.frame, &mut self.numbers, Vec::new());
@@ -63,7 +63,7 @@ impl MeshTable {
         dropped
     }
 
-    /// Returns the number of a mesh, which frames use.
+    /// Returns the id of a mesh, by which frames refer to it. Adds the mesh if it is new.
     pub(crate) fn number<N: Real, const D: usize>(&mut self, mesh: &ShapeMesh<N, D>) -> u32 {
         let next = self.next;
         let number = *self.numbers.entry(mesh.id).or_insert(next);
@@ -74,15 +74,15 @@ impl MeshTable {
         number
     }
 
-    /// Keeps a mesh for later frames, and returns the centre that its vertices are relative to; `None` if it was
-    /// dropped.
+    /// Marks a mesh as used by this frame, and returns the centre that its vertices are relative
+    /// to; `None` if the mesh was dropped.
     pub(crate) fn keep(&mut self, number: u32) -> Option<[f64; 3]> {
         let mesh = self.meshes.get_mut(&number)?;
         mesh.used = self.frame;
         Some(mesh.center)
     }
 
-    /// Writes the meshes with numbers of at least `known`.
+    /// Writes the meshes whose ids are at least `known`.
     pub(crate) fn write(&self, known: u32, payload: &mut Payload) -> Vec<MeshSections> {
         let meshes = self.meshes.range(known..);
         meshes

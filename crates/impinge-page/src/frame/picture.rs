@@ -34,18 +34,20 @@ struct KnownShape<N: Real, const D: usize> {
 
 /// Draws frames of one stage.
 ///
-/// A frame has every pose: comparing them with earlier ones would cost as much. Meshes are looked up only for objects
-/// with a new shape, and touching objects are computed after a change of the world.
+/// A frame has every pose, since comparing them with earlier ones would cost as much. Meshes are
+/// looked up only for objects with a new shape. Touching objects are computed again only after a
+/// change of the world.
 #[derive(Debug)]
 pub(crate) struct Picture<N: Viewed<D>, const D: usize> {
     drawing: DebugDrawing<N, D>,
     units: UnitShapes<N, D>,
     meshes: MeshTable,
-    /// By the index of the handle. The slot of a removed object keeps its shape until the index is reused.
+    /// For each index of a handle, the last shape. The slot of a removed object keeps its shape
+    /// until the index is reused.
     shapes: Vec<Option<KnownShape<N, D>>>,
-    /// `None` before the first object.
+    /// The origin and size of the stage; `None` before the first object.
     framing: Option<Framing>,
-    /// By the index of the handle; `None` after a change.
+    /// For each index of a handle, whether the object touches another; `None` after a change.
     touching: Option<Vec<bool>>,
 }
 
@@ -155,7 +157,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
     }
 }
 
-/// The loop over all objects.
+/// The data for the loop over all objects.
 struct Objects<'a, N: Viewed<D>, const D: usize> {
     drawing: &'a mut DebugDrawing<N, D>,
     units: &'a UnitShapes<N, D>,
@@ -209,8 +211,9 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
     }
 }
 
-/// Returns which objects have a contact or intersect another, by the index of the handle. A loop over all manifolds,
-/// most of the time of a frame; the result is therefore kept until the world changes.
+/// Returns, for each index of a handle, whether the object has a contact or intersects another. The
+/// loop over all manifolds takes most of the time of a frame; the result is therefore kept until
+/// the world changes.
 fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Vec<bool> {
     let last = world.collision_objects().map(|object| object.handle().uid()).max();
     let mut touching = vec![false; last.map_or(0, |last| last + 1)];

@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 
 use crate::support::{Asker, Scene, all, three};
 
-/// A ball of radius 1 at the origin, one of radius 0.5 at x = 4, a box of half extents 1 at x = 10, and one of 0.5 that
-/// overlaps it by 0.25.
+/// Returns the recording of a ball of radius 1 at the origin, a ball of radius 0.5 at x = 4, a box
+/// of half extents 1 at x = 10, and a box of half extents 0.5 that overlaps it by 0.25.
 fn scene<N: Viewed<D>, const D: usize>() -> Asker {
     let mut scene = Scene::<N, D>::new(Registry::new());
     scene.add([0.0; 3], Ball::new(N::ONE));

@@ -10,7 +10,8 @@ use crate::support::{Asker, Scene, place};
 /// The number of steps of the recording.
 const STEPS: usize = 10;
 
-/// A ball of radius 1 that moves by 1 in each step, from -5 on, past one of radius 0.5 at the origin.
+/// Returns the recording of a ball of radius 1 that moves from x = -5 by 1 per step, past a ball of
+/// radius 0.5 at the origin.
 fn scene<N: Viewed<D>, const D: usize>() -> Vec<u8> {
     let mut scene = Scene::<N, D>::new(Registry::new());
     let ball = scene.add([-5.0, 0.0, 0.0], Ball::new(N::ONE));

@@ -1,4 +1,4 @@
-//! Recordings, and an engine with requests in JSON.
+//! Helpers that make recordings, and an engine with requests in JSON.
 
 use impinge::math::{Pose, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -71,22 +71,22 @@ impl<N: Recordable<D>, const D: usize> Scene<N, D> {
     }
 }
 
-/// The coordinates that the dimension has.
+/// Returns a position without rotation; in 2D the third coordinate is ignored.
 pub(crate) fn place<N: Recordable<D>, const D: usize>(at: [f64; 3]) -> N::Isometry {
     N::isometry(&Pose::from_translation(Vector::<N, D>::from_fn(|axis, _| N::lit(at[axis]))))
 }
 
-/// A vector of equal components.
+/// Returns a vector with equal components.
 pub(crate) fn all<N: Recordable<D>, const D: usize>(component: f64) -> Vector<N, D> {
     Vector::<N, D>::repeat(N::lit(component))
 }
 
-/// Numbers of four bytes of a section of a payload.
+/// Returns the floating-point numbers of a section of a payload.
 pub(crate) fn floats(section: &Value, payload: &[u8]) -> Vec<f32> {
     words(section, payload).into_iter().map(f32::from_bits).collect()
 }
 
-/// Words of a section of a payload.
+/// Returns the words of a section of a payload.
 pub(crate) fn words(section: &Value, payload: &[u8]) -> Vec<u32> {
     let [start, count] = [0, 1].map(|part| {
         usize::try_from(section[part].as_u64().expect("a section has numbers"))
@@ -96,7 +96,7 @@ pub(crate) fn words(section: &Value, payload: &[u8]) -> Vec<u32> {
     bytes.map(|four| u32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect()
 }
 
-/// Three numbers.
+/// Returns three numbers of a JSON array.
 pub(crate) fn three(value: &Value) -> [f64; 3] {
     [0, 1, 2].map(|axis| value[axis].as_f64().expect("a coordinate"))
 }

@@ -1,4 +1,4 @@
-//! Each of the four reasons why two objects do not touch.
+//! Tests each of the four reasons for which two objects do not touch.
 
 use impinge::dim2;
 use impinge::dim3;
@@ -38,7 +38,8 @@ impl Reasons {
     }
 }
 
-/// Objects on top of each other, except the last three. The filter rejects pairs of objects with the same data.
+/// Returns the recording of objects at one position, except the last three. The filter rejects
+/// pairs of objects with equal data.
 fn scene<N: Recordable<D>, const D: usize>(registry: Registry<N, D, Vec<u8>>) -> Vec<u8> {
     let [mut shy, mut other] = [CollisionGroups::new(); 2];
     shy.set_membership(&[2]);

@@ -1,9 +1,10 @@
 //! Poses as residuals: the difference of each number from a prediction.
 //!
-//! The motion of a body is predictable. Each number of a pose is predicted from the last poses of the object in several
-//! ways. The prediction used is the one whose recent residuals of this number were the shortest. The reader knows this
-//! too, so that the choice is not written. All predictions are sums, products and quotients of `f64` in one order, and
-//! are the same on every machine.
+//! The motion of a body is predictable. Each number of a pose is predicted from the last poses of
+//! the object in several ways. The way whose recent residuals of this number were the shortest is
+//! used. The reader computes the same choice from the earlier poses, so that the choice is not
+//! written. All predictions are sums, products and quotients of `f64` in a fixed order, so that
+//! every machine computes the same bits.
 
 use std::collections::BTreeMap;
 
@@ -59,8 +60,8 @@ impl Layout {
         if integer & sign == 0 { !integer & self.mask() } else { integer ^ sign }
     }
 
-    /// Returns the difference of two ordered integers modulo the bits of a number, as an unsigned number that is small
-    /// for small differences.
+    /// Returns the difference of two ordered integers, modulo 2 to the number of bits, as an
+    /// unsigned number. Small differences of either sign give small numbers.
     pub(super) const fn residual(&self, actual: u64, predicted: u64) -> u64 {
         let unused = 64 - 8 * self.scalar_bytes;
         zigzag((actual.wrapping_sub(predicted) << unused).cast_signed() >> unused)
@@ -89,12 +90,12 @@ impl Layout {
     }
 }
 
-/// The reason why an object has a new pose.
+/// The event in the recording that gives an object a new pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PoseKind {
     /// Its position was set.
     Moved,
-    /// It was added, or it is in a key frame: most likely at its last position.
+    /// The object was added, or it is in a key frame: its pose is most likely the last one.
     Placed,
 }
 

@@ -12,8 +12,8 @@ use crate::log::{Cursor, Header, Log, Raw};
 /// The bytes of an update before the flag of the hashes of objects.
 const UPDATE_BYTES: usize = 28;
 
-/// The largest length in bytes of a description that is not repeated. Otherwise a few packed bytes could unpack to
-/// many.
+/// Longer descriptions, in bytes, are written again each time. Otherwise a few packed bytes could
+/// unpack to many.
 const REPEATED_BYTES: usize = 256;
 
 /// The bytes of the descriptions of objects by index: shape, groups, query type and data.
@@ -25,7 +25,7 @@ pub(super) struct Packed {
     pub(super) streams: Streams,
     /// The number of bytes of the unpacked recording.
     pub(super) length: u64,
-    /// Its last checksum.
+    /// The last checksum of the unpacked recording.
     pub(super) checksum: u32,
 }
 
@@ -140,7 +140,7 @@ impl Packer {
     fn object(&mut self, source: &mut Source<'_>) -> Result<(), ReadError> {
         let index = self.pose(source, PoseKind::Placed)?;
         let start = source.offset();
-        // The number of the shape, and the groups.
+        // The index of the shape, and the groups.
         source.take(4 + 13)?;
         let numbers = if source.choice(2, "the kind of a query type")? == 0 { 2 } else { 1 };
         source.take(numbers * self.layout.scalar_bytes)?;
@@ -155,7 +155,7 @@ impl Packer {
         Ok(())
     }
 
-    /// Adds the index of an object, which it returns, and the pose.
+    /// Packs the index and the pose of an object; returns the index.
     fn pose(&mut self, source: &mut Source<'_>, kind: PoseKind) -> Result<u32, ReadError> {
         let index = source.word()?;
         let difference = i64::from(index) - i64::from(self.index);
@@ -167,7 +167,8 @@ impl Packer {
     }
 }
 
-/// Stores a short description, so that it is not written again.
+/// Stores the description of an object if it is short, so that it is not written again while it is
+/// unchanged.
 fn remember(descriptions: &mut Descriptions, index: u32, description: &[u8]) {
     if description.len() <= REPEATED_BYTES {
         descriptions.insert(index, description.to_vec());
@@ -281,7 +282,7 @@ impl Unpacker {
         Ok(())
     }
 
-    /// Reads the index of an object, which it returns, and the pose.
+    /// Unpacks the index and the pose of an object; returns the index.
     fn pose(&mut self, sink: &mut Sink, kind: PoseKind) -> Result<u32, ReadError> {
         let difference = from_zigzag(self.streams.pull(INDICES, Source::varint)?);
         let index = u32::try_from(i64::from(self.index).wrapping_add(difference));

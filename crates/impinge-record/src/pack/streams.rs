@@ -12,22 +12,22 @@ pub(super) const PLAIN: usize = 0;
 pub(super) const INDICES: usize = 1;
 /// The low bits of residuals, which are nearly random.
 pub(super) const BITS: usize = 2;
-/// The symbols of the first number of poses; the streams of the other numbers follow.
+/// The stream of the symbols of a pose's first number; the streams of the other numbers follow it.
 pub(super) const SYMBOLS: usize = 3;
 
 /// The slowest level of deflate except the exhaustive one.
 const LEVEL: u8 = 9;
 
-/// Numbers below this are symbols.
+/// Residuals below this are their own symbols.
 const SMALL: u64 = 16;
-/// The length in bits of the smallest other number.
+/// The length in bits of the smallest residual that is not its own symbol.
 const SHORTEST: u32 = 5;
 
 /// Streams for writing.
 #[derive(Debug)]
 pub(super) struct Streams {
     sinks: Vec<Sink>,
-    /// Bits that do not fill a byte yet: the oldest are the lowest.
+    /// The last written bits, which do not fill a byte yet; the oldest bit is the lowest.
     open: u64,
     open_bits: u32,
 }
@@ -42,8 +42,9 @@ impl Streams {
         &mut self.sinks[stream]
     }
 
-    /// Writes a residual of a number of a pose. A small one is a symbol. For a larger one the symbol encodes
-    /// the length and the two highest bits, and the other bits go to the stream of bits.
+    /// Writes the residual of one number of a pose. A residual below [`SMALL`] is its own symbol.
+    /// For a larger one the symbol encodes the length and the two highest bits, and the other bits
+    /// go to the stream [`BITS`].
     pub(super) fn residual(&mut self, number: usize, residual: u64) {
         let length = u64::BITS - residual.leading_zeros();
         let (symbol, low) = match length.checked_sub(SHORTEST) {
@@ -94,14 +95,14 @@ pub(super) struct Inflated {
 struct Stream {
     bytes: Vec<u8>,
     at: usize,
-    /// The offset of its compressed bytes.
+    /// The offset of the stream's compressed bytes in the recording.
     offset: usize,
 }
 
 impl Inflated {
-    /// Reads streams that have at most `limit` bytes together.
+    /// Reads all streams; an error if they have more than `limit` bytes together.
     pub(super) fn read(source: &mut Source<'_>, mut limit: usize) -> Result<Self, ReadError> {
-        // The last bits fill eight bytes.
+        // The last word of bits is padded to eight bytes.
         limit += 8;
         let streams = source.list(8, |source| {
             let large = source.offset();
@@ -141,7 +142,7 @@ impl Inflated {
         self.streams.get(stream).is_none_or(|stream| stream.at == stream.bytes.len())
     }
 
-    /// Reads a residual of a number of a pose.
+    /// Reads the residual of one number of a pose.
     pub(super) fn residual(&mut self, number: usize) -> Result<u64, ReadError> {
         let symbol = u64::from(self.pull(SYMBOLS + number, Source::byte)?);
         let Some(above) = symbol.checked_sub(SMALL) else { return Ok(symbol) };

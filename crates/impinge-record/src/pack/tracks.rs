@@ -4,15 +4,15 @@ use std::array;
 
 use super::poses::{Layout, PoseKind};
 
-/// The largest number of numbers of a pose.
+/// The largest number of scalars of a pose.
 pub(super) const MAX_NUMBERS: usize = 7;
 
-/// The bits of the numbers of a pose; unused ones are 0.
+/// The bits of the scalars of a pose; unused entries are 0.
 pub(super) type Bits = [u64; MAX_NUMBERS];
 
 type Numbers = [f64; MAX_NUMBERS];
 
-/// The number of predictions of a number.
+/// The number of predictions of each scalar.
 const CANDIDATES: usize = 4;
 
 /// Predictions as ordered integers.
@@ -27,8 +27,8 @@ pub(super) struct Track {
     last: Bits,
     /// The last poses, the latest first. NaN and infinities are not used for predictions.
     history: [Numbers; HISTORY],
-    /// For each number and candidate an average of the lengths of its residuals in sixteenths of a bit; the latest
-    /// residual has a weight of a quarter.
+    /// For each scalar and candidate, the average length of its residuals in sixteenths of a bit.
+    /// It is an exponential average: the latest residual has the weight 1/4.
     costs: [[u32; CANDIDATES]; MAX_NUMBERS],
 }
 
@@ -43,7 +43,8 @@ impl Track {
         let [same, others @ ..] = &mut [last; CANDIDATES];
         for (prediction, numbers) in others.iter_mut().zip(self.extrapolated(layout)) {
             for (own, number) in prediction.iter_mut().zip(numbers).take(layout.numbers) {
-                // A NaN has other bits on other machines.
+                // Numbers that are not finite are not used: the bits of a computed NaN differ
+                // between machines.
                 if number.is_finite() {
                     *own = layout.ordered(bits_of(number, layout));
                 }
@@ -60,9 +61,10 @@ impl Track {
         let mut again: Numbers = array::from_fn(|i| now[i] + (now[i] - before[i]));
         let bent = array::from_fn(|i| 3.0 * (now[i] - before[i]) + earlier[i]);
         let mean = array::from_fn(|i| now[i] + (now[i] - earliest[i]) / 4.0);
-        // The last step of the rotation repeated. For complex numbers and quaternions
-        // q1 q0^-1 q1 = (2 (q0 . q1) q1 - |q1|^2 q0) / |q0|^2.
-        // Rotations of poses are not unit to the last bit, and a small difference changes many residuals.
+        // The last step of the rotation is repeated. For complex numbers and quaternions q1 q0^-1
+        // q1 = (2 (q0 . q1) q1 - |q1|^2 q0) / |q0|^2. The formula does not assume unit length:
+        // rotations of poses deviate from it in the last bits, and small errors would change many
+        // residuals.
         let rotation = layout.dimension..layout.numbers;
         let dot = |one: &Numbers, two: &Numbers| {
             rotation.clone().fold(0.0, |sum, i| sum + one[i] * two[i])
@@ -75,7 +77,8 @@ impl Track {
         [again, bent, mean]
     }
 
-    /// Returns the prediction of the candidate with the lowest cost, the first of several.
+    /// Returns the prediction of the candidate with the lowest cost; among equal costs, of the
+    /// first one.
     pub(super) fn best(&self, number: usize, predictions: &Predictions) -> u64 {
         let costs = self.costs[number].iter().zip(predictions);
         costs.min_by_key(|(cost, _)| **cost).map_or(0, |(_, prediction)| prediction[number])

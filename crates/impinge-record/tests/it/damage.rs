@@ -14,7 +14,8 @@ fn registry() -> Registry<f32, 2, u32> {
     <f32 as Stage<2>>::registry()
 }
 
-/// A few objects, calls of several kinds and two updates, in less than a kilobyte.
+/// Returns the recording of a few objects, calls of several kinds and two updates, in less than a
+/// kilobyte.
 fn small() -> Vec<u8> {
     let mut recorder = Recorder::new(0.02_f32, registry()).expect("a usable margin");
     let ball = ShapeHandle::new(Ball::new(1.0));
@@ -60,7 +61,7 @@ fn every_flipped_byte_is_an_error() {
     }
 }
 
-/// Changed bytes with correct checksums: errors, other worlds, or the same world.
+/// Changed bytes with correct checksums give an error, another world, or an equal world.
 #[test]
 fn every_flipped_byte_with_right_checksums() {
     let bytes = small();
@@ -132,7 +133,7 @@ fn a_length_beyond_the_end_is_refused_before_memory_is_taken() {
     assert_eq!(error, ReadError { offset: 12, problem: Problem::Truncated });
 }
 
-/// Another position than the recorded one: the first step and object are reported.
+/// A recording with another position is reported with its first differing step and object.
 #[test]
 fn a_divergence_names_the_object() {
     let bytes = small();

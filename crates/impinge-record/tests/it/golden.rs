@@ -29,7 +29,8 @@ fn written<N: Stage<D>, const D: usize>() -> Vec<u8> {
     scene.recorder.finish().bytes
 }
 
-/// Without the calls of version 3 the records of version 2 are equal.
+/// Converts a recording to version 2 of the format: without the calls of version 3 only the version
+/// number differs.
 fn in_version_2(bytes: &[u8]) -> Vec<u8> {
     let mut earlier = bytes.to_vec();
     earlier[8] = 2;
@@ -73,7 +74,8 @@ fn check_engine<N: Stage<D>, const D: usize>(name: &str) {
     compare::<N, D>(&bytes, &format!("version3/{name}"));
 }
 
-/// The file has these bytes, and the replay of its recording has the same bits.
+/// Asserts that the golden file has these bytes, and that the replay of its recording has the same
+/// bits.
 fn compare<N: Stage<D>, const D: usize>(bytes: &[u8], name: &str) {
     if std::env::var_os("IMPINGE_BLESS").is_some() {
         std::fs::write(file(name), bytes).expect("the golden file can be written");

@@ -98,7 +98,7 @@ fn a_flipped_byte_is_where_the_salvaged_recording_ends() {
 
 type Balls = Recorder<f64, 2, u32>;
 
-/// Two balls of radius 1 at a distance of 1.5, and one near them.
+/// Returns two balls of radius 1 at a distance of 1.5, and one near them.
 fn balls() -> Result<Balls, impinge_record::RecordError> {
     let mut recorder = Balls::new(0.02, Registry::new())?;
     let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());

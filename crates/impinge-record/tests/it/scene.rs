@@ -91,7 +91,7 @@ impl<N: Scalar> Stage<3> for N {
     }
 }
 
-/// One of each shape.
+/// Returns one shape of each kind.
 pub(crate) fn shapes<N: Stage<D>, const D: usize>() -> Vec<ShapeHandle<N, D>> {
     let point =
         |x: f64, y: f64| Point::from(Vector::<N, D>::from_fn(|axis, _| N::lit([x, y, 0.25][axis])));
@@ -208,7 +208,7 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
         Ok(())
     }
 
-    /// Asks each question once.
+    /// Runs each question once.
     fn ask(&mut self) -> Result<(), RecordError> {
         let far = N::lit(10.0);
         let mut right = Vector::<N, D>::zeros();

@@ -1,8 +1,8 @@
-//! Rays, and solids that move along a line.
+//! Ray casts and linear casts of convex solids.
 //!
-//! The signed distance of two convex solids is the maximum over all normals of functions that are
-//! linear in the translation. So it is convex along any straight motion: its minimum is found by
-//! shrinking an interval, and the first zero before that by bisection.
+//! For a fixed normal, the separation of two convex solids is linear in the translation. The signed
+//! distance is the maximum over all normals, so it is convex along any straight motion. Its minimum
+//! is found by ternary search, and its first zero before the minimum by bisection.
 
 use super::distance::signed_distance;
 use super::point::PointMeter;
@@ -10,11 +10,12 @@ use super::pose::Pose;
 use super::solid::Solid;
 use super::vector::{add, dot, norm, scale, sub};
 
-/// The least `t >= 0` at which `origin + t * direction` is in the solid; zero if the origin is.
-/// `direction` may have any length; at length zero only the origin is asked.
+/// Returns the least `t >= 0` at which `origin + t * direction` is in the solid: zero if the origin
+/// is, `None` if the ray misses. `direction` may have any length; if it is zero, only the origin is
+/// tested.
 ///
-/// The answer is good to about 1e-14 of the distances involved. Flat solids count as 1e-12 (of
-/// these distances) thick, and so does a ray that only grazes.
+/// The time is accurate to about 1e-14 of the distances involved. A ray that passes the solid at a
+/// distance of at most 1e-12 of these distances counts as a hit, also for flat solids.
 #[must_use]
 pub fn ray_cast<const D: usize>(
     solid: &Solid<D>,
@@ -33,8 +34,8 @@ pub fn ray_cast<const D: usize>(
     }
     let along = scale(&pose.inverse_rotate(direction), 1.0 / speed);
     let height = |t: f64| meter.measure(&add(&start, &scale(&along, t))).0;
-    // Behind this the ray has left the ball around the solid; the plane of a half-space is met
-    // once, far or near.
+    // At the distance `end` along the ray, the ray has left the bounding ball of the solid. A
+    // half-space has no such ball: the hit with its plane is computed directly.
     let end = match solid {
         Solid::HalfSpace { normal } => {
             return (dot(normal, &along) < 0.0).then(|| -height(0.0) / dot(normal, &along) / speed);
@@ -44,21 +45,23 @@ pub fn ray_cast<const D: usize>(
     Descent::of(&height, end, 1e-12 * end).first.map(|t| t / speed)
 }
 
-/// What [`linear_cast`] found.
+/// The result of [`linear_cast`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cast {
-    /// The first time at which the signed distance is at most zero; zero if it is from the start.
+    /// The first time at which the signed distance is at most zero; zero if it is so at the start,
+    /// `None` if it never is.
     pub time_of_impact: Option<f64>,
-    /// The least signed distance on the path: tells a clear hit or miss from a graze, which
-    /// rounding may decide.
+    /// The least signed distance on the path. If it is near zero, the solids only graze, and
+    /// rounding may decide between hit and miss.
     pub least_distance: f64,
 }
 
 /// Moves two solids along their velocities, without rotation, from time zero to `max_time` (which
 /// may be infinite).
 ///
-/// The time is good to about 1e-14 of the distances involved, over the speed of approach; to 1e-9
-/// for cylinders and cones. A graze within 1e-12 (or 1e-9) of these distances counts as a hit.
+/// The time is accurate to about 1e-14 of the distances involved, divided by the speed of approach;
+/// for cylinders and cones to 1e-9. A pass at a distance of at most 1e-12 (for cylinders and cones
+/// 1e-9) of these distances counts as a hit.
 #[must_use]
 pub fn linear_cast<const D: usize>(
     (solid1, pose1, velocity1): (&Solid<D>, &Pose<D>, &[f64; D]),
@@ -75,8 +78,8 @@ pub fn linear_cast<const D: usize>(
     let along = scale(&velocity, 1.0 / speed);
     let between = norm(&sub(&pose2.translation, &pose1.translation));
     let reach = solid1.bounding_radius() + solid2.bounding_radius();
-    // Behind this the solids only move apart. Half-spaces keep their normal: twice the way to
-    // contact is enough.
+    // Beyond `horizon` the solids only move apart. A half-space keeps its normal, so that for it
+    // twice the distance to the contact suffices.
     let horizon = if reach.is_finite() {
         between + reach
     } else {
@@ -91,16 +94,16 @@ pub fn linear_cast<const D: usize>(
     Cast { time_of_impact: descent.first.map(|t| t / speed), least_distance: descent.least }
 }
 
-/// How a convex function falls on an interval that begins at zero.
+/// The first zero and the minimum of a convex function on an interval that begins at zero.
 struct Descent {
-    /// The first place where it is not positive.
+    /// The first argument at which the function is at most zero; `None` if it stays positive.
     first: Option<f64>,
-    /// The minimum.
+    /// The minimum value of the function.
     least: f64,
 }
 
 impl Descent {
-    /// A minimum within `thickness` of zero counts as zero.
+    /// Examines `height` on `[0, end]`. A positive minimum of at most `thickness` counts as a zero.
     fn of(height: &impl Fn(f64) -> f64, end: f64, thickness: f64) -> Self {
         let start = height(0.0);
         if end.is_nan() || end <= 0.0 || start <= 0.0 {
@@ -114,8 +117,8 @@ impl Descent {
     }
 }
 
-/// Where the minimum is of a convex function on `[0, end]`: the interval shrinks by a third at each
-/// step.
+/// Returns the argument of the minimum of a convex function on `[0, end]` by ternary search: each
+/// step removes a third of the interval.
 fn lowest_of_convex(height: &impl Fn(f64) -> f64, end: f64) -> f64 {
     let (mut low, mut high) = (0.0, end);
     for _ in 0..100 {
@@ -129,7 +132,8 @@ fn lowest_of_convex(height: &impl Fn(f64) -> f64, end: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The first t at which a function that falls on `[0, inside]` is at most `level`.
+/// Returns by bisection the first argument at which a function that decreases on `[0, inside]` is
+/// at most `level`. The value at `inside` must be at most `level`.
 fn first_below(height: &impl Fn(f64) -> f64, level: f64, inside: f64) -> f64 {
     let (mut outside, mut inside) = (0.0, inside);
     for _ in 0..100 {
@@ -201,7 +205,8 @@ mod tests {
         let too_slow = cast(&ball, &cuboid, [6.0, 0.0], [-0.03125, 0.0]);
         assert_eq!(too_slow.time_of_impact, None);
         assert!((too_slow.least_distance - 0.875).abs() < 1e-13, "{too_slow:?}");
-        // The corner meets the ball under 3, 4, 5.
+        // The corner touches the ball at offset (3, 4) from its centre: a triangle with sides 3, 4,
+        // 5.
         let corner = cast(&Solid::ball(5.0), &cuboid, [14.0, 5.0], [-1.0, 0.0]);
         assert!((corner.time_of_impact.expect("hits") - 10.0).abs() < 1e-12, "{corner:?}");
         assert_eq!(cast(&ball, &cuboid, [1.5, 0.0], [9.0, 0.0]).time_of_impact, Some(0.0));

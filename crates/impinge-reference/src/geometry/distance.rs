@@ -8,15 +8,15 @@ use super::solid::Solid;
 use super::sphere_search::{TOLERANCE, maximise};
 use super::vector::{negate, norm, perpendicular, sub};
 
-/// What [`signed_distance`] found.
+/// The result of [`signed_distance`]: a bracket of the true value, and a normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference<const D: usize> {
-    /// The signed distance is at least this: the separation along `normal`.
+    /// A lower bound of the signed distance: the separation along `normal`.
     pub lower: f64,
-    /// The signed distance is at most this.
+    /// An upper bound of the signed distance.
     pub upper: f64,
-    /// Unit, in the world frame, from the first solid to the second. One of several where the
-    /// answer is not unique; ask [`separation_along`] whether another normal is as good. `None`
+    /// The unit normal in the world frame, from the first solid to the second. If several normals
+    /// give the same distance, one of them; [`separation_along`] measures any other normal. `None`
     /// only for half-spaces that overlap without bound.
     pub normal: Option<[f64; D]>,
 }
@@ -26,32 +26,30 @@ impl<const D: usize> Reference<D> {
         Self { lower: distance, upper: distance, normal: Some(normal) }
     }
 
-    /// How far `distance` is from the nearest number that could be the truth; zero within the
-    /// bracket.
+    /// Returns the distance of `distance` from the interval `[lower, upper]`; zero within it.
     #[must_use]
     pub fn error_of(&self, distance: f64) -> f64 {
         (self.lower - distance).max(distance - self.upper).max(0.0)
     }
 }
 
-/// The signed distance of two solids: positive between disjoint ones, else minus the length of the
-/// shortest translation that separates their interiors.
+/// Computes the signed distance of two solids: positive if they are disjoint, otherwise minus the
+/// length of the shortest translation that separates their interiors.
 ///
 /// - Rounded solids (balls, capsules, polytopes, …), half-spaces, and a ball against anything:
-///   exact up to about 1e-15 times the size of the solids, `lower == upper`.
-/// - A cylinder or cone against any other solid: certified. `upper - lower` is at most about 1e-11
-///   times the size of the pair (sum of the bounding radii and of the distance of the origins),
-///   unless many directions are nearly equally good (coaxial or almost coaxial ones that
-///   interpenetrate): then up to about 1e-4 of the size, typically 1e-6, while `lower` has been
-///   within 1e-7 of the truth wherever it was checked by a longer search. Such pairs take tens of
-///   milliseconds, others about 0.1 ms.
+///   exact up to about 1e-15 times the size of the solids, with `lower == upper`.
+/// - A cylinder or cone against any other solid: a proven bracket. `upper - lower` is at most about
+///   1e-11 times the size of the pair (the bounding radii plus the distance of the origins). If
+///   many directions are nearly equally good, as for coaxial solids that interpenetrate, it is up
+///   to about 1e-4 of the size, typically 1e-6. In longer searches of such pairs `lower` was within
+///   1e-7 of the true value. They take tens of milliseconds, others about 0.1 ms.
 /// - Two half-spaces: infinite overlap (`-inf`) unless they are antiparallel to within 1e-12.
 ///
-/// Only the difference of the two translations matters, so nothing is lost far from the world
-/// origin.
+/// The solids are measured relative to the origin of the first, so that a large distance from the
+/// world origin costs no accuracy.
 ///
 /// # Panics
-/// For a cylinder or cone outside of space.
+/// For a cylinder or cone in 2D.
 #[must_use]
 pub fn signed_distance<const D: usize>(
     solid1: &Solid<D>,
@@ -88,12 +86,13 @@ pub fn signed_distance<const D: usize>(
     }
 }
 
-/// The least of `normal · b` over the second solid minus the greatest of `normal · a` over the
-/// first: a lower bound of the signed distance for every unit normal, and equal to it for the right
-/// ones. In the world frame.
+/// Returns the least of `normal · b` over the second solid minus the greatest of `normal · a` over
+/// the first, in the world frame. For every unit normal this is a lower bound of the signed
+/// distance, and for the best normal it is equal to it.
 ///
-/// The normal loss of a library's answer `(d, n)` is `d - separation_along(n)`. Minus infinity if a
-/// half-space is involved and the normal is not its own to within 1e-12.
+/// A library that returns distance `d` and normal `n` loses `d - separation_along(n)` by its
+/// normal. The result is minus infinity if a solid is a half-space and `normal` differs from its
+/// normal by more than 1e-12.
 #[must_use]
 pub fn separation_along<const D: usize>(
     solid1: &Solid<D>,
@@ -107,7 +106,8 @@ pub fn separation_along<const D: usize>(
     -solid2.extent(&near2, &negate(normal)) - solid1.extent(&near1, normal)
 }
 
-/// The answer when only one direction can give a finite one.
+/// Returns the signed distance along the only direction in which it can be finite: the normal of a
+/// half-space. The normal is `None` if the distance is infinite.
 fn along<const D: usize>(
     solid1: &Solid<D>,
     pose1: &Pose<D>,
@@ -120,7 +120,8 @@ fn along<const D: usize>(
     Reference { lower: distance, upper: distance, normal }
 }
 
-/// The signed distance of a point from a solid, and the direction from the solid to the point.
+/// Returns the signed distance of a world point from a solid, and the unit direction from the solid
+/// to the point in the world frame.
 fn from_point<const D: usize>(
     solid: &Solid<D>,
     pose: &Pose<D>,
@@ -130,7 +131,8 @@ fn from_point<const D: usize>(
     (distance, pose.rotate(&normal))
 }
 
-/// At least one of the solids is a cylinder or cone, and neither is a half-space or ball.
+/// Computes the signed distance by a search over the sphere of directions. At least one solid is a
+/// cylinder or cone, and neither is a half-space or ball.
 fn curved<const D: usize>(
     solid1: &Solid<D>,
     pose1: &Pose<D>,
@@ -164,8 +166,8 @@ fn curved<const D: usize>(
     }
 }
 
-/// Normals of faces and directions of edges that may matter; the axis of a curved solid counts as
-/// both.
+/// Returns face normals and edge directions in the world frame, as start values of the search. The
+/// axis of a cylinder or cone counts as both.
 fn guesses<const D: usize>(solid: &Solid<D>, pose: &Pose<D>) -> (Vec<[f64; D]>, Vec<[f64; D]>) {
     match solid {
         Solid::Rounded { vertices, .. } => {
@@ -179,8 +181,8 @@ fn guesses<const D: usize>(solid: &Solid<D>, pose: &Pose<D>) -> (Vec<[f64; D]>, 
     }
 }
 
-/// The same vector in a type of the same dimension; both dimensions are three, which only the
-/// caller knows.
+/// Converts a vector between two array types that both have length three. The compiler does not
+/// know that `D` is 3 here.
 fn convert<const FROM: usize, const TO: usize>(v: &[f64; FROM]) -> [f64; TO] {
     std::array::from_fn(|i| v[i])
 }
@@ -235,7 +237,7 @@ mod tests {
     fn crossing_capsules() {
         let lying = Solid::capsule([-3.0, 0.0, 0.0], [3.0, 0.0, 0.0], 0.5);
         let deep = Solid::capsule([0.0, -2.0, 0.0], [0.0, 2.0, 0.0], 0.25);
-        // The axes cross at a distance of 0.3, then cut each other, then lie in one line.
+        // The axes first cross at a distance of 0.3, then intersect, and then lie on one line.
         assert_eq!(exact(&lying, [0.0; 3], &deep, [0.0, 0.0, 0.3]), (0.3 - 0.75, [0.0, 0.0, 1.0]));
         assert_eq!(exact(&lying, [0.0; 3], &deep, [0.0; 3]).0, -0.75);
         let (depth, normal) = exact(&lying, [0.0; 3], &lying, [1.0, 0.0, 0.0]);
@@ -313,7 +315,8 @@ mod tests {
         );
     }
 
-    /// The search over the sphere and the enumeration of features share no step: they must agree.
+    /// The search over the sphere and the enumeration of features share no code: their results must
+    /// agree.
     #[test]
     fn search_agrees_with_enumeration() {
         let mut random = Random::new(7);
@@ -335,7 +338,7 @@ mod tests {
         assert!((15..=45).contains(&hits), "hits {hits}");
     }
 
-    /// Needles, plates, flat boxes, nearly parallel edges, and contact up to rounding.
+    /// Covers needles, plates, flat boxes, nearly parallel edges, and contact up to rounding.
     #[test]
     fn search_agrees_on_degenerate_boxes() {
         let mut random = Random::new(13);
@@ -356,7 +359,8 @@ mod tests {
         assert!((20..=80).contains(&hits), "hits {hits}");
     }
 
-    /// The certificate, held against directions near the answer and everywhere else.
+    /// Compares the bracket with the separation along random directions, near the returned normal
+    /// and everywhere else.
     #[test]
     fn random_directions_never_beat_the_answer() {
         let mut random = Random::new(11);

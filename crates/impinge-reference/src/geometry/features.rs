@@ -1,26 +1,25 @@
-//! The corners, edges and faces of a convex hull, found without any topology: a plane through D
-//! corners that has all others on one side is a face, and two corners that share two faces are
-//! joined by an edge.
+//! Computes the corners, edges and faces of a convex hull without any topology. A plane through D
+//! corners with all others on one side is a face. Two corners that share two faces are joined by an
+//! edge.
 //!
-//! The lists may hold more than the true features (a diagonal of a face that is flat up to
-//! rounding); they never hold less. That is harmless, since every direction that is derived from
-//! them is only tried, never trusted.
+//! The lists contain every true feature, and may contain more, such as a diagonal of a face that is
+//! flat up to rounding. Extra features do no harm: each gives one more candidate direction, whose
+//! separation is then measured.
 
 use super::pose::Pose;
 use super::vector::{axis, dot, norm, perpendicular, scale, sub, unit};
 
-/// What a hull can touch another hull with.
+/// The vertices, edges and face normals of a convex hull.
 #[derive(Clone, Debug)]
 pub(super) struct Features<const D: usize> {
-    /// All given points, each once.
+    /// The distinct points, in the order of their first appearance; interior points are kept.
     pub(super) vertices: Vec<[f64; D]>,
-    /// One point and the unit direction of each edge; empty in the plane, where the edges are the
-    /// faces.
+    /// For each edge, one end and the unit direction. Empty in 2D, where the edges are the faces.
     pub(super) edges: Vec<([f64; D], [f64; D])>,
-    /// Each direction of an edge once; the opposite direction counts as the same.
+    /// The unit directions of the edges without repetition. Opposite directions count as equal.
     pub(super) directions: Vec<[f64; D]>,
-    /// A unit normal of each face, of either sign. Where the points lie on a line in space or
-    /// coincide: some directions perpendicular to them.
+    /// A unit normal of each face, of either sign. If the points lie on a line in 3D, or coincide,
+    /// some directions perpendicular to the line, or the axes.
     pub(super) normals: Vec<[f64; D]>,
 }
 
@@ -29,13 +28,14 @@ struct Face<const D: usize> {
     normal: [f64; D],
     /// The indices of the points on the plane.
     on: Vec<usize>,
-    /// How far from collinear the defining points are; the normal is the better the larger this is.
+    /// The norm of the product of the scaled sides at the first defining point: 0 if the defining
+    /// points are collinear. The larger it is, the more accurate is the normal.
     quality: f64,
 }
 
 impl<const D: usize> Features<D> {
-    /// All features of the convex hull of `points`. The cost grows with the fourth power of their
-    /// number in space.
+    /// Computes all features of the convex hull of `points`. In 3D the time grows with the fourth
+    /// power of the number of points.
     pub(super) fn new(points: &[[f64; D]]) -> Self {
         let vertices = distinct(points);
         let faces = faces(&vertices);
@@ -49,7 +49,7 @@ impl<const D: usize> Features<D> {
         Self { vertices, edges, directions, normals }
     }
 
-    /// The same features in another frame.
+    /// Returns the features transformed by `pose`.
     pub(super) fn placed(&self, pose: &Pose<D>) -> Self {
         let rotate = |list: &[[f64; D]]| list.iter().map(|v| pose.rotate(v)).collect();
         Self {
@@ -61,7 +61,7 @@ impl<const D: usize> Features<D> {
     }
 }
 
-/// The points without exact repetitions, in the order of their first appearance.
+/// Returns the points without exact repetitions, in the order of their first appearance.
 fn distinct<const D: usize>(points: &[[f64; D]]) -> Vec<[f64; D]> {
     let mut kept: Vec<[f64; D]> = Vec::new();
     for point in points {
@@ -72,7 +72,8 @@ fn distinct<const D: usize>(points: &[[f64; D]]) -> Vec<[f64; D]> {
     kept
 }
 
-/// One face per set of coplanar corners: the one whose defining points are farthest from collinear.
+/// Returns one face for each set of coplanar corners, through those defining corners that give the
+/// largest `quality`.
 fn faces<const D: usize>(vertices: &[[f64; D]]) -> Vec<Face<D>> {
     let size = vertices.iter().map(|v| norm(&sub(v, &vertices[0]))).fold(0.0, f64::max);
     let mut kept: Vec<Face<D>> = Vec::new();
@@ -87,7 +88,7 @@ fn faces<const D: usize>(vertices: &[[f64; D]]) -> Vec<Face<D>> {
     kept
 }
 
-/// All sets of `size` indices below `count`, each in ascending order; `size` is 2 or 3.
+/// Returns all sets of `size` indices below `count`, each in ascending order; `size` is 2 or 3.
 fn subsets(count: usize, size: usize) -> Vec<Vec<usize>> {
     let mut sets: Vec<Vec<usize>> = (0..count).map(|i| vec![i]).collect();
     for _ in 1..size {
@@ -102,12 +103,12 @@ fn subsets(count: usize, size: usize) -> Vec<Vec<usize>> {
     sets
 }
 
-/// The plane through some corners, if no corner lies in front of it (with the normal of one sign or
-/// of the other).
+/// Returns the plane through D corners if all other corners lie on one side of it or on it. Returns
+/// `None` if corners lie on both sides, or if the D corners are coincident or collinear.
 ///
-/// Corners count as lying on the plane within the rounding of the heights above it, which grows
-/// when the defining corners are nearly collinear. `size` is the largest distance of a corner from
-/// the first.
+/// A corner counts as on the plane if its height is within the rounding error, which grows as `1 /
+/// quality`. `size` is the largest distance of a corner from the first corner. The sign of the
+/// normal is arbitrary.
 fn face_through<const D: usize>(
     vertices: &[[f64; D]],
     corners: &[usize],
@@ -141,8 +142,8 @@ fn face_through<const D: usize>(
     Some(Face { normal, on, quality })
 }
 
-/// The pairs of corners that share two faces; all pairs if the corners lie in one plane or on one
-/// line.
+/// Returns a point and the unit direction of each edge: pairs of corners that share two faces. If
+/// all corners lie in one plane or on one line, all pairs count as edges.
 fn edges<const D: usize>(vertices: &[[f64; D]], faces: &[Face<D>]) -> Vec<([f64; D], [f64; D])> {
     let flat = faces.iter().all(|face| face.on.len() == vertices.len());
     let shares = |i: usize, j: usize| {
@@ -158,7 +159,8 @@ fn edges<const D: usize>(vertices: &[[f64; D]], faces: &[Face<D>]) -> Vec<([f64;
         .collect()
 }
 
-/// The directions of the edges without parallel ones (exactly parallel up to a few roundings).
+/// Returns the directions of the edges without those that are parallel to an earlier one within
+/// 1e-15.
 fn distinct_lines<const D: usize>(edges: &[([f64; D], [f64; D])]) -> Vec<[f64; D]> {
     let mut kept: Vec<[f64; D]> = Vec::new();
     for (_, direction) in edges {
@@ -173,7 +175,8 @@ fn distinct_lines<const D: usize>(edges: &[([f64; D], [f64; D])]) -> Vec<[f64; D
     kept
 }
 
-/// Directions perpendicular to a line in space, or all axes for a single point.
+/// Returns directions perpendicular to the lines in 3D; all axes if there is no line, which is a
+/// single point.
 fn normals_of_a_line_or_point<const D: usize>(directions: &[[f64; D]]) -> Vec<[f64; D]> {
     let axes: Vec<[f64; D]> = (0..D).map(axis).collect();
     if directions.is_empty() {

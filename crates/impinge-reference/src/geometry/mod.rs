@@ -1,8 +1,8 @@
-//! Convex solids in the plane and in space, and the questions one can ask about them.
+//! Convex solids in 2D and 3D, and geometric queries about them.
 //!
-//! Sign: a signed distance is positive between disjoint solids, and minus the length of the
-//! shortest translation that separates the interiors otherwise. Normals are unit, in the world
-//! frame, and point from the first solid to the second.
+//! Sign: a signed distance is positive if the solids are disjoint. Otherwise it is minus the length
+//! of the shortest translation that separates the interiors. Normals are unit vectors in the world
+//! frame, from the first solid to the second.
 
 mod cast;
 mod distance;

@@ -1,4 +1,4 @@
-//! Points against one solid.
+//! Signed distances of points from one solid.
 
 use super::features::Features;
 use super::polytope;
@@ -17,14 +17,14 @@ pub struct PointMeter<const D: usize> {
 enum Core<const D: usize> {
     Plane([f64; D]),
     Polytope(Features<D>),
-    /// A solid of revolution about the y axis, by its section with a half-plane through the axis
-    /// and the mirror image of that. The closest points lie in the half-plane of the point, so the
-    /// question is one of the plane.
+    /// A solid of revolution about the y axis, given by its section with a plane through the axis.
+    /// The closest point lies in the half-plane of the axis and the query point, so that a 2D query
+    /// suffices.
     Revolved(Features<2>),
 }
 
 impl<const D: usize> PointMeter<D> {
-    /// Prepares the features of the solid.
+    /// Computes the features of the solid once, for many points.
     #[must_use]
     pub fn new(solid: &Solid<D>) -> Self {
         let core = match solid {
@@ -40,9 +40,9 @@ impl<const D: usize> PointMeter<D> {
         Self { core, radius: solid.radius() }
     }
 
-    /// The signed distance of a local point, and a unit direction from the solid to the point: the
-    /// shortest way out if the point lies inside. On an edge or a corner, or in the middle, it is
-    /// one of several.
+    /// Returns the signed distance of a local point, negative inside, and a unit direction.
+    /// Outside, the direction leads from the solid to the point; inside, along the shortest way
+    /// out. On an edge or vertex, or if several ways out are equally short, it is one of several.
     #[must_use]
     pub fn measure(&self, point: &[f64; D]) -> (f64, [f64; D]) {
         let (distance, normal) = match &self.core {
@@ -54,7 +54,8 @@ impl<const D: usize> PointMeter<D> {
     }
 }
 
-/// The distance from a solid of revolution, in the plane through the axis and the point.
+/// Computes the signed distance and direction from a solid of revolution, in the plane through the
+/// axis and the point.
 fn measure_revolved<const D: usize>(section: &Features<2>, point: &[f64; D]) -> (f64, [f64; D]) {
     let mut outward: [f64; D] = std::array::from_fn(|i| if i == 1 { 0.0 } else { point[i] });
     let from_axis = norm(&outward);
@@ -69,7 +70,7 @@ fn measure_revolved<const D: usize>(section: &Features<2>, point: &[f64; D]) -> 
     (distance, normal)
 }
 
-/// The signed distance of a world point from a solid: negative inside.
+/// Returns the signed distance of a world point from a solid: negative inside.
 #[must_use]
 pub fn point_signed_distance<const D: usize>(
     solid: &Solid<D>,
@@ -79,7 +80,7 @@ pub fn point_signed_distance<const D: usize>(
     PointMeter::new(solid).measure(&pose.inverse_apply(point)).0
 }
 
-/// Whether a world point lies in the solid or on its surface, as far as rounding lets one tell.
+/// Whether a world point lies in the solid or on its surface, up to rounding.
 #[must_use]
 pub fn contains_point<const D: usize>(solid: &Solid<D>, pose: &Pose<D>, point: &[f64; D]) -> bool {
     point_signed_distance(solid, pose, point) <= 0.0
@@ -106,7 +107,7 @@ mod tests {
         assert_eq!(point_signed_distance(&cylinder, &pose, &[0.0, 0.0, 0.0]), -2.0);
         assert_eq!(point_signed_distance(&cylinder, &pose, &[0.0, 0.0, 2.5]), -0.5);
         assert_eq!(point_signed_distance(&cylinder, &pose, &[6.0, 6.0, 0.0]), 5.0);
-        // The mantle of this cone has the slope 4 / 3: its normal is (0.8, 0.6).
+        // The lateral surface of this cone has the slope 4 / 3, so that its normal is (0.8, 0.6).
         let cone = Solid::Cone { half_height: 2.0, radius: 3.0 };
         let beside_mantle = [1.5 + 0.8, 0.6, 0.0];
         assert!((point_signed_distance(&cone, &pose, &beside_mantle) - 1.0).abs() < 1e-15);

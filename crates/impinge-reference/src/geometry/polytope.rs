@@ -1,16 +1,18 @@
-//! Signed distance of two convex polytopes by trying every direction that can be the answer.
+//! Signed distance of two convex polytopes by testing every candidate direction.
 //!
 //! The signed distance is the maximum of `h(n) = min n·b - max n·a` over the unit vectors n, with a
-//! in the first and b in the second polytope. Where is that maximum?
+//! in the first and b in the second polytope. The maximum is taken in one of these directions:
 //!
-//! - Disjoint: the line between the closest points, hence perpendicular to the features that hold
-//!   them: corner and corner, corner and edge, corner and face, edge and edge.
-//! - Interpenetrating: the normal of a face of the Minkowski difference, hence a face normal of one
-//!   of the two, or perpendicular to an edge of each.
-//! - The difference is flat (both polytopes lie in one plane, or on one line) and holds the origin:
-//!   the depth is zero, along the thin direction, which is again one of those above.
+//! - If the polytopes are disjoint: along the line between the closest points. It is perpendicular
+//!   to the features of these points: vertex and vertex, vertex and edge, vertex and face, or edge
+//!   and edge.
+//! - If they interpenetrate: along the normal of a face of the Minkowski difference. This is a face
+//!   normal of one polytope, or perpendicular to an edge of each.
+//! - If the difference is flat (both polytopes lie in one plane, or on one line) and contains the
+//!   origin, the depth is zero along the thin direction, which is also a direction of the two kinds
+//!   above.
 //!
-//! No tried direction gives more than the truth, so a direction too many costs nothing but time.
+//! No direction gives more than the signed distance, so that superfluous directions cost time only.
 
 use super::features::Features;
 use super::vector::{dot, negate, norm, perpendicular, reject, sub, unit};
@@ -24,7 +26,7 @@ struct Best<'a, const D: usize> {
 }
 
 impl<const D: usize> Best<'_, D> {
-    /// Tries a direction and its opposite, at any length; skips the zero vector.
+    /// Tests a direction of any length and its opposite; ignores the zero vector.
     fn try_line(&mut self, direction: &[f64; D]) {
         let Some(normal) = unit(direction) else { return };
         let (least1, greatest1) = interval(self.vertices1, &normal);
@@ -41,7 +43,7 @@ impl<const D: usize> Best<'_, D> {
     }
 }
 
-/// The range of `normal · v` over some points.
+/// Returns the least and the greatest `normal · v` over the points.
 fn interval<const D: usize>(vertices: &[[f64; D]], normal: &[f64; D]) -> (f64, f64) {
     let mut range = (f64::INFINITY, f64::NEG_INFINITY);
     for vertex in vertices {
@@ -51,8 +53,8 @@ fn interval<const D: usize>(vertices: &[[f64; D]], normal: &[f64; D]) -> (f64, f
     range
 }
 
-/// The signed distance of two polytopes in one frame, and a normal from the first to the second
-/// along which it is measured. Exact up to a few roundings of the coordinates.
+/// Returns the signed distance of two polytopes in one frame, and the unit normal from the first to
+/// the second along which it is measured. Accurate to a few roundings of the coordinates.
 pub(super) fn distance<const D: usize>(one: &Features<D>, two: &Features<D>) -> (f64, [f64; D]) {
     let mut best = Best {
         vertices1: &one.vertices,
@@ -61,9 +63,9 @@ pub(super) fn distance<const D: usize>(one: &Features<D>, two: &Features<D>) -> 
         normal: [0.0; D],
     };
     try_face_directions(&mut best, one, two);
-    // If the origin lies strictly behind all faces of the difference then it lies inside: the rest
-    // would only find less deep candidates again. (For a flat difference the thin direction keeps
-    // this above zero.)
+    // If the origin lies strictly behind all faces of the difference, it lies inside. The
+    // directions from corners would then only give smaller values. (A flat difference has a thin
+    // direction with height zero or more, so that it is not skipped.)
     let size = one.vertices.iter().chain(&two.vertices).map(norm).fold(0.0, f64::max);
     if best.distance >= -1e-12 * size {
         try_corner_directions(&mut best, one, two);
@@ -71,7 +73,7 @@ pub(super) fn distance<const D: usize>(one: &Features<D>, two: &Features<D>) -> 
     (best.distance, best.normal)
 }
 
-/// The normals of the faces of the Minkowski difference.
+/// Tests the normals of the faces of the Minkowski difference.
 fn try_face_directions<const D: usize>(
     best: &mut Best<'_, D>,
     one: &Features<D>,
@@ -87,7 +89,7 @@ fn try_face_directions<const D: usize>(
     }
 }
 
-/// The lines from the corners of one polytope to the corners and edges of the other.
+/// Tests the lines from the corners of one polytope to the corners and edges of the other.
 fn try_corner_directions<const D: usize>(
     best: &mut Best<'_, D>,
     one: &Features<D>,

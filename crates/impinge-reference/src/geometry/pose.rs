@@ -2,54 +2,54 @@
 
 use super::vector::{add, axis, dot, norm, sub};
 
-/// Where a solid stands: `world = rotation * local + translation`.
+/// A position of a solid: `world = rotation * local + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<const D: usize> {
-    /// The rows of the rotation matrix. Rows and columns are unit and perpendicular, the
-    /// determinant is +1; nothing checks that.
+    /// The rows of the rotation matrix. The matrix must be orthogonal with determinant +1, which is
+    /// not checked.
     pub rotation: [[f64; D]; D],
     /// The world position of the local origin.
     pub translation: [f64; D],
 }
 
 impl<const D: usize> Pose<D> {
-    /// World and local frame are the same.
+    /// Returns the pose whose local frame is the world frame.
     #[must_use]
     pub fn identity() -> Self {
         Self::at([0.0; D])
     }
 
-    /// No rotation.
+    /// Returns a pose without rotation.
     #[must_use]
     pub fn at(translation: [f64; D]) -> Self {
         Self { rotation: std::array::from_fn(axis), translation }
     }
 
-    /// The vector `v`, given in the local frame, in the world frame.
+    /// Rotates the vector `v` from the local to the world frame.
     #[must_use]
     pub fn rotate(&self, v: &[f64; D]) -> [f64; D] {
         std::array::from_fn(|row| dot(&self.rotation[row], v))
     }
 
-    /// The vector `v`, given in the world frame, in the local frame.
+    /// Rotates the vector `v` from the world to the local frame.
     #[must_use]
     pub fn inverse_rotate(&self, v: &[f64; D]) -> [f64; D] {
         std::array::from_fn(|column| (0..D).map(|row| self.rotation[row][column] * v[row]).sum())
     }
 
-    /// The point `p`, given in the local frame, in the world frame.
+    /// Transforms the point `p` from the local to the world frame.
     #[must_use]
     pub fn apply(&self, p: &[f64; D]) -> [f64; D] {
         add(&self.rotate(p), &self.translation)
     }
 
-    /// The point `p`, given in the world frame, in the local frame.
+    /// Transforms the point `p` from the world to the local frame.
     #[must_use]
     pub fn inverse_apply(&self, p: &[f64; D]) -> [f64; D] {
         self.inverse_rotate(&sub(p, &self.translation))
     }
 
-    /// The pose of something that stands at `local` in the frame of `self`.
+    /// Returns the world pose of an object whose pose in the frame of `self` is `local`.
     #[must_use]
     pub fn compose(&self, local: &Self) -> Self {
         let columns: [[f64; D]; D] =
@@ -60,7 +60,7 @@ impl<const D: usize> Pose<D> {
         }
     }
 
-    /// The same pose moved by the world vector `by`.
+    /// Returns the pose translated by the world vector `by`.
     #[must_use]
     pub fn moved(&self, by: &[f64; D]) -> Self {
         Self { rotation: self.rotation, translation: add(&self.translation, by) }
@@ -68,14 +68,14 @@ impl<const D: usize> Pose<D> {
 }
 
 impl Pose<2> {
-    /// Turned to the left by `angle` radians.
+    /// Returns the pose with a counter-clockwise rotation by `angle` radians.
     #[must_use]
     pub fn from_angle(translation: [f64; 2], angle: f64) -> Self {
         Self::from_complex(translation, [angle.cos(), angle.sin()])
     }
 
-    /// Turned by the angle of the complex number `[cosine, sine]`, which is brought to length one
-    /// first.
+    /// Returns the pose with the rotation of the complex number `[cosine, sine]`, which is
+    /// normalized first.
     #[must_use]
     pub fn from_complex(translation: [f64; 2], complex: [f64; 2]) -> Self {
         let length = norm(&complex);
@@ -85,7 +85,8 @@ impl Pose<2> {
 }
 
 impl Pose<3> {
-    /// Turned by the quaternion `[x, y, z, w]`, which is brought to length one first.
+    /// Returns the pose with the rotation of the quaternion `[x, y, z, w]`, which is normalized
+    /// first.
     #[must_use]
     pub fn from_quaternion(translation: [f64; 3], quaternion: [f64; 4]) -> Self {
         let length = norm(&quaternion);

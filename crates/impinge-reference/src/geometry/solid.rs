@@ -1,4 +1,4 @@
-//! The convex solids that the reference knows.
+//! The convex solids of the reference.
 
 use super::pose::Pose;
 use super::vector::{add, axis, dot, negate, norm, scale, sub, unit};
@@ -8,27 +8,26 @@ use super::vector::{add, axis, dot, negate, norm, scale, sub, unit};
 pub enum Solid<const D: usize> {
     /// All points within `radius` of the convex hull of `vertices`.
     ///
-    /// Points that are not corners of the hull, coincident, collinear and coplanar vertices do no
-    /// harm.
+    /// Vertices may be coincident, collinear, coplanar or inside the hull.
     Rounded {
-        /// At least one point.
+        /// The vertices; at least one.
         vertices: Vec<[f64; D]>,
-        /// Not negative; zero for a plain polytope.
+        /// The radius, zero or more; zero for a polytope.
         radius: f64,
     },
     /// All points with `normal · x <= 0`.
     HalfSpace {
-        /// Unit.
+        /// The outward unit normal.
         normal: [f64; D],
     },
-    /// All points with `|y| <= half_height` that are within `radius` of the y axis. Space only.
+    /// All points with `|y| <= half_height` within `radius` of the y axis; 3D only.
     Cylinder {
         /// Half the length along the axis.
         half_height: f64,
         /// The radius of the disks.
         radius: f64,
     },
-    /// The hull of the apex at `y = half_height` and the disk at `y = -half_height`. Space only.
+    /// The hull of the apex at `y = half_height` and the disk at `y = -half_height`; 3D only.
     Cone {
         /// Half the length along the axis.
         half_height: f64,
@@ -92,10 +91,10 @@ impl<const D: usize> Solid<D> {
         Self::HalfSpace { normal: unit(&normal).expect("the normal is not zero") }
     }
 
-    /// How far the solid reaches along `direction`: the maximum of `direction · x` over its world
-    /// points.
+    /// Returns the extent of the solid along `direction`: the maximum of `direction · x` over its
+    /// world points.
     ///
-    /// Infinite for a half-space, unless the direction is its normal to within 1e-12.
+    /// Infinite for a half-space, unless `direction` is its normal to within 1e-12.
     #[must_use]
     pub fn extent(&self, pose: &Pose<D>, direction: &[f64; D]) -> f64 {
         let local = pose.inverse_rotate(direction);
@@ -110,8 +109,9 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// The smallest axis-aligned box around the solid, as its least and greatest corner. A
-    /// half-space that is not aligned with an axis reaches to infinity on all sides.
+    /// Returns the least and the greatest corner of the smallest axis-aligned box around the solid.
+    /// The box of a half-space is bounded only on the side of its normal, and unbounded on all
+    /// sides if the normal is not along an axis.
     #[must_use]
     pub fn aabb(&self, pose: &Pose<D>) -> ([f64; D], [f64; D]) {
         (
@@ -120,7 +120,7 @@ impl<const D: usize> Solid<D> {
         )
     }
 
-    /// The thickness of the rounding.
+    /// Returns the radius by which the core is inflated; zero for half-spaces, cylinders and cones.
     #[must_use]
     pub fn radius(&self) -> f64 {
         match self {
@@ -129,7 +129,7 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// The radius of a ball about the local origin that holds the solid.
+    /// Returns the radius of a ball about the local origin that contains the solid.
     #[must_use]
     pub fn bounding_radius(&self) -> f64 {
         match self {
@@ -143,16 +143,17 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// The maximum of `direction · x` over the solid without its rounding, in the local frame.
+    /// Returns the maximum of `direction · x` over the core (the solid without its radius), in the
+    /// local frame.
     pub(super) fn core_extent(&self, direction: &[f64; D]) -> f64 {
         dot(&self.core_support(direction), direction)
     }
 
-    /// A point of the solid without its rounding that lies farthest along `direction`, in the local
-    /// frame.
+    /// Returns a support point of the core (the solid without its radius) along `direction`, in the
+    /// local frame.
     ///
     /// # Panics
-    /// For a half-space, which has none.
+    /// For a half-space, which has no support point.
     pub(super) fn core_support(&self, direction: &[f64; D]) -> [f64; D] {
         match self {
             Self::Rounded { vertices, .. } => *vertices
@@ -173,8 +174,8 @@ impl<const D: usize> Solid<D> {
     }
 }
 
-/// The point of the circle about the y axis that lies farthest along `direction`; its centre if no
-/// point does.
+/// Returns the point of the circle about the y axis that is farthest along `direction`; its centre
+/// if `direction` is parallel to the axis.
 fn rim<const D: usize>(direction: &[f64; D], radius: f64) -> [f64; D] {
     let flat = std::array::from_fn(|i| if i == 1 { 0.0 } else { direction[i] });
     unit(&flat).map_or([0.0; D], |outward| scale(&outward, radius))

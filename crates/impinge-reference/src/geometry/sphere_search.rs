@@ -1,29 +1,29 @@
-//! The maximum of a separation function over all directions of space, with a certificate.
+//! The maximum of a separation function over all directions in 3D, with a proven upper bound.
 //!
 //! For a convex set M given by support points, let `h(n) = min n·m` over m in M. The sphere of
-//! directions is cut into eight triangles, and each of them again and again into four, as long as
-//! it may hold something better than the best direction found so far. No local search that could be
-//! trapped, no topology.
+//! directions is divided into eight spherical triangles. A triangle is divided into four as long as
+//! its upper bound exceeds the best value found so far. The search uses neither local optimization,
+//! which may stop at a local maximum, nor topology.
 //!
-//! Bound of a triangle with the corners n1, n2, n3: for any m in M, `h(n) <= n·m`. A unit n of the
-//! triangle is `Σ λᵢ nᵢ / |Σ λᵢ nᵢ|` with λ >= 0 and Σ λ = 1, so `h(n) <= max nᵢ·m / |Σ λᵢ nᵢ|`.
-//! The length below the fraction is at most 1, and at least the distance of the flat triangle from
-//! the origin. The bound holds for every m; it is best for one on the triangle of the support
-//! points of the corners, found as the value of a 3 x 3 matrix game.
+//! Upper bound of a triangle with the corners n1, n2, n3: for any m in M, `h(n) <= n·m`. A unit n
+//! of the triangle is `Σ λᵢ nᵢ / |Σ λᵢ nᵢ|` with λ >= 0 and Σ λ = 1, so `h(n) <= max nᵢ·m / |Σ λᵢ
+//! nᵢ|`. The denominator is at most 1, and at least the distance of the flat triangle from the
+//! origin. The bound holds for every m. It is least for a point of the triangle of the three
+//! support points, which is found as the value of a 3 x 3 matrix game.
 
 use super::vector::{add, dot, negate, perpendicular, scale, sub, unit};
 
 type Vector = [f64; 3];
 
-/// The share of the size of the problem that searches give up in the end.
+/// The search stops when at most this share of `size` can still be gained.
 pub(crate) const TOLERANCE: f64 = 1e-11;
-/// Caps on the depth of the cutting and on the triangles of one depth. The second is only met when
-/// the maximum is taken on a whole curve or region, such as for coaxial cylinders; the certificate
-/// is wider then.
+/// Limits of the depth of subdivision, and of the number of triangles at one depth. The second is
+/// reached only if the maximum is taken on a whole curve or region, such as for coaxial cylinders.
+/// The bracket is then wider.
 const MAX_DEPTH: usize = 40;
 const MAX_CELLS: usize = 10_000;
 
-/// The maximum lies between `lower`, which is `h(normal)`, and `upper`.
+/// A bracket of the maximum: it lies between `lower`, which is `h(normal)`, and `upper`.
 pub(crate) struct Bracket {
     pub(crate) lower: f64,
     pub(crate) upper: f64,
@@ -32,11 +32,11 @@ pub(crate) struct Bracket {
 
 /// A spherical triangle of directions.
 struct Cell {
-    /// Unit.
+    /// The corners, as unit vectors.
     corners: [Vector; 3],
-    /// No direction of the triangle has a larger h.
+    /// An upper bound of h over the directions of the triangle.
     bound: f64,
-    /// A direction that promises to have a large h.
+    /// The direction at which h is evaluated next: a guess of the maximum within the triangle.
     promising: Vector,
 }
 
@@ -47,9 +47,9 @@ struct Search<'a> {
     normal: Vector,
 }
 
-/// Maximises h. `seeds` are directions worth a try at the start, of any length; they only save
-/// time. `size` is a length of the problem: the radius of M. The search stops when at most the share
-/// `tolerance` of it can still be gained.
+/// Maximises h. `lowest` maps a direction n to a point m of M with the least `n·m`. `seeds` are
+/// start directions of any length, which only save time. `size` is the radius of M. The search
+/// stops when at most `tolerance · size` can still be gained.
 pub(crate) fn maximise(
     lowest: &dyn Fn(&Vector) -> Vector,
     seeds: &[Vector],
@@ -62,7 +62,7 @@ pub(crate) fn maximise(
         search.try_direction(&negate(seed));
     }
     let mut cells = search.octants();
-    // The best bound among the triangles that were thrown away.
+    // The largest upper bound of the discarded triangles.
     let mut discarded = f64::NEG_INFINITY;
     for _ in 0..MAX_DEPTH {
         for cell in &cells {
@@ -83,7 +83,8 @@ pub(crate) fn maximise(
 }
 
 impl Search<'_> {
-    /// Evaluates h for one direction, remembers the best, and gives the support point.
+    /// Evaluates h for one direction and keeps it if it is the best so far. Returns the support
+    /// point.
     fn probe(&mut self, normal: &Vector) -> Vector {
         let support = (self.lowest)(normal);
         let height = dot(normal, &support);
@@ -100,7 +101,7 @@ impl Search<'_> {
         }
     }
 
-    /// The eight triangles that the axes cut out.
+    /// Returns the eight triangles between the coordinate axes.
     fn octants(&mut self) -> Vec<Cell> {
         let signs = [-1.0, 1.0];
         let mut cells = Vec::new();
@@ -114,7 +115,7 @@ impl Search<'_> {
         cells
     }
 
-    /// The four parts of a triangle: one at each corner and one in the middle.
+    /// Divides a triangle into four: one at each corner and one in the middle.
     fn cut(&mut self, cell: &Cell) -> [Cell; 4] {
         let [a, b, c] = cell.corners;
         let middle = |p: &Vector, q: &Vector| unit(&add(p, q)).expect("corners are never opposite");
@@ -132,20 +133,21 @@ impl Search<'_> {
             point = add(&point, &scale(support, weight));
         }
         let promising = promising(&corners, &supports, &point);
-        // A bound that is not a number promises everything rather than nothing.
+        // If the bound is NaN, the triangle is kept: its bound becomes infinite.
         let bound = if bound.is_nan() { f64::INFINITY } else { bound };
         Cell { corners, bound, promising }
     }
 }
 
-/// The distance of the plane of three unit vectors from the origin.
+/// Returns the distance from the origin of the plane through three unit vectors.
 fn flatness([a, b, c]: &[Vector; 3]) -> f64 {
     unit(&perpendicular(&[sub(b, a), sub(c, a)])).map_or(1.0, |normal| dot(&normal, a).abs())
 }
 
-/// Where the maximum of a triangle may well be: along the normal of the plane of the support points
-/// (right when M has a face there), or else along the lowest point of that plane's triangle (right
-/// when M is round there).
+/// Returns a direction at which the maximum within a triangle may lie. It is the normal of the
+/// plane of the support points, which is exact if M has a face there. Otherwise it is the direction
+/// of `point`, the lowest point of the triangle of support points, which is exact if M is round
+/// there.
 fn promising(corners: &[Vector; 3], supports: &[Vector; 3], point: &Vector) -> Vector {
     let [a, b, c] = supports;
     let face = perpendicular(&[sub(b, a), sub(c, a)]);
@@ -154,11 +156,12 @@ fn promising(corners: &[Vector; 3], supports: &[Vector; 3], point: &Vector) -> V
     scale(&best, dot(&best, &inner).signum())
 }
 
-/// The least, over all weights w >= 0 with sum 1, of the greatest row sum `Σⱼ wⱼ game[i][j]`; and
-/// these weights.
+/// Returns the minimum over all weights w >= 0 with sum 1 of the largest row sum `Σⱼ wⱼ
+/// game[i][j]`, and the weights at which it is taken.
 ///
-/// The greatest row sum is convex and piecewise linear in w, so its minimum is taken at a corner of
-/// the triangle of weights, where two rows are equal on a side, or where all three rows are equal.
+/// The largest row sum is convex and piecewise linear in w. So its minimum is taken at a corner of
+/// the triangle of weights, at a point of a side where two rows are equal, or where all three rows
+/// are equal.
 fn game_value(game: &[[f64; 3]; 3]) -> (f64, [f64; 3]) {
     let row_sum = |row: &[f64; 3], w: &[f64; 3]| dot(row, w);
     let mut best = (f64::INFINITY, [1.0, 0.0, 0.0]);

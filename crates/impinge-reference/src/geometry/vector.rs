@@ -1,30 +1,30 @@
 //! Arithmetic on plain arrays: `[f64; D]` is a point, a vector or a direction.
 
-/// `a + b`
+/// Returns `a + b`.
 #[must_use]
 pub fn add<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// `a - b`
+/// Returns `a - b`.
 #[must_use]
 pub fn sub<const D: usize>(a: &[f64; D], b: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-/// `a * factor`
+/// Returns `a * factor`.
 #[must_use]
 pub fn scale<const D: usize>(a: &[f64; D], factor: f64) -> [f64; D] {
     a.map(|x| x * factor)
 }
 
-/// `-a`
+/// Returns `-a`.
 #[must_use]
 pub fn negate<const D: usize>(a: &[f64; D]) -> [f64; D] {
     a.map(|x| -x)
 }
 
-/// The sum of the products of the components.
+/// Returns the dot product.
 #[must_use]
 pub fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     let mut sum = 0.0;
@@ -34,37 +34,37 @@ pub fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     sum
 }
 
-/// Euclidean length. Right for lengths between about 1e-150 and 1e150.
+/// Returns the Euclidean length. Squares stay in range for lengths between about 1e-150 and 1e150.
 #[must_use]
 pub fn norm<const D: usize>(a: &[f64; D]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// `a` at length one; `None` for the zero vector and for what overflows.
+/// Returns `a` scaled to length one; `None` for the zero vector, and if the length overflows.
 #[must_use]
 pub fn unit<const D: usize>(a: &[f64; D]) -> Option<[f64; D]> {
     let length = norm(a);
     (length > 0.0 && length.is_finite()).then(|| a.map(|x| x / length))
 }
 
-/// The part of `a` that is perpendicular to the unit vector `direction`.
+/// Returns the component of `a` perpendicular to the unit vector `direction`.
 ///
-/// The projection is taken away twice, as the first time leaves a rest of the size of the rounding
-/// of `a`.
+/// The projection is subtracted twice: the first subtraction leaves a remainder of the size of the
+/// rounding error of `a`.
 #[must_use]
 pub fn reject<const D: usize>(a: &[f64; D], direction: &[f64; D]) -> [f64; D] {
     let once = sub(a, &scale(direction, dot(a, direction)));
     sub(&once, &scale(direction, dot(&once, direction)))
 }
 
-/// The unit vector along one axis.
+/// Returns the unit vector along the axis with this index.
 #[must_use]
 pub fn axis<const D: usize>(index: usize) -> [f64; D] {
     std::array::from_fn(|i| if i == index { 1.0 } else { 0.0 })
 }
 
-/// A vector perpendicular to the D-1 given ones: the quarter turn to the left in the plane, the
-/// cross product in space. Zero if the given vectors are not independent.
+/// Returns a vector perpendicular to the D-1 given ones: in 2D the counter-clockwise quarter turn,
+/// in 3D the cross product. Zero if the given vectors are linearly dependent.
 ///
 /// # Panics
 /// Unless D is 2 or 3 and D-1 vectors are given.

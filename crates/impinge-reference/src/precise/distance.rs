@@ -1,4 +1,4 @@
-//! Signed distance of two placed solids with all digits.
+//! Signed distance of two placed solids in [`Quad`] precision.
 
 use super::newton::{Pair, Polished, across_disk, is_better, polish};
 use super::number::Quad;
@@ -9,31 +9,32 @@ use super::topology::Topology;
 use super::vector::{Vector, exact, negate, norm, rounded, scale, sub, unit};
 use crate::geometry::vector as plain;
 
-/// What [`signed_distance`] found.
+/// The result of [`signed_distance`].
 #[derive(Clone, Copy, Debug)]
 pub struct Precise<const D: usize> {
-    /// The height of `normal`: the signed distance, or a lower bound of it.
+    /// The separation along `normal`: the signed distance, or a lower bound of it.
     pub distance: Quad,
-    /// Unit, in the world frame, from the first solid to the second; one of several where the answer
-    /// is not unique. The zero vector for half-spaces, which only a parallel one could miss.
+    /// The unit normal in the world frame, from the first solid to the second; one of several if
+    /// the best normal is not unique. The zero vector for two half-spaces, which count as
+    /// overlapping without bound.
     pub normal: Vector<D>,
-    /// The signed distance exceeds `distance` by at most this: proven, but for rounding of 1e-28 of
-    /// the size.
+    /// An upper bound of the signed distance minus `distance`; proven up to rounding errors of
+    /// 1e-28 of the size.
     pub gap: f64,
-    /// What `distance` may fall short of the top of the hill that the normal stands on; rounding
-    /// errors only, where it was found.
+    /// The error with which `normal` satisfies the conditions of a local maximum of the separation,
+    /// as a length. If Newton's method has converged, it consists of rounding errors.
     pub miss: f64,
-    /// A length of the pair: the sum of the bounding radii and of the distance of the origins; of a
-    /// half-space, only the distance counts.
+    /// The size of the pair: the bounding radii plus the distance of the origins. The radius of a
+    /// half-space counts as 0.
     pub size: f64,
 }
 
 impl<const D: usize> Precise<D> {
-    /// Whether the distance is right to this share of the size, or to 1e-20 of it.
+    /// Whether `distance` is accurate to `share` of the size, or to 1e-20 of it.
     ///
-    /// Either that is proven; or all other hills are proven to be no higher than 1e-10 of the size
-    /// above this one, and the top of this one was found. (Two hills that are equally high to ten
-    /// digits are as unlikely as that sounds.)
+    /// Either `gap` proves it; or `gap` proves that no other local maximum is higher by more than
+    /// 1e-10 of the size, and `miss` shows that Newton's method has converged. (The second case
+    /// could fail only if two local maxima agreed to ten digits.)
     #[must_use]
     pub fn is_settled(&self, share: f64) -> bool {
         let small = |length: f64, share: f64| length <= share * self.size;
@@ -41,17 +42,18 @@ impl<const D: usize> Precise<D> {
     }
 }
 
-/// The signed distance of two solids: positive between disjoint ones, else minus the length of the
-/// shortest translation that separates their interiors.
+/// Computes the signed distance of two solids: positive if they are disjoint, otherwise minus the
+/// length of the shortest translation that separates their interiors.
 ///
-/// - Polytopes, rounded or not, and a half-space against anything: every direction that can be the
-///   answer is tried.
-/// - Where a disk or ellipsoid takes part, the sphere of directions is searched in `f64`, and the
-///   answer brought to all digits by Newton's method. Apart or touching, a point of the difference
-///   proves it; overlapping, the search proves that no other direction is better by more than 1e-11 of the size.
+/// - Polytopes, with or without a radius, and a half-space against anything: every candidate
+///   direction is tested.
+/// - With a disk or ellipsoid: the sphere of directions is searched in `f64`, and Newton's method
+///   refines the result to all digits. If the solids are apart or touch, a point of the difference
+///   proves the result. If they overlap, the search proves that no other direction is better by
+///   more than 1e-11 of the size.
 ///
-/// Only the difference of the two translations matters. Half-spaces overlap without bound: minus
-/// 1e300.
+/// Only the difference of the two translations matters. For two half-spaces the distance is -1e300,
+/// for overlap without bound.
 #[must_use]
 pub fn signed_distance<const D: usize>(
     solid1: &Solid<D>,
@@ -86,9 +88,10 @@ pub fn signed_distance<const D: usize>(
     Precise { distance: found.0 - rounding, normal: found.1, gap, miss, size }
 }
 
-/// The least of `normal · b` over the second solid minus the greatest of `normal · a` over the first:
-/// a lower bound of the signed distance for every unit normal. The normal need not be unit; that of a
-/// half-space is its own, whatever is asked, and `None` for two.
+/// Returns the least of `normal · b` over the second solid minus the greatest of `normal · a` over
+/// the first: for every direction a lower bound of the signed distance. `normal` is normalized
+/// first. If one solid is a half-space, its own normal is used instead. `None` for two half-spaces,
+/// and for a zero normal.
 #[must_use]
 pub fn separation_along<const D: usize>(
     solid1: &Solid<D>,
@@ -123,7 +126,7 @@ fn size<const D: usize>(
     radius(solid1) + radius(solid2) + plain::norm(&between)
 }
 
-/// The parts of both, seen from where the first stands.
+/// Returns the parts of both solids, relative to the origin of the first.
 fn parts<const D: usize>(
     solid1: &Solid<D>,
     pose1: &Pose<D>,
@@ -134,7 +137,7 @@ fn parts<const D: usize>(
     (placed(solid1, pose1, origin), placed(solid2, pose2, origin))
 }
 
-/// The height of a solid's core above a half-space, and the normal of that.
+/// Returns the height of a solid's core above a half-space, and the world normal of the half-space.
 fn above<const D: usize>(
     local: &[f64; D],
     pose: &Pose<D>,
@@ -146,7 +149,8 @@ fn above<const D: usize>(
     (-extent(&parts, &negate(&normal)), normal)
 }
 
-/// At least one of the cores is round somewhere.
+/// Returns the best normal of two cores and an upper bound of its gap. At least one of the cores
+/// has a disk or ellipsoid.
 fn curved<const D: usize>(pair: Pair<'_, D>, size: f64) -> (Polished<D>, f64) {
     let lowest = |normal: &[f64; D]| {
         let on2 = support64(pair.parts2, &plain::negate(normal));
@@ -185,13 +189,13 @@ fn polished<const D: usize>(pair: Pair<'_, D>, start: &[f64; D]) -> Polished<D> 
     polish(pair, &start, 1)
 }
 
-/// Goes on from where Newton's method got stuck.
+/// Improves a normal at which Newton's method did not converge.
 ///
-/// Near touching the height is all but flat along whole arcs, and a small error throws the normal far
-/// along them. So the second solid is moved away along the normal first; the best normal m of the
-/// moved pair maximises `h(m) + s m·n`, so its height is no less, and there is nothing flat about it
-/// (the proximal point method). After a few of these the original pair is tried again, with more
-/// choices of what is active.
+/// If the solids nearly touch, the separation is almost constant along whole arcs of normals, so
+/// that small errors move the normal far. Therefore the second solid is first moved away along the
+/// normal n by s. The best normal m of the moved pair maximises `h(m) + s m·n`: its separation is
+/// no less, and the maximum is sharp (the proximal point method). Then the original pair is tried
+/// again, with more choices of active parts.
 fn coaxed<const D: usize>(pair: Pair<'_, D>, found: Polished<D>, size: f64) -> Polished<D> {
     const ROUNDS: usize = 6;
     let mut best = found;
@@ -213,13 +217,13 @@ fn coaxed<const D: usize>(pair: Pair<'_, D>, found: Polished<D>, size: f64) -> P
     best
 }
 
-/// How much longer the way between two points of the solids is than the height: nothing much where the
-/// solids are apart or only just overlap.
+/// Returns the length of `point`, an upper bound of the separation, minus the separation along the
+/// normal. It is near zero if the solids are apart or barely overlap.
 fn proven_gap<const D: usize>(found: &Polished<D>) -> f64 {
     (norm(&found.point) - found.height).to_f64().max(0.0)
 }
 
-/// The normals of all disks.
+/// Returns a candidate for both normals of each disk.
 fn disks<const D: usize>(pair: Pair<'_, D>) -> Vec<Polished<D>> {
     let mut found = Vec::new();
     for (parts, is_second) in [(pair.parts1, false), (pair.parts2, true)] {

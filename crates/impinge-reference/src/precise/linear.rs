@@ -2,9 +2,10 @@
 
 use super::number::Quad;
 
-/// Solves a square system whose rows end with the right side, by elimination with full pivoting.
+/// Solves a square system of linear equations by elimination with full pivoting. Each row ends with
+/// the right side.
 ///
-/// Where the rows are dependent, to about 26 digits, the unknowns that nothing determines are zero.
+/// If the rows are dependent to about 26 digits, the undetermined unknowns are zero.
 pub(super) fn solve(mut rows: Vec<Vec<Quad>>) -> Vec<Quad> {
     let count = rows.len();
     let mut columns: Vec<usize> = (0..count).collect();
@@ -32,7 +33,7 @@ pub(super) fn solve(mut rows: Vec<Vec<Quad>>) -> Vec<Quad> {
     solution
 }
 
-/// The row, the column and the magnitude of the largest entry that is left.
+/// Returns the row, the column and the magnitude of the largest remaining entry.
 fn pivot(rows: &[Vec<Quad>], rank: usize) -> (usize, usize, f64) {
     let mut best = (rank, rank, 0.0);
     for (i, row) in rows.iter().enumerate().skip(rank) {
@@ -46,7 +47,7 @@ fn pivot(rows: &[Vec<Quad>], rank: usize) -> (usize, usize, f64) {
     best
 }
 
-/// Takes the row of the pivot from those below it.
+/// Subtracts multiples of the pivot row from the rows below it.
 fn eliminate(rows: &mut [Vec<Quad>], rank: usize) {
     let (done, below) = rows.split_at_mut(rank + 1);
     let pivot_row = &done[rank];

@@ -1,9 +1,9 @@
-//! Signed distances with about 25 digits, for the judging of answers in `f64`.
+//! Signed distances with about 25 digits, with which the errors of `f64` results are measured.
 //!
-//! [`crate::geometry`] answers the same questions in `f64`; here the numbers are [`Quad`]s, the
-//! solids include ellipsoids and tapered capsules, and all input is taken to the last digit: a
-//! rotation is the one that the stored complex number or quaternion describes once it is brought to
-//! length one, so a library that takes it for unit is charged for what it is not.
+//! [`crate::geometry`] computes the same quantities in `f64`. Here the numbers are [`Quad`]s, and
+//! the solids include ellipsoids and tapered capsules. All input is exact: the rotation of a pose
+//! is that of the stored complex number or quaternion after normalization. A library that takes a
+//! stored rotation for unit therefore has the resulting error in these comparisons.
 
 mod distance;
 mod linear;

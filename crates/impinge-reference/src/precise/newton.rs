@@ -1,50 +1,53 @@
-//! From a normal that is about right to one that is right to all digits.
+//! Refines an approximate normal to all digits by Newton's method.
 //!
-//! Let `s` be the extent of a part of the first solid along n and `t` the least height of a part of
-//! the second. At the best normal some parts are active, that is, equally extreme, and a mix of their
-//! support points, `x = Σ w b − Σ u a` with weights that are not negative and sum to one, is a
-//! multiple of n: the point of the difference on its supporting plane that is across from the
-//! origin. These are as many equations as unknowns (n, the weights and the multiple); Newton's method
-//! solves them, with second derivatives in closed form. Which parts are active is guessed by their
-//! heights along the first normal, and every guess is judged by the height it ends with.
+//! Let `s` be the extent along n of a part of the first solid, and `t` the least height of a part
+//! of the second. At the best normal some parts are active: their extents are equal and extreme. A
+//! combination of their support points, `x = Σ w b − Σ u a` with weights that are not negative and
+//! sum to one for each solid, is then a multiple of n. This x is the projection of the origin onto
+//! the supporting plane of the difference. There are as many equations as unknowns: n, the weights
+//! and the multiple. Newton's method solves them with second derivatives in closed form. The active
+//! parts are chosen by their heights along the start normal, and each choice is rated by its final
+//! height.
 
 use super::linear::solve;
 use super::number::Quad;
 use super::solid::{Placed, height, mixed};
 use super::vector::{Vector, add, dot, negate, norm, scale, sub, unit};
 
-/// Cap on the steps: a start with three right digits needs five.
+/// The largest number of Newton steps; a start with three correct digits needs five.
 const STEPS: usize = 12;
-/// Cap on how often the parts are chosen anew.
+/// The largest number of rounds, each of which chooses the active parts anew.
 const ROUNDS: usize = 4;
 
-/// A normal with the proofs of how good it is.
+/// A normal, with a lower and an upper bound of the signed distance.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Polished<const D: usize> {
     pub(super) normal: Vector<D>,
-    /// The height of the normal: a lower bound of the signed distance.
+    /// The separation along the normal: a lower bound of the signed distance.
     pub(super) height: Quad,
-    /// A point of the difference; its length is an upper bound where the solids are apart.
+    /// A point of the Minkowski difference; its length is an upper bound of the distance if the
+    /// solids are apart.
     pub(super) point: Vector<D>,
 }
 
 impl<const D: usize> Polished<D> {
-    /// How far the point is from where the normal has it: zero at every local maximum of the height.
+    /// Returns the distance of `point` from `height · normal`: zero at every local maximum of the
+    /// height.
     pub(super) fn miss(&self) -> f64 {
         norm(&sub(&self.point, &scale(&self.normal, self.height))).to_f64()
     }
 }
 
-/// Two solids without their rounding.
+/// The cores of two solids (without their radii), in one frame.
 #[derive(Clone, Copy)]
 pub(super) struct Pair<'a, const D: usize> {
     pub(super) parts1: &'a [Placed<D>],
     pub(super) parts2: &'a [Placed<D>],
 }
 
-/// The best normal near `start`. The active parts are looked for among the `breadth` most extreme of
-/// each solid; more than one is needed where edges or faces are parallel, so that some choices of
-/// active parts have no solution.
+/// Returns the best normal near `start`. Active parts are chosen among the `breadth` most extreme
+/// parts of each solid. More than one is needed if edges or faces are parallel, since some choices
+/// then have no solution.
 pub(super) fn polish<const D: usize>(
     pair: Pair<'_, D>,
     start: &Vector<D>,
@@ -74,7 +77,8 @@ pub(super) fn polish<const D: usize>(
     best
 }
 
-/// The sets of parts that may be active.
+/// Returns the sets of parts that may be active: up to D + 1 parts in all, at least one of each
+/// solid.
 fn choices<'a, const D: usize>(
     pair: Pair<'a, D>,
     order1: &[usize],
@@ -97,7 +101,7 @@ fn choices<'a, const D: usize>(
     found
 }
 
-/// The choices of `count` among the first `breadth`, or `count` if that is more.
+/// Returns all choices of `count` indices among the first `max(breadth, count)` of `order`.
 fn subsets(order: &[usize], count: usize, breadth: usize) -> Vec<Vec<usize>> {
     let first = &order[..breadth.max(count).min(order.len())];
     let masks = (0_u32..1 << first.len()).filter(|mask| mask.count_ones() as usize == count);
@@ -108,14 +112,16 @@ fn subsets(order: &[usize], count: usize, breadth: usize) -> Vec<Vec<usize>> {
     masks.map(chosen).collect()
 }
 
-/// The better normal; of equals the one that is proven better.
+/// Whether `found` has a larger height than `best`, or, if they are equal up to rounding, a smaller
+/// miss.
 pub(super) fn is_better<const D: usize>(found: &Polished<D>, best: &Polished<D>) -> bool {
     let gain = (found.height - best.height).to_f64();
     let noise = 1e-29 * (found.height.to_f64().abs() + norm(&found.point).to_f64());
     gain > noise || gain > -noise && found.miss() < best.miss()
 }
 
-/// The normal of a disk, with the point of the difference across it.
+/// Returns `normal`, an axis of a disk, as a candidate. Its point of the difference joins the disk
+/// to the point of the other solid that gives the smallest miss.
 pub(super) fn across_disk<const D: usize>(
     pair: Pair<'_, D>,
     disk: &Placed<D>,
@@ -141,8 +147,8 @@ pub(super) fn across_disk<const D: usize>(
     found
 }
 
-/// The support points of the parts that reach farthest along a normal; of a disk that lies flat, the
-/// point nearest to `center`.
+/// Returns the support points of all parts with the largest extent along `normal`. For a disk
+/// perpendicular to `normal`, the point nearest to `center`.
 fn touching_points<const D: usize>(
     parts: &[Placed<D>],
     normal: &Vector<D>,
@@ -163,9 +169,9 @@ fn touching_points<const D: usize>(
     order.iter().take_while(equal).map(point).collect()
 }
 
-/// Points of a flat polygon of which one lies in a disk with this center, if any does: the nearest to
-/// the center, seen along the normal, on all lines between two corners, and the center itself where
-/// it lies within.
+/// Returns points of a flat polygon. If the polygon overlaps a disk with this centre, seen along
+/// `normal`, one of them lies in the disk. They are the corners, the point nearest to the centre on
+/// each line between two corners, and the projected centre if the polygon contains it.
 fn common_candidates<const D: usize>(
     corners: &[Vector<D>],
     center: &Vector<D>,
@@ -189,7 +195,7 @@ fn common_candidates<const D: usize>(
     found
 }
 
-/// Whether a point of the plane of a triangle lies in it.
+/// Whether a triangle contains a point of its plane.
 fn holds<const D: usize>([a, b, c]: &[Vector<D>; 3], p: &Vector<D>, normal: &Vector<D>) -> bool {
     let side = |from: &Vector<D>, to: &Vector<D>| {
         dot(&super::vector::perpendicular(&[sub(to, from), sub(p, from)]), normal)
@@ -198,18 +204,18 @@ fn holds<const D: usize>([a, b, c]: &[Vector<D>; 3], p: &Vector<D>, normal: &Vec
     sides.iter().all(|s| *s >= Quad::ZERO) || sides.iter().all(|s| *s <= Quad::ZERO)
 }
 
-/// The mean of the support points of the parts that reach farthest along a normal.
+/// Returns the mean of the support points of all parts with the largest extent along `normal`.
 fn touched<const D: usize>(parts: &[Placed<D>], normal: &Vector<D>) -> Vector<D> {
     let points = touching_points(parts, normal, &parts[0].center);
     mixed(&points, &vec![Quad::ONE / Quad::new(points.len() as f64); points.len()])
 }
 
-/// The support point of the difference.
+/// Returns the point of the Minkowski difference with the least height along `normal`.
 fn supported<const D: usize>(pair: Pair<'_, D>, normal: &Vector<D>) -> Vector<D> {
     sub(&touched(pair.parts2, &negate(normal)), &touched(pair.parts1, normal))
 }
 
-/// The numbers of the parts, those that reach farthest along a normal first.
+/// Returns the indices of the parts, sorted by falling extent along `normal`.
 fn by_extent<const D: usize>(parts: &[Placed<D>], normal: &Vector<D>) -> Vec<usize> {
     let extents: Vec<Quad> = parts.iter().map(|part| part.extent(normal)).collect();
     let mut order: Vec<usize> = (0..parts.len()).collect();
@@ -220,32 +226,32 @@ fn by_extent<const D: usize>(parts: &[Placed<D>], normal: &Vector<D>) -> Vec<usi
     order
 }
 
-/// The parts that are taken to be active.
+/// A choice of active parts of both solids.
 struct Active<'a, const D: usize> {
     parts1: Vec<&'a Placed<D>>,
     parts2: Vec<&'a Placed<D>>,
 }
 
-/// The unknowns.
+/// The unknowns of the equations, as of the last step.
 #[derive(Clone)]
 struct State<const D: usize> {
     normal: Vector<D>,
-    /// What multiple of the normal the point is.
+    /// The factor by which the point is a multiple of the normal.
     multiple: Quad,
     weights1: Vec<Quad>,
     weights2: Vec<Quad>,
 }
 
-/// A part seen along a normal, to second order.
+/// The extent of a part along a normal, to second order.
 struct Local<const D: usize> {
     extent: Quad,
     support: Vector<D>,
-    /// The second derivative of the extent, by rows.
+    /// The matrix of second derivatives of the extent, by rows.
     bend: [Vector<D>; D],
 }
 
 impl<const D: usize> Local<D> {
-    /// `None` along the axis of a disk, where the extent has a kink.
+    /// Returns `None` for a disk if `normal` is its axis: the extent is not differentiable there.
     fn new(part: &Placed<D>, normal: &Vector<D>) -> Option<Self> {
         let support = part.support(normal);
         let mut bend = [[Quad::ZERO; D]; D];
@@ -270,7 +276,8 @@ impl<const D: usize> Local<D> {
 }
 
 impl<const D: usize> Active<'_, D> {
-    /// Newton's method from `start`, and the true height of where it ends.
+    /// Runs Newton's method from `start`. Returns the final normal with its height over all parts;
+    /// `None` if a step fails.
     fn polished(&self, pair: Pair<'_, D>, start: &Vector<D>) -> Option<Polished<D>> {
         let equal = |count: usize| vec![Quad::ONE / Quad::new(count as f64); count];
         let mut state = State {
@@ -295,7 +302,8 @@ impl<const D: usize> Active<'_, D> {
         Some(Polished { normal, height, point: sub(&on2, &on1) })
     }
 
-    /// One step; says how far the normal was turned.
+    /// Makes one Newton step, and returns the length of the change of the normal; `None` if the
+    /// step is too long or an extent is not differentiable.
     fn step(&self, state: &mut State<D>) -> Option<f64> {
         let inward = negate(&state.normal);
         let local = |parts: &[&Placed<D>], normal: &Vector<D>| -> Option<Vec<Local<D>>> {
@@ -304,7 +312,7 @@ impl<const D: usize> Active<'_, D> {
         let (local1, local2) = (local(&self.parts1, &state.normal)?, local(&self.parts2, &inward)?);
         let change = solve(equations(state, &local1, &local2));
         let turned: Vector<D> = std::array::from_fn(|i| change[i]);
-        // A step across half the sphere is none of Newton's.
+        // A step of this length would cross half the sphere: Newton's method has failed.
         let length = norm(&turned).to_f64();
         let sane = length < 1.5;
         if !sane {
@@ -319,7 +327,8 @@ impl<const D: usize> Active<'_, D> {
     }
 }
 
-/// The first weight gives what the others take.
+/// Adds `change` to all weights but the first, and subtracts it from the first, so that the sum
+/// stays one.
 fn shift(weights: &mut [Quad], change: &[Quad]) {
     for (index, &by) in change.iter().enumerate() {
         weights[index + 1] += by;
@@ -327,15 +336,16 @@ fn shift(weights: &mut [Quad], change: &[Quad]) {
     }
 }
 
-/// Weights that are not negative and sum to one.
+/// Sets negative weights to zero and scales the sum to one.
 fn proper(weights: &[Quad]) -> Vec<Quad> {
     let kept: Vec<Quad> = weights.iter().map(|weight| weight.max(Quad::ZERO)).collect();
     let sum = kept.iter().fold(Quad::ZERO, |sum, weight| sum + *weight);
     kept.iter().map(|weight| *weight / sum).collect()
 }
 
-/// The linear equations of a step, each row with its right side at the end. In this order: the point
-/// is a multiple of the normal, the normal is unit, the active parts are equally extreme.
+/// Returns the linear equations of a step, each row with its right side at the end. In this order:
+/// the point is a multiple of the normal (D rows), the normal has unit length, the active parts
+/// have equal extents.
 fn equations<const D: usize>(
     state: &State<D>,
     local1: &[Local<D>],
@@ -346,7 +356,7 @@ fn equations<const D: usize>(
     let point = sub(&mixed(&supports2, &state.weights2), &mixed(&supports1, &state.weights1));
     let away1 = supports1[1..].iter().map(|a| sub(&supports1[0], a));
     let away2 = supports2[1..].iter().map(|b| sub(b, &supports2[0]));
-    // How the point moves with each weight.
+    // The derivative of the point by each weight.
     let columns: Vec<Vector<D>> = away1.chain(away2).collect();
     let unknowns = D + 1 + columns.len();
     let mut rows = vec![vec![Quad::ZERO; unknowns + 1]; unknowns];
@@ -370,7 +380,8 @@ fn equations<const D: usize>(
     let apart1 = local1[1..].iter().map(|l| local1[0].extent - l.extent);
     let apart2 = local2[1..].iter().map(|l| local2[0].extent - l.extent);
     for (k, difference) in apart1.chain(apart2).enumerate() {
-        // Extents of the second solid are against the normal, so heights are minus them.
+        // Extents of the second solid are along `-normal`, so that its heights are the negated
+        // extents.
         rows[D + 1 + k][unknowns] = -difference;
     }
     rows

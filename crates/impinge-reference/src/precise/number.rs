@@ -13,7 +13,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 pub struct Quad {
     /// The nearest `f64`.
     high: f64,
-    /// The rest: at most half a unit in the last place of `high`.
+    /// The remainder: at most half a unit in the last place of `high`.
     low: f64,
 }
 
@@ -23,32 +23,32 @@ impl Quad {
     /// 1.
     pub const ONE: Self = Self { high: 1.0, low: 0.0 };
 
-    /// The number itself.
+    /// Returns the number `value`, exactly.
     #[must_use]
     pub const fn new(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
 
-    /// The nearest `f64`.
+    /// Returns the nearest `f64`.
     #[must_use]
     pub const fn to_f64(self) -> f64 {
         self.high
     }
 
-    /// The magnitude.
+    /// Returns the absolute value.
     #[must_use]
     pub fn abs(self) -> Self {
         if self.high < 0.0 { -self } else { self }
     }
 
-    /// The square root; zero for numbers that are not positive.
+    /// Returns the square root; zero for zero and negative numbers.
     #[must_use]
     pub fn sqrt(self) -> Self {
         let positive = self.high > 0.0;
         if !positive {
             return Self::ZERO;
         }
-        // Two steps of Newton's method: 53 digits become 106, and the second mends the rounding.
+        // Two Newton steps: the first doubles the 53 bits to 106, the second corrects the rounding.
         let mut root = Self::new(self.high.sqrt());
         for _ in 0..2 {
             root = (root + self / root) * Self::new(0.5);
@@ -56,40 +56,40 @@ impl Quad {
         root
     }
 
-    /// The larger of two.
+    /// Returns the larger number.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
 
-    /// The smaller of two.
+    /// Returns the smaller number.
     #[must_use]
     pub fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
 }
 
-/// `a + b` and what rounding took from it.
+/// Returns the rounded sum `a + b` and its rounding error.
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_part = sum - a;
     (sum, (a - (sum - b_part)) + (b - b_part))
 }
 
-/// As [`two_sum`], for `|a| ≥ |b|`.
+/// Returns the rounded sum `a + b` and its rounding error, for `|a| ≥ |b|`.
 fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     (sum, b - (sum - a))
 }
 
-/// Two halves of 26 bits whose sum is `a`.
+/// Splits `a` into two numbers of 26 bits whose sum is `a`.
 fn split(a: f64) -> (f64, f64) {
     let spread = 134_217_729.0 * a;
     let high = spread - (spread - a);
     (high, a - high)
 }
 
-/// `a · b` and what rounding took from it.
+/// Returns the rounded product `a · b` and its rounding error.
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let ((a1, a2), (b1, b2)) = (split(a), split(b));
@@ -131,7 +131,7 @@ impl Mul for Quad {
 impl Div for Quad {
     type Output = Self;
 
-    /// Long division by three digits of 53 bits.
+    /// Long division with three quotient digits of 53 bits each.
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;
         let rest = self - other * Self::new(first);
@@ -193,15 +193,15 @@ mod tests {
 
     #[test]
     fn digits_of_the_root_of_two() {
-        // 1.41421356237309504880168872420969807856967…, in two parts: each is the sum of one
-        // number of few digits and a small rest.
+        // 1.41421356237309504880168872420969807856967… in two parts, each of which is the sum of a
+        // number of few digits and a small remainder.
         let expected = Quad::new(14_142_135_623_730_950.0) / Quad::new(1e16)
             + Quad::new(4_880_168_872_420_970.0) / Quad::new(1e32);
         assert!((Quad::new(2.0).sqrt() - expected).abs().to_f64() < 4e-32, "32 digits");
         assert_eq!(Quad::new(-2.0).sqrt(), Quad::ZERO, "of no use, but no NaN");
     }
 
-    /// What cancels in `f64` does not here.
+    /// Differences that cancel to zero in `f64` keep their remainder.
     #[test]
     fn small_rests_survive() {
         let small = Quad::new(1e-25);

@@ -1,9 +1,9 @@
-//! Signed distance of two polytopes by trying every direction that can be the answer.
+//! Signed distance of two polytopes by testing every candidate direction.
 //!
-//! The directions are those of the `f64` reference: normals of faces, perpendiculars of two edges,
-//! and, unless the polytopes overlap, lines from corners to corners and edges. Each is made with all
-//! digits and judged in `f64` first; whatever comes within rounding of the best is judged again with
-//! all digits.
+//! The candidates are those of `geometry/polytope.rs`: face normals, perpendiculars of two edges,
+//! and, unless the polytopes overlap deeply, lines from corners to corners and edges. Each
+//! direction is computed with all digits, and its height first in `f64`. Directions within the
+//! `f64` error of the best are then compared with all digits.
 
 use super::number::Quad;
 use super::solid::{Placed, height};
@@ -11,7 +11,7 @@ use super::topology::Topology;
 use super::vector::{Vector, exact, negate, perpendicular, reject, rounded, sub, unit, zero};
 use crate::geometry::vector as plain;
 
-/// What `f64` may be wrong by in judging a direction, in parts of the size: generous.
+/// A generous bound of the error of a height in `f64`, relative to the size of the pair.
 const DOUBT: f64 = 1e-13;
 
 /// A placed polytope.
@@ -30,7 +30,8 @@ impl<const D: usize> Polytope<'_, D> {
         self.topology.edges.iter().map(move |&ends| (self.corner(ends[0]), along(ends)))
     }
 
-    /// Normals of the faces; where there are none, some directions across the line or point.
+    /// Returns the face normals. If there are no faces, some directions perpendicular to the line,
+    /// or all axes for a point.
     fn normals(&self) -> Vec<Vector<D>> {
         let axes = (0..D).map(|i| exact(&plain::axis::<D>(i)));
         if !self.topology.faces.is_empty() {
@@ -46,7 +47,7 @@ impl<const D: usize> Polytope<'_, D> {
     }
 }
 
-/// The directions that may be the best.
+/// The candidate directions that may be the best, with their heights in `f64`.
 struct Trial<const D: usize> {
     corners1: Vec<[f64; D]>,
     corners2: Vec<[f64; D]>,
@@ -56,7 +57,7 @@ struct Trial<const D: usize> {
 }
 
 impl<const D: usize> Trial<D> {
-    /// Tries a direction and its opposite, at any length; skips the zero vector.
+    /// Tests a direction of any length and its opposite; ignores the zero vector.
     fn line(&mut self, direction: &Vector<D>) {
         let Some(normal) = plain::unit(&rounded(direction)) else { return };
         let (least1, greatest1) = interval(&self.corners1, &normal);
@@ -82,7 +83,7 @@ fn interval<const D: usize>(corners: &[[f64; D]], normal: &[f64; D]) -> (f64, f6
     range
 }
 
-/// The signed distance of two polytopes and its unit normal.
+/// Returns the signed distance of two polytopes and its unit normal.
 pub(super) fn distance<const D: usize>(
     one: &Polytope<'_, D>,
     two: &Polytope<'_, D>,
@@ -99,7 +100,8 @@ pub(super) fn distance<const D: usize>(
         kept: Vec::new(),
     };
     try_face_directions(&mut trial, one, two);
-    // Where the origin is well inside all faces of the difference, corners cannot matter.
+    // If the origin is well inside all faces of the difference, directions from corners cannot be
+    // the best.
     if trial.best >= -1e-12 * size {
         try_corner_directions(&mut trial, one, two);
     }
@@ -125,7 +127,7 @@ fn best_of<const D: usize>(
     best.unwrap_or((Quad::ZERO, zero()))
 }
 
-/// The normals of the faces of the Minkowski difference.
+/// Tests the normals of the faces of the Minkowski difference.
 fn try_face_directions<const D: usize>(
     trial: &mut Trial<D>,
     one: &Polytope<'_, D>,
@@ -139,7 +141,7 @@ fn try_face_directions<const D: usize>(
     }
 }
 
-/// The lines from the corners of one polytope to the corners and edges of the other.
+/// Tests the lines from the corners of one polytope to the corners and edges of the other.
 fn try_corner_directions<const D: usize>(
     trial: &mut Trial<D>,
     one: &Polytope<'_, D>,
@@ -154,7 +156,8 @@ fn try_corner_directions<const D: usize>(
         for part in corners {
             for (start, along) in other.edges() {
                 let aside = reject(&sub(&part.center, start), &along);
-                // Twice, as the first time leaves a rest of the size of the rounding of the offset.
+                // Rejected twice: the first time leaves a remainder of the size of the rounding
+                // error of the offset.
                 trial.line(&reject(&aside, &along));
             }
         }

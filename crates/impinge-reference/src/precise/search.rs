@@ -1,27 +1,27 @@
-//! The direction of the largest height, in `f64`, with a bracket: by cutting the sphere or circle of
-//! directions into ever smaller pieces, as long as they may hold something better.
+//! Searches the direction of the largest height in `f64`, with a bracket. The sphere or circle of
+//! directions is divided into smaller pieces as long as a piece may contain a better direction.
 
 use crate::geometry::sphere_search;
 use crate::geometry::vector::{add, axis, dot, negate, sub, unit};
 
-/// The maximum lies between `lower`, the height of `normal`, and `upper`.
+/// A bracket of the maximum: it lies between `lower`, the height of `normal`, and `upper`.
 pub(super) struct Bracket<const D: usize> {
     pub(super) lower: f64,
     pub(super) upper: f64,
     pub(super) normal: [f64; D],
 }
 
-/// What is searched: `lowest` maps a unit vector to the lowest point of the difference.
+/// The input of a search: `lowest` maps a unit vector to the lowest point of the difference.
 pub(super) struct Task<'a, const D: usize> {
     pub(super) lowest: &'a dyn Fn(&[f64; D]) -> [f64; D],
-    /// A length of the problem.
+    /// The size of the pair, a length.
     pub(super) size: f64,
-    /// The search ends when this share of the size is all that can be gained.
+    /// The search stops when at most this share of `size` can still be gained.
     pub(super) tolerance: f64,
 }
 
 impl<const D: usize> Task<'_, D> {
-    /// The bracket, given directions that are worth a try.
+    /// Returns the bracket of the maximum. `seeds` are start directions.
     ///
     /// # Panics
     /// Unless D is 2 or 3.
@@ -41,7 +41,7 @@ impl<const D: usize> Task<'_, D> {
     }
 
     fn on_circle(&self, seeds: &[[f64; D]]) -> Bracket<D> {
-        /// Cap on the halvings of an arc.
+        /// The largest number of halvings of an arc.
         const DEPTH: usize = 48;
         let mut best = Bracket { lower: f64::NEG_INFINITY, upper: 0.0, normal: [0.0; D] };
         for seed in seeds {
@@ -70,7 +70,8 @@ impl<const D: usize> Task<'_, D> {
         Bracket { upper: upper.max(best.lower), ..best }
     }
 
-    /// Remembers the height of a direction, if it is the best; gives the support point.
+    /// Evaluates the height of a direction and keeps it if it is the best so far. Returns the
+    /// support point.
     fn probe(&self, direction: &[f64; D], best: &mut Bracket<D>) -> [f64; D] {
         let Some(normal) = unit(direction) else { return [0.0; D] };
         let point = (self.lowest)(&normal);
@@ -81,11 +82,12 @@ impl<const D: usize> Task<'_, D> {
         point
     }
 
-    /// What no direction of an arc exceeds, and where that may be taken.
+    /// Returns an upper bound of the height over an arc, and the direction at which the bound is
+    /// attained.
     ///
-    /// For the lowest points p of the start and q of the end, `h(n) ≤ min(n·p, n·q)`. Each of these
-    /// has its maximum over the arc at an end or along the point itself; that of the smaller one may
-    /// also be where both are equal.
+    /// For the lowest points p of the start and q of the end, `h(n) ≤ min(n·p, n·q)`. Each of `n·p`
+    /// and `n·q` has its maximum over the arc at an end, or where n is parallel to p or q. The
+    /// minimum of both may also have its maximum where they are equal.
     fn bound(&self, start: &[f64; D], end: &[f64; D], best: &mut Bracket<D>) -> (f64, [f64; D]) {
         let (p, q) = (self.probe(start, best), self.probe(end, best));
         let middle = add(start, end);
@@ -106,7 +108,8 @@ impl<const D: usize> Task<'_, D> {
     }
 }
 
-/// The same vector in a type of the same dimension, which only the caller knows.
+/// Converts a vector between two array types of equal length. The compiler does not know that the
+/// lengths are equal.
 fn convert<const FROM: usize, const TO: usize>(v: &[f64; FROM]) -> [f64; TO] {
     std::array::from_fn(|i| v[i])
 }

@@ -4,9 +4,9 @@ use super::number::Quad;
 use super::vector::{Vector, add, dot, exact, negate, norm, rounded, scale, sub, unit, zero};
 use crate::geometry::vector::{axis, norm as norm64};
 
-/// A convex solid in its own frame: the hull of some parts, and all that lies within a radius of it.
+/// A convex solid in its own frame: all points within a radius of the hull of some parts.
 ///
-/// The numbers given are taken as they are, to the last digit.
+/// All input numbers are taken as exact.
 #[derive(Clone, Debug)]
 pub struct Solid<const D: usize> {
     pub(super) kind: Kind<D>,
@@ -19,12 +19,12 @@ pub(super) enum Kind<const D: usize> {
     HalfSpace([f64; D]),
     /// The hull of some points.
     Points(Vec<[f64; D]>),
-    /// The hull of some parts of which at least one is round.
+    /// The hull of some parts, at least one of which is a disk or ellipsoid.
     Parts(Vec<Part<D>>),
 }
 
-/// The image of the unit ball under `x ↦ columns · x`, moved to `center`: a point without columns, a
-/// disk with two of them in space, an ellipsoid with D.
+/// The image of the unit ball under `x ↦ columns · x`, translated to `center`: without columns a
+/// point, with two columns in 3D a disk, with D columns an ellipsoid.
 #[derive(Clone, Debug)]
 pub(super) struct Part<const D: usize> {
     pub(super) center: [f64; D],
@@ -44,7 +44,7 @@ impl<const D: usize> Solid<D> {
         Self::round_polytope(vec![a, b], radius)
     }
 
-    /// The box with corners at plus and minus `half_extents`, and all within `radius` of it.
+    /// All points within `radius` of the box with corners at plus and minus `half_extents`.
     #[must_use]
     pub fn round_cuboid(half_extents: [f64; D], radius: f64) -> Self {
         let corner = |index: usize| {
@@ -59,10 +59,10 @@ impl<const D: usize> Solid<D> {
         Self::round_polytope(vertices, 0.0)
     }
 
-    /// All points within `radius` of the convex hull of some points; those that coincide count once.
+    /// All points within `radius` of the convex hull of some points. Coincident points count once.
     ///
     /// # Panics
-    /// For no points.
+    /// If there are no points.
     #[must_use]
     pub fn round_polytope(vertices: Vec<[f64; D]>, radius: f64) -> Self {
         assert!(!vertices.is_empty(), "a solid has at least one vertex");
@@ -81,7 +81,8 @@ impl<const D: usize> Solid<D> {
         Self { kind: Kind::HalfSpace(normal), radius: 0.0 }
     }
 
-    /// The ellipsoid with these half axes along the axes of the local frame; it is flat where one is zero.
+    /// The ellipsoid with these half axes along the axes of the local frame; flat if a half axis is
+    /// zero.
     #[must_use]
     pub fn ellipsoid(half_axes: [f64; D]) -> Self {
         let axes = (0..D).filter(|&i| half_axes[i] > 0.0);
@@ -89,7 +90,7 @@ impl<const D: usize> Solid<D> {
         Self { kind: Kind::Parts(vec![Part { center: [0.0; D], columns }]), radius: 0.0 }
     }
 
-    /// The hull of two balls: about `a` and about `b`.
+    /// The hull of a ball about `a` and a ball about `b`.
     #[must_use]
     pub fn tapered_capsule(a: [f64; D], radius_a: f64, b: [f64; D], radius_b: f64) -> Self {
         let ball = |center, radius: f64| Part {
@@ -100,14 +101,15 @@ impl<const D: usize> Solid<D> {
         Self { kind: Kind::Parts(parts), radius: 0.0 }
     }
 
-    /// The solid and all that lies within `radius` of it.
+    /// Returns all points within `radius` of the solid.
     #[must_use]
     pub fn inflated(mut self, radius: f64) -> Self {
         self.radius += radius;
         self
     }
 
-    /// The radius of a ball about the local origin that holds the solid; infinite for a half-space.
+    /// Returns the radius of a ball about the local origin that contains the solid; infinite for a
+    /// half-space.
     #[must_use]
     pub fn bounding_radius(&self) -> f64 {
         let core = match &self.kind {
@@ -118,7 +120,7 @@ impl<const D: usize> Solid<D> {
         core + self.radius
     }
 
-    /// The parts of the solid without its rounding.
+    /// Returns the parts of the core (the solid without its radius).
     ///
     /// # Panics
     /// For a half-space.
@@ -166,7 +168,7 @@ fn along<const D: usize>(index: usize, length: f64) -> [f64; D] {
     axis(index).map(|x: f64| x * length)
 }
 
-/// Where a solid stands: `world = rotation · local + translation`.
+/// A position of a solid: `world = rotation · local + translation`.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose<const D: usize> {
     /// The rows of the rotation matrix.
@@ -175,24 +177,24 @@ pub struct Pose<const D: usize> {
 }
 
 impl<const D: usize> Pose<D> {
-    /// Moved, and not turned.
+    /// Returns a pose without rotation.
     #[must_use]
     pub fn at(translation: [f64; D]) -> Self {
         Self { rotation: std::array::from_fn(|row| exact(&axis(row))), translation }
     }
 
-    /// The vector `v`, given in the local frame, in the world frame.
+    /// Rotates the vector `v` from the local to the world frame.
     pub(super) fn rotate(&self, v: &Vector<D>) -> Vector<D> {
         std::array::from_fn(|row| dot(&self.rotation[row], v))
     }
 }
 
 impl Pose<2> {
-    /// Turned by the angle of the complex number `[cosine, sine]` as it is given, brought to length
-    /// one with all digits.
+    /// Returns the pose with the rotation of the complex number `[cosine, sine]`, normalized with
+    /// all digits.
     ///
     /// # Panics
-    /// For zero.
+    /// If the complex number is zero.
     #[must_use]
     pub fn from_complex(translation: [f64; 2], complex: [f64; 2]) -> Self {
         let [c, s] = unit(&exact(&complex)).expect("a rotation is not zero");
@@ -201,10 +203,11 @@ impl Pose<2> {
 }
 
 impl Pose<3> {
-    /// Turned by the quaternion `[x, y, z, w]` as it is given, brought to length one with all digits.
+    /// Returns the pose with the rotation of the quaternion `[x, y, z, w]`, normalized with all
+    /// digits.
     ///
     /// # Panics
-    /// For zero.
+    /// If the quaternion is zero.
     #[must_use]
     pub fn from_quaternion(translation: [f64; 3], quaternion: [f64; 4]) -> Self {
         let [x, y, z, w] = unit(&exact(&quaternion)).expect("a rotation is not zero");
@@ -218,7 +221,7 @@ impl Pose<3> {
     }
 }
 
-/// A part in the frame that a pair is measured in, with all digits and in `f64`.
+/// A part in the frame of its pair, with all digits and in `f64`.
 #[derive(Clone, Debug)]
 pub(super) struct Placed<const D: usize> {
     pub(super) center: Vector<D>,
@@ -228,7 +231,7 @@ pub(super) struct Placed<const D: usize> {
 }
 
 impl<const D: usize> Placed<D> {
-    /// The part of a solid that stands at `pose`, seen from `origin`.
+    /// Transforms a part of a solid at `pose` to world axes, relative to the point `origin`.
     pub(super) fn new(part: &Part<D>, pose: &Pose<D>, origin: &[f64; D]) -> Self {
         let offset = sub(&exact(&pose.translation), &exact(origin));
         let center = add(&pose.rotate(&exact(&part.center)), &offset);
@@ -238,24 +241,24 @@ impl<const D: usize> Placed<D> {
         Self { center64: rounded(&center), center, columns, columns64 }
     }
 
-    /// The same part elsewhere.
+    /// Returns the part translated by a vector.
     pub(super) fn moved(&self, by: &Vector<D>) -> Self {
         let center = add(&self.center, by);
         Self { center64: rounded(&center), center, ..self.clone() }
     }
 
-    /// The columns' components of a direction: `columnsᵀ · n`.
+    /// Returns `columnsᵀ · normal`.
     pub(super) fn components(&self, normal: &Vector<D>) -> Vec<Quad> {
         self.columns.iter().map(|column| dot(column, normal)).collect()
     }
 
-    /// How far the part reaches along `normal`.
+    /// Returns the extent of the part along `normal`: the maximum of `normal · x` over its points.
     pub(super) fn extent(&self, normal: &Vector<D>) -> Quad {
         let squared = self.components(normal).iter().fold(Quad::ZERO, |sum, x| sum + *x * *x);
         dot(&self.center, normal) + squared.sqrt()
     }
 
-    /// The point of the part farthest along `normal`; its centre if none is.
+    /// Returns the support point along `normal`; the centre if all points have the same height.
     pub(super) fn support(&self, normal: &Vector<D>) -> Vector<D> {
         let components = self.components(normal);
         let length = components.iter().fold(Quad::ZERO, |sum, x| sum + *x * *x).sqrt();
@@ -268,7 +271,7 @@ impl<const D: usize> Placed<D> {
         point
     }
 
-    /// The point of the part farthest along `normal`, in `f64`.
+    /// Returns the support point along `normal` in `f64`.
     pub(super) fn support64(&self, normal: &[f64; D]) -> [f64; D] {
         use crate::geometry::vector::{add, dot, scale};
         let mut components = [0.0; D];
@@ -285,7 +288,8 @@ impl<const D: usize> Placed<D> {
         point
     }
 
-    /// The point of a disk nearest to another, seen along its axis; for what is no disk the centre.
+    /// Returns the point of a disk that is nearest to `point`, seen along the axis of the disk.
+    /// Returns the centre of a part that is no disk.
     pub(super) fn nearest_in_disk(&self, point: &Vector<D>) -> Vector<D> {
         let offset = sub(point, &self.center);
         let mut shares: Vec<Quad> =
@@ -298,7 +302,7 @@ impl<const D: usize> Placed<D> {
         self.columns.iter().zip(&shares).fold(self.center, moved)
     }
 
-    /// The two unit normals of a disk.
+    /// Returns the two unit normals of a disk; `None` for other parts.
     pub(super) fn axes(&self) -> Option<[Vector<D>; 2]> {
         if D != 3 || self.columns.len() != 2 {
             return None;
@@ -307,13 +311,13 @@ impl<const D: usize> Placed<D> {
         Some([axis, negate(&axis)])
     }
 
-    /// Whether the part has no extent.
+    /// Whether the part is a single point.
     pub(super) fn is_point(&self) -> bool {
         self.columns.iter().all(|column| norm(column) == Quad::ZERO)
     }
 }
 
-/// The placed parts of a solid without its rounding.
+/// Returns the placed parts of the core of a solid (without its radius).
 pub(super) fn placed<const D: usize>(
     solid: &Solid<D>,
     pose: &Pose<D>,
@@ -322,14 +326,14 @@ pub(super) fn placed<const D: usize>(
     solid.parts().iter().map(|part| Placed::new(part, pose, origin)).collect()
 }
 
-/// How far a solid without its rounding reaches along `normal`.
+/// Returns the extent along `normal` of the hull of some parts.
 pub(super) fn extent<const D: usize>(parts: &[Placed<D>], normal: &Vector<D>) -> Quad {
     let mut extents = parts.iter().map(|part| part.extent(normal));
     let first = extents.next().expect("a solid has a part");
     extents.fold(first, Quad::max)
 }
 
-/// The point of a solid without its rounding that lies farthest along `normal`, in `f64`.
+/// Returns the support point along `normal` of the hull of some parts, in `f64`.
 pub(super) fn support64<const D: usize>(parts: &[Placed<D>], normal: &[f64; D]) -> [f64; D] {
     use crate::geometry::vector::dot;
     let (mut best, mut height) = ([0.0; D], f64::NEG_INFINITY);
@@ -343,7 +347,7 @@ pub(super) fn support64<const D: usize>(parts: &[Placed<D>], normal: &[f64; D]) 
     best
 }
 
-/// The difference of two solids along a unit normal: `min n·b − max n·a`.
+/// Returns the separation of the hulls of some parts along a unit normal: `min n·b − max n·a`.
 pub(super) fn height<const D: usize>(
     parts1: &[Placed<D>],
     parts2: &[Placed<D>],
@@ -352,7 +356,7 @@ pub(super) fn height<const D: usize>(
     -extent(parts2, &negate(normal)) - extent(parts1, normal)
 }
 
-/// The sum of some vectors with weights.
+/// Returns the sum of the points, multiplied by their weights.
 pub(super) fn mixed<const D: usize>(points: &[Vector<D>], weights: &[Quad]) -> Vector<D> {
     points
         .iter()

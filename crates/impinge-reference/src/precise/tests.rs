@@ -1,4 +1,5 @@
-//! Against the pencil, against the `f64` reference, and against itself.
+//! Compares the distances with values computed by hand, with the `f64` reference, and with each
+//! other.
 
 use super::{Pose, Precise, Quad, Solid, separation_along, signed_distance};
 use crate::geometry;
@@ -30,7 +31,7 @@ fn roots_to_thirty_digits() {
     is(&apart(&ball, &cuboid, [2.0, 3.0, 4.0]), root(14.0) - Quad::new(0.25));
     is(&apart(&cuboid, &cuboid, [3.0, 3.0, 3.0]), root(3.0));
     is(&apart(&cuboid, &cuboid, [1.5, 0.0, 0.0]), Quad::new(-0.5));
-    // The mantle of this cone has the normal (4, 3) / 5.
+    // The lateral surface of this cone has the normal (4, 3) / 5.
     let beside_cone = root(8.0) * ratio(4.0, 5.0) - ratio(17.0, 20.0);
     is(&apart(&Solid::cone(2.0, 3.0), &ball, [2.0, 1.0, 2.0]), beside_cone);
     let cylinder = Solid::cylinder(2.0, 1.0);
@@ -44,18 +45,18 @@ fn half_space_below_and_mantle_beside_a_tapered_capsule() {
     let ground = Solid::half_space([0.0, 3.0, 4.0]);
     let tapered = Solid::tapered_capsule([0.0, -1.0, 0.0], 1.0, [0.0, 1.0, 0.0], 0.5);
     is(&apart(&ground, &tapered, [0.0, 5.0, 0.0]), ratio(7.0, 5.0));
-    // The mantle gains half a unit of radius on two: the sine of its slope is a quarter.
+    // The radius grows by half a unit over a length of two: the sine of the slope is a quarter.
     let found = apart(&tapered, &Solid::ball(0.0), [3.0, 0.0, 0.0]);
     is(&found, ratio(15.0, 16.0).sqrt() * Quad::new(3.0) - Quad::new(0.75));
     assert!((found.normal[1] - Quad::new(0.25)).abs().to_f64() < 1e-28, "{found:?}");
 }
 
-/// A quaternion that is far from unit describes the rotation that it does at length one.
+/// A quaternion far from unit length gives the rotation of the normalized quaternion.
 #[test]
 fn rotations_are_brought_to_length_one() {
     let rod = Solid::capsule([0.0; 3], [0.0, 5.0, 0.0], 0.0);
     let turned = Pose::from_quaternion([0.0; 3], [3.0, 0.0, 0.0, 1.0]);
-    // About x by twice the angle whose tangent is 3: y goes to (0, −4, 3) / 5.
+    // A rotation about x by twice the angle whose tangent is 3 maps y to (0, −4, 3) / 5.
     let ceiling = Pose::from_quaternion([0.0; 3], [0.0, 0.0, 0.0, 1.0]);
     let found = signed_distance(&Solid::half_space([0.0, 1.0, 0.0]), &ceiling, &rod, &turned);
     is(&found, Quad::new(-4.0));
@@ -65,7 +66,7 @@ fn rotations_are_brought_to_length_one() {
     is(&signed_distance(&Solid::half_space([0.0, 2.0]), &still, &rod, &turned), Quad::new(-4.0));
 }
 
-/// One solid twice: for this reference and for that in `f64`.
+/// One solid in the types of this reference and of the `f64` reference.
 struct Twin(Solid<3>, geometry::Solid<3>);
 
 fn random_twin(random: &mut Random) -> Twin {
@@ -120,7 +121,7 @@ fn agrees_with_the_reference_in_f64_and_with_itself_swapped() {
     assert!(settled > 290, "settled {settled}");
 }
 
-/// Two support points across from each other along one normal are the nearest points.
+/// If two support points differ by a multiple of their common normal, they are the closest points.
 fn ellipsoids_across<const D: usize>(
     random: &mut Random,
     pose: impl Fn(&mut Random, [f64; D]) -> Pose<D>,
@@ -153,7 +154,7 @@ fn ellipsoids_apart_are_proven() {
     ellipsoids_across::<2>(&mut random, |random, at| Pose::from_complex(at, random.unit_vector()));
 }
 
-/// Balls, once as points with a radius and once as ellipsoids, which take the other path.
+/// Measures balls as points with a radius and as ellipsoids, which use different code.
 #[test]
 fn two_ways_to_say_ball() {
     let mut random = Random::new(7);

@@ -1,33 +1,33 @@
-//! Faces and edges of the hull of a few points, as numbers of corners.
+//! Faces and edges of the hull of a few points, as indices of points.
 //!
-//! As in [`crate::geometry`], a plane through D corners that has all others on one side is a face,
-//! and two corners that share two faces are joined by an edge; the lists may hold more than the true
-//! features, never less.
+//! As in [`crate::geometry`], a plane through D corners with all others on one side is a face, and
+//! two corners that share two faces are joined by an edge. The lists contain all true features, and
+//! may contain more.
 
 use super::number::Quad;
 use super::vector::{Vector, dot, exact, norm, perpendicular, sub};
 
-/// What a hull can touch another with, besides its corners.
+/// The faces and edges of a hull.
 #[derive(Clone, Debug)]
 pub(super) struct Topology<const D: usize> {
-    /// D corners of each face; none where all points lie on a line of space or coincide.
+    /// The indices of D corners of each face. Empty if the points lie on a line in 3D, or coincide.
     pub(super) faces: Vec<[usize; D]>,
-    /// Both ends of each edge; none in the plane, where edges are faces.
+    /// The indices of both ends of each edge. Empty in 2D, where the edges are the faces.
     pub(super) edges: Vec<[usize; 2]>,
 }
 
 /// A plane with no point in front of it.
 struct Face<const D: usize> {
     corners: [usize; D],
-    /// All points on the plane.
+    /// The indices of all points on the plane.
     on: Vec<usize>,
-    /// How far from collinear the corners are, at most 1.
+    /// The sine of the angle between the sides at the first corner: 0 if collinear; 1 in 2D.
     quality: f64,
 }
 
 impl<const D: usize> Topology<D> {
-    /// The features of the hull of some points, each given once. The cost grows with the fourth
-    /// power of their number in space.
+    /// Computes the features of the hull of some distinct points. In 3D the time grows with the
+    /// fourth power of the number of points.
     pub(super) fn new(points: &[[f64; D]]) -> Self {
         let points: Vec<Vector<D>> = points.iter().map(exact).collect();
         let faces = faces(&points);
@@ -36,7 +36,8 @@ impl<const D: usize> Topology<D> {
     }
 }
 
-/// One face per set of coplanar points, through those that are farthest from collinear.
+/// Returns one face for each set of coplanar points, through those corners that give the largest
+/// `quality`.
 fn faces<const D: usize>(points: &[Vector<D>]) -> Vec<Face<D>> {
     let mut kept: Vec<Face<D>> = Vec::new();
     let mut corners = std::array::from_fn(|i| i);
@@ -53,8 +54,8 @@ fn faces<const D: usize>(points: &[Vector<D>]) -> Vec<Face<D>> {
     kept
 }
 
-/// The next ascending choice of D numbers below `count`; its last number is `count` after the last
-/// one.
+/// Returns the next ascending choice of D indices below `count`. After the last choice, the last
+/// index of the result is `count`.
 fn next<const D: usize>(mut chosen: [usize; D], count: usize) -> [usize; D] {
     for place in (0..D).rev() {
         if chosen[place] + (D - place) < count || place == 0 {
@@ -68,8 +69,8 @@ fn next<const D: usize>(mut chosen: [usize; D], count: usize) -> [usize; D] {
     chosen
 }
 
-/// The plane through some points, if no other lies in front of it (for the normal of one sign or of
-/// the other).
+/// Returns the plane through D points if all other points lie on one side of it or on it; `None`
+/// otherwise, and if the points are collinear.
 fn face_through<const D: usize>(points: &[Vector<D>], corners: [usize; D]) -> Option<Face<D>> {
     let origin = &points[corners[0]];
     let spans: Vec<Vector<D>> = corners[1..].iter().map(|&k| sub(&points[k], origin)).collect();
@@ -98,7 +99,8 @@ fn face_through<const D: usize>(points: &[Vector<D>], corners: [usize; D]) -> Op
     Some(Face { corners, on, quality })
 }
 
-/// The pairs of points that share two faces; all pairs if the points lie in one plane or on one line.
+/// Returns the pairs of points that share two faces; all pairs if the points lie in one plane or on
+/// one line.
 fn edges<const D: usize>(count: usize, faces: &[Face<D>]) -> Vec<[usize; 2]> {
     let flat = faces.iter().all(|face| face.on.len() == count);
     let shares = |i: usize, j: usize| {

@@ -5,49 +5,49 @@ use super::number::Quad;
 /// A point, a vector or a direction.
 pub type Vector<const D: usize> = [Quad; D];
 
-/// The vector with these components.
+/// Converts a vector of `f64`, exactly.
 #[must_use]
 pub fn exact<const D: usize>(v: &[f64; D]) -> Vector<D> {
     v.map(Quad::new)
 }
 
-/// The nearest vector of `f64`.
+/// Returns the nearest vector of `f64`.
 #[must_use]
 pub fn rounded<const D: usize>(v: &Vector<D>) -> [f64; D] {
     v.map(Quad::to_f64)
 }
 
-/// The zero vector.
+/// Returns the zero vector.
 #[must_use]
 pub fn zero<const D: usize>() -> Vector<D> {
     [Quad::ZERO; D]
 }
 
-/// `a + b`
+/// Returns `a + b`.
 #[must_use]
 pub fn add<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// `a - b`
+/// Returns `a - b`.
 #[must_use]
 pub fn sub<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
-/// `a * factor`
+/// Returns `a * factor`.
 #[must_use]
 pub fn scale<const D: usize>(a: &Vector<D>, factor: Quad) -> Vector<D> {
     a.map(|x| x * factor)
 }
 
-/// `-a`
+/// Returns `-a`.
 #[must_use]
 pub fn negate<const D: usize>(a: &Vector<D>) -> Vector<D> {
     a.map(|x| -x)
 }
 
-/// The sum of the products of the components.
+/// Returns the dot product.
 #[must_use]
 pub fn dot<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Quad {
     let mut sum = Quad::ZERO;
@@ -57,16 +57,17 @@ pub fn dot<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Quad {
     sum
 }
 
-/// Euclidean length.
+/// Returns the Euclidean length.
 #[must_use]
 pub fn norm<const D: usize>(a: &Vector<D>) -> Quad {
     dot(a, a).sqrt()
 }
 
-/// `a` at length one; `None` for the zero vector.
+/// Returns `a` scaled to length one; `None` for the zero vector.
 #[must_use]
 pub fn unit<const D: usize>(a: &Vector<D>) -> Option<Vector<D>> {
-    // Squares of components below 1e-140 would lose digits, so it is brought to a length near one.
+    // Squares of components below 1e-140 would lose digits, so that `a` is first scaled to a length
+    // near one.
     let size = a.iter().map(|x| x.to_f64().abs()).fold(0.0, f64::max);
     if size == 0.0 || !size.is_finite() {
         return None;
@@ -76,7 +77,7 @@ pub fn unit<const D: usize>(a: &Vector<D>) -> Option<Vector<D>> {
     Some(near_one.map(|x| x / length))
 }
 
-/// The part of `a` that is perpendicular to the vector `direction`, which need not be unit.
+/// Returns the component of `a` perpendicular to `direction`, which may have any length but 0.
 #[must_use]
 pub fn reject<const D: usize>(a: &Vector<D>, direction: &Vector<D>) -> Vector<D> {
     let share = dot(a, direction) / dot(direction, direction);
@@ -104,7 +105,8 @@ pub fn perpendicular<const D: usize>(spans: &[Vector<D>]) -> Vector<D> {
     result
 }
 
-/// The angle between two unit vectors, from the length of their difference: right for small angles.
+/// Returns the angle between two unit vectors, computed from the length of their difference:
+/// accurate for small angles.
 #[must_use]
 pub fn angle<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> f64 {
     let chord = norm(&sub(a, b)).to_f64();

@@ -1,31 +1,30 @@
-//! What changed between two updates.
+//! The changes between two updates.
 
 use super::Handle;
 
-/// How close two objects are.
+/// The proximity of two objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Proximity {
-    /// They touch or interpenetrate: the signed distance is at most zero.
+    /// The signed distance is at most zero.
     Intersecting,
-    /// They are apart, by no more than the sum of their margins.
+    /// The signed distance is positive, and at most the sum of the margins.
     WithinMargin,
-    /// They are farther apart, or may not interact.
+    /// The objects are farther apart than the sum of the margins, or may not interact.
     #[default]
     Disjoint,
 }
 
-/// A pair of objects with query type contacts got its first contact point or lost its last. The
-/// smaller handle comes first.
+/// A change of a pair of objects that both query contacts. The smaller handle comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ContactEvent {
-    /// From no contact point to at least one.
+    /// The pair got its first contact point.
     Started(Handle, Handle),
-    /// From at least one contact point to none.
+    /// The pair lost its last contact point.
     Stopped(Handle, Handle),
 }
 
 impl ContactEvent {
-    /// The objects, the smaller handle first.
+    /// Returns the two handles, the smaller first.
     #[must_use]
     pub fn pair(self) -> (Handle, Handle) {
         match self {
@@ -34,44 +33,47 @@ impl ContactEvent {
     }
 }
 
-/// The status of a pair of which at least one object has query type proximity changed.
+/// A change of the proximity of a pair, at least one object of which queries proximity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ProximityEvent {
     /// The smaller handle.
     pub collider1: Handle,
     /// The greater handle.
     pub collider2: Handle,
-    /// The status at the update before.
+    /// The proximity at the previous update.
     pub previous: Proximity,
-    /// Another status.
+    /// The new proximity, which differs from `previous`.
     pub new: Proximity,
 }
 
-/// All events of one update. In both lists the events of removed objects come first, sorted by
-/// pair; then those of living objects, sorted by pair. Pairs computed between updates count to the removals;
-/// only such a pair can have several events in a list.
+/// All events of one update. In both lists the events of removals come first, then those of living
+/// objects; each of the two groups is sorted by pair. Events of pairs computed between updates
+/// belong to the first group. Only such a pair can have several events in a list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Events {
     /// Starts and stops of contacts.
     pub contacts: Vec<ContactEvent>,
-    /// Transitions between proximities.
+    /// Changes of proximity.
     pub proximities: Vec<ProximityEvent>,
-    /// How many of `contacts` are due to removals.
+    /// The number of events at the start of `contacts` that removals, or pairs computed between
+    /// updates, caused.
     pub removed_contacts: usize,
-    /// How many of `proximities` are due to removals.
+    /// The number of events at the start of `proximities` that removals, or pairs computed between
+    /// updates, caused.
     pub removed_proximities: usize,
 }
 
-/// What one update found out about a pair; pairs of which nothing is to be said have the default.
+/// The state of a pair as of an update. Pairs that neither touch nor are near have the default
+/// state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct PairState {
-    /// Whether contact points exist.
+    /// Whether the pair has contact points.
     pub(super) touching: bool,
     pub(super) proximity: Proximity,
 }
 
 impl Events {
-    /// Adds what is different between two states of a pair.
+    /// Adds the events of the change from one state of a pair to another.
     pub(super) fn push_change(
         &mut self,
         (handle1, handle2): (Handle, Handle),
@@ -94,15 +96,15 @@ impl Events {
         }
     }
 
-    /// Appends the events of a later update.
+    /// Appends the events of a later update. The counts of removals are unchanged.
     pub fn append(&mut self, later: &Self) {
         self.contacts.extend(&later.contacts);
         self.proximities.extend(&later.proximities);
     }
 
-    /// Sorts what was collected while objects were removed, and remembers how much that is.
+    /// Sorts the events collected so far by pair, and stores their number as that of the removals.
     pub(super) fn close_removals(&mut self) {
-        // Events of one pair stay in the order in which they came.
+        // The sorts are stable: events of one pair stay in the order in which they occurred.
         self.contacts.sort_by_key(|event| event.pair());
         self.proximities.sort_by_key(|event| (event.collider1, event.collider2));
         self.removed_contacts = self.contacts.len();

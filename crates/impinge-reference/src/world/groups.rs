@@ -1,6 +1,6 @@
-//! Which objects may interact.
+//! Collision groups: which objects may interact.
 
-/// The 30 groups that exist.
+/// The mask of all 30 groups.
 pub const ALL: u32 = (1 << 30) - 1;
 
 /// Membership, whitelist and blacklist of an object, as bit masks: bit i stands for group i, from 0
@@ -9,9 +9,9 @@ pub const ALL: u32 = (1 << 30) - 1;
 pub struct Groups {
     /// The groups that the object belongs to.
     pub membership: u32,
-    /// The groups with which it interacts.
+    /// The groups with which the object interacts.
     pub whitelist: u32,
-    /// The groups with which it never interacts; wins over the whitelist.
+    /// The groups with which the object never interacts; it overrides the whitelist.
     pub blacklist: u32,
 }
 
@@ -22,13 +22,14 @@ impl Default for Groups {
 }
 
 impl Groups {
-    /// Member of all groups, whitelists all, blacklists none.
+    /// Returns the default: a member of all groups, which whitelists all groups and blacklists
+    /// none.
     #[must_use]
     pub fn new() -> Self {
         Self { membership: ALL, whitelist: ALL, blacklist: 0 }
     }
 
-    /// From lists of group numbers.
+    /// Creates groups from lists of indices from 0 to 29.
     #[must_use]
     pub fn of(membership: &[u32], whitelist: &[u32], blacklist: &[u32]) -> Self {
         let mask = |groups: &[u32]| groups.iter().fold(0, |mask, group| mask | 1 << group);
@@ -39,8 +40,8 @@ impl Groups {
         }
     }
 
-    /// Each is a member of at least one group that the other whitelists, and neither is a member of
-    /// a group that the other blacklists.
+    /// Whether two objects may interact: each is a member of a group that the other whitelists, and
+    /// neither is a member of a group that the other blacklists.
     #[must_use]
     pub fn can_interact(self, other: Self) -> bool {
         let wanted =

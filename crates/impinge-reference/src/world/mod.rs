@@ -1,31 +1,33 @@
-//! The naive collision world: every update looks at every pair and compares with what it saw
-//! before.
+//! The naive collision world: every update computes every pair and compares it with its state at
+//! the previous update.
 //!
-//! The rules, one by one:
+//! Rules:
 //!
-//! - A handle is an index and a generation. A removed object's index is used again, the last freed
-//!   one first, with the next generation; while none is free the next index is the number of
-//!   objects ever added.
-//! - A pair may interact if not both objects are fixed, the groups allow it and all filters agree. The
-//!   filters see the two indices, the smaller handle's first, and only for pairs that the groups allow.
-//! - If both objects query contacts, the pair is touching when the signed distance is at most the
-//!   sum of the predictions, and finite: solids that overlap without bound have no contact points.
-//! - If at least one queries proximity only the proximity is computed: intersecting when the signed
-//!   distance is at most zero, within margin when it is at most the sum of the margins, else
-//!   disjoint. An object that queries contacts has margin zero.
-//! - An update yields the differences to the update before, whatever caused them: motion, another
-//!   shape, groups, query type or filter. A pair that goes from contacts to proximity stops
-//!   touching, and starts from disjoint.
-//! - Removing an object ends its pairs at once: what was touching stops, what was not disjoint
-//!   becomes disjoint, as of the last update. These events come first in the batch of the next
-//!   update. An object that came and went between two updates leaves no trace.
-//! - One pair can be computed between two updates: at the present poses, with the shapes and query types of
-//!   the last update. What that changes is reported first by the next update, too, and it goes on from there.
-//! - A skin adds to the distance up to which an object that queries contacts touches others that do.
-//! - Changes have no effect on events and pair states before the next update; queries see them at
+//! - A handle is an index and a generation. The index of a removed object is used again, the one
+//!   freed last first, with the next generation. While no index is free, the next index is the
+//!   number of slots.
+//! - A pair may interact if at least one object is not fixed, the groups allow it and all filters
+//!   accept it. Filters get the two indices, that of the smaller handle first, and are called only
+//!   for pairs that the groups allow.
+//! - If both objects query contacts, the pair touches if the signed distance is finite and at most
+//!   the sum of the predictions. Solids that overlap without bound have no contact points.
+//! - If at least one object queries proximity, only the proximity is computed. It is intersecting
+//!   if the signed distance is at most zero, within margin if the distance is at most the sum of
+//!   the margins, and otherwise disjoint. An object that queries contacts has margin zero.
+//! - An update returns the differences from the previous update, whatever caused them: a motion,
+//!   another shape, group, query type or filter. A pair that changes from contacts to proximity
+//!   stops touching, and its proximity starts as disjoint.
+//! - The removal of an object ends its pairs at once, with the state of the last update: touching
+//!   pairs stop, pairs that are not disjoint become disjoint. These events come first at the next
+//!   update. An object that is added and removed between two updates has no events.
+//! - One pair can be computed between two updates, at the current poses, with the shapes and query
+//!   types of the last update. The next update reports this change first, and its other changes
+//!   relative to it.
+//! - The skins of both objects add to the prediction of a pair with contacts.
+//! - Changes have no effect on events and pair states before the next update. Queries use them at
 //!   once.
-//! - Angular predictions add contact points but do not make contact, and self-collision is not
-//!   modelled.
+//! - Angular predictions only add contact points, so that they are not modelled. Neither is
+//!   self-collision.
 
 mod events;
 mod groups;
@@ -40,67 +42,68 @@ use crate::geometry::{Pose, Solid};
 use events::PairState;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Names one object for ever.
+/// The id of an object; it is never used again for another object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Handle {
-    /// The place in the table; used again after a removal.
+    /// The index of the slot, which is used again after a removal.
     pub index: usize,
-    /// How many objects had that place before.
+    /// The number of earlier objects in the slot.
     pub generation: u32,
 }
 
-/// A handle whose object is gone, or was given twice to a removal. Nothing has been changed.
+/// The error of a handle whose object was removed, or that occurs twice in a removal. The world is
+/// unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StaleHandle(pub Handle);
 
-/// What is computed about the pairs of an object.
+/// The query type of an object: what is computed for its pairs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QueryType {
-    /// Contact points, closer than the sum of these predictions.
+    /// Contact points; the distance limit of a pair is the sum of both predictions.
     Contacts(f64),
-    /// The proximity, with this margin.
+    /// The proximity; the margin of a pair is the sum of both margins.
     Proximity(f64),
 }
 
 /// One object of the world.
 #[derive(Clone, Debug)]
 pub struct Object<const D: usize, S> {
-    /// Names it.
+    /// The handle of the object.
     pub handle: Handle,
-    /// How many objects were added before it, removed ones included.
+    /// The number of objects added before this one, removed ones included.
     pub order: u64,
-    /// Where it is.
+    /// The current pose.
     pub pose: Pose<D>,
-    /// What it is.
+    /// The shape, in its local frame.
     pub shape: S,
-    /// With whom it interacts.
+    /// The collision groups.
     pub groups: Groups,
-    /// What is computed.
+    /// The query type of its pairs.
     pub query_type: QueryType,
-    /// It does not interact with others that are fixed.
+    /// Whether the object is fixed: fixed objects do not interact with each other.
     pub is_fixed: bool,
-    /// How far from its surface contacts are measured.
+    /// The distance that is added to the prediction of pairs with contacts.
     pub skin: f64,
 }
 
 type Filter = Box<dyn Fn(usize, usize) -> bool>;
 
-/// See the module. The default shape is a single convex solid.
+/// The naive collision world; the module states its rules. By default a shape is one convex solid.
 pub struct NaiveWorld<const D: usize, S = Solid<D>> {
     slots: Vec<Slot<D, S>>,
-    /// Indices without an object, the last freed one at the end.
+    /// The free indices, the one freed last at the end.
     free: Vec<usize>,
     added: u64,
     filters: BTreeMap<String, Filter>,
-    /// The pairs that were not in the default state at the last update.
+    /// The states of the pairs that were not in the default state at the last update.
     states: BTreeMap<(Handle, Handle), PairState>,
-    /// From removals and computed pairs since the last update.
+    /// The events of removals and of computed pairs since the last update.
     queued: Events,
-    /// The objects as of the last update.
+    /// The objects as they were at the last update.
     updated: BTreeMap<Handle, Object<D, S>>,
 }
 
-/// A place in the table.
+/// A slot of the table of objects.
 #[derive(Debug)]
 struct Slot<const D: usize, S> {
     generation: u32,
@@ -120,9 +123,9 @@ impl<const D: usize, S: Shape<D>> Default for NaiveWorld<D, S> {
     }
 }
 
-/// Objects and what belongs to them.
+/// Methods that add, remove and change objects.
 impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
-    /// An empty world.
+    /// Creates an empty world.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -136,7 +139,7 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         }
     }
 
-    /// Adds an object.
+    /// Adds an object and returns its handle.
     pub fn add(
         &mut self,
         pose: Pose<D>,
@@ -157,10 +160,10 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         handle
     }
 
-    /// Removes objects; their places become free in the order of the list.
+    /// Removes objects; their indices become free in the order of the list.
     ///
     /// # Errors
-    /// The first handle that is stale or repeated; then no object is removed.
+    /// The first handle that is stale or repeated; no object is removed then.
     pub fn remove(&mut self, handles: &[Handle]) -> Result<(), StaleHandle> {
         for (k, &handle) in handles.iter().enumerate() {
             if self.object(handle).is_none() || handles[..k].contains(&handle) {
@@ -181,14 +184,14 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         Ok(())
     }
 
-    /// The object of a handle, or `None` if it was removed.
+    /// Returns the object of a handle; `None` if the handle is stale.
     #[must_use]
     pub fn object(&self, handle: Handle) -> Option<&Object<D, S>> {
         let object = self.slots.get(handle.index)?.object.as_ref()?;
         (object.handle == handle).then_some(object)
     }
 
-    /// All objects, sorted by handle.
+    /// Returns all objects, sorted by handle.
     pub fn objects(&self) -> impl Iterator<Item = &Object<D, S>> {
         self.slots.iter().filter_map(|slot| slot.object.as_ref())
     }
@@ -225,7 +228,7 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         self.object_mut(handle).map(|object| object.query_type = query)
     }
 
-    /// Marks an object as fixed, or takes the mark away.
+    /// Marks an object as fixed, or as not fixed.
     ///
     /// # Errors
     /// If the handle is stale.
@@ -246,20 +249,20 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         object.filter(|object| object.handle == handle).ok_or(StaleHandle(handle))
     }
 
-    /// Adds a filter of pairs; another one with the same name is replaced.
+    /// Adds a filter of pairs; it replaces a filter of the same name.
     pub fn register_filter(&mut self, name: &str, filter: impl Fn(usize, usize) -> bool + 'static) {
         self.filters.insert(name.to_owned(), Box::new(filter));
     }
 
-    /// Removes the filter of this name; says whether there was one.
+    /// Removes the filter of a name; returns whether it existed.
     pub fn unregister_filter(&mut self, name: &str) -> bool {
         self.filters.remove(name).is_some()
     }
 }
 
-/// Pairs and events.
+/// Methods about pairs and events.
 impl<const D: usize, S: Shape<D> + Clone> NaiveWorld<D, S> {
-    /// Computes all pairs and yields what is different since the update before.
+    /// Computes all pairs and returns the differences from the previous update.
     pub fn update(&mut self) -> Events {
         let mut events = std::mem::take(&mut self.queued);
         events.close_removals();
@@ -274,11 +277,12 @@ impl<const D: usize, S: Shape<D> + Clone> NaiveWorld<D, S> {
         events
     }
 
-    /// Computes the pair of two objects, the smaller handle first, that were there at the last update and were
-    /// a pair then; at the present poses.
+    /// Computes the pair of two objects, the smaller handle first, at their current poses. Both
+    /// must have been in the world, and allowed to interact, at the last update. The next update
+    /// returns the events.
     ///
     /// # Errors
-    /// The first handle that is stale, or of an object that the last update has not seen.
+    /// The first handle that is stale, or whose object was added after the last update.
     pub fn update_pair(&mut self, handle1: Handle, handle2: Handle) -> Result<(), StaleHandle> {
         let moved = |handle: Handle| {
             let object = self.object(handle).zip(self.updated.get(&handle));
@@ -295,21 +299,22 @@ impl<const D: usize, S: Shape<D> + Clone> NaiveWorld<D, S> {
         Ok(())
     }
 
-    /// The pairs that had contact points at the last update, sorted, the smaller handle first.
+    /// Returns the pairs that had contact points at the last update, sorted, the smaller handle
+    /// first.
     #[must_use]
     pub fn touching_pairs(&self) -> Vec<(Handle, Handle)> {
         self.states.iter().filter(|(_, state)| state.touching).map(|(&pair, _)| pair).collect()
     }
 
-    /// The pairs that were not disjoint at the last update, sorted, the smaller handle first. Pairs
-    /// of two objects that query contacts have no proximity.
+    /// Returns the pairs that were not disjoint at the last update, sorted, the smaller handle
+    /// first. Pairs of two objects that query contacts have no proximity.
     #[must_use]
     pub fn close_pairs(&self) -> Vec<(Handle, Handle, Proximity)> {
         let close = self.states.iter().filter(|(_, state)| state.proximity != Proximity::Disjoint);
         close.map(|(&(handle1, handle2), state)| (handle1, handle2, state.proximity)).collect()
     }
 
-    /// Whether groups, filters and marks of fixed objects allow a pair.
+    /// Whether groups, filters and fixed flags allow a pair.
     #[must_use]
     pub fn is_allowed(&self, object1: &Object<D, S>, object2: &Object<D, S>) -> bool {
         let uids = (object1.handle.index, object2.handle.index);
@@ -318,7 +323,7 @@ impl<const D: usize, S: Shape<D> + Clone> NaiveWorld<D, S> {
             && self.filters.values().all(|filter| filter(uids.0, uids.1))
     }
 
-    /// The signed distance of two objects as they are now.
+    /// Returns the signed distance of two objects at their current poses.
     #[must_use]
     pub fn signed_distance(&self, object1: &Object<D, S>, object2: &Object<D, S>) -> f64 {
         object1.shape.signed_distance(&object1.pose, &object2.shape, &object2.pose)
@@ -346,7 +351,7 @@ impl<const D: usize, S: Shape<D> + Clone> NaiveWorld<D, S> {
         }
     }
 
-    /// The state of a pair that is allowed.
+    /// Computes the state of a pair that is allowed.
     fn compute_interaction(&self, object1: &Object<D, S>, object2: &Object<D, S>) -> PairState {
         use QueryType::{Contacts, Proximity};
         let mut state = PairState::default();
@@ -371,8 +376,8 @@ impl<const D: usize, S: Shape<D> + Clone> NaiveWorld<D, S> {
     }
 }
 
-/// Whether the balls around two objects are so far apart that the exact distance need not be asked.
-/// It may say no for any pair.
+/// Whether the bounding balls of two objects are so far apart that the exact distance is not
+/// needed. A result of `false` is always correct, but costs time.
 fn is_far<const D: usize, S: Shape<D>>(
     object1: &Object<D, S>,
     object2: &Object<D, S>,
@@ -380,7 +385,7 @@ fn is_far<const D: usize, S: Shape<D>>(
 ) -> bool {
     let between = norm(&sub(&object2.pose.translation, &object1.pose.translation));
     let reach = object1.shape.bounding_radius() + object2.shape.bounding_radius() + margin;
-    // A percent is far more than all rounding.
+    // One percent is far more than all rounding errors.
     between > 1.01 * reach
 }
 
@@ -394,10 +399,11 @@ fn classify(distance: f64, margin: f64) -> Proximity {
     }
 }
 
-/// Queries. They ask the objects as they are now, not as of the last update, and answer sorted by
-/// handle.
+/// Queries. They use the current state of the objects, not that of the last update; results are
+/// sorted by handle.
 impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
-    /// The objects able to interact with `groups` that a ray meets, and where.
+    /// Returns the objects that can interact with `groups` and that a ray hits, with the times of
+    /// the hits.
     #[must_use]
     pub fn interferences_with_ray(
         &self,
@@ -411,15 +417,15 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         self.able(groups).filter_map(hit).collect()
     }
 
-    /// The objects able to interact with `groups` that hold a point.
+    /// Returns the objects that can interact with `groups` and that contain a point.
     #[must_use]
     pub fn interferences_with_point(&self, point: &[f64; D], groups: Groups) -> Vec<Handle> {
         let holds = |object: &&Object<D, S>| object.shape.contains_point(&object.pose, point);
         self.able(groups).filter(holds).map(|object| object.handle).collect()
     }
 
-    /// The objects able to interact with `groups` whose own boxes meet or touch the box with these
-    /// corners.
+    /// Returns the objects that can interact with `groups` and whose boxes overlap or touch the box
+    /// with these corners.
     #[must_use]
     pub fn interferences_with_aabb(
         &self,

@@ -1,27 +1,28 @@
-//! What the world must know about a shape; a test may plug in its own.
+//! The interface of shapes for the naive world; tests may implement their own.
 
 use crate::geometry::vector::norm;
 use crate::geometry::{
     Pose, Solid, contains_point, point_signed_distance, ray_cast, signed_distance,
 };
 
-/// The geometric questions of the world, about shapes in poses.
+/// The geometric queries that the world makes about a shape at a pose.
 pub trait Shape<const D: usize> {
-    /// The signed distance; minus infinity for solids that overlap without bound and so have no
-    /// contact.
+    /// Returns the signed distance; minus infinity for solids that overlap without bound, which
+    /// have no contact.
     fn signed_distance(&self, pose: &Pose<D>, other: &Self, other_pose: &Pose<D>) -> f64;
 
-    /// The radius of a ball about the local origin that holds the shape; infinity is always right,
-    /// but slow.
+    /// Returns the radius of a ball about the local origin that contains the shape. Infinity is
+    /// always correct, but slow.
     fn bounding_radius(&self) -> f64;
 
-    /// The first `t >= 0` at which a ray is in the shape.
+    /// Returns the least `t >= 0` at which the point `origin + t * direction` is in the shape;
+    /// `None` if the ray misses.
     fn ray_cast(&self, pose: &Pose<D>, origin: &[f64; D], direction: &[f64; D]) -> Option<f64>;
 
-    /// Whether a world point belongs to the shape.
+    /// Whether a world point lies in the shape.
     fn contains_point(&self, pose: &Pose<D>, point: &[f64; D]) -> bool;
 
-    /// The least and the greatest corner of the smallest box around the shape.
+    /// Returns the least and the greatest corner of the smallest box around the shape.
     fn aabb(&self, pose: &Pose<D>) -> ([f64; D], [f64; D]);
 }
 
@@ -47,11 +48,11 @@ impl<const D: usize> Shape<D> for Solid<D> {
     }
 }
 
-/// A union of solids, each at a pose in the frame of the whole: compounds, meshes, polylines and
+/// A union of solids, each with a pose in the frame of the union: compounds, meshes, polylines and
 /// height fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Union<const D: usize> {
-    /// At least one part.
+    /// The parts; at least one.
     pub parts: Vec<(Pose<D>, Solid<D>)>,
 }
 
@@ -62,13 +63,13 @@ impl<const D: usize> From<Solid<D>> for Union<D> {
 }
 
 impl<const D: usize> Union<D> {
-    /// The parts at their world poses.
+    /// Returns the parts with their world poses.
     fn placed(&self, pose: &Pose<D>) -> impl Iterator<Item = (Pose<D>, &Solid<D>)> {
         self.parts.iter().map(|(local, solid)| (pose.compose(local), solid))
     }
 
-    /// The signed distance of a point from the nearest part. Inside, it is the depth in the deepest
-    /// part.
+    /// Returns the signed distance of a point from the nearest part. For a point inside it is minus
+    /// the depth in the part in which the point is deepest.
     #[must_use]
     pub fn point_signed_distance(&self, pose: &Pose<D>, point: &[f64; D]) -> f64 {
         let distances = self.placed(pose).map(|(at, part)| point_signed_distance(part, &at, point));
@@ -76,8 +77,8 @@ impl<const D: usize> Union<D> {
     }
 }
 
-/// Outside, all answers are those of the union. Where unions interpenetrate, the depth is that of
-/// the deepest pair of parts, which may be less than it takes to separate the whole.
+/// If unions are apart, all results are exact. If they interpenetrate, the depth is that of the
+/// deepest pair of parts, which may be less than the translation that separates the unions.
 impl<const D: usize> Shape<D> for Union<D> {
     fn signed_distance(&self, pose: &Pose<D>, other: &Self, other_pose: &Pose<D>) -> f64 {
         let mut least = f64::INFINITY;
@@ -120,7 +121,7 @@ impl<const D: usize> Shape<D> for Union<D> {
 mod tests {
     use super::*;
 
-    /// Two unit boxes side by side with a gap of two.
+    /// Returns two unit boxes side by side with a gap of two.
     fn pair_of_boxes() -> Union<2> {
         let at = |x: f64| (Pose::at([x, 0.0]), Solid::cuboid([1.0, 1.0]));
         Union { parts: vec![at(-2.0), at(2.0)] }

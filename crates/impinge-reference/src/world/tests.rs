@@ -1,4 +1,4 @@
-//! The naive world against hand-computed event logs.
+//! Compares the naive world with event logs computed by hand.
 
 use super::*;
 use crate::random::Random;
@@ -153,8 +153,8 @@ fn queries_see_changes_at_once() {
     assert_eq!(world.interferences_with_point(&[5.25, 0.0], all), [b]);
 }
 
-/// Whatever happens, started and stopped take turns for each pair, and statuses continue where they
-/// ended.
+/// In random histories, `Started` and `Stopped` alternate for each pair, and each proximity event
+/// begins with the status at which the last one ended.
 #[test]
 fn events_of_random_histories_are_coherent() {
     let mut random = Random::new(5);

@@ -30,8 +30,8 @@ impl<const D: usize> Pair<D> {
         signed_distance(&self.solid2, &self.pose2, &self.solid1, &self.pose1)
     }
 
-    /// How much worse a normal is than the best one. The normals of half-spaces are compared as
-    /// they are, and those of vectors of the corpus need not be unit to the last digit.
+    /// Returns the upper bound of the signed distance minus the separation along `normal`. For
+    /// half-spaces, whose separation may be infinite, returns the distance of the two normals.
     fn normal_loss(&self, found: &Reference<D>, normal: &[f64; D]) -> f64 {
         let along = separation_along(&self.solid1, &self.pose1, &self.solid2, &self.pose2, normal);
         if along.is_finite() {
@@ -143,7 +143,7 @@ fn regression_rays() {
     let rays = cases(&corpus).iter().filter(|case| case["query"] == "ray");
     let done = rays
         .filter(|case| if case["dim"] == 2 { check_ray::<2>(case) } else { check_ray::<3>(case) });
-    // The others are on height fields and meshes.
+    // The other cases are about height fields and meshes.
     assert_eq!(done.count(), 13);
 }
 
@@ -200,6 +200,6 @@ fn regression_casts() {
     let run = |case: &&Value| {
         if case["dim"] == 2 { check_cast::<2>(case) } else { check_cast::<3>(case) }
     };
-    // The other two are on height fields.
+    // The other two cases are about height fields.
     assert_eq!(casts.filter(run).count(), 25);
 }

@@ -1,5 +1,5 @@
-//! The reference against the corpus of known answers: cases on which published libraries erred,
-//! with expected values that were found independently of this crate.
+//! Compares the reference with the corpus: cases in which published libraries erred, with expected
+//! values that were computed independently of this crate.
 
 mod distances;
 mod read;

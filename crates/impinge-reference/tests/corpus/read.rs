@@ -1,4 +1,4 @@
-//! From JSON to solids and poses.
+//! Reads solids and poses from JSON.
 
 use impinge_reference::geometry::{Pose, Solid};
 use serde_json::Value;
@@ -22,8 +22,8 @@ pub(crate) fn numbers<const N: usize>(value: &Value) -> [f64; N] {
     std::array::from_fn(|i| number(&list[i]))
 }
 
-/// The solid, and its pose in the frame of the shape: the corpus has cylinders and cones along any
-/// axis.
+/// Returns the solid, and its pose in the frame of the shape. Cylinders and cones of the corpus may
+/// have any axis; those of the reference have y.
 pub(crate) fn solid<const D: usize>(shape: &Value) -> Option<(Solid<D>, Pose<D>)> {
     let radius = || number(shape.get("radius").unwrap_or(&shape["r"]));
     let points = |keys: &[&str]| keys.iter().map(|key| numbers(&shape[key])).collect();
@@ -54,7 +54,7 @@ pub(crate) fn solid<const D: usize>(shape: &Value) -> Option<(Solid<D>, Pose<D>)
     };
     let mut tilt = Pose::identity();
     match shape["axis"].as_str() {
-        // y to x about z, and y to z about x.
+        // Rotates y to x about z, or y to z about x.
         Some("x") => (tilt.rotation[0], tilt.rotation[1]) = (unit(1), unit(0).map(|x: f64| -x)),
         Some("z") => (tilt.rotation[1], tilt.rotation[2]) = (unit(2).map(|x: f64| -x), unit(1)),
         _ => (),
@@ -66,10 +66,10 @@ fn unit<const D: usize>(index: usize) -> [f64; D] {
     std::array::from_fn(|i| if i == index { 1.0 } else { 0.0 })
 }
 
-/// Poses are written in different ways in the plane and in space.
+/// Reads poses, which have different members in 2D and 3D.
 pub(crate) trait ReadPose: Sized {
     fn read(value: &Value) -> Self;
-    /// The pose of the second shape in the frame of the first.
+    /// Reads the pose of the second shape in the frame of the first.
     fn read_pos12(value: &Value) -> Self;
 }
 

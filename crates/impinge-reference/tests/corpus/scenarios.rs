@@ -1,4 +1,4 @@
-//! The scripts of operations on worlds.
+//! Runs the scripts of world operations in the corpus.
 
 use crate::read::{ReadPose, cases, number, numbers, read, solid};
 use impinge_reference::geometry::{Pose, Solid};
@@ -6,11 +6,11 @@ use impinge_reference::world::{ContactEvent, Groups, Handle, NaiveWorld, QueryTy
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// A world, and the names of the script.
+/// A world, and the handles of the names in the script.
 struct Stage<const D: usize> {
     world: NaiveWorld<D>,
     handles: BTreeMap<String, Handle>,
-    /// Of the last step that updated.
+    /// The contact events of the last step that updated the world.
     log: Vec<ContactEvent>,
 }
 
@@ -22,7 +22,7 @@ where
         Self { world: NaiveWorld::new(), handles: BTreeMap::new(), log: Vec::new() }
     }
 
-    /// Runs one step; false if it asks for something that the world does not have.
+    /// Runs one step; returns `false` if the naive world does not support it.
     fn step(&mut self, step: &Value) -> bool {
         match step["op"].as_str().expect("an operation") {
             "add" if step["parent"].is_string() || step["margin"].is_number() => return false,
@@ -128,7 +128,7 @@ fn shape<const D: usize>(step: &Value) -> Solid<D> {
     solid(&step["shape"]).expect("a known shape").0
 }
 
-/// The filter of the corpus is a whitelist.
+/// Reads groups: the filter of the corpus becomes the whitelist.
 fn groups(step: &Value) -> Groups {
     let mask = |key: &str| step[key].as_u64().map(|mask| u32::try_from(mask).expect("a mask"));
     let all = Groups::new();
@@ -139,7 +139,7 @@ fn groups(step: &Value) -> Groups {
     }
 }
 
-/// Runs a script up to its first step that cannot be run; says whether it came to the end.
+/// Runs a script up to its first unsupported step; returns whether it ran to the end.
 fn run<const D: usize>(case: &Value) -> bool
 where
     Pose<D>: ReadPose,
@@ -161,7 +161,8 @@ fn world_scenarios() {
             left_out.push(case["id"].as_str().expect("an id"));
         }
     }
-    // Parents, snapshots, margins of objects, and the insides of trees are not modelled here.
+    // Scripts with parents, snapshots, margins of single objects, or access to trees are not
+    // supported.
     let expected = [
         "rapier-734-reparent",
         "rapier.js-52-query-before-step",

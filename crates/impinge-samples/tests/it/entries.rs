@@ -120,7 +120,8 @@ fn every_sample_is_the_same_on_every_run() {
     }
 }
 
-/// Returns the minimum, the middle and the maximum.
+/// Returns the values to be tested: of a number the minimum, the middle and the maximum, of a
+/// choice all words.
 fn values(control: &Control) -> Vec<ControlValue> {
     match control.kind {
         ControlKind::Number { min, max, .. } => {

@@ -212,7 +212,7 @@ fn the_gripper_stops_at_contact() {
     }
 }
 
-/// Returns how many boxes, balls and capsules entered.
+/// Returns the numbers of boxes, balls and capsules that entered their sensors.
 fn entered<const D: usize>() -> [[i32; 3]; 2]
 where
     f32: Stage<D>,

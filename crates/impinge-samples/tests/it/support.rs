@@ -26,7 +26,7 @@ impl Stage<3> for f32 {
     }
 }
 
-/// The sample `name` with the digit of its dimension.
+/// Returns the sample called `name` followed by the digit of its dimension.
 pub(crate) fn running<const D: usize>(name: &str) -> Running<D>
 where
     f32: Stage<D>,

@@ -1,4 +1,4 @@
-//! Rocks that float far from one another.
+//! Asteroids: convex solids that are mostly far from each other.
 
 use super::drift::freeze;
 use super::pile::{axis, edge};
@@ -6,9 +6,9 @@ use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::Random;
 use crate::{Motion, Scene, SceneObject, SceneShape, Wave, rounded};
 
-/// Convex solids of 12 to 19 points and of radii from 0.4 to 2, most of them small, that move by 0.005
-/// to 0.03 per step, turn slowly and are reflected at the walls of their space. About every third has
-/// another near it: a box around it that meets its own.
+/// Convex solids of 12 to 19 points and of radii from 0.4 to 2, most of them small. They move by
+/// 0.005 to 0.03 per step, rotate slowly and are reflected at the walls of their space. The box of
+/// about every third solid overlaps that of another.
 #[must_use]
 pub fn asteroids<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(9);
@@ -17,7 +17,7 @@ pub fn asteroids<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "asteroids", margin: MARGIN, objects, steps: 100 }
 }
 
-/// The asteroids with all but every hundredth frozen.
+/// The asteroids, of which only every hundredth moves.
 #[must_use]
 pub fn few_asteroids_moving<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = asteroids(count);
@@ -25,11 +25,11 @@ pub fn few_asteroids_moving<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "1 % of asteroids moving", ..scene }
 }
 
-/// The space per rock is a cube of this edge, six times the radius of a middling one.
+/// The edge of the cube of space per asteroid: six times a medium radius.
 const SPACING: f64 = 6.0;
 
 fn floating<const D: usize>(edge: f64, random: &mut Random) -> SceneObject<D> {
-    // The square has small ones more often.
+    // Squaring makes small radii more frequent.
     let share = random.unit();
     let radius = 0.4 + 1.6 * share * share;
     let speed = random.between(0.005, 0.03);
@@ -42,8 +42,8 @@ fn floating<const D: usize>(edge: f64, random: &mut Random) -> SceneObject<D> {
     SceneObject::new(shape, NEAR_CONTACTS, motion)
 }
 
-/// The tips of a cross along the axes, so that all dimensions are spanned, and points between, each at
-/// 0.7 to 1 times the radius.
+/// Returns the points of an asteroid: the tips of a cross along the axes, so that all dimensions
+/// are spanned, and random points. Each is at 0.7 to 1 times the radius from the origin.
 pub(super) fn rock<const D: usize>(
     count: usize,
     radius: f64,
@@ -57,7 +57,7 @@ pub(super) fn rock<const D: usize>(
     points.collect()
 }
 
-/// The directions along the axes, to and fro.
+/// Returns the `n`-th direction along an axis, of either sign.
 fn tip<const D: usize>(n: usize) -> [f64; D] {
     let mut tip = [0.0; D];
     tip[n / 2] = if n.is_multiple_of(2) { 1.0 } else { -1.0 };

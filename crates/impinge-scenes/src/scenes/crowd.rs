@@ -1,13 +1,13 @@
-//! People seen from above.
+//! A crowd of people, seen from above.
 
 use super::pile::{edge, signed_speed};
 use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::Random;
 use crate::{Motion, Scene, SceneObject, SceneShape, Wave};
 
-/// Capsules 0.9 wide and 0.4 deep, each with 1.2 of the ground, in two streams against one another:
-/// all walk by 0.02 to 0.04 per step along the first axis, with their shoulders across it, sway, and
-/// are reflected at the walls. A person touches or overlaps about one other.
+/// Capsules 0.9 wide and 0.4 deep, with an area of 1.2 for each, in two opposite streams. All walk
+/// by 0.02 to 0.04 per step along the first axis, with their shoulders across it, sway, and are
+/// reflected at the walls. A person touches or overlaps about one other.
 #[must_use]
 pub fn crowd(count: usize) -> Scene<2> {
     let random = &mut Random::new(10);

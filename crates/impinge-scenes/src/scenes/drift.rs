@@ -1,12 +1,12 @@
-//! Boxes that fly about at random and are reflected at the walls of their space.
+//! Boxes that drift in random directions and are reflected at the walls of their space.
 
 use super::pile::{axis, edge};
 use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::Random;
 use crate::{Motion, Scene, SceneObject, SceneQuery, SceneShape, Wave, rounded};
 
-/// Boxes of half extents 0.35 to 0.65, all moving by 0.01 to 0.09 per step and turning slowly, with
-/// about 3 neighbours each: boxes around them that meet the box around it.
+/// Boxes of half extents 0.35 to 0.65. All move by 0.01 to 0.09 per step and rotate slowly. The
+/// axis-aligned box of each overlaps those of about 3 others.
 #[must_use]
 pub fn sparse_drift<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(2);
@@ -15,10 +15,12 @@ pub fn sparse_drift<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "sparse drift", margin: MARGIN, objects, steps: 100 }
 }
 
-/// The space per box at which a box has 3 neighbours.
+/// Returns the space per box at which the axis-aligned box of each overlaps those of 3 others on
+/// average.
 ///
-/// Two boxes meet where their centres are within the sum of their reaches along each axis: 1 in the
-/// mean if they were not turned, and the more the more ways there are to turn. Counted, not derived.
+/// Two axis-aligned boxes overlap if their centres differ along each axis by at most the sum of
+/// their half extents. This sum is 1 on average without rotation, and grows with the number of axes
+/// of rotation. The constant was found by counting, not derived.
 fn space_per_box<const D: usize>() -> f64 {
     let width = 2.0 + 0.28 * D as f64;
     (0..D).fold(1.0 / 3.0, |space, _| space * width)
@@ -34,7 +36,7 @@ fn drifting<const D: usize>(edge: f64, random: &mut Random) -> SceneObject<D> {
     SceneObject::new(SceneShape::Cuboid { half_extents }, NEAR_CONTACTS, motion)
 }
 
-/// The sparse drift with all but every hundredth box frozen.
+/// The sparse drift, of which only every hundredth box moves.
 #[must_use]
 pub fn few_moving<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = sparse_drift(count);
@@ -42,7 +44,7 @@ pub fn few_moving<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "1 % moving", ..scene }
 }
 
-/// The sparse drift with all but ten boxes frozen, or all of fewer.
+/// The sparse drift, of which only ten boxes move, or all if there are fewer.
 #[must_use]
 pub fn ten_moving<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = sparse_drift(count);
@@ -50,14 +52,14 @@ pub fn ten_moving<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "ten moving", ..scene }
 }
 
-/// Freezes the objects whose index is not one that `moves`.
+/// Freezes the objects for whose index `moves` returns `false`.
 pub(super) fn freeze<const D: usize>(scene: &mut Scene<D>, moves: impl Fn(usize) -> bool) {
     let frozen = scene.objects.iter_mut().enumerate().filter(|(index, _)| !moves(*index));
     frozen.for_each(|(_, object)| object.motion = object.motion.frozen());
 }
 
-/// The sparse drift, in which every tenth object is a ball of radius 1.5 that asks which others are
-/// within it, without points: some twenty at a time.
+/// The sparse drift in which every tenth object is a sensor: a ball of radius 1.5 with a proximity
+/// query. About twenty others are within it at a time.
 #[must_use]
 pub fn sensors<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = sparse_drift(count);
@@ -68,9 +70,8 @@ pub fn sensors<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "sensors", ..scene }
 }
 
-/// The sparse drift with births and deaths: at each step a hundredth of the boxes vanish and as many
-/// appear. At every step `count` boxes are alive, or up to a hundred more where 100 does not divide
-/// `count`.
+/// The sparse drift with a hundredth of the boxes removed and as many added at each step. At every
+/// step `count` boxes are alive, or up to a hundred more if 100 does not divide `count`.
 #[must_use]
 pub fn spawn_and_despawn<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(3);
@@ -79,7 +80,8 @@ pub fn spawn_and_despawn<const D: usize>(count: usize) -> Scene<D> {
     let churn = count.div_ceil(100);
     let mut objects = Vec::new();
     for death in 1..life + steps {
-        // Those that die within the first life are alive at step 0, each generation a step older.
+        // Boxes that are removed before step 100 are alive at step 0. Each later generation lives
+        // one step longer.
         let alive = death.saturating_sub(life)..death;
         let born = || SceneObject { alive: alive.clone(), ..drifting::<D>(edge, random) };
         objects.extend(std::iter::repeat_with(born).take(churn));
@@ -87,8 +89,8 @@ pub fn spawn_and_despawn<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "spawn and despawn", margin: MARGIN, objects, steps }
 }
 
-/// Boxes whose half extents range over four orders of magnitude, from about 0.001 to about 10, as
-/// many in each octave; each moves by a few percent of its own size per step.
+/// Boxes whose half extents range over four orders of magnitude, from about 0.001 to about 10, with
+/// equally many in each octave. Each moves by a few percent of its own size per step.
 #[must_use]
 pub fn mixed_sizes<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(4);
@@ -100,8 +102,8 @@ pub fn mixed_sizes<const D: usize>(count: usize) -> Scene<D> {
 
 const OCTAVES: usize = 14;
 
-/// The largest boxes, a seventh of all, meet one another and some of the rest; at this density a box
-/// has a few neighbours in the mean.
+/// Returns the space per box. The largest boxes, a seventh of all, overlap each other and some of
+/// the rest; at this density a box has a few neighbours on average.
 fn space_per_mixed_box<const D: usize>() -> f64 {
     (0..D).fold(0.06, |space, _| space * 20.0)
 }

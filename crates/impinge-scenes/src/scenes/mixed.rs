@@ -1,12 +1,12 @@
-//! All kinds of shapes flying about above a plane.
+//! Shapes of all kinds that fly above a plane.
 
 use super::MARGIN;
 use super::pile::{axis, edge};
 use crate::random::Random;
 use crate::{Motion, Scene, SceneObject, SceneQuery, SceneShape, Wave, rounded};
 
-/// A plane and `count` solids of size 1, an equal number of each kind there is in `D` dimensions,
-/// all moving and turning. Every seventh asks for proximity, the others for contacts.
+/// A plane and `count` solids of size 1, equally many of each kind of the dimension, all moving and
+/// rotating. Every seventh has a proximity query, the others query contacts.
 #[must_use]
 pub fn mixed_shapes<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(5);
@@ -22,7 +22,8 @@ pub fn mixed_shapes<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "mixed shapes", margin: MARGIN, objects, steps: 100 }
 }
 
-/// The remainder 3 gives each kind, six in the plane and eight in space, both queries.
+/// Returns the query type of object `n`. There are six kinds in 2D and eight in 3D, and neither has
+/// a common factor with 7: so each kind occurs with both query types.
 const fn query(n: usize) -> SceneQuery {
     if n % 7 == 3 {
         SceneQuery::Proximity { margin: 0.05 }
@@ -39,7 +40,7 @@ pub(super) fn flight<const D: usize>(edge: f64, random: &mut Random) -> Motion<D
     Motion { axis: axis::<D>(random), tangent, ..Motion::translation(place) }
 }
 
-/// Kinds 0 to 5 exist in every dimension, 6 and 7 in space.
+/// Returns a shape of a kind: 0 to 5 exist in both dimensions, 6 and 7 in 3D only.
 fn shape_of_kind<const D: usize>(kind: usize, random: &mut Random) -> SceneShape<D> {
     let radius = rounded(random.between(0.3, 0.5));
     let half_height = rounded(random.between(0.2, 0.5));
@@ -57,13 +58,13 @@ fn shape_of_kind<const D: usize>(kind: usize, random: &mut Random) -> SceneShape
     }
 }
 
-/// A point at a distance from the origin.
+/// Returns a random point at a distance from the origin.
 fn corner<const D: usize>(distance: f64, random: &mut Random) -> [f64; D] {
     random.direction::<D>().map(|x| rounded(x * distance))
 }
 
-/// The corners of a cross along the axes, which span all dimensions, and up to eight points outside
-/// of it.
+/// Returns the tips of a cross along the axes, which span all dimensions, and up to eight points
+/// outside of it.
 fn convex<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
     let tips = (0..2 * D).map(|n| {
         let mut tip = [0.0; D];

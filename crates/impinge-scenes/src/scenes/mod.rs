@@ -1,4 +1,5 @@
-//! The scenes, by idea. Each is made for a number of objects and is the same for the same number.
+//! The scenes, by subject. The constructor gets the number of objects; equal numbers give equal
+//! scenes.
 
 mod asteroids;
 mod crowd;
@@ -30,7 +31,7 @@ pub use vehicles::{
 
 use crate::SceneQuery;
 
-/// What most objects ask: the sum over a pair is 0.002.
+/// The query type of most objects: the prediction of a pair is the sum, 0.002.
 const NEAR_CONTACTS: SceneQuery = SceneQuery::Contacts { linear: 0.001, angular: 0.0 };
-/// The loosening that suits objects of size 1 which move a few percent of that per step.
+/// The margin for objects of size 1 that move a few percent of their size per step.
 const MARGIN: f64 = 0.04;

@@ -1,15 +1,16 @@
-//! Boxes that touch one another.
+//! Boxes that touch each other.
 
 use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::{Random, root};
 use crate::{Motion, Scene, SceneObject, SceneQuery, SceneShape, Wave, rounded};
 
-/// Boxes of half extents 0.55 on a grid of spacing 1: each overlaps all neighbours, the diagonal
-/// ones too (8 in the plane, 26 in space), and shakes and turns a little at every step. 10 000 boxes
-/// in space make about 117 000 touching pairs.
+/// Boxes of half extents 0.55 on a grid of spacing 1, which shake and rotate slightly at every
+/// step. Each overlaps all neighbours, diagonal ones included: 8 in 2D, 26 in 3D. 10 000 boxes in
+/// 3D make about 117 000 touching pairs.
 ///
-/// The shaking is at most 0.02 along each axis and 2·atan(0.01) in angle, so no pair ever parts: a
-/// corner moves by 0.02 + 0.02 · √3 · 0.55 < 0.04 along an axis, and boxes overlap by 0.1.
+/// The shaking is at most 0.02 along each axis, and 2·atan(0.01) in angle, so that no pair ever
+/// separates: a corner moves by 0.02 + 0.02 · √3 · 0.55 < 0.04 along an axis, and boxes overlap by
+/// 0.1.
 #[must_use]
 pub fn pile<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(1);
@@ -19,7 +20,7 @@ pub fn pile<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "pile", margin: MARGIN, objects, steps: 100 }
 }
 
-/// The pile, whose boxes are not turned.
+/// The pile without rotations.
 #[must_use]
 pub fn aligned_pile<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = pile(count);
@@ -29,8 +30,8 @@ pub fn aligned_pile<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "aligned pile", ..scene }
 }
 
-/// The pile, whose boxes are turned at random, by up to a quarter turn to either side. Boxes still overlap
-/// those beside them, but not all along the diagonals.
+/// The pile with random rotations of up to a quarter turn in either direction. Boxes still overlap
+/// their neighbours along the axes, but not all diagonal ones.
 #[must_use]
 pub fn turned_pile<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(15);
@@ -46,7 +47,7 @@ fn dimension<const D: usize>() -> u32 {
     u32::try_from(D).expect("2 or 3")
 }
 
-/// The `n`-th cell of a grid, row by row.
+/// Returns the `n`-th cell of a grid, row by row.
 fn cell<const D: usize>(n: usize, side: usize) -> [f64; D] {
     let mut rest = n;
     std::array::from_fn(|_| {
@@ -68,19 +69,19 @@ fn shaking<const D: usize>(at: [f64; D], random: &mut Random) -> SceneObject<D> 
     SceneObject::new(shape, NEAR_CONTACTS, motion)
 }
 
-/// A speed of either sign.
+/// Returns a random speed between `low` and `high`, of either sign.
 pub(super) fn signed_speed(random: &mut Random, low: f64, high: f64) -> f64 {
     let speed = random.between(low, high);
     if random.below(2) == 0 { speed } else { -speed }
 }
 
-/// Any axis in space, the third in the plane.
+/// Returns a random axis in 3D, the third axis in 2D.
 pub(super) fn axis<const D: usize>(random: &mut Random) -> [f64; 3] {
     if dimension::<D>() < 3 { [0.0, 0.0, 1.0] } else { random.direction() }
 }
 
-/// Boxes of half extents 0.5 in towers of ten, at rest on a plane: each touches the one below and
-/// the one above exactly. The plane is the first object.
+/// Boxes of half extents 0.5 in towers of ten, at rest on a plane: each touches the box below and
+/// the box above with a distance of exactly zero. The plane is the first object.
 #[must_use]
 pub fn tower<const D: usize>(count: usize) -> Scene<D> {
     let touch = SceneQuery::Contacts { linear: 0.0, angular: 0.0 };
@@ -97,7 +98,7 @@ pub fn tower<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "tower", margin: MARGIN, objects, steps: 100 }
 }
 
-/// The edge of a cube that holds `count` objects with `space` for each.
+/// Returns the edge of a cube that contains `count` objects with the volume `space` for each.
 pub(super) fn edge<const D: usize>(count: usize, space: f64) -> f64 {
     root::<D>(count as f64 * space)
 }

@@ -12,14 +12,14 @@ use crate::{Motion, Scene, SceneObject, SceneShape, Wave, rounded};
 const CELL: f64 = 1.0;
 /// Half the height of a plate.
 const HALF_HEIGHT: f64 = 0.25;
-/// How far a solid slides to either side along each axis.
+/// The largest distance by which a solid slides from its start, to either side along each axis.
 const WAY: f64 = 1.0;
 
-/// `count` flat boxes of half extents `half` along the ground and 0.25 upward, on a height field of cells of
-/// width 1 whose heights vary by 0.02, which is the first object. They slide by 0.01 to 0.03 per step, to
-/// and fro, each turned as it likes about the upward axis. Their undersides lie at the mean height, so that
-/// they touch most of the triangles that they cover: about `8 · half²` in space, `2 · half` segments in the
-/// plane. No two plates meet.
+/// `count` flat boxes of half extents `half` along the ground and 0.25 upward, on a height field,
+/// which is the first object. Its cells have width 1, and its heights vary by 0.02. The boxes slide
+/// back and forth by 0.01 to 0.03 per step, each rotated by a random angle about the upward axis.
+/// Their undersides lie at the mean height, so that they touch most of the triangles that they
+/// cover: about `8 · half²` in 3D, `2 · half` segments in 2D. No two boxes overlap.
 #[must_use]
 pub fn plates<const D: usize>(count: usize, half: f64) -> Scene<D> {
     let half_extents = std::array::from_fn(|i| rounded(if i == 1 { HALF_HEIGHT } else { half }));
@@ -27,9 +27,9 @@ pub fn plates<const D: usize>(count: usize, half: f64) -> Scene<D> {
     scene("plates", count, &slider, |_| SceneShape::Cuboid { half_extents })
 }
 
-/// `count` solids of one kind and of half extent 1 that slide by 0.1 per step over the plain of [`plates`],
-/// to and fro. A capsule or cylinder lies on its side; a hull has a level underside of its own size, and is
-/// narrower above.
+/// `count` solids of one kind and of half extent 1, which slide back and forth by 0.1 per step on
+/// the height field of [`plates`]. A capsule or cylinder lies on its side. A hull has a level
+/// underside of its full size, and is narrower above.
 #[must_use]
 pub fn solids_on_plain<const D: usize>(count: usize, kind: SolidKind) -> Scene<D> {
     let (half_height, radius) = (0.5, 0.5);
@@ -45,20 +45,21 @@ pub fn solids_on_plain<const D: usize>(count: usize, kind: SolidKind) -> Scene<D
     })
 }
 
-/// How the solids of a scene lie and move.
+/// The sizes and speeds of the solids of a scene.
 struct Slider {
-    /// Half the extent along the ground, across which there has to be room.
+    /// Half the largest extent along the ground.
     half: f64,
     /// The height of the centre above the ground.
     height: f64,
     /// The least and the greatest distance per step.
     speed: (f64, f64),
-    /// Whether the second axis of the solid lies along the ground.
+    /// Whether the solid is rotated so that its second axis lies along the ground.
     is_laid: bool,
 }
 
 impl Slider {
-    /// The width of the ground that a solid has for itself: its diagonal, its way, and two cells.
+    /// Returns the width of the ground per solid: its diagonal, the distance that it slides, and
+    /// two cells.
     fn lot(&self) -> f64 {
         2.0 * (1.5 * self.half + WAY + CELL)
     }
@@ -84,8 +85,9 @@ impl Slider {
         Motion { place, axis, tangent: Wave::rest(tangent) }
     }
 
-    /// A turn about the upward axis, or a quarter turn about an axis along the ground, which lays the second
-    /// axis down. In the plane, no turn or a quarter turn.
+    /// Returns the axis of a rotation and the tangent of half its angle: about the upward axis, or,
+    /// if `is_laid`, a quarter turn about an axis along the ground. In 2D, no rotation or a quarter
+    /// turn.
     fn turn<const D: usize>(&self, random: &mut Random) -> ([f64; 3], f64) {
         let [x, z] = random.direction::<2>();
         match (D < 3, self.is_laid) {

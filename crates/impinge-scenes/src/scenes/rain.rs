@@ -1,4 +1,4 @@
-//! Solids that fall on hilly ground.
+//! Solids that fall onto hilly ground.
 
 use super::pile::{axis, signed_speed};
 use super::terrain::{Ground, solid};
@@ -6,17 +6,17 @@ use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::Random;
 use crate::{Motion, Scene, SceneObject, Wave};
 
-/// From how high above the ground solids fall.
+/// The height above the ground from which solids fall.
 const HEIGHT: f64 = 12.0;
-/// How far a solid dips into the ground before it goes up again.
+/// The depth to which a solid penetrates the ground before it rises again.
 const DIP: f64 = 0.1;
 
-/// `count` balls, boxes, capsules and convex solids of size 1, as many of each, that fall from up to 12
-/// above a hilly ground of triangles by 0.05 to 0.15 per step, turning, each at its own speed, and go
-/// up again from the ground. The ground is the first object and has 25 triangles for each; in the plane
-/// it is a line of 5 segments for every two.
+/// `count` balls, boxes, capsules and convex solids of size 1, equally many of each. They fall from
+/// up to 12 above a hilly mesh by 0.05 to 0.15 per step, each at its own speed, rotate, and rise
+/// again from the ground. The mesh is the first object and has 25 triangles per solid; in 2D it is
+/// a polyline of 5 segments for every two.
 ///
-/// At any time a few percent of them touch the ground, and as many one another.
+/// At any time a few percent of them touch the ground, and a few percent touch each other.
 #[must_use]
 pub fn rain<const D: usize>(count: usize) -> Scene<D> {
     let random = &mut Random::new(11);
@@ -30,7 +30,7 @@ pub fn rain<const D: usize>(count: usize) -> Scene<D> {
 fn falling<const D: usize>(kind: usize, ground: &Ground<D>, random: &mut Random) -> SceneObject<D> {
     let shape = solid(kind, random);
     let at = ground.somewhere(random);
-    // The height of the centre at which the solid, as it is not turned, is as deep as it goes.
+    // The height of the centre above the ground at which the solid, without rotation, touches it.
     let resting = shape.aabb(&crate::Placement::at(at)).map_or(0.0, |(low, _)| at[1] - low[1]);
     let lowest = at[1] + resting - DIP;
     let place = std::array::from_fn(|i| {

@@ -1,18 +1,19 @@
-//! A ball that flies about in a room with four coloured areas.
+//! A ball that flies in a room with four coloured areas.
 
 use crate::{Motion, Scene, SceneGroups, SceneObject, SceneQuery, SceneShape};
 
-/// The room, and what the program that moves the ball must know.
+/// The room, and the data for a program that moves the ball.
 ///
-/// The motion of the ball depends on what it hits, so it is at rest in the scene: a program moves it
-/// by `velocity · time_step` each step and reflects the velocity where it touches a plane.
+/// The motion of the ball depends on its contacts, so that the ball is at rest in the scene. A
+/// program moves it by `velocity · time_step` per step, and reflects the velocity where it touches
+/// a plane.
 #[derive(Clone, Debug)]
 pub struct Room<const D: usize> {
     /// The ball, the planes and the areas.
     pub scene: Scene<D>,
     /// The index of the ball.
     pub ball: usize,
-    /// The ball's velocity at first.
+    /// The initial velocity of the ball.
     pub velocity: [f64; D],
     /// Seconds per step.
     pub time_step: f64,
@@ -20,12 +21,12 @@ pub struct Room<const D: usize> {
     pub areas: [Area; 4],
 }
 
-/// A part of the room with a name.
+/// A named area of the room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
     /// The index of the object.
     pub object: usize,
-    /// Its colour.
+    /// The name: its colour.
     pub name: &'static str,
 }
 
@@ -57,12 +58,13 @@ pub fn room<const D: usize>() -> Room<D> {
     }
 }
 
-/// A vector in the plane of the first two axes.
+/// Returns a vector in the plane of the first two axes.
 fn flat<const D: usize>(x: f64, y: f64) -> [f64; D] {
     std::array::from_fn(|axis| [x, y, 0.0][axis])
 }
 
-/// The planes bound the first axis below and above, then the second, and so on.
+/// Returns a wall. Indices 0 and 1 bound the first axis below and above, 2 and 3 the second, and so
+/// on.
 fn plane<const D: usize>(index: usize) -> SceneObject<D> {
     let inward = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
     let (mut normal, mut at) = ([0.0; D], [0.0; D]);

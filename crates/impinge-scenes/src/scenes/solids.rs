@@ -1,4 +1,4 @@
-//! Solids of one or several kinds in free space.
+//! Solids of one or several kinds that fly freely.
 
 use super::asteroids::rock;
 use super::mixed::flight;
@@ -18,12 +18,12 @@ pub enum SolidKind {
     Capsule,
     /// The convex hull of 12 points.
     Hull,
-    /// A cylinder; in space only.
+    /// A cylinder; 3D only.
     Cylinder,
 }
 
 impl SolidKind {
-    /// All kinds that exist in `D` dimensions.
+    /// Returns all kinds that exist in `D` dimensions.
     #[must_use]
     pub const fn all<const D: usize>() -> &'static [Self] {
         const KINDS: [SolidKind; 5] = [
@@ -51,14 +51,15 @@ impl SolidKind {
     }
 }
 
-/// `count` solids of size 1, as many of each of the kinds, that fly by 0.01 to 0.06 per step, turn, and are
-/// reflected at the walls of their space, which is `spacing` to the power of `D` for each.
+/// `count` solids of size 1, equally many of each kind. They fly by 0.01 to 0.06 per step, rotate,
+/// and are reflected at the walls of their space, whose volume per solid is `spacing` to the power
+/// of `D`.
 ///
-/// At a spacing of 1 the box around a solid meets those of about six others in space and of about three in
-/// the plane; at a spacing of 2, of less than one.
+/// At a spacing of 1 the box of a solid overlaps those of about six others in 3D and of about three
+/// in 2D; at a spacing of 2, of less than one.
 ///
 /// # Panics
-/// If there are no kinds, or a cylinder in the plane.
+/// If `kinds` is empty, or contains a cylinder in 2D.
 #[must_use]
 pub fn solids<const D: usize>(count: usize, kinds: &[SolidKind], spacing: f64) -> Scene<D> {
     let all = SolidKind::all::<D>();

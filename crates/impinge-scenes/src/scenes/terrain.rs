@@ -1,22 +1,22 @@
-//! Solids that slide and hop over hilly ground.
+//! Solids that slide and hop on hilly ground.
 
 use super::pile::{axis, signed_speed};
 use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::{Random, root};
 use crate::{Motion, Placement, Scene, SceneObject, SceneShape, Wave, rounded};
 
-/// The width of a cell of the ground, half that of most objects.
+/// The width of a cell of the ground: half the size of most objects.
 pub(super) const CELL: f64 = 0.5;
-/// How many cells there are between two hills or valleys.
+/// The number of cells between two random heights of the hills.
 const HILL: usize = 16;
 
-/// `count` balls, boxes, capsules and convex solids of size 1, as many of each, on a hilly ground of
-/// triangles, which is the first object: 100 triangles for each, a million for 10 000. In the plane
-/// the ground is a line of 10 segments for each.
+/// `count` balls, boxes, capsules and convex solids of size 1, equally many of each, on a hilly
+/// mesh, which is the first object. It has 100 triangles per solid, a million for 10 000. In 2D the
+/// ground is a polyline of 10 segments per solid.
 ///
-/// All move by 0.01 to 0.03 per step along the ground, to and fro by up to half their size, and up and
-/// down by 0.05. At any time about two thirds of them touch the ground, with a few of its triangles, and
-/// few touch one another. No centre is ever below the ground.
+/// All move back and forth along the ground by 0.01 to 0.03 per step, over up to half their size,
+/// and up and down by 0.05. At any time about two thirds of them touch the ground, each a few of
+/// its triangles, and few touch each other. No centre is ever below the ground.
 #[must_use]
 pub fn terrain_mesh<const D: usize>(count: usize) -> Scene<D> {
     let ground = Ground::new(count, &mut Random::new(6));
@@ -24,7 +24,7 @@ pub fn terrain_mesh<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "terrain mesh", ..scene(count, &ground, shape) }
 }
 
-/// The same objects on the same ground, which is a height field.
+/// The scene of [`terrain_mesh`], with the ground as a height field.
 #[must_use]
 pub fn terrain_field<const D: usize>(count: usize) -> Scene<D> {
     let ground = Ground::<D>::new(count, &mut Random::new(6));
@@ -53,7 +53,8 @@ pub(super) fn solid<const D: usize>(kind: usize, random: &mut Random) -> SceneSh
     }
 }
 
-/// The corners of a box, each brought nearer to its middle by up to a fifth, and one above it.
+/// Returns the corners of a box, each moved towards the centre by up to a fifth, and one point
+/// above the box.
 fn stone<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
     let corners = (0..1_usize << D).map(|corner| {
         let shrink = random.between(0.8, 1.0) * radius;
@@ -66,7 +67,7 @@ fn stone<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
     points
 }
 
-/// An object whose box reaches down to the ground at step 0.
+/// Returns an object whose axis-aligned box touches the ground at step 0.
 fn standing<const D: usize>(
     shape: SceneShape<D>,
     ground: &Ground<D>,
@@ -88,7 +89,7 @@ fn standing<const D: usize>(
 
 /// Heights over a grid that is centred at the origin.
 pub(super) struct Ground<const D: usize> {
-    /// Rows and columns of vertices.
+    /// The numbers of rows and columns of vertices.
     pub(super) counts: [usize; 2],
     /// The width of a cell.
     cell: f64,
@@ -100,7 +101,7 @@ impl<const D: usize> Ground<D> {
         let counts = if D < 3 {
             [1, 10 * count.max(1) + 1]
         } else {
-            // 50 cells, of two triangles each, for an object; `root` never falls short by a cell.
+            // 50 cells of two triangles per object. `root` rounds down by less than a cell.
             let side = root::<2>(50.0 * count.max(1) as f64).ceil();
             let vertices = (1_usize..).find(|n| *n as f64 > side).unwrap_or(2);
             [vertices; 2]
@@ -113,7 +114,8 @@ impl<const D: usize> Ground<D> {
         Self { counts, cell: CELL, heights: heights.collect() }
     }
 
-    /// A square at least as wide as `width`, in the plane a line, without hills, but as rough.
+    /// Returns a square (in 2D a line) at least as wide as `width`, without hills, but with the
+    /// roughness of the hilly ground.
     pub(super) fn plain(width: f64, cell: f64, random: &mut Random) -> Self {
         let vertices = (2_usize..).find(|n| (n - 1) as f64 * cell >= width).unwrap_or(2);
         let counts = [if D < 3 { 1 } else { vertices }, vertices];
@@ -121,7 +123,7 @@ impl<const D: usize> Ground<D> {
         Self { counts, cell, heights: heights.collect() }
     }
 
-    /// Rows lie along the third axis.
+    /// Returns the extents of the ground along the axes; rows lie along the third axis.
     pub(super) fn extents(&self) -> [f64; D] {
         std::array::from_fn(|axis| match axis {
             0 => (self.counts[1] - 1) as f64 * self.cell,
@@ -166,8 +168,8 @@ impl<const D: usize> Ground<D> {
         SceneShape::TriMesh { triangles: triangles.collect(), vertices }
     }
 
-    /// A place at most half a cell along the ground from a vertex and as high, no nearer to the border
-    /// than an object is wide.
+    /// Returns a random point: a vertex, moved along the ground by at most half a cell. It is no
+    /// nearer to the border than the width of an object.
     pub(super) fn somewhere(&self, random: &mut Random) -> [f64; D] {
         let border = 3;
         let mut vertex = |count: usize| {
@@ -182,7 +184,8 @@ impl<const D: usize> Ground<D> {
     }
 }
 
-/// Value noise: the random heights of a coarse lattice, joined by cubics that are level there.
+/// Value noise: interpolates the random heights of a coarse lattice by cubics with zero slope at
+/// the lattice points.
 fn hill(lattice: &[f64], width: usize, at: [usize; 2]) -> f64 {
     let base = at.map(|n| n / HILL);
     let [down, right] = at.map(|n| {

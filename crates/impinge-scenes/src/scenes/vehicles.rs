@@ -1,4 +1,4 @@
-//! Solids as large as vehicles on ground whose triangles are small beside them.
+//! Solids of the size of vehicles, on ground with much smaller triangles.
 
 use super::pile::signed_speed;
 use super::terrain::{CELL, Ground};
@@ -7,47 +7,50 @@ use crate::placement::cross;
 use crate::random::{Random, root};
 use crate::{Motion, Scene, SceneObject, SceneShape, Wave, rounded};
 
-/// Half the length, the height and the width of a vehicle, in its frame: it heads along the first axis.
+/// Half the length, the height and the width of a vehicle, in its frame: its length lies along the
+/// first axis.
 const HALF: [f64; 3] = [2.0, 0.75, 1.0];
-/// How many times the ground that a solid of size 1 has is there for a vehicle.
+/// The area of ground per vehicle, as a multiple of that per solid of size 1.
 const SHARE: usize = 4;
-/// How far the underside lies below the mean of the ground under it: about as much as the ground is
-/// rough and bent there, so that most triangles under a vehicle touch it.
+/// The depth of the underside below the mean height of the ground under it. It is about the
+/// roughness and curvature of the ground over this length, so that most triangles under a vehicle
+/// touch it.
 const SINKING: f64 = 0.03;
-/// How far vehicles stay away from the border of the ground.
+/// The distance of vehicles from the border of the ground.
 const BORDER: f64 = 4.0;
 
-/// `count` boxes, hulls and capsules of half extents 2, 0.75 and 1, as many of each, on a hilly ground
-/// of triangles 0.5 wide, which is the first object: 400 triangles for each. In the plane the ground is a
-/// line of 40 segments for each.
+/// `count` boxes, hulls and capsules of half extents 2, 0.75 and 1, equally many of each, on a
+/// hilly mesh of triangles 0.5 wide, which is the first object. It has 400 triangles per vehicle.
+/// In 2D the ground is a polyline of 40 segments per vehicle.
 ///
-/// Each lies along the slope where it is, covers dozens of triangles, and drives by 0.01 to 0.03 per step
-/// along its length, to and fro by 1, uphill and downhill with the ground. Few touch one another.
+/// Each is tilted with the ground, covers dozens of triangles, and drives back and forth by 0.01 to
+/// 0.03 per step along its length, over a distance of 1 to either side, and up and down with the
+/// ground. Few touch each other.
 #[must_use]
 pub fn vehicles_mesh<const D: usize>(count: usize) -> Scene<D> {
     scene("vehicles on mesh", count, Ground::mesh, driving)
 }
 
-/// The same vehicles on the same ground, which is a height field.
+/// The scene of [`vehicles_mesh`], with the ground as a height field.
 #[must_use]
 pub fn vehicles_field<const D: usize>(count: usize) -> Scene<D> {
     scene("vehicles on field", count, Ground::field, driving)
 }
 
-/// The vehicles on their mesh, each of which trembles where it is: to and fro by 0.001 in all, and by an
-/// angle of 0.0004.
+/// The scene of [`vehicles_mesh`] with vehicles that only shake: by ±0.0005 along each axis, and by
+/// ±0.0002 radians.
 #[must_use]
 pub fn trembling_vehicles_mesh<const D: usize>(count: usize) -> Scene<D> {
     scene("trembling vehicles on mesh", count, Ground::mesh, trembling)
 }
 
-/// The same on the height field.
+/// The scene of [`trembling_vehicles_mesh`], with the ground as a height field.
 #[must_use]
 pub fn trembling_vehicles_field<const D: usize>(count: usize) -> Scene<D> {
     scene("trembling vehicles on field", count, Ground::field, trembling)
 }
 
-/// How a vehicle moves that would rest at a seat.
+/// Returns the motion of a vehicle, given its position at rest.
 type Move<const D: usize> = fn(&Seat<'_, D>, &mut Random) -> Motion<D>;
 
 fn scene<const D: usize>(
@@ -69,7 +72,7 @@ fn scene<const D: usize>(
     Scene { name, margin: MARGIN, objects, steps: 100 }
 }
 
-/// The kind that stands upright in its own frame and has to be laid down.
+/// The kind whose length is along the second axis, so that it has to be rotated.
 const CAPSULE: usize = 2;
 
 fn vehicle<const D: usize>(kind: usize, random: &mut Random) -> SceneShape<D> {
@@ -80,7 +83,8 @@ fn vehicle<const D: usize>(kind: usize, random: &mut Random) -> SceneShape<D> {
     }
 }
 
-/// The corners of a box of these half extents, the upper ones of which are drawn in by a tenth to a third.
+/// Returns the corners of a box of these half extents, of which the upper ones are moved inwards by
+/// a tenth to a third.
 pub(super) fn body<const D: usize>(half: [f64; 3], random: &mut Random) -> Vec<[f64; D]> {
     let corners = (0..1_usize << D).map(|corner| {
         let is_upper = |axis: usize| corner >> axis & 1 == 1;
@@ -93,8 +97,8 @@ pub(super) fn body<const D: usize>(half: [f64; 3], random: &mut Random) -> Vec<[
     corners.collect()
 }
 
-/// A place of its own for the `n`-th of `count` vehicles, along the ground: the first coordinate and, in
-/// space, the third.
+/// Returns a separate position along the ground for the `n`-th of `count` vehicles: the first
+/// coordinate and, in 3D, the third.
 fn lot<const D: usize>(
     n: usize,
     count: usize,
@@ -113,20 +117,20 @@ fn lot<const D: usize>(
     [place(n as f64 - row * side, 0, shifts[0]), across]
 }
 
-/// Where a vehicle rests on the ground. Its frame has three coordinates in the plane, too.
+/// The position of a vehicle at rest on the ground. Its frame has three coordinates in 2D too.
 struct Seat<'a, const D: usize> {
     ground: &'a Ground<D>,
-    /// The place along the ground.
+    /// The first and the third coordinate of the centre.
     at: [f64; 2],
-    /// Where the vehicle is headed, as a unit vector along the ground, uphill or downhill left aside.
+    /// The horizontal heading of the vehicle, as a unit vector: its first and third component.
     heading: [f64; 2],
-    /// The axis and the tangent of half the angle of its turn.
+    /// The axis of the vehicle's rotation, and the tangent of half the angle.
     turn: ([f64; 3], f64),
 }
 
 impl<'a, const D: usize> Seat<'a, D> {
     fn new(ground: &'a Ground<D>, at: [f64; 2], is_upright: bool, random: &mut Random) -> Self {
-        // Headings have a positive first coordinate, so that no turn is near a half one.
+        // Headings have a positive first coordinate, so that no rotation is near half a turn.
         let heading = random.direction::<2>();
         let heading = if D < 3 { [1.0, 0.0] } else { [heading[0].abs(), heading[1]] };
         let mut seat = Self { ground, at, heading, turn: ([0.0, 0.0, 1.0], 0.0) };
@@ -137,7 +141,8 @@ impl<'a, const D: usize> Seat<'a, D> {
         seat
     }
 
-    /// The height of the ground before the centre by some way, and beside it by another.
+    /// Returns the height of the ground at a distance `before` along the heading from the centre,
+    /// and `beside` across it.
     fn height(&self, before: f64, beside: f64) -> f64 {
         let [x, z] = self.heading;
         height(
@@ -146,7 +151,8 @@ impl<'a, const D: usize> Seat<'a, D> {
         )
     }
 
-    /// Unit vectors along the length, out of the ground and along the width: right-handed.
+    /// Returns unit vectors along the length, out of the ground and along the width: a right-handed
+    /// frame.
     fn frame(&self) -> [[f64; 3]; 3] {
         let [long, wide] = [0.75 * HALF[0], 0.75 * HALF[2]];
         let climb = (self.height(long, 0.0) - self.height(-long, 0.0)) / (2.0 * long);
@@ -158,7 +164,7 @@ impl<'a, const D: usize> Seat<'a, D> {
         [forward, up, cross(&forward, &up)]
     }
 
-    /// Where the centre is when the vehicle has driven some way.
+    /// Returns the centre after the vehicle has driven the distance `way` along its heading.
     fn center(&self, way: f64) -> [f64; D] {
         let [long, wide] = [0.75 * HALF[0], 0.75 * HALF[2]];
         let under = [(0.0, 0.0), (long, wide), (long, -wide), (-long, wide), (-long, -wide)];
@@ -172,15 +178,16 @@ impl<'a, const D: usize> Seat<'a, D> {
     }
 }
 
-/// To and fro along the heading, with a little steering. All coordinates turn back at the same step, but
-/// for the rounding of their speeds.
+/// Returns a motion back and forth along the heading, with slight steering. All coordinates reverse
+/// at the same step, up to the rounding of their speeds.
 fn driving<const D: usize>(seat: &Seat<'_, D>, random: &mut Random) -> Motion<D> {
     let (back, front) = (seat.center(-1.0), seat.center(1.0));
     let (share, speed) = (random.unit(), random.between(0.01, 0.03));
     let place = std::array::from_fn(|i| {
         let way = front[i] - back[i];
         let bounds = if way < 0.0 { (front[i], back[i]) } else { (back[i], front[i]) };
-        // The vehicle covers the way of 2 in so many steps that all coordinates have their share.
+        // The vehicle covers the whole distance of 2 in the same number of steps in each
+        // coordinate.
         Wave::new(bounds, back[i] + share * way, 0.5 * way * speed)
     });
     let (axis, tangent) = seat.turn;
@@ -198,8 +205,9 @@ fn trembling<const D: usize>(seat: &Seat<'_, D>, random: &mut Random) -> Motion<
     Motion { place, axis, tangent: trembling }
 }
 
-/// The axis and the tangent of half the angle of the rotation whose matrix has these columns; the angle
-/// is not near a half turn. The vector part of its quaternion over the scalar part is axis times tangent.
+/// Returns the axis and the tangent of half the angle of the rotation whose matrix has these
+/// columns. The angle must not be near half a turn. The vector part of the quaternion divided by
+/// its scalar part is axis times tangent.
 fn turn<const D: usize>([x, y, z]: &[[f64; 3]; 3]) -> ([f64; 3], f64) {
     let scalar = 1.0 + x[0] + y[1] + z[2];
     let vector = [y[2] - z[1], z[0] - x[2], x[1] - y[0]].map(|v| v / scalar);
@@ -210,8 +218,8 @@ fn turn<const D: usize>([x, y, z]: &[[f64; 3]; 3]) -> ([f64; 3], f64) {
     (unit(vector), tangent)
 }
 
-/// The height of the ground at a place along it, between the four vertices around; beyond the border, as
-/// the outermost cell goes on.
+/// Returns the height of the ground at a horizontal position, interpolated between the four
+/// vertices of its cell. Beyond the border, the outermost cell is extrapolated.
 fn height<const D: usize>(ground: &Ground<D>, at: [f64; 2]) -> f64 {
     let extents = ground.extents();
     let [rows, columns] = ground.counts;
@@ -228,7 +236,8 @@ fn height<const D: usize>(ground: &Ground<D>, at: [f64; 2]) -> f64 {
     near + (far - near) * down
 }
 
-/// The cell in which a distance from the first vertex lies, and how far in it, in cells.
+/// Returns the index of the cell that contains a distance from the first vertex, and the position
+/// in the cell as a fraction of its width.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

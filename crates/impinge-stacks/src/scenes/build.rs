@@ -2,40 +2,41 @@
 
 use impinge_scenes::{Placement, Random, SceneShape};
 
-/// The tangent of half of π/4.
+/// The tangent of π/8: half of the angle π/4.
 pub(crate) const EIGHTH_TURN: f64 = 0.198_912_367_379_658;
-/// The tangent of half of 0.3.
+/// The tangent of 0.15: half of the angle 0.3.
 pub(crate) const TURN_03: f64 = 0.151_135_218_058_295_1;
-/// The tangent of half of π/2.
+/// The tangent of π/4: half of the angle π/2.
 pub(crate) const QUARTER_TURN: f64 = 1.0;
 
-/// A placement that turns about an axis by the angle whose half has a tangent.
+/// Returns a placement with a rotation about an axis, given by the tangent of half its angle.
 pub(crate) fn turned<const D: usize>(at: [f64; D], axis: [f64; 3], tangent: f64) -> Placement<D> {
     Placement { axis, tangent, ..Placement::at(at) }
 }
 
-/// Turned about the vertical.
+/// Returns a placement with a rotation about the vertical axis.
 pub(crate) fn spun(at: [f64; 3], tangent: f64) -> Placement<3> {
     turned(at, [0.0, 1.0, 0.0], tangent)
 }
 
-/// The tangent of half the angle that is `n` times the one of a tangent, by the theorem of addition.
+/// Returns the tangent of half of `n` times the angle, given the tangent of half the angle
+/// (addition theorem).
 pub(crate) fn times(tangent: f64, n: usize) -> f64 {
     (0..n).fold(0.0, |sum, _| (sum + tangent) / (1.0 - sum * tangent))
 }
 
-/// A cube, or in 2D a square, of edge 1.
+/// Returns a cube, in 2D a square, of edge 1.
 pub(crate) fn cube<const D: usize>() -> SceneShape<D> {
     SceneShape::Cuboid { half_extents: [0.5; D] }
 }
 
-/// The half-space below the height zero.
+/// Returns the half-space below the height zero.
 pub(crate) fn half_space<const D: usize>() -> SceneShape<D> {
     SceneShape::Plane { normal: core::array::from_fn(|axis| if axis == 1 { 1.0 } else { 0.0 }) }
 }
 
-/// A sheet of `columns` × `rows` square cells of a given size around the origin, two triangles each, with the
-/// height at each corner by a function of its column and row.
+/// Returns a mesh of `columns` × `rows` square cells of a given size around the origin, with two
+/// triangles per cell. The heights of the vertices are a function of column and row.
 pub(crate) fn mesh(
     [columns, rows]: [usize; 2],
     cell: f64,
@@ -58,13 +59,13 @@ pub(crate) fn mesh(
     SceneShape::TriMesh { vertices: vertices.collect(), triangles: triangles.collect() }
 }
 
-/// Twelve by twelve cells of size 1.
+/// Returns a mesh of twelve by twelve cells of size 1.
 pub(crate) fn flat_mesh() -> SceneShape<3> {
     mesh([12, 12], 1.0, |_, _| 0.0)
 }
 
-/// A height field of `columns` × `rows` cells over a rectangle around the origin, with the heights by a function of
-/// column and row.
+/// Returns a height field of `columns` × `rows` cells over a rectangle around the origin, with
+/// heights as a function of column and row.
 pub(crate) fn field(
     [columns, rows]: [usize; 2],
     [width, depth]: [f64; 2],
@@ -76,13 +77,15 @@ pub(crate) fn field(
     SceneShape::HeightField { counts, heights, extents: [width, 1.0, depth] }
 }
 
-/// Hollows in which solids come to rest: one to every two cells in either direction.
+/// Returns the height of hollows in which solids come to rest: one hollow for every two cells in
+/// either direction.
 pub(crate) fn egg_box(depth: f64) -> impl Fn(usize, usize) -> f64 {
     move |column, row| if column % 2 == 1 && row % 2 == 1 { -depth } else { 0.0 }
 }
 
-/// A regular dodecahedron of inradius 0.5 that lies on a face. Its corners are (±1, ±1, ±1), (0, ±1/φ, ±φ) and
-/// their cyclic permutations; a face has the normal (0, φ, 1), which is turned to the vertical.
+/// Returns a regular dodecahedron of inradius 0.5 that lies on a face. Its corners are (±1, ±1,
+/// ±1), (0, ±1/φ, ±φ) and their cyclic permutations. A face has the normal (0, φ, 1), which is
+/// rotated to the vertical.
 pub(crate) fn dodecahedron() -> SceneShape<3> {
     let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
     let mut points = Vec::new();
@@ -101,7 +104,8 @@ pub(crate) fn dodecahedron() -> SceneShape<3> {
     SceneShape::Convex { points: points.collect() }
 }
 
-/// The hull of points in a ball of radius 0.6, cut flat at the heights ±0.4, where it has `sides` corners each.
+/// Returns the hull of points in a ball of radius 0.6 with flat sides at the heights ±0.4, each of
+/// `sides` corners.
 pub(crate) fn flat_hull(random: &mut Random, sides: usize) -> SceneShape<3> {
     let mut points = Vec::new();
     for height in [-0.4, 0.4] {
@@ -118,7 +122,7 @@ pub(crate) fn flat_hull(random: &mut Random, sides: usize) -> SceneShape<3> {
     SceneShape::Convex { points }
 }
 
-/// The hull of points on a ball.
+/// Returns the hull of points on a ball.
 pub(crate) fn round_hull(random: &mut Random, points: usize, radius: f64) -> SceneShape<3> {
     let points = (0..points).map(|_| random.direction::<3>().map(|x| x * radius));
     SceneShape::Convex { points: points.collect() }

@@ -5,7 +5,7 @@ use impinge_scenes::{Placement, Random, SceneShape};
 use super::build::{cube, half_space, turned};
 use crate::stack::{Item, Kind, Solid, Stack};
 
-/// All scenes in 2D.
+/// Returns all scenes in 2D.
 #[must_use]
 pub fn stacks2() -> Vec<Stack<2>> {
     vec![
@@ -18,7 +18,7 @@ pub fn stacks2() -> Vec<Stack<2>> {
     ]
 }
 
-/// A line of 41 vertices half a unit apart, the first one at the right: its outer side is above.
+/// Returns a polyline of 41 vertices, half a unit apart, from right to left: its front is above.
 fn line(height: impl Fn(usize) -> f64) -> SceneShape<2> {
     let vertices = (0..41).map(|n| [10.0 - 0.5 * n as f64, height(n)]);
     SceneShape::Polyline { vertices: vertices.collect() }
@@ -38,7 +38,7 @@ fn pyramid() -> Stack<2> {
     })
 }
 
-/// Octagons that lie on their sides, the tangent of an eighth of a turn giving the corners.
+/// Octagons that lie on their sides; the corners follow from the tangent of an eighth of a turn.
 fn polygons() -> Stack<2> {
     let stack = Stack::new("8 octagons", Kind::Rest).fixed(line(|_| 0.0), [0.0; 2]);
     let near = 0.5 * (2.0_f64.sqrt() - 1.0);
@@ -52,7 +52,7 @@ fn polygons() -> Stack<2> {
     })
 }
 
-/// Capsules that fall into the hollows of a line.
+/// Capsules that fall into the hollows of a polyline.
 fn capsules() -> Stack<2> {
     let mut random = Random::new(5);
     let ground = line(|n| if n % 4 == 0 { 0.5 } else { 0.0 });
@@ -64,7 +64,7 @@ fn capsules() -> Stack<2> {
     })
 }
 
-/// A box on a line of 120 segments.
+/// A box that slides on a polyline of 120 segments.
 fn sliding() -> Stack<2> {
     let vertices = (0..121).map(|n| [30.0 - 0.5 * n as f64, 0.0]);
     let ground = SceneShape::Polyline { vertices: vertices.collect() };

@@ -33,7 +33,7 @@ pub(super) fn aligned(name: &'static str, ground: SceneShape<3>) -> Stack<3> {
     (0..10).fold(stack, |stack, n| stack.with(cube(), Placement::at([0.0, n as f64 + 0.5, 0.0])))
 }
 
-/// Ten cubes off by up to 0.03 and turned about the vertical by up to 0.05.
+/// Ten cubes, displaced by up to 0.03 and rotated about the vertical by up to 0.05 radians.
 fn crooked(name: &'static str, seed: u64) -> Stack<3> {
     let mut random = Random::new(seed);
     let stack = Stack::new(name, Kind::Rest).fixed(half_space(), [0.0; 3]);
@@ -43,7 +43,7 @@ fn crooked(name: &'static str, seed: u64) -> Stack<3> {
     })
 }
 
-/// Ten cubes, every other one turned about the vertical.
+/// Ten cubes, every other one rotated about the vertical.
 fn twisted(name: &'static str, tangent: f64) -> Stack<3> {
     let stack = Stack::new(name, Kind::Rest).fixed(half_space(), [0.0; 3]);
     (0..10).fold(stack, |stack, n| {
@@ -60,7 +60,7 @@ fn towers() -> Stack<3> {
     })
 }
 
-/// Ten cubes in a row, nine on them, and so on up to one.
+/// A wall of rows of ten cubes, nine, and so on up to one.
 fn wall() -> Stack<3> {
     let stack = Stack::new("wall of 55", Kind::Rest).fixed(half_space(), [0.0; 3]);
     let places = (0..10).flat_map(|row| (0..10 - row).map(move |n| (row as f64, n as f64)));
@@ -99,12 +99,12 @@ fn balls() -> Stack<3> {
     })
 }
 
-/// Six cylinders upright on each other.
+/// Six upright cylinders on top of each other.
 fn cylinders() -> Stack<3> {
     tower_of("cylinders", 6, SceneShape::Cylinder { half_height: 0.5, radius: 0.5 }, 1.0)
 }
 
-/// Equal solids above each other on a half-space.
+/// Equal solids on top of each other on a half-space.
 fn tower_of(name: &'static str, count: usize, shape: SceneShape<3>, height: f64) -> Stack<3> {
     let stack = Stack::new(name, Kind::Rest).fixed(half_space(), [0.0; 3]);
     (0..count).fold(stack, |stack, n| {
@@ -122,7 +122,7 @@ fn hulls() -> Stack<3> {
     })
 }
 
-/// A table of a top and four legs, with a cube on it.
+/// A table with a top and four legs, and a cube on it.
 fn table() -> Stack<3> {
     let cuboid = |half_extents| SceneShape::Cuboid { half_extents };
     let mut parts = vec![(Placement::at([0.0, 0.5, 0.0]), cuboid([1.0, 0.1, 0.7]))];
@@ -136,7 +136,7 @@ fn table() -> Stack<3> {
     stack.item(table).with(cube(), spun([0.2, 1.7, 0.1], TURN_03))
 }
 
-/// A long box whose center of mass is a twentieth of its length behind the edge of a table.
+/// A long box on a table, whose centre of mass is a twentieth of the box's length behind the edge.
 fn over_an_edge() -> Stack<3> {
     let stack = Stack::new("box over an edge", Kind::Rest);
     let stack = stack.fixed(SceneShape::Cuboid { half_extents: [1.0, 0.5, 1.0] }, [0.0, 0.5, 0.0]);

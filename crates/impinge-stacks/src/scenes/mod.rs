@@ -1,4 +1,4 @@
-//! The scenes: what stands, what falls, what slides, and pairs to shake.
+//! The scenes: solids that stand, fall or slide, and pairs to be shaken.
 
 mod build;
 mod dim2;
@@ -12,7 +12,7 @@ pub use pairs::{pairs2, pairs3};
 
 use crate::Stack;
 
-/// All scenes in 3D.
+/// Returns all scenes in 3D.
 #[must_use]
 pub fn stacks3() -> Vec<Stack<3>> {
     let mut all = dim3::stacks();

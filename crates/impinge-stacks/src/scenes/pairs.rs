@@ -1,4 +1,4 @@
-//! Pairs of solids, the upper one of which is to be shaken.
+//! Pairs of solids, of which the upper one is shaken.
 
 use impinge_scenes::{Placement, SceneShape};
 
@@ -7,10 +7,10 @@ use super::build::{
 };
 use crate::stack::{Kind, Stack};
 
-/// How deep the upper solid is in the lower one: deeper than any shaking lifts it.
+/// The penetration of the upper solid into the lower one: more than the shaking can separate.
 const DEPTH: f64 = 0.002;
 
-/// All pairs in 3D: a fixed solid, and one of extent 1 or 2 that lies on it.
+/// Returns all pairs in 3D: a fixed solid, and one of extent 1 or 2 that lies on it.
 #[must_use]
 pub fn pairs3() -> Vec<Stack<3>> {
     let cylinder = SceneShape::Cylinder { half_height: 0.5, radius: 0.5 };
@@ -75,7 +75,7 @@ pub fn pairs3() -> Vec<Stack<3>> {
     ]
 }
 
-/// All pairs in 2D: a fixed solid and one that lies on it.
+/// Returns all pairs in 2D: a fixed solid, and one that lies on it.
 #[must_use]
 pub fn pairs2() -> Vec<Stack<2>> {
     let up = 0.5 - DEPTH;

@@ -1,4 +1,4 @@
-//! Solids that slide in 3D without friction over thousands of triangles, at five units a second.
+//! Solids that slide in 3D without friction over thousands of triangles, at a speed of 5.
 
 use impinge_scenes::{Placement, Random, SceneShape};
 
@@ -47,7 +47,7 @@ pub(super) fn stacks() -> Vec<Stack<3>> {
     ]
 }
 
-/// A solid that starts on flat ground.
+/// Adds a solid that starts on flat ground.
 fn slide(
     name: &'static str,
     ground: SceneShape<3>,

@@ -22,7 +22,7 @@ pub(super) fn stacks() -> Vec<Stack<3>> {
     ]
 }
 
-/// Ten cubes, each turned by 0.3 more than the one below.
+/// Ten cubes, each rotated by 0.3 radians relative to the one below.
 fn winding() -> Stack<3> {
     let stack = Stack::new("winding cubes on a mesh", Kind::Rest).fixed(flat_mesh(), [0.0; 3]);
     (0..10).fold(stack, |stack, n| {
@@ -30,7 +30,7 @@ fn winding() -> Stack<3> {
     })
 }
 
-/// Six cylinders upright on each other.
+/// Six upright cylinders on top of each other.
 fn upright() -> Stack<3> {
     let stack = Stack::new("cylinders on a mesh", Kind::Rest).fixed(flat_mesh(), [0.0; 3]);
     let shape = SceneShape::Cylinder { half_height: 0.5, radius: 0.5 };
@@ -39,7 +39,7 @@ fn upright() -> Stack<3> {
     })
 }
 
-/// Three cylinders lie beside each other, a board across them.
+/// Three cylinders that lie beside each other, with a board across them.
 fn lying() -> Stack<3> {
     let shape = SceneShape::Cylinder { half_height: 1.0, radius: 0.4 };
     let stack = Stack::new("lying cylinders", Kind::Rest).fixed(flat_mesh(), [0.0; 3]);
@@ -58,12 +58,12 @@ fn cone() -> Stack<3> {
     stack.with(cone, spun([0.2, 0.5, 0.1], TURN_03))
 }
 
-/// Capsules that lie in grooves: the sides of a groove fall by 0.3 over 0.8.
+/// Capsules that lie in grooves, whose sides fall by 0.3 over a width of 0.8.
 fn capsules() -> Stack<3> {
     let ground = field([12; 2], [9.6; 2], |_, row| if row % 2 == 1 { -0.3 } else { 0.0 });
     let shape = SceneShape::Capsule { half_height: 0.5, radius: 0.2 };
     let stack = Stack::new("capsules on a field", Kind::Rest).fixed(ground, [0.0; 3]);
-    // The axis is above the bottom by the radius over the cosine of the slope.
+    // The height of the axis above the bottom is the radius divided by the cosine of the slope.
     let height = 0.2 * (1.0 + 0.375_f64 * 0.375).sqrt() - 0.3;
     (0..6).fold(stack, |stack, n| {
         let at = [0.3 * n as f64 - 1.1, height, 1.6 * n as f64 - 4.0];
@@ -71,7 +71,7 @@ fn capsules() -> Stack<3> {
     })
 }
 
-/// Capsules that fall into hollows, where nothing stops them from rolling to and fro.
+/// Capsules that fall into hollows, in which nothing prevents them from rolling.
 fn rolling() -> Stack<3> {
     let mut random = Random::new(12);
     let ground = field([12; 2], [9.6; 2], egg_box(0.4));

@@ -22,22 +22,23 @@ pub(super) fn isometry(position: Vec2, rotation: Rotation) -> Isometry<f32> {
     ))
 }
 
-/// Two poses in a frame with the world's axes and its origin at the first position.
+/// Returns two poses in a frame with the axes of the global frame and its origin at the first
+/// position.
 fn beside(positions: [Vec2; 2], rotations: [Rotation; 2]) -> [Isometry<f32>; 2] {
     let [from, to] = positions;
     [isometry(Vec2::ZERO, rotations[0]), isometry(to - from, rotations[1])]
 }
 
 impl Collider {
-    /// The box around the shape at a pose.
+    /// Returns the box around the shape at a pose.
     #[must_use]
     pub fn aabb(&self, position: Vec2, rotation: impl Into<Rotation>) -> ColliderAabb {
         let [min, max] = self.corners(&isometry(position, rotation.into()));
         ColliderAabb::from_min_max(min, max)
     }
 
-    /// The contacts with another collider, without memory of earlier ones: the points are relative to the
-    /// positions of the two.
+    /// Computes the contacts with another collider, without the state of earlier steps. The points
+    /// are relative to the positions of the two colliders.
     #[must_use]
     pub fn contact_manifolds(
         &self,
@@ -94,14 +95,14 @@ impl AnyCollider for Collider {
     }
 }
 
-/// Avian itself matches the points of pairs with at most this number of manifolds.
+/// The largest number of manifolds of a pair whose points Avian itself matches.
 const MATCHED: usize = 4;
 
 /// The feature ids of a point, and its normal and tangential impulse for warm starting.
 type Warmth = ([PackedFeatureId; 2], f32, f32);
 
-/// The ids and impulses of the points of a pair with at least [`MATCHED`] manifolds, which may exceed that number after
-/// the update; empty otherwise.
+/// Returns the ids and impulses of the points of a pair with at least [`MATCHED`] manifolds, since
+/// the update may exceed that number; empty for other pairs.
 fn warmth(manifolds: &[ContactManifold]) -> Vec<Warmth> {
     let many = if manifolds.len() >= MATCHED { manifolds } else { &[] };
     let points = many.iter().flat_map(|manifold| &manifold.points);
@@ -123,7 +124,7 @@ fn warm(manifolds: &mut [ContactManifold], old: &[Warmth]) {
     }
 }
 
-/// Writes the contacts of a pair over those of the last step.
+/// Replaces the contacts of a pair by those of this step.
 fn rewrite(
     meeting: &Meeting<'_, 2>,
     found: &[&Found<f32>],

@@ -1,4 +1,4 @@
-//! 2D, for `avian2d`: every name with its dimension filled in, and the shapes that 2D alone has.
+//! 2D, for `avian2d`: type aliases with the dimension, and the shapes that exist in 2D only.
 
 mod backend;
 mod plugin;

@@ -15,24 +15,25 @@ use bevy_ecs::system::SystemParamItem;
 
 use super::{Collider, PairContacts};
 
-/// Makes [`Collider`] a collider of Avian's. Add it after Avian's `PhysicsPlugins`.
+/// Registers [`Collider`] with Avian's plugins. Add it after Avian's `PhysicsPlugins`.
 ///
-/// `H` are the hooks for pairs and contacts, which Avian's narrow phase for these colliders calls; the broad phase takes
-/// them from `PhysicsPlugins::default().with_collision_hooks::<H>()`.
+/// `H` are the hooks for pairs and contacts that Avian's narrow phase calls for these colliders.
+/// The broad phase gets them from `PhysicsPlugins::default().with_collision_hooks::<H>()`.
 pub struct ImpingeColliderPlugin<H = ()> {
     schedule: Interned<dyn ScheduleLabel>,
     hooks: PhantomData<H>,
 }
 
 impl ImpingeColliderPlugin {
-    /// For `PhysicsPlugins::new(schedule)`; the default is `FixedPostUpdate`, as Avian's is.
+    /// Creates the plugin for `PhysicsPlugins::new(schedule)`. The default is `FixedPostUpdate`, as
+    /// in Avian.
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { schedule: schedule.intern(), hooks: PhantomData }
     }
 }
 
 impl<H> ImpingeColliderPlugin<H> {
-    /// With these hooks instead.
+    /// Returns the plugin with the hooks `G`.
     #[must_use]
     pub fn with_collision_hooks<G: CollisionHooks + 'static>(self) -> ImpingeColliderPlugin<G>
     where

@@ -12,10 +12,11 @@ use impinge::dim2::query::{ImpactOptions, Moving, Proximity, impact, proximity};
 use super::Collider;
 use super::backend::isometry;
 
-/// Rays, shape casts, overlaps and nearest points: Avian's `SpatialQuery` for these colliders. Its methods have the
-/// names and arguments of Avian's, which has them for its own colliders alone.
+/// Rays, shape casts, overlaps and nearest points: Avian's `SpatialQuery` for these colliders. The
+/// methods have the names and arguments of Avian's type, which works for Avian's own colliders
+/// only.
 ///
-/// Answers are as of the last step: Avian updates its trees there.
+/// Results are those of the last step, in which Avian updates its trees.
 #[derive(SystemParam)]
 #[expect(missing_debug_implementations, reason = "Avian's trees have none")]
 pub struct SpatialQuery<'w, 's> {
@@ -26,12 +27,12 @@ pub struct SpatialQuery<'w, 's> {
 /// Options of a shape cast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeCastConfig {
-    /// The longest way; infinite by default.
+    /// The maximum distance of the motion; `f32::MAX` by default.
     pub max_distance: f32,
-    /// The shapes count as touching when they are so far apart; zero by default.
+    /// The distance at which the shapes count as touching; zero by default.
     pub target_distance: f32,
-    /// A collider that the shape overlaps at the start is met only if the shape goes deeper into it; if `false`, the
-    /// default, it is met at once.
+    /// If `true`, a collider that the shape overlaps at the start is hit only if the motion leads
+    /// deeper into it. If `false`, the default, it is hit at distance 0.
     pub ignore_origin_penetration: bool,
 }
 
@@ -46,15 +47,15 @@ impl Default for ShapeCastConfig {
 pub struct ShapeHit {
     /// The collider that was hit.
     pub entity: Entity,
-    /// How far the shape went.
+    /// The distance that the shape moves until the hit.
     pub distance: f32,
-    /// The point on the collider that was hit, in the world.
+    /// The hit point on the collider, in the global frame.
     pub point1: Vec2,
-    /// The point on the cast shape, in the world.
+    /// The hit point on the cast shape, in the global frame.
     pub point2: Vec2,
-    /// The normal of the collider that was hit, out of it.
+    /// The outward unit normal of the hit collider.
     pub normal1: Vec2,
-    /// The normal of the cast shape: `-normal1`.
+    /// The outward unit normal of the cast shape: `-normal1`.
     pub normal2: Vec2,
 }
 
@@ -63,14 +64,15 @@ pub struct ShapeHit {
 pub struct PointHit {
     /// The collider.
     pub entity: Entity,
-    /// The point of it that is nearest, in the world.
+    /// The nearest point of the collider, in the global frame.
     pub point: Vec2,
-    /// The given point is inside.
+    /// Whether the given point is inside the collider.
     pub is_inside: bool,
 }
 
 impl SpatialQuery<'_, '_> {
-    /// The first collider that a ray meets. For a `solid` ray that starts inside of one, that is at distance 0.
+    /// Returns the first hit of a ray within `max_distance`. If `solid`, a ray that starts inside a
+    /// collider hits it at distance 0; otherwise it hits where it leaves.
     #[must_use]
     pub fn cast_ray(
         &self,
@@ -83,7 +85,8 @@ impl SpatialQuery<'_, '_> {
         self.cast_ray_predicate(origin, direction, max_distance, solid, filter, &|_| true)
     }
 
-    /// The first collider that a ray meets, of those that the predicate holds for.
+    /// Returns the first hit of a ray within `max_distance` on a collider that the predicate
+    /// accepts.
     #[must_use]
     pub fn cast_ray_predicate(
         &self,
@@ -109,7 +112,8 @@ impl SpatialQuery<'_, '_> {
         nearest
     }
 
-    /// All colliders that a ray meets, each at its first hit, the nearest first; at most `max_hits`.
+    /// Returns the hits of a ray within `max_distance`, one for each collider, nearest first; at
+    /// most `max_hits`.
     #[must_use]
     pub fn ray_hits(
         &self,
@@ -134,7 +138,7 @@ impl SpatialQuery<'_, '_> {
         hits
     }
 
-    /// The first collider that a shape meets on its way.
+    /// Returns the first hit of a moving shape; `None` if nothing is hit or the shape has an error.
     #[must_use]
     pub fn cast_shape(
         &self,
@@ -168,7 +172,8 @@ impl SpatialQuery<'_, '_> {
         nearest
     }
 
-    /// The nearest point of all colliders. For `solid` ones a point inside is its own nearest.
+    /// Returns the nearest point of all colliders; `None` if there is no collider. If `solid`, a
+    /// point inside a collider is its own nearest point.
     #[must_use]
     pub fn project_point(
         &self,
@@ -193,7 +198,7 @@ impl SpatialQuery<'_, '_> {
         nearest
     }
 
-    /// The colliders that hold a point, by entity.
+    /// Returns the colliders that contain a point, sorted by entity.
     #[must_use]
     pub fn point_intersections(&self, point: Vec2, filter: &SpatialQueryFilter) -> Vec<Entity> {
         let mut found = Vec::new();
@@ -209,7 +214,7 @@ impl SpatialQuery<'_, '_> {
         found
     }
 
-    /// The colliders that overlap a shape, by entity.
+    /// Returns the colliders that touch or overlap a shape, sorted by entity.
     #[must_use]
     pub fn shape_intersections(
         &self,
@@ -230,7 +235,7 @@ impl SpatialQuery<'_, '_> {
         found
     }
 
-    /// The collider of a leaf of a tree, if the filter takes it.
+    /// Returns the collider of a leaf of a tree; `None` if the filter rejects it.
     fn placed(
         &self,
         tree: &ColliderTree,
@@ -247,7 +252,7 @@ impl SpatialQuery<'_, '_> {
     }
 }
 
-/// A collider that a query comes across.
+/// A collider that a query tests, with its pose.
 struct Met<'a> {
     entity: Entity,
     position: Vec2,

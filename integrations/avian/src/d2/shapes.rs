@@ -1,4 +1,4 @@
-//! Colliders that 2D alone has, with the arguments of Avian's own.
+//! Colliders that exist in 2D only, with the arguments of Avian's constructors.
 
 use avian2d::prelude::{Position, Rotation};
 use bevy_impinge::ColliderError;
@@ -29,64 +29,71 @@ impl Dimension<2> for f32 {
 }
 
 impl Collider {
-    /// A disk around the origin.
+    /// Creates a disk around the origin.
     #[must_use]
     pub fn circle(radius: f32) -> Self {
         Self::new(bevy_impinge::d2::Collider::circle(radius))
     }
 
-    /// An ellipse with its middle at the origin, given half of its lengths.
+    /// Creates an ellipse centred at the origin, with its half lengths.
     #[must_use]
     pub fn ellipse(half_width: f32, half_height: f32) -> Self {
         Self::new(bevy_impinge::d2::Collider::ellipse(half_width, half_height))
     }
 
-    /// A rectangle with its middle at the origin, given its full lengths.
+    /// Creates a rectangle centred at the origin, with its full lengths.
     #[must_use]
     pub fn rectangle(x_length: f32, y_length: f32) -> Self {
         Self::new(bevy_impinge::d2::Collider::rectangle(x_length, y_length))
     }
 
-    /// A rectangle, and all points within `border_radius` of it.
+    /// Creates a rounded rectangle: all points within `border_radius` of a rectangle with these
+    /// full lengths.
     #[must_use]
     pub fn round_rectangle(x_length: f32, y_length: f32, border_radius: f32) -> Self {
         Self::rectangle(x_length, y_length).rounded(border_radius)
     }
 
-    /// A polygon whose corners are evenly spread on a circle, one of them at the top.
+    /// Creates a regular polygon whose corners lie on a circle of radius `circumradius`, one of
+    /// them at the top. Fewer than 3 sides, and a radius that is negative or not finite, give a
+    /// collider with an error.
     #[must_use]
     pub fn regular_polygon(circumradius: f32, sides: u32) -> Self {
         let is_one = sides >= 3 && circumradius >= 0.0 && circumradius.is_finite();
-        // A polygon that there is not has no corners.
+        // Without corners, the constructor of the hull returns the error.
         let corners = is_one.then(|| RegularPolygon::new(circumradius, sides).vertices(0.0));
         Self::new(bevy_impinge::d2::Collider::convex_hull(corners.into_iter().flatten()))
     }
 
-    /// All that is behind a line through the origin; the normal points out of it, and need not have length 1.
+    /// Creates the half-plane behind a line through the origin. The normal points outwards and may
+    /// have any length but 0.
     #[must_use]
     pub fn half_space(outward_normal: Vec2) -> Self {
         Self::new(bevy_impinge::d2::Collider::half_plane(outward_normal.normalize_or_zero()))
     }
 
-    /// The convex hull of points; `None` if they are none, or not finite. Of points on a line it is a segment.
+    /// Creates the convex hull of points; `None` if there are none, or if one is not finite. For
+    /// points on a line it is a segment.
     #[must_use]
     pub fn convex_hull(vertices: Vec<Vec2>) -> Option<Self> {
         convex_shape(&points::<2>(vertices)).ok().map(Self::from_handle)
     }
 
-    /// The convex polygon with these corners: the same as their hull.
+    /// Creates the convex polygon with these corners, which is their hull.
     #[must_use]
     pub fn convex_polyline(vertices: Vec<Vec2>) -> Option<Self> {
         Self::convex_hull(vertices)
     }
 
-    /// A line over evenly spaced heights, centred on the origin: `scale.x` wide, and `scale.y` times the heights high.
+    /// Creates a polyline over evenly spaced heights, centred at the origin: `scale.x` wide, with
+    /// the heights times `scale.y`.
     #[must_use]
     pub fn heightfield(heights: Vec<f32>, scale: Vec2) -> Self {
         Self::new(bevy_impinge::d2::Collider::heightfield(heights, scale))
     }
 
-    /// Colliders side by side, each at its position and rotation in the frame of the whole.
+    /// Creates a compound of colliders, each at its position and rotation in the frame of the
+    /// compound.
     #[must_use]
     pub fn compound(
         shapes: Vec<(impl Into<Position>, impl Into<Rotation>, impl Into<Self>)>,
@@ -97,7 +104,7 @@ impl Collider {
     }
 }
 
-/// Avian's default: a square with sides of 0.5.
+/// A square with sides of 0.5, as in Avian.
 impl Default for Collider {
     fn default() -> Self {
         Self::rectangle(0.5, 0.5)

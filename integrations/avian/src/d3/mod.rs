@@ -1,4 +1,4 @@
-//! 3D, for `avian3d`: every name with its dimension filled in, and the shapes that 3D alone has.
+//! 3D, for `avian3d`: type aliases with the dimension, and the shapes that exist in 3D only.
 
 mod backend;
 mod plugin;

@@ -1,4 +1,4 @@
-//! Colliders that 3D alone has, with the arguments of Avian's own.
+//! Colliders that exist in 3D only, with the arguments of Avian's constructors.
 
 use avian3d::prelude::{Position, Rotation};
 use bevy_impinge::ColliderError;
@@ -28,60 +28,64 @@ impl Dimension<3> for f32 {
 }
 
 impl Collider {
-    /// A ball around the origin.
+    /// Creates a ball around the origin.
     #[must_use]
     pub fn sphere(radius: f32) -> Self {
         Self::new(bevy_impinge::d3::Collider::sphere(radius))
     }
 
-    /// An ellipsoid with its middle at the origin, given half of its lengths.
+    /// Creates an ellipsoid centred at the origin, with its half lengths.
     #[must_use]
     pub fn ellipsoid(half_axes: Vec3) -> Self {
         Self::new(bevy_impinge::d3::Collider::ellipsoid(half_axes))
     }
 
-    /// A box with its middle at the origin, given its full lengths.
+    /// Creates a box centred at the origin, with its full lengths.
     #[must_use]
     pub fn cuboid(x_length: f32, y_length: f32, z_length: f32) -> Self {
         Self::new(bevy_impinge::d3::Collider::cuboid(x_length, y_length, z_length))
     }
 
-    /// A box, and all points within `border_radius` of it.
+    /// Creates a rounded box: all points within `border_radius` of a box with these full lengths.
     #[must_use]
     pub fn round_cuboid(x_length: f32, y_length: f32, z_length: f32, border_radius: f32) -> Self {
         Self::cuboid(x_length, y_length, z_length).rounded(border_radius)
     }
 
-    /// A cylinder along the y axis, with its middle at the origin.
+    /// Creates a cylinder along the y axis, centred at the origin.
     #[must_use]
     pub fn cylinder(radius: f32, height: f32) -> Self {
         Self::new(bevy_impinge::d3::Collider::cylinder(radius, height))
     }
 
-    /// A cone along the y axis: its apex is half of `height` above the origin, its base as much below.
+    /// Creates a cone along the y axis: its apex is `height / 2` above the origin, its base `height
+    /// / 2` below.
     #[must_use]
     pub fn cone(radius: f32, height: f32) -> Self {
         Self::new(bevy_impinge::d3::Collider::cone(radius, height))
     }
 
-    /// All that is behind a plane through the origin; the normal points out of it, and need not have length 1.
+    /// Creates the half-space behind a plane through the origin. The normal points outwards and may
+    /// have any length but 0.
     #[must_use]
     pub fn half_space(outward_normal: Vec3) -> Self {
         Self::new(bevy_impinge::d3::Collider::half_space(outward_normal.normalize_or_zero()))
     }
 
-    /// The convex hull of points; `None` if they are none, or not finite. Of points in a plane it is a flat polygon.
+    /// Creates the convex hull of points; `None` if there are none, or if one is not finite. For
+    /// points in a plane it is a flat polygon.
     #[must_use]
     pub fn convex_hull(vertices: Vec<Vec3>) -> Option<Self> {
         convex_shape(&points::<3>(vertices)).ok().map(Self::from_handle)
     }
 
-    /// A surface over a grid of heights, centred on the origin: `heights[i][j]` is at `i` steps along x and `j` along z. It is
-    /// `scale.x` by `scale.z` wide, and `scale.y` times the heights high. Rows of different lengths are an error.
+    /// Creates a surface over a grid of heights, centred at the origin: `heights[i][j]` is at `i`
+    /// steps along x and `j` along z. It is `scale.x` by `scale.z` wide, with the heights times
+    /// `scale.y`. Rows of different lengths give a collider with an error.
     #[must_use]
     pub fn heightfield(heights: Vec<Vec<f32>>, scale: Vec3) -> Self {
         let (columns, rows) = (heights.len(), heights.first().map_or(0, Vec::len));
-        // The library has rows along z.
+        // The rows of the library's height fields are along z.
         let height = |row: usize, column: usize| heights[column].get(row).copied();
         let all = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
         let is_grid = heights.iter().all(|line| line.len() == rows);
@@ -91,7 +95,8 @@ impl Collider {
         Self::of(HeightField::<f32>::try_new(rows, columns, found, scale))
     }
 
-    /// Colliders side by side, each at its position and rotation in the frame of the whole.
+    /// Creates a compound of colliders, each at its position and rotation in the frame of the
+    /// compound.
     #[must_use]
     pub fn compound(
         shapes: Vec<(impl Into<Position>, impl Into<Rotation>, impl Into<Self>)>,
@@ -102,7 +107,7 @@ impl Collider {
     }
 }
 
-/// Avian's default: a box with sides of 0.5.
+/// A box with sides of 0.5, as in Avian.
 impl Default for Collider {
     fn default() -> Self {
         Self::cuboid(0.5, 0.5, 0.5)

@@ -1,4 +1,4 @@
-//! The plugin from outside: apps without windows.
+//! Tests of the plugin through its public interface: apps without windows.
 
 #[path = "../../scenes/d2.rs"]
 mod scenes2;

@@ -1,4 +1,4 @@
-//! Entities that are added, changed and removed.
+//! Tests of entities that are added, changed and removed.
 
 use bevy_app::{App, Update};
 use bevy_ecs::entity_disabling::Disabled;

@@ -1,4 +1,4 @@
-//! Invalid input: no panic, no loss, and an error for the user.
+//! Invalid input does not panic, loses no entity, and gives an error.
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;

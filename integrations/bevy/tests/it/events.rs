@@ -1,4 +1,4 @@
-//! Messages, observers and lists of touching entities.
+//! Tests of messages, observers and lists of touching entities.
 
 use bevy_ecs::prelude::*;
 use bevy_impinge::{CollidingEntities, CollisionEnded, CollisionStarted, Glam, Sensor};

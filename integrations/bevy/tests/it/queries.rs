@@ -1,4 +1,4 @@
-//! Queries, in both dimensions.
+//! Tests of queries, in both dimensions.
 
 use bevy_ecs::prelude::*;
 use bevy_impinge::{Collider, CollisionLayers, Sensor, SpatialFilter, d2, d3};

@@ -1,4 +1,5 @@
-//! Constructors and Bevy's primitives: sizes by their boxes, errors by their types.
+//! Tests of collider constructors and of conversions from Bevy's primitives. They compare the
+//! extents of bounding boxes, and the error types of invalid arguments.
 
 use bevy_impinge::{ColliderError, d2, d3};
 use bevy_math::primitives::*;

@@ -1,4 +1,4 @@
-//! Characters that move and slide.
+//! Tests of characters that move and slide.
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;

@@ -1,4 +1,4 @@
-//! Apps to test, in either dimension, from one source.
+//! Helpers that make apps for tests in either dimension.
 
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;

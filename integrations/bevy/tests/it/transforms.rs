@@ -1,4 +1,4 @@
-//! Transforms: hierarchies, scale, parents that change.
+//! Tests of transforms: hierarchies, scale, parents that change.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 

@@ -23,7 +23,7 @@ pub(crate) struct Arm<const D: usize> {
     hits: Vec<[String; 2]>,
 }
 
-/// Returns the number of a link from its label; `None` for an obstacle.
+/// Returns the index of a link from its label; `None` for an obstacle.
 fn link(label: &str) -> Option<usize> {
     label.strip_prefix("link ")?.parse().ok()
 }
@@ -115,7 +115,8 @@ where
         Ok(())
     }
 
-    /// Queries before the move; the contacts of the update confirm them.
+    /// Queries whether the next pose collides before the arm moves; the contacts of the update
+    /// confirm the result.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let pace = panel.value("speed") * TIME_STEP;
         let next = self.phase + if self.is_back { -pace } else { pace };

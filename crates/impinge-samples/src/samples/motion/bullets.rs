@@ -16,7 +16,7 @@ const MAX_BOUNCES: usize = 64;
 struct Bullet<const D: usize> {
     /// The ball in the world, at the end of its path.
     object: CollisionObjectHandle,
-    /// A unit vector.
+    /// The direction of motion, a unit vector.
     direction: Vector<f32, D>,
     /// The corners of the path of the last step.
     path: Vec<Point<f32, D>>,
@@ -58,7 +58,8 @@ where
     }
 }
 
-/// Walls are in group 1, bullets in group 2, and bullets do not touch each other.
+/// Returns groups that interact only with walls. Walls are in group 1 and bullets in group 2, so
+/// that bullets do not touch each other.
 fn wall_groups() -> CollisionGroups {
     let mut groups = CollisionGroups::new();
     groups.set_whitelist(&[1]);
@@ -76,7 +77,7 @@ where
         let sides = (0..D).flat_map(|axis| [(axis, -ROOM), (axis, ROOM)]);
         for (axis, place) in sides.chain([(0, 0.0)]) {
             let (mut half, mut at) = (Vector::<f32, D>::repeat(ROOM + HALF), vector([0.0; 3]));
-            // As wide as the room, and very thin.
+            // The dividing wall is as wide as the room, and very thin.
             (half[axis], at[axis]) = (HALF, place);
             let position = f32::isometry(&Pose::from_translation(at));
             let wall = ShapeHandle::new(Cuboid::new(half));
@@ -105,7 +106,7 @@ where
             let position = at([side * ROOM, 4.0 * scattered(n, 1) - 2.0, 0.0]);
             let query = ContactQuery::default();
             let object = world.add(position, ball.clone(), groups, query, format!("bullet {n}"))?;
-            // Any direction: a rotation in the xy plane, and one towards the last axis.
+            // A random direction: a rotation in the xy plane, and one from x towards the last axis.
             let direction = turn::<D>([0, 1], TAU * scattered(n, 2))
                 * turn::<D>([0, D - 1], TAU * scattered(n, 3))
                 * vector::<D>([1.0, 0.0, 0.0]);

@@ -17,7 +17,7 @@ pub(crate) struct Character<const D: usize> {
     body: Option<CollisionObjectHandle>,
     /// The angle of the heading from x to y, in radians.
     heading: f32,
-    /// Its positions after each step.
+    /// The positions of the capsule after each step.
     trail: Vec<Point<f32, D>>,
     /// The number of blocked casts.
     slides: usize,
@@ -27,8 +27,8 @@ impl<const D: usize> Character<D>
 where
     f32: Dimension<D>,
 {
-    /// Moves the capsule until its distance from an obstacle is `SKIN`, then along the obstacle; at most
-    /// along three.
+    /// Moves the capsule until its distance from an obstacle is `SKIN`, and then along that
+    /// obstacle; it makes at most four casts.
     fn slide(
         &mut self,
         world: &World<D>,
@@ -43,7 +43,8 @@ where
         }
         let options = ImpactOptions::new().with_max_time(1.0).with_target_distance(SKIN);
         for _ in 0..4 {
-            // An impact before the end of the motion, at the distance of the skin, ends a part of it.
+            // An impact before the end of the motion has the distance `SKIN`; the rest of the
+            // motion continues along the obstacle.
             let from = f32::isometry(&pose);
             let Some((_, hit)) = world.cast_shape(&from, &motion, &capsule, &options, &others)
             else {
@@ -101,7 +102,7 @@ where
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let Some(body) = self.body else { return Ok(()) };
         self.heading += panel.value("turn") * TIME_STEP;
-        // The motion without obstacles.
+        // The motion of a step without obstacles.
         let ahead = vector([panel.value("speed") * TIME_STEP, 0.0, 0.0]);
         let pose = pose_of(world, body);
         let pose = self.slide(world, pose, turn::<D>([0, 1], self.heading) * ahead);

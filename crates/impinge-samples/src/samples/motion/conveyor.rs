@@ -16,9 +16,9 @@ pub(crate) struct Conveyor {
     goods: Vec<CollisionObjectHandle>,
     /// A sensor for each kind, in the order of the kinds.
     sensors: Vec<CollisionObjectHandle>,
-    /// The number of each kind that has entered its sensor.
+    /// For each kind, the number of pieces that have entered its sensor.
     entered: [usize; KINDS.len()],
-    /// The number within a sensor.
+    /// The number of pieces that are within a sensor now.
     within: usize,
     /// The distance that the belt has moved.
     way: f32,
@@ -40,7 +40,7 @@ impl Conveyor {
     {
         for index in 0..10 {
             let kind = index * 7 % KINDS.len();
-            // Membership is the kind of an object; it may touch every group.
+            // Goods of kind n are members of group n, and may touch every group.
             let mut groups = CollisionGroups::new();
             groups.set_membership(&[kind]);
             let (position, query) = (self.position(index), ContactQuery::default());

@@ -36,14 +36,14 @@ where
         let steered = near.iter().fold(ahead, |velocity, near| {
             let place = f32::pose(near.object.position()).translation;
             let away = unit_or(&(here - place), none);
-            // Aside as well as away, so that two who meet frontally pass each other.
+            // A component to the side, so that two people who meet head-on pass each other.
             let side = turn::<D>([0, 1], TAU / 4.0) * away;
-            // From 0 at the greatest distance to 1 in contact; squared below, so that the nearest has the largest
-            // weight.
+            // The weight grows from 0 at the distance `SIGHT` to 1 in contact. It is squared below,
+            // so that the nearest person has the largest weight.
             let weight = 1.0 - near.distance / SIGHT;
             velocity + (away * 1.5 + side * 0.5) * (weight * weight)
         });
-        // The sum is shortened to length 1, and never lengthened.
+        // If the sum is longer than 1, it is shortened to length 1.
         let speed = max(steered.norm(), 1.0);
         steered / speed
     }
@@ -69,7 +69,7 @@ where
             (CollisionGroups::new(), ContactQuery::default(), panel.count("count"));
         for n in 0..count {
             let angle = TAU * number(n) / number(count);
-            // Evenly on the circle; the goal is the opposite position.
+            // People start evenly distributed on the circle, with the goal at the opposite point.
             let place = turn::<D>([0, 1], angle) * vector::<D>([6.0, 0.0, 0.0]);
             let position = f32::isometry(&Pose::from_translation(place));
             let label = format!("person {n}");
@@ -88,7 +88,7 @@ where
 
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         let length = panel.value("speed") * TIME_STEP;
-        // All decide by the previous positions of the others, then all move at once.
+        // Each person decides by the previous positions of the others; then all move at once.
         let mut moved = Vec::with_capacity(self.people.len());
         for person in &mut self.people {
             let mut pose = pose_of(world, person.object);

@@ -83,7 +83,7 @@ where
         Ok(())
     }
 
-    /// Another object: the fingers start open again.
+    /// Takes another object. The fingers start open again.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
     }
@@ -114,7 +114,8 @@ where
         }
     }
 
-    /// The inner sides are half a finger nearer than the centres.
+    /// Returns the distances between the inner sides of the fingers: half a finger nearer than the
+    /// centres.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
         let xs = self.fingers.iter().map(|finger| pose_of(world, *finger).translation[0].abs());
         vec![

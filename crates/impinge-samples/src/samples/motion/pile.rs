@@ -8,7 +8,7 @@ use crate::prelude::*;
 pub(crate) struct Pile<const D: usize> {
     /// All objects but the floor and the walls.
     bodies: Bodies<D>,
-    /// The number of dropped solids, which is the number of the next.
+    /// The number of dropped solids, which is the index of the next one.
     dropped: usize,
 }
 
@@ -21,7 +21,7 @@ impl<const D: usize> Pile<D>
 where
     f32: Dimension<D>,
 {
-    /// Adds a solid above the floor. Its position and size follow from its number.
+    /// Adds a solid above the floor. Its position and size follow from its index.
     fn drop_one(&mut self, world: &mut World<D>, height: f32) -> Result<(), SampleError> {
         let n = self.dropped;
         self.dropped += 1;
@@ -68,7 +68,7 @@ where
         Ok(())
     }
 
-    /// Only the count can change; a press of the button is no change.
+    /// Rebuilds the pile if the count has changed. A press of the button does not call this.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
     }

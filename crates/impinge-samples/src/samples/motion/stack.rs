@@ -32,7 +32,7 @@ where
         // One shape for all boxes: a handle is reference-counted.
         let cube = ShapeHandle::new(Cuboid::new(vector([0.5; 3])));
         for n in 0..panel.count("count") {
-            // Every other box is shifted to the other side.
+            // Boxes are shifted to either side in turn.
             let side = if n % 2 == 0 { 1.0 } else { -1.0 };
             let position = at([side * panel.value("shift"), 0.505 + 1.005 * number(n), 0.0]);
             let cube = world.add(position, cube.clone(), groups, query, format!("box {n}"))?;
@@ -42,12 +42,12 @@ where
         Ok(())
     }
 
-    /// The world is cleared and built again: handles of removed objects are then stale.
+    /// Clears the world and builds it again; handles of the removed objects are then stale.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
     }
 
-    /// A push sets a velocity; contacts and friction do the rest.
+    /// Sets the velocity of the pushed box; contacts and friction move the others.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
         if panel.take_press("push")
             && let Some(top) = self.top

@@ -15,8 +15,9 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Returns the pose of the second solid of a pair: moved from the upper right towards the first until they
-    /// touch, and further by the depth. Parallel segments have no depth, and stay where they touch.
+    /// Returns the pose of the second solid of a pair. It is moved from the upper right towards the
+    /// first solid until they touch, and then further by `depth`. Parallel segments have no depth,
+    /// and stay where they touch.
     fn touching<const D: usize>(
         &self,
         world: &World<D>,
@@ -38,7 +39,7 @@ impl Grid {
         let still = Moving::still(&isometry(&pose1), shape1);
         let moving = Moving::new(&isometry(&pose2), &velocity, shape2);
         let hit = impact(&still, &moving, &ImpactOptions::new())?;
-        // The solids touch there; the normal points from the first to the second.
+        // The normal of the contact points from the first solid to the second.
         pose2.translation += velocity * hit.toi;
         let deeper = Pose { translation: pose2.translation - *hit.normal * depth, ..pose2 };
         let gap = distance(&isometry(&pose1), shape1, &isometry(&deeper), shape2);
@@ -74,7 +75,7 @@ where
         )
     }
 
-    /// A triangle of cells, since a pair is the same in both orders.
+    /// Adds the cells of a triangle: a pair and its reverse need only one cell.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
         let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));

@@ -8,7 +8,7 @@ use impinge_record::Registry;
 
 use crate::prelude::*;
 
-/// The points common to two balls of one radius around `(0, −offset)` and `(0, offset)`.
+/// The intersection of two balls of one radius around `(0, −offset)` and `(0, offset)`.
 #[derive(Debug)]
 struct Lens {
     /// The radius of both balls.
@@ -46,7 +46,7 @@ impl<const D: usize> Shape<f32, D> for Lens
 where
     f32: Space<D>,
 {
-    /// Queries use the shape through its support map.
+    /// Returns the support map as the geometry: queries use the shape through it.
     fn geometry(&self) -> Geometry<'_, f32, D> {
         Geometry::support_map(self)
     }

@@ -7,12 +7,12 @@ use crate::prelude::*;
 /// The prediction of contacts, and the largest distance of drawn closest points.
 const MARGIN: f32 = 10.0;
 
-/// The second shape moves along the first until the user drags it.
+/// Two shapes, the second of which moves along the first until the user drags it.
 #[derive(Debug, Default)]
 pub(crate) struct Playground {
     /// The first and the second shape.
     objects: Vec<CollisionObjectHandle>,
-    /// The position of the second shape on its path: 1 is once back and forth.
+    /// The position of the second shape on its path; 1 is one whole cycle back and forth.
     phase: f32,
     /// Whether the user has dragged the shape.
     is_held: bool,
@@ -56,7 +56,7 @@ where
     turn::<D>([0, 1], panel.value("direction")) * vector::<D>([1.0, 0.0, 0.0])
 }
 
-/// Returns the time of impact of the second shape with the first, if there is one.
+/// Returns the time of impact of the second shape with the first; `None` if there is none.
 fn time_of_impact<const D: usize>(
     [first, second]: &[Placed<D>; 2],
     panel: &Panel,
@@ -69,7 +69,8 @@ where
     impact(&still, &moving, &ImpactOptions::new().with_max_time(MARGIN))
 }
 
-/// Returns the contact of both shapes. Within the margin it exists for separate shapes too, with a negative depth.
+/// Returns the contact of both shapes. Separate shapes within the margin also have a contact, with
+/// a negative depth.
 fn nearest_contact<const D: usize>([first, second]: &[Placed<D>; 2]) -> Option<Contact<f32, D>>
 where
     f32: Dimension<D>,

@@ -8,13 +8,13 @@ use crate::prelude::*;
 const SECONDS: f32 = 4.0;
 const PAUSE: f32 = 1.0;
 
-/// Two rotating bars that fly towards each other. Their first contact is known from the start; they stop
-/// there.
+/// Two rotating bars that fly towards each other. Their first contact is computed at the start, and
+/// they stop at it.
 #[derive(Debug, Default)]
 pub(crate) struct Spinning<const D: usize> {
     /// The left and the right bar.
     bars: Vec<CollisionObjectHandle>,
-    /// Their first contact, if there is one within the maximum time.
+    /// The first contact of the bars; `None` if there is none within the maximum time.
     hit: Option<Impact<f32, D>>,
     /// The time since the start, in seconds.
     time: f32,
@@ -36,13 +36,13 @@ where
         ]
     }
 
-    /// Returns the time of the impact, or else the maximum time.
+    /// Returns the time of the impact; the maximum time if there is none.
     fn end(&self) -> f32 {
         self.hit.map_or(SECONDS, |hit| hit.toi)
     }
 }
 
-/// A thin bar, 2.4 long.
+/// Returns the shape of a bar: thin, 2.4 long.
 fn bar<const D: usize>() -> Cuboid<f32, D> {
     Cuboid::new(vector([1.2, 0.04, 0.3]))
 }

@@ -12,7 +12,7 @@ pub(crate) struct Through {
     objects: Vec<CollisionObjectHandle>,
     /// The number of steps made.
     step: usize,
-    /// Negative while the solids are apart.
+    /// The depth at each step of the path; negative while the solids are apart.
     depths: Vec<f32>,
 }
 
@@ -57,7 +57,7 @@ where
         Ok(())
     }
 
-    /// Other solids have another graph.
+    /// Rebuilds the solids and clears the graph.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         for (object, name) in self.objects.iter().zip(["first", "second"]) {
             world.set_shape(*object, solid(panel.chosen(name), 0.8))?;

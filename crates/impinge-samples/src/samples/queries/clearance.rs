@@ -10,7 +10,7 @@ const PLACES: usize = 120;
 struct Place<const D: usize> {
     /// The point.
     at: Point<f32, D>,
-    /// Zero where the body would touch an obstacle.
+    /// The distance from the obstacles; zero where the body would touch one.
     distance: f32,
 }
 

@@ -24,7 +24,8 @@ where
             .flag("loosened", "Loosened boxes", true)
     }
 
-    /// Large enough to be visible: fat AABBs do not change while objects move less than this.
+    /// The margin: large enough to be visible. Fat AABBs do not change while objects move less than
+    /// it.
     fn margin(&self) -> f32 {
         0.15
     }
@@ -34,7 +35,7 @@ where
         Ok(())
     }
 
-    /// Only another count makes another scene; the flags are read while drawing.
+    /// Rebuilds the scene if the count has changed; the flags are read while drawing.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         if world.len() == panel.count("count") {
             return Ok(());

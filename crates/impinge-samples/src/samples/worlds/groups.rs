@@ -7,7 +7,7 @@ use impinge_scenes::sparse_drift;
 use crate::prelude::*;
 use crate::scene::Play;
 
-/// The number of teams; the team follows from the number of the object.
+/// The number of teams; the team of an object follows from its index.
 const TEAMS: usize = 3;
 
 /// Drifting boxes, each a member of one of three groups.

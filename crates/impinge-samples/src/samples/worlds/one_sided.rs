@@ -11,7 +11,7 @@ pub(crate) struct OneSided {
     step: usize,
 }
 
-/// Returns the same triangles, one-sided or two-sided.
+/// Returns the triangles of the hill, one-sided or two-sided.
 fn hill<const D: usize>(panel: &Panel) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
@@ -22,7 +22,7 @@ where
 }
 
 impl OneSided {
-    /// Moves up through the hill, and down again.
+    /// Returns the position of the ball at a step: up through the hill, and down again.
     fn position<const D: usize>(&self) -> Isometry<D>
     where
         f32: Dimension<D>,

@@ -11,7 +11,7 @@ const COUNT: usize = 6;
 pub(crate) struct Scaling {
     /// The solids on the slab.
     solids: Vec<CollisionObjectHandle>,
-    /// The step of their motion.
+    /// The index of the current step of the motion of the solids.
     step: usize,
 }
 
@@ -36,7 +36,7 @@ impl Scaling {
         turned([x * scale, height * scale, 0.0], 0.3 * number(index))
     }
 
-    /// The deepest contact.
+    /// Returns the largest depth of a contact.
     fn depth<const D: usize>(world: &World<D>) -> Option<f32>
     where
         f32: Dimension<D>,

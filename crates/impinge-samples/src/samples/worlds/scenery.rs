@@ -40,7 +40,7 @@ where
         Panel::new().number("count", "Objects", first, [10.0, most, 10.0])
     }
 
-    /// Suits objects of size 1 that move by a few percent of it in a step.
+    /// The margin for objects of size 1 that move by a few percent of their size in a step.
     fn margin(&self) -> f32 {
         0.04
     }
@@ -51,7 +51,7 @@ where
         Ok(())
     }
 
-    /// A scene of another count is another scene.
+    /// Rebuilds the scene with the current count.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         self.rebuild(world, panel)
     }

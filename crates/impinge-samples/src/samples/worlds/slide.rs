@@ -15,7 +15,7 @@ pub(crate) struct Slide<const D: usize> {
     step: usize,
     /// The number of normals that were not vertical since the start.
     count: usize,
-    /// The last of them: from the contact point along the normal.
+    /// The last contacts with tilted normals: the contact point, and the end of the normal from it.
     bumps: Vec<[Point<f32, D>; 2]>,
 }
 
@@ -36,7 +36,8 @@ impl<const D: usize> Slide<D>
 where
     f32: Dimension<D>,
 {
-    /// Moves across the edges at an angle of none of them.
+    /// Returns the position of the box, whose path crosses the edges of the triangles and is
+    /// parallel to none of them.
     fn position(&self, panel: &Panel) -> Isometry<D> {
         let way = 8.0 * to_and_fro(number(self.step) / 600.0) - 4.0;
         turned([way, 0.4 - panel.value("sunk"), 0.37 * way], 0.0)

@@ -21,7 +21,7 @@ pub(crate) struct Waves<const D: usize> {
     step: usize,
 }
 
-/// The height of the wave at a point and a phase from 0 to 1.
+/// Returns the height of the wave at a point, at a phase from 0 to 1.
 fn height(x: f32, z: f32, phase: f32, amplitude: f32) -> f32 {
     let along = 0.7 * x + 0.4 * z;
     amplitude * Real::sine_cosine(along - TAU * phase).0
@@ -41,8 +41,8 @@ where
         self.surfaces = (0..PERIOD).map(surface).collect();
     }
 
-    /// Returns the position where a ball of radius 0.4 lands if it falls vertically: a cast against the
-    /// surface alone.
+    /// Returns the position where a ball of radius 0.4 lands if it falls vertically, by a cast
+    /// against the surface alone.
     fn fallen(&self, ball: usize) -> Isometry<D> {
         let above = [2.0 * number(ball) - 6.0, 10.0, scattered(ball, 0) * 8.0 - 4.0];
         let (shape, here) = (Ball::new(0.4), isometry(&Pose::identity()));

@@ -35,7 +35,7 @@ const INK: Color = Color::rgb(62, 70, 82);
 /// The width of the guide's 2D pictures in pixels: about that of its text.
 const WIDTH: u32 = 720;
 
-/// The styles of all pictures. Boxes, manifolds and proximities are off.
+/// Returns the drawing options of all pictures. Boxes, manifolds and proximities are off.
 fn options<N: Real>() -> DebugOptions<N> {
     let style = |color, size| Some(Style { color, size: N::lit(size) });
     let mut options = DebugOptions {

@@ -7,7 +7,7 @@ use impinge::shape::ShapeHandle;
 use impinge::{dim2, dim3};
 use impinge_view::{Camera, PngPicture, SvgPicture};
 
-/// A shape with its name; its colour follows from its number.
+/// Returns shapes with names and colours; a shape's colour follows from its index.
 fn colored<N: impinge::math::Space<D>, const D: usize>(
     shapes: Vec<(&'static str, ShapeHandle<N, D>)>,
 ) -> Vec<(&'static str, ShapeHandle<N, D>, Color)> {

@@ -25,7 +25,8 @@ fn read(
     count.ended += ended.read().count();
 }
 
-/// A ball falls through a sensor and lands on the floor, which is taken away: what is told of each.
+/// Lets a ball fall through a sensor onto the floor, then removes the floor. Returns the numbers of
+/// start and end messages after each of the three.
 fn told<B: Backend>() -> [[usize; 2]; 3] {
     let mut app = app::<B>();
     app.init_resource::<Count>().add_systems(Last, read);

@@ -1,4 +1,4 @@
-//! Boxes, contacts and masses of each shape.
+//! Tests of boxes, contacts and masses of each shape.
 
 use core::f32::consts::PI;
 
@@ -75,7 +75,8 @@ fn solids_weigh_what_they_should() {
     weighs(&tall, 2.0, 5.0 / 12.0);
 }
 
-/// No hull for a capsule whose ends would be oval, if one can tell it from an exact one by its area.
+/// A capsule whose ends would be elliptic becomes a hull: its area is slightly less than that of
+/// the exact shape.
 #[test]
 fn what_has_no_exact_scale_is_approximated() {
     let mut capsule = Collider::capsule(0.5, 1.0);

@@ -1,4 +1,4 @@
-//! Bodies on lines and areas of triangles: no bumps at inner corners.
+//! Bodies on polylines and areas of triangles have no bumps at inner corners.
 
 use avian_impinge::d2;
 use avian2d::prelude::*;
@@ -20,7 +20,7 @@ fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction
     steps(&mut app, 20);
     *app.world_mut().get_mut::<LinearVelocity>(body).expect("a body") =
         LinearVelocity(Vec2::X * 4.0);
-    // It gets into the motion that its friction makes of that.
+    // Friction first turns sliding into rolling.
     steps(&mut app, 16);
     let (mut fastest, mut farthest) = (0.0_f32, 0.0_f32);
     for _ in 0..192 {
@@ -31,7 +31,8 @@ fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction
     [fastest, farthest, velocity(&app, body).x]
 }
 
-/// On a line, on an area, and on a half-plane: a ball and a box.
+/// Returns the bumps of a ball and of a box on a polyline, on an area of triangles, and on a
+/// half-plane.
 fn bumps<B: Backend>() -> [[[f32; 3]; 2]; 3] {
     let floors = [line::<B>(40, 0.5, |_| 0.0), strip::<B>(40, 0.5), B::half_space()];
     floors.map(|floor| {
@@ -44,7 +45,8 @@ fn bumps<B: Backend>() -> [[[f32; 3]; 2]; 3] {
 fn bodies_roll_and_slide_without_bumps() {
     let found = bumps::<Impinge>();
     println!("impinge: {found:?}");
-    // The solver turns the contact of a rolling disk with it within a step: it hops a little on any floor.
+    // Within a step, the solver rotates the contact together with a rolling disk. So the disk hops
+    // slightly on any floor.
     let smooth = found[2][0][0];
     for [ball, parcel] in found {
         assert!(ball[0] < 1.1 * smooth && ball[1] < 2e-3, "{ball:?} beside {smooth}");
@@ -65,7 +67,7 @@ fn beside_parry() {
 #[derive(Component)]
 struct Walker;
 
-/// Forwards, and down to the ground.
+/// Moves characters forwards, then down to the ground, by shape casts.
 fn walk(
     spatial: d2::SpatialQuery<'_, '_>,
     mut walkers: Query<'_, '_, (Entity, &mut Transform), With<Walker>>,
@@ -101,7 +103,8 @@ fn a_character_walks_up_a_line() {
         assert!((at.y - last.y).abs() < 0.05, "no jump from {last} to {at}");
         last = at;
     }
-    // The lower half disk touches the slope beside its lowest point: r (1/cos - 1) higher.
+    // The lower half disk touches the slope beside its lowest point, so that it is higher by r
+    // (1/cos - 1).
     let off = last.y - (0.7 + ground(last.x) + 0.3 * (1.0625_f32.sqrt() - 1.0));
     assert!(last.x > 3.5 && (-0.001..0.03).contains(&off), "{off} at {last}");
 }

@@ -1,4 +1,4 @@
-//! Events, sensors, layers, hooks, removal, hierarchies.
+//! Tests of events, sensors, layers, hooks, removal and hierarchies.
 
 use avian_impinge::d3;
 use avian3d::prelude::*;
@@ -139,7 +139,7 @@ fn hooks_filter_and_modify() {
     assert!(carried.x.abs() > 1.0 && (carried.y - 0.5).abs() < 0.02, "a conveyor: {carried}");
 }
 
-/// Two boxes as children of one body, at its sides.
+/// Two boxes are children of one body, on either side of it.
 #[test]
 fn colliders_of_children_carry_their_body() {
     let mut app = app::<Impinge>();
@@ -172,7 +172,8 @@ fn a_shape_may_be_replaced() {
     assert!((mass - 4.0 / 3.0 * core::f32::consts::PI).abs() < 1e-4, "{mass}");
 }
 
-/// Ended pairs are forgotten: what is kept does not grow with all that ever met.
+/// Ended pairs are removed: the number of stored pairs does not grow with all pairs that ever
+/// existed.
 #[test]
 fn pairs_are_forgotten() {
     let mut app = app::<Impinge>();
@@ -188,7 +189,7 @@ fn pairs_are_forgotten() {
     assert!((10..100).contains(&kept.len()), "{kept:?} of 400");
 }
 
-/// A clone holds what the resource holds; forgetting it all does no harm.
+/// A clone has the pairs of the resource, and clearing the resource is safe.
 #[test]
 fn pairs_may_be_cleared() {
     let mut app = app::<Impinge>();
@@ -201,13 +202,13 @@ fn pairs_may_be_cleared() {
     assert!(app.world().resource::<d3::PairContacts>().is_empty());
     steps(&mut app, 60);
     assert!((place(&app, body) - Vec3::Y * 0.5).length() < 0.02);
-    // With a tolerance that is none, contacts are computed each time.
+    // With an invalid tolerance contacts are recomputed in each step.
     app.insert_resource(d3::PairContacts::reusing(f32::NAN));
     steps(&mut app, 60);
     assert!((place(&app, body) - Vec3::Y * 0.5).length() < 0.02);
 }
 
-/// Bad sizes and indices: an app goes on.
+/// Invalid sizes and indices do not panic, and the app continues.
 #[test]
 fn nothing_panics() {
     let mut app = app::<Impinge>();
@@ -229,7 +230,8 @@ fn nothing_panics() {
     assert!((place(&app, body).y - 0.5).abs() < 0.02, "on the floor");
 }
 
-/// Avian's schedule refuses two back ends, as the README says. If this no longer panics, change the README.
+/// Avian's schedule does not allow two back ends, as the README says. If this no longer panics,
+/// change the README.
 #[cfg(feature = "parry")]
 #[test]
 #[should_panic(expected = "indeterminate execution order")]

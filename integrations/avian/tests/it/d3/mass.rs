@@ -1,4 +1,4 @@
-//! Mass properties against closed forms.
+//! Compares mass properties with closed forms.
 
 use core::f32::consts::PI;
 
@@ -6,7 +6,7 @@ use avian_impinge::d3::Collider;
 use avian3d::prelude::{ComputeMassProperties3d, ScalableCollider};
 use bevy_math::{Quat, Vec3};
 
-/// `moments` are per mass.
+/// Checks the mass properties of a collider at density 1; `moments` are divided by the mass.
 fn weighs(collider: &Collider, volume: f32, center: Vec3, moments: Vec3) {
     let found = collider.mass_properties(2.0);
     let near = |a: f32, b: f32| (a - b).abs() <= 1e-5 * b.abs().max(1.0);
@@ -69,14 +69,14 @@ fn what_encloses_nothing_has_no_mass() {
     }
 }
 
-/// A scale is part of the shape.
+/// The mass properties include the scale.
 #[test]
 fn scaled_shapes_weigh_as_such() {
     let mut ball = Collider::sphere(1.0);
     ball.set_scale(Vec3::new(1.0, 2.0, 3.0), 10);
     let moments = Vec3::new(4.0 + 9.0, 1.0 + 9.0, 1.0 + 4.0) / 5.0;
     weighs(&ball, 8.0 * PI, Vec3::ZERO, moments);
-    // A hull inside of the oval capsule.
+    // The hull lies inside the elliptic capsule.
     let mut capsule = Collider::capsule(1.0, 2.0);
     capsule.set_scale(Vec3::new(2.0, 1.0, 1.0), 20);
     let whole = 2.0 * (PI * 2.0 + 4.0 / 3.0 * PI);

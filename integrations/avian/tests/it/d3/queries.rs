@@ -9,7 +9,7 @@ use bevy_math::{Dir3, Quat, Vec3};
 
 use crate::scenes3::{Backend, Impinge, app, dynamic, fixed, floor, steps};
 
-/// A floor, a ball on it at x = 0, and a box at x = 4.
+/// Returns an app with a floor, a ball on it at x = 0, and a box at x = 4.
 fn scene() -> (App, [Entity; 3]) {
     let mut app = app::<Impinge>();
     let floor = floor::<Impinge>(&mut app);

@@ -1,4 +1,4 @@
-//! Scenes that shall stand.
+//! Scenes that must stay stable.
 
 use avian3d::prelude::*;
 use bevy_math::Vec3;
@@ -39,7 +39,7 @@ fn a_pyramid_stands() {
     pyramid_stands::<Impinge>();
 }
 
-/// It swings down and comes to lie on the floor, its links still joined.
+/// The chain swings down and comes to rest on the floor, with its links still joined.
 fn chain_holds<B: Backend>() {
     let mut app = app::<B>();
     floor::<B>(&mut app);
@@ -69,7 +69,7 @@ fn a_chain_of_capsules_holds() {
     chain_holds::<Impinge>();
 }
 
-/// Points of contact keep their feature ids from step to step, so the solver is warm-started.
+/// Contact points keep their feature ids from step to step, so that the solver is warm-started.
 #[test]
 fn contacts_keep_their_names() {
     let mut app = app::<Impinge>();

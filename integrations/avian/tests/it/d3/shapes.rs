@@ -1,4 +1,4 @@
-//! Boxes and contacts of each shape.
+//! Tests of boxes and contacts of each shape.
 
 use avian_impinge::d3::Collider;
 use avian3d::prelude::{Rotation, ScalableCollider};
@@ -34,7 +34,7 @@ fn all() -> Vec<Collider> {
     ]
 }
 
-/// Each has its lowest point half a unit below its origin, and lies on a box.
+/// Each shape has its lowest point half a unit below its origin, and lies on a box.
 #[test]
 fn every_shape_meets_a_box() {
     let slab = Collider::cuboid(10.0, 2.0, 10.0);
@@ -75,7 +75,7 @@ fn boxes_hold_their_shapes() {
     assert!(aabb.size().is_finite() && aabb.max.y < 1.001 && aabb.max.x > 1e30, "{aabb:?}");
 }
 
-/// The height at the end of x, on a field of two columns.
+/// Tests the height at the end of the x axis, on a field of two columns.
 #[test]
 fn heights_are_given_along_x_first() {
     let field = Collider::heightfield(
@@ -93,7 +93,7 @@ fn heights_are_given_along_x_first() {
     assert!(Collider::heightfield(vec![vec![0.0; 3], vec![0.0; 2]], Vec3::ONE).error().is_some());
 }
 
-/// A shape that cannot be scaled exactly becomes a hull; a scale of zero is refused.
+/// A shape that cannot be scaled exactly becomes a hull; a scale of zero is rejected.
 #[test]
 fn scales() {
     let mut cylinder = Collider::cylinder(0.5, 1.0);

@@ -1,4 +1,4 @@
-//! Bodies on meshes: no bumps at inner edges.
+//! Bodies on meshes have no bumps at inner edges.
 
 use avian3d::prelude::*;
 use bevy_app::App;
@@ -21,7 +21,7 @@ fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction
     steps(&mut app, 20);
     let along = Vec3::new(4.0, 0.0, 0.7);
     *app.world_mut().get_mut::<LinearVelocity>(body).expect("a body") = LinearVelocity(along);
-    // It gets into the motion that its friction makes of that.
+    // Friction first turns sliding into rolling.
     steps(&mut app, 16);
     let (mut fastest, mut farthest) = (0.0_f32, 0.0_f32);
     for _ in 0..192 {
@@ -32,13 +32,13 @@ fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction
     [fastest, farthest, velocity(&app, body).x]
 }
 
-/// A ball and a box.
+/// Returns the bumps of a ball and of a box on a floor.
 fn bumps_on<B: Backend>(floor: B::Collider) -> [[f32; 3]; 2] {
     let ball = bump::<B>(floor.clone(), B::sphere(0.5), 0.5, 0.5);
     [ball, bump::<B>(floor, B::cuboid(1.0, 0.6, 0.8), 0.3, 0.0)]
 }
 
-/// On a mesh and on a half-space.
+/// Returns the bumps on a mesh and on a half-space.
 fn bumps<B: Backend>() -> [[[f32; 3]; 2]; 2] {
     [sheet::<B>(40, 0.5, |_, _| 0.0), B::half_space()].map(bumps_on::<B>)
 }
@@ -47,7 +47,8 @@ fn bumps<B: Backend>() -> [[[f32; 3]; 2]; 2] {
 fn bodies_roll_and_slide_without_bumps() {
     let found = bumps::<Impinge>();
     println!("impinge: {found:?}");
-    // The solver turns the contact of a rolling ball with it within a step: it hops a little on any floor.
+    // Within a step, the solver rotates the contact together with a rolling ball. So the ball hops
+    // slightly on any floor.
     let smooth = found[1][0][0];
     for [ball, parcel] in found {
         assert!(ball[0] < 1.1 * smooth && ball[1] < 2e-3, "{ball:?} beside {smooth}");
@@ -70,7 +71,7 @@ fn beside_parry() {
     assert!(all.as_flattened().as_flattened().iter().all(|x| x.is_finite()));
 }
 
-/// A slope of one in four from x = 0 on, and waves across.
+/// Returns the height of a slope of one in four from x = 0 on, with waves across.
 fn ground(x: f32, _: f32) -> f32 {
     0.25 * x.max(0.0)
 }
@@ -78,7 +79,7 @@ fn ground(x: f32, _: f32) -> f32 {
 #[derive(Component)]
 struct Walker;
 
-/// Moves characters forwards and down to the ground by shape casts.
+/// Moves characters forwards, then down to the ground, by shape casts.
 fn walk(
     spatial: d3::SpatialQuery<'_, '_>,
     mut walkers: Query<'_, '_, (Entity, &Walker, &mut Transform)>,
@@ -111,7 +112,8 @@ fn a_character_walks_up_a_mesh() {
     for _ in 0..160 {
         steps(&mut app, 1);
         let at = place(&app, walker);
-        // The lower ball touches the slope beside its lowest point: r (1/cos - 1) higher.
+        // The lower ball touches the slope beside its lowest point, so that it is higher by r
+        // (1/cos - 1).
         let lift = if at.x > 0.3 { 0.3 * (1.0625_f32.sqrt() - 1.0) } else { 0.0 };
         let off = at.y - (0.7 + ground(at.x, at.z) + lift);
         assert!((-0.001..0.03).contains(&off) || at.x < -3.9, "{off} at {at}");
@@ -137,8 +139,8 @@ fn a_kinematic_body_pushes_a_box() {
     assert!(parcel.x > 3.4 && (parcel.y - 0.25).abs() < 0.02, "{parcel}");
 }
 
-/// Three balls as one body, each in a groove of its own slope: six normals. Avian matches the points of four manifolds at
-/// most, the back end those of more.
+/// Three balls are one body, each in a groove of its own slope, with six normals in all. Avian
+/// matches the points of at most four manifolds, the back end those of pairs with more.
 #[test]
 fn many_manifolds_start_from_their_impulses() {
     let slopes = [0.5_f32, 0.8, 1.2];
