@@ -20,23 +20,23 @@ use crate::shape::{
 pub(super) type GridPoint = [usize; 2];
 
 impl<N: Real> HeightField<N, 3> {
-    /// The field of rows and columns of heights, given row by row; see [`Self::try_new`].
+    /// Returns the field of rows and columns of heights, given row by row; see [`Self::try_new`].
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new(rows: usize, columns: usize, heights: Vec<N>, scale: Vector<N, 3>) -> Self {
         or_panic(Self::try_new(rows, columns, heights, scale))
     }
 
-    /// The field of rows and columns of heights, at least two of each, given row by row. All
-    /// diagonals are forward, there are no holes, and both sides can be touched.
+    /// Returns the field of rows and columns of heights, at least two of each, given row by row.
+    /// All diagonals are forward, there are no holes, and both sides can be touched.
     ///
     /// # Errors
-    /// If there are too few rows or columns, or the number of heights is not their product; if a
-    /// component of the scale, a height, or a height times the scale is not finite; if 32 bits
-    /// cannot number the triangles.
+    /// If there are fewer than two rows or columns, or the number of heights is not their product;
+    /// if a component of the scale, a height, or a height times the scale is not finite; or if the
+    /// triangles do not fit 32-bit indices.
     pub fn try_new(
         rows: usize,
         columns: usize,
@@ -60,7 +60,7 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes exactly the cells holes for which `is_hole(row, column)` is true.
+    /// Sets which cells are holes: exactly those for which `is_hole(row, column)` is true.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize, usize) -> bool) -> Self {
         let [rows, columns] = self.pyramid.cells();
@@ -74,7 +74,7 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes exactly the cells ghosts for which `is_ghost(row, column)` is true; see
+    /// Sets which cells are ghosts: exactly those for which `is_ghost(row, column)` is true; see
     /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize, usize) -> bool) -> Self {
@@ -87,8 +87,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes the outermost ring of cells ghosts: the outermost heights are samples of the
-    /// neighbouring fields, so that nothing bumps into the seam between two tiles of a terrain.
+    /// Makes the outermost ring of cells ghosts, for a field whose outermost heights are samples of
+    /// its neighbours. Nothing then catches on the seam between two tiles of a terrain.
     ///
     /// ```
     /// use impinge::dim3::math::Vector;
@@ -108,10 +108,11 @@ impl<N: Real> HeightField<N, 3> {
         })
     }
 
-    /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
+    /// Returns the field scaled by `scale` along the axes of its frame, about its origin: the
+    /// field's scale is multiplied by `scale`.
     ///
     /// # Errors
-    /// If a factor is zero or not finite, or numbers leave their range.
+    /// If a factor is zero or not finite, or a scaled coordinate overflows or underflows.
     pub fn try_scaled(&self, scale: &Vector<N, 3>) -> Result<Self, ScaleError> {
         let scale = Scale::try_new(scale)?.vector(&self.scale);
         Ok(self.with_scale(scale, scale.z)?)
@@ -129,7 +130,7 @@ impl<N: Real> HeightField<N, 3> {
         self.grid.columns
     }
 
-    /// An unscaled height.
+    /// Returns the unscaled height at a row and column.
     ///
     /// # Panics
     /// If there is no such row or column.
@@ -139,7 +140,7 @@ impl<N: Real> HeightField<N, 3> {
         self.grid.height(row, column)
     }
 
-    /// The point of the surface at a row and column.
+    /// Returns the scaled point of the surface at a row and column.
     ///
     /// # Panics
     /// If there is no such row or column.
@@ -149,8 +150,8 @@ impl<N: Real> HeightField<N, 3> {
         self.grid.point(row, column)
     }
 
-    /// The number of the cell at a row and column; its triangles are the parts `2 · cell` and `2 ·
-    /// cell + 1`.
+    /// Returns the index of the cell at a row and column; its triangles are the parts `2 · cell`
+    /// and `2 · cell + 1`.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -164,7 +165,7 @@ impl<N: Real> HeightField<N, 3> {
         row * columns + column
     }
 
-    /// The diagonal of a cell.
+    /// Returns the diagonal of the cell at a row and column.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -174,7 +175,7 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.diagonal([row, column], self.pyramid.cells()[1])
     }
 
-    /// The two triangles of a cell; `None` for one that is a hole or a ghost.
+    /// Returns the two triangles of a cell; `None` for a triangle that is a hole or in a ghost.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -197,7 +198,7 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.is_hole(cell, k)
     }
 
-    /// Whether the part belongs to a ghost; see [`Self::set_ghost`].
+    /// Whether the part belongs to a ghost cell; see [`Self::set_ghost`].
     ///
     /// # Panics
     /// If there is no such part.
@@ -206,8 +207,8 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.is_ghost(self.locate(part).1)
     }
 
-    /// The scaled height of the surface at (x, z); `None` beside the field, at a hole and at a
-    /// ghost.
+    /// Returns the scaled height of the surface at (x, z); `None` outside the field, at a hole and
+    /// at a ghost.
     #[must_use]
     pub fn height_at(&self, x: N, z: N) -> Option<N> {
         let over = Vector::<N, 3>::new(x, N::ZERO, z);
@@ -222,12 +223,12 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// Changes. They do not reach a world that holds the shape: shared shapes are immutable.
+/// Modifications. They do not affect a world that holds the shape: shared shapes are immutable.
 impl<N: Real> HeightField<N, 3> {
-    /// Changes a height.
+    /// Sets the unscaled height at a row and column.
     ///
     /// # Errors
-    /// If it is not finite, by itself or times the scale; nothing is changed then.
+    /// If the height, or the height times the scale, is not finite; the field is then unchanged.
     ///
     /// # Panics
     /// If there is no such row or column.
@@ -245,11 +246,11 @@ impl<N: Real> HeightField<N, 3> {
         Ok(())
     }
 
-    /// Changes all heights, given row by row.
+    /// Replaces all unscaled heights, given row by row.
     ///
     /// # Errors
-    /// If their number differs or one is not finite, by itself or times the scale; nothing is
-    /// changed then.
+    /// If the number of heights differs, or a height or its product with the scale is not finite;
+    /// the field is then unchanged.
     pub fn set_heights(&mut self, heights: Vec<N>) -> Result<(), ShapeError> {
         let (given, needed) = (heights.len(), self.grid.heights.len());
         if given != needed {
@@ -272,7 +273,7 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Makes one triangle a hole, or restores it.
+    /// Makes one triangle a hole, or restores it; `part` is its index.
     ///
     /// # Panics
     /// If there is no such part.
@@ -282,8 +283,8 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Makes a cell a ghost, or restores its triangles: nothing touches a ghost, and no search
-    /// finds it, but the seams beside it are those of a surface that goes on. Holes in it stay.
+    /// Makes a cell a ghost, or restores its triangles. No query finds a ghost, but the surface
+    /// continues across the seams beside it. Holes in the cell stay.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -293,7 +294,7 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Changes the diagonal of a cell; its parts keep their numbers and their holes.
+    /// Sets the diagonal of a cell; its parts keep their indices and their holes.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -315,7 +316,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// Conversions from part numbers to triangles.
+/// Conversions from part indices to triangles.
 impl<N: Real> HeightField<N, 3> {
     #[track_caller]
     fn check_point(&self, row: usize, column: usize) {
@@ -326,8 +327,8 @@ impl<N: Real> HeightField<N, 3> {
         );
     }
 
-    /// The row and column of the cell of a part, the number of the cell, and 0 or 1 for the
-    /// triangle in it.
+    /// Returns the row and column of the cell of a part, the index of the cell, and 0 or 1 for the
+    /// triangle in the cell.
     #[track_caller]
     pub(super) fn locate(&self, part: u32) -> (GridPoint, usize, usize) {
         let (cell, k) = (part as usize / 2, part as usize % 2);
@@ -336,14 +337,14 @@ impl<N: Real> HeightField<N, 3> {
         ([cell / columns, cell % columns], cell, k)
     }
 
-    /// The corners of a part, counter-clockwise seen from the front.
+    /// Returns the corners of a part, counter-clockwise seen from the front.
     pub(super) fn corners(&self, part: u32) -> [GridPoint; 3] {
         let ([row, column], _, k) = self.locate(part);
         self.corners_in(row, column, k)
     }
 
-    /// The corners of triangle `k` of the cell at a row and column, counter-clockwise seen from the
-    /// front.
+    /// Returns the corners of triangle `k` of the cell at a row and column, counter-clockwise seen
+    /// from the front.
     pub(super) fn corners_in(&self, row: usize, column: usize, k: usize) -> [GridPoint; 3] {
         let [a, b, c, d] =
             [[row, column], [row + 1, column], [row + 1, column + 1], [row, column + 1]];
@@ -354,7 +355,7 @@ impl<N: Real> HeightField<N, 3> {
             (Diagonal::Backward, 0) => [a, b, d],
             (Diagonal::Backward, _) => [d, b, c],
         };
-        // A mirror reverses the winding.
+        // A mirroring scale reverses the winding.
         let [first, second, third] = corners;
         if self.is_mirrored() { [first, third, second] } else { corners }
     }
@@ -369,7 +370,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// The unscaled heights of a cell without holes.
+/// Returns the range of the unscaled heights of a cell, regardless of holes.
 fn square_span<N: Real>(grid: &Grid<N>, row: usize, column: usize) -> HeightSpan<N> {
     let above = row * grid.columns + column;
     let below = above + grid.columns;
@@ -382,7 +383,7 @@ fn min_index(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// The height of a triangle at (x, z); `None` beside it.
+/// Returns the height of a triangle at (x, z); `None` outside the triangle.
 fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
     let [a, b, c] = corners;
     let side = |p: &Point<N, 3>, q: &Point<N, 3>| (q.z - p.z) * (x - p.x) - (q.x - p.x) * (z - p.z);
@@ -463,7 +464,7 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
         u32::try_from(2 * self.num_cells()).expect("32 bits number the triangles")
     }
 
-    /// For a hole, the triangle that would be there.
+    /// Also returns the triangle of a hole.
     fn part(&self, part: u32) -> Part<'_, N, 3> {
         let triangle = self.triangle_of(self.corners(part));
         Part { pose: Pose::identity(), solid: PartSolid::Triangle(triangle) }
@@ -485,7 +486,7 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
         self.surface().map(|_| SurfaceAccess::of_own(self))
     }
 
-    /// The points of the grid, row by row.
+    /// Visits the indices of the triangle's grid points, counted row by row.
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         for [row, column] in self.corners(part) {
             visit((row * self.grid.columns + column) as u64);
@@ -506,7 +507,8 @@ impl<N: Real> Shape<N, 3> for HeightField<N, 3> {
         Geometry::composite(self)
     }
 
-    /// Around all parts that are not holes; the origin for a field of holes only.
+    /// Returns the box around all parts that are neither holes nor ghosts; the origin if there are
+    /// no such parts.
     fn local_aabb(&self) -> Aabb<N, 3> {
         match whole(self) {
             Some(extent) => Aabb::new(Point::from(extent.low), Point::from(extent.high)),
