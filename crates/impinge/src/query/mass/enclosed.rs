@@ -1,4 +1,4 @@
-//! Mass of closed meshes and lines, and of filled meshes in 2D.
+//! Mass of the areas and volumes that closed meshes and lines enclose, and of filled meshes in 2D.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::outline::crossed;
@@ -7,10 +7,11 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{EdgeNeighbor, MassError, Moments, Polyline, Shape, TriMesh};
 
-/// A volume at most this fraction of the sum of its terms' magnitudes counts as zero.
+/// A volume is treated as zero if it is at most this fraction of the sum of its terms' magnitudes.
 const NONE: f64 = 1024.0 * f64::EPSILON;
 
-/// A sum of signed cones with their tips at the origin, positive if it lies behind their base.
+/// A sum of signed cones with their apex at the origin; a cone is positive if the origin lies
+/// behind its base.
 struct Cones<const D: usize> {
     sum: Integrals<D>,
     /// The sum of the magnitudes of all cones.
@@ -22,14 +23,15 @@ impl<const D: usize> Cones<D> {
         Self { sum: Integrals::none(), total: 0.0 }
     }
 
-    /// Runs `add` on the sum, and adds the magnitude of the change to the total.
+    /// Runs `add` on `sum`, and adds the magnitude of the change to `total`.
     fn add(&mut self, add: impl FnOnce(&mut Integrals<D>)) {
         let before = self.sum.mass;
         add(&mut self.sum);
         self.total += (self.sum.mass - before).abs();
     }
 
-    /// The body, whatever the orientation of its surface.
+    /// Returns the moments of the body, whatever the orientation of its surface; no mass if the sum
+    /// is treated as zero.
     fn moments(&self) -> Moments<D> {
         if self.sum.mass.abs() <= NONE * self.total {
             return Integrals::none().moments();
