@@ -40,7 +40,7 @@ impl<const D: usize> Cones<D> {
     }
 }
 
-/// The area of a composite of the library in 2D that is no compound.
+/// Returns the moments of the area of a built-in 2D composite other than a compound.
 pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, MassError> {
     let mut cones = Cones::none();
     let units = if let Some(mesh) = shape.as_shape::<TriMesh<N, 2>>() {
@@ -69,7 +69,7 @@ pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// The volume that a composite of the library encloses, if it is no compound.
+/// Returns the moments of the volume that a built-in 3D composite other than a compound encloses.
 pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, MassError> {
     let Some(mesh) = shape.as_shape::<TriMesh<N, 3>>() else {
         return Err(MassError::NotClosed { part: 0 });
@@ -85,15 +85,15 @@ pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// The units for a shape with these bounds.
+/// Returns the units for a shape with these bounds.
 fn units<N: Real, const D: usize>(bounds: Option<&Aabb<N, D>>) -> LocalUnits<D> {
     let origin = Point::<N, D>::origin();
     let [low, high] = bounds.map_or([&origin; 2], |bounds| [bounds.mins(), bounds.maxs()]);
     LocalUnits::around([low, high], N::ZERO)
 }
 
-/// The first triangle with a side that has no neighbour, several, or one in the same direction; 0
-/// if there is none.
+/// Returns the first triangle with a side that has no neighbour, several neighbours, or one that
+/// traverses it in the same direction; 0 if there is none.
 fn opening<N: Real>(mesh: &TriMesh<N, 3>) -> u32 {
     let is_open = |triangle: u32| {
         let corners = *mesh.triangle(triangle).corners();

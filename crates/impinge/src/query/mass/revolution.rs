@@ -12,8 +12,7 @@ use crate::shape::Moments;
 
 const QUARTER: f64 = core::f64::consts::FRAC_PI_2;
 
-/// The positive Gauss-Legendre nodes between −1 and 1, each with its weight, which is half of the
-/// usual weight.
+/// The positive nodes of the 16-point Gauss-Legendre rule on [−1, 1], each with its weight.
 pub(super) const NODES: [[f64; 2]; 8] = [
     [0.989_400_934_991_649_9, 0.027_152_459_411_754_096],
     [0.944_575_023_073_232_6, 0.062_253_523_938_647_894],

@@ -93,7 +93,7 @@ impl<N: Real> HeightField<N, 2> {
     /// field's scale is multiplied by `scale`.
     ///
     /// # Errors
-    /// If a factor is zero or not finite, or a scaled coordinate overflows or underflows.
+    /// If a factor is zero or not finite, or a scaled coordinate is not finite.
     pub fn try_scaled(&self, scale: &Vector<N, 2>) -> Result<Self, ScaleError> {
         let scale = Scale::try_new(scale)?.vector(&self.scale);
         Ok(self.with_scale(scale, N::ZERO)?)
