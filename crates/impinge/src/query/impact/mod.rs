@@ -109,12 +109,10 @@ pub struct ImpactOptions<N: Real> {
     ///
     /// With `None` (the default) the search continues up to rounding. If 256 more steps do not
     /// suffice for that, as for surfaces that slide on each other, it accepts a millionth of the
-    /// sizes and the distance: 2⁻²⁰, in `f32` 2⁻¹⁷. Straight paths are always followed up to
-    /// rounding.
+    /// sizes and the distance: 2⁻²⁰, in `f32` 2⁻¹⁷. Straight paths always go up to rounding.
     pub tolerance: Option<N>,
     /// Whether solids that touch or overlap at time zero are an impact at time zero, whatever their
-    /// velocities. False by default: solids that separate, and solids that touch and slide, are
-    /// not.
+    /// velocities. False by default: solids that separate or just slide are not.
     pub contact_at_start: bool,
 }
 

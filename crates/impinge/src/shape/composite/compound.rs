@@ -155,7 +155,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
     ///
     /// # Errors
     /// If a factor is zero or not finite, a child would be sheared, a child does not support its
-    /// factors, or a result overflows or underflows.
+    /// factors, or a scaled position is not finite.
     pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, ScaleError> {
         let scale = Scale::try_new(scale)?;
         let mut children = Vec::with_capacity(self.children.len());

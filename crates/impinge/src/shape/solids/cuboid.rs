@@ -100,8 +100,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
-    /// Returns the id of a feature given by `2 D` bits: the free axes in the lower `D`, the
-    /// positive axes above.
+    /// Returns the id of a feature from `2 D` bits: the free axes, and above them the positive axes.
     #[inline]
     pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
         CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]
@@ -267,8 +266,7 @@ impl<const D: usize> CuboidPart<D> {
         if is_face && is_odd == has(self.corner, own) { ring.reversed() } else { ring }
     }
 
-    /// Returns the ids of the sides of a ring: none for a point, one for a segment, four for a
-    /// rectangle.
+    /// Returns the ids of a ring's sides: none for a point, one for a segment, else four.
     const fn side_ids(ring: &CuboidRing) -> [FeatureId; 4] {
         let (mut ids, mut at) = ([FeatureId::Vertex(0); 4], 0);
         while at < ring.count {

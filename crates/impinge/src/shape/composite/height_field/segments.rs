@@ -53,8 +53,7 @@ impl<N: Real> HeightField<N, 2> {
         self
     }
 
-    /// Sets which cells are ghosts: exactly those for which `is_ghost(cell)` is true; see
-    /// [`Self::set_ghost`].
+    /// Makes exactly the cells ghosts for which `is_ghost(cell)` is true; see [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();
@@ -65,8 +64,8 @@ impl<N: Real> HeightField<N, 2> {
         self
     }
 
-    /// Makes the first and the last cell ghosts, for a field whose outermost heights are samples of
-    /// its neighbours. Nothing then catches on the ends of this field.
+    /// Makes the first and the last cell ghosts: the outermost heights are samples of the
+    /// neighbouring fields, so that nothing bumps into the ends of this one.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -207,8 +206,8 @@ impl<N: Real> HeightField<N, 2> {
         self.refresh(cell);
     }
 
-    /// Makes a cell a ghost, or restores its segment. No query finds a ghost, but the line
-    /// continues across the seams beside it. A hole stays a hole.
+    /// Makes a cell a ghost, or restores its segment: nothing touches a ghost, and no search finds
+    /// it, but the seams beside it are those of a line that goes on. A hole stays a hole.
     ///
     /// # Panics
     /// If there is no such cell.

@@ -74,7 +74,7 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Sets which cells are ghosts: exactly those for which `is_ghost(row, column)` is true; see
+    /// Makes exactly the cells ghosts for which `is_ghost(row, column)` is true; see
     /// [`Self::set_ghost`].
     #[must_use]
     pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize, usize) -> bool) -> Self {
@@ -87,8 +87,8 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes the outermost ring of cells ghosts, for a field whose outermost heights are samples of
-    /// its neighbours. Nothing then catches on the seam between two tiles of a terrain.
+    /// Makes the outermost ring of cells ghosts: the outermost heights are samples of the
+    /// neighbouring fields, so that nothing bumps into the seam between two tiles of a terrain.
     ///
     /// ```
     /// use impinge::dim3::math::Vector;
@@ -198,7 +198,7 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.is_hole(cell, k)
     }
 
-    /// Whether the part belongs to a ghost cell; see [`Self::set_ghost`].
+    /// Whether the part belongs to a ghost; see [`Self::set_ghost`].
     ///
     /// # Panics
     /// If there is no such part.
@@ -283,8 +283,8 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Makes a cell a ghost, or restores its triangles. No query finds a ghost, but the surface
-    /// continues across the seams beside it. Holes in the cell stay.
+    /// Makes a cell a ghost, or restores its triangles: nothing touches a ghost, and no search
+    /// finds it, but the seams beside it are those of a surface that goes on. Holes in it stay.
     ///
     /// # Panics
     /// If there is no such cell.
