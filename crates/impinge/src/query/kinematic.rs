@@ -164,8 +164,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
-    /// Returns the kinematic of the solids inflated by `first` and `second`, which adds to their
-    /// rounding radii.
+    /// Returns the kinematic of the solids with `first` and `second` added to their radii.
     pub(super) fn grown(&self, [first, second]: [N; 2]) -> Self {
         let (rounding1, rounding2) = (self.rounding1 + first, self.rounding2 + second);
         Self { rounding1, rounding2, ..*self }
@@ -204,8 +203,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 
     /// Returns the kinematic in the frames of two shapes that have the solids as parts. `pose1` and
-    /// `pose2` are the poses of the solids in these frames; `turns` is whether rotations change the
-    /// shapes.
+    /// `pose2` are the poses of the solids there; `turns` is whether rotations change the shapes.
     pub(super) fn in_frames(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
         Self {
             turns,
@@ -225,8 +223,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
-    /// Predicts the contact in the frame of the first solid; `pose12` is the new pose of the second
-    /// solid in that frame.
+    /// Predicts the contact, in the frame of the first solid, for the new relative pose `pose12`.
     pub(crate) fn predicted(&self, pose12: &Pose<N, D>) -> Separation<N, D> {
         let point2 = pose12.point(&self.local2);
         let geometry2 = self.geometry2.moved(pose12);
@@ -252,8 +249,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 
     /// A quick sufficient test whether some line has such a slope along the manifold's normal that
-    /// no normal perpendicular to the line is near it. Of two nearly parallel lines only the first
-    /// is tested.
+    /// no normal perpendicular to the line is near it. Of two nearly parallel lines, only the first.
     fn is_steep(&self) -> bool {
         let is_tilted = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
             match geometry {
@@ -388,8 +384,7 @@ impl<N: Real, const D: usize> NeighborhoodGeometry<N, D> {
     }
 }
 
-/// Orthonormal directions along which a contact may slide: none, one or two. Unused directions are
-/// zero.
+/// Orthonormal directions along which a contact may slide: none, one or two.
 struct SlideLines<N: Real, const D: usize> {
     first: Vector<N, D>,
     second: Vector<N, D>,
@@ -451,8 +446,7 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
     }
 }
 
-/// If the squared sine of the angle between two lines is below this, their crossing is not
-/// computed.
+/// The crossing of two lines is computed if their squared sine is at least this.
 const MIN_SINE_SQUARED: f64 = 1e-6;
 
 /// Returns the points of the two cores that face each other along the normal.

@@ -7,8 +7,7 @@
 //! [`bounds`]).
 //!
 //! An impact is never reported late: no step is longer than the time during which the solids
-//! certainly stay apart. The number of steps is limited, and the status reports when the limit was
-//! reached.
+//! certainly stay apart. The number of steps is limited; the status reports a reached limit.
 
 mod bounds;
 mod linear;
@@ -208,8 +207,7 @@ impl ImpactStatus {
 
 /// The first touch of two moving solids: its time and geometry.
 ///
-/// The points and the normal are in the world frame, for the solids at their positions at the time
-/// of impact.
+/// The points and the normal are in the world frame, for the solids at the time of impact.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -451,8 +449,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         toi.is_finite_number().then_some((found, toi))
     }
 
-    /// Converts an impact of the solids in canonical order to the world frame and the order of the
-    /// arguments.
+    /// Converts an impact, given in canonical order, to the world frame and the arguments' order.
     #[inline(always)]
     fn impact(&self, touch: &PartArrival<N, D>, toi: N) -> Impact<N, D> {
         let (found, features) = if self.ordered.has_composite() {

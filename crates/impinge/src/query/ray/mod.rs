@@ -252,8 +252,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.all_hits_with_ray(m, ray, max_time, solid).into_iter().find(|hit| counts(hit))
     }
 
-    /// Returns [`Self::local_ray_hits`] for the shape placed at `m`, with normals in the world
-    /// frame.
+    /// Returns [`Self::local_ray_hits`] of the shape placed at `m`, with normals in the world.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -466,8 +465,7 @@ pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayInters
     RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature, part: 0 }
 }
 
-/// The common part of all casts: handles rays that are not finite or have no direction, and scales
-/// the direction.
+/// The common part of all casts: handles non-finite and zero directions, and scales the others.
 ///
 /// `project` is called if a ray may start inside; it returns `None` if it can exclude that. `span`
 /// is called for finite rays whose direction was divided by a power of two, so that its largest

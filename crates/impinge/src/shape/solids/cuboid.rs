@@ -108,8 +108,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 }
 
 /// A vertex, edge or face: the points of the box whose coordinates vary on the `free` axes and
-/// equal those of `corner` on the other axes. Both fields are bit sets of axes; `corner` has the
-/// axes with a positive sign.
+/// equal those of `corner` on the other axes. Both are bit sets; `corner` has the positive axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) struct CuboidPart<const D: usize> {
     free: u32,
@@ -170,8 +169,7 @@ impl<const D: usize> CuboidPart<D> {
     };
 
     /// Returns the supporting feature for a unit vector. Frees axes in the order of increasing
-    /// components, while `tilt` admits the sum of their squares. The result equals that of the rule
-    /// of [`SupportMap::core_feature`].
+    /// components, while `tilt` admits the sum of squares: the rule of [`SupportMap::core_feature`].
     pub(in crate::shape) fn toward<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
         let (mut free, mut sine_squared) = (0, N::ZERO);
         for _ in 1..D {
@@ -247,9 +245,8 @@ impl<const D: usize> CuboidPart<D> {
     }
 
     /// Returns the corners in the order documented at [`Cuboid`]: a Gray code over the free axes,
-    /// which changes one coordinate at a time. The axes are taken cyclically from the one after a
-    /// face's own axis. The loop is counter-clockwise on the positive side if that order is an even
-    /// permutation of the axes.
+    /// which changes one coordinate at a time. The axes follow cyclically after a face's own
+    /// axis. The loop is counter-clockwise on the positive side if this permutation is even.
     const fn ring(self) -> CuboidRing {
         let own = self.own_axis();
         let is_face = self.dimension() + 1 == D;
