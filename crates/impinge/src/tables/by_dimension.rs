@@ -144,7 +144,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     ) -> FeatureId;
 
     /// Returns the feature of a triangle whose Voronoi region contains the centre of a ball. `None`
-    /// if the centre is within `tolerance` of the border of a region.
+    /// in 2D, for a thin triangle, and where `tolerance` leaves the region uncertain.
     fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
 
     /// Returns the interval of times in which the line of a ray is inside a solid.

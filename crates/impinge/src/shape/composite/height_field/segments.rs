@@ -88,8 +88,7 @@ impl<N: Real> HeightField<N, 2> {
         self.with_ghosts(|cell| cell == 0 || cell == last)
     }
 
-    /// Returns the field scaled by `scale` along the axes of its frame, about its origin: the
-    /// field's scale is multiplied by `scale`.
+    /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
     ///
     /// # Errors
     /// If a factor is zero or not finite, or a scaled coordinate is not finite.
@@ -145,8 +144,7 @@ impl<N: Real> HeightField<N, 2> {
         self.marks.is_ghost(self.cell_of(part))
     }
 
-    /// Returns the scaled height of the line at `x`; `None` outside the field, at a hole and at a
-    /// ghost.
+    /// The scaled height of the line at `x`; `None` beside the field, at a hole and at a ghost.
     #[must_use]
     pub fn height_at(&self, x: N) -> Option<N> {
         let ends = [-N::INFINITY, N::INFINITY].map(|y| Point::<N, 2>::new(x, y));

@@ -108,8 +108,7 @@ impl<N: Real> HeightField<N, 3> {
         })
     }
 
-    /// Returns the field scaled by `scale` along the axes of its frame, about its origin: the
-    /// field's scale is multiplied by `scale`.
+    /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
     ///
     /// # Errors
     /// If a factor is zero or not finite, or a scaled coordinate is not finite.
@@ -207,8 +206,8 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.is_ghost(self.locate(part).1)
     }
 
-    /// Returns the scaled height of the surface at (x, z); `None` outside the field, at a hole and
-    /// at a ghost.
+    /// The scaled height of the surface at (x, z); `None` beside the field, at a hole and at a
+    /// ghost.
     #[must_use]
     pub fn height_at(&self, x: N, z: N) -> Option<N> {
         let over = Vector::<N, 3>::new(x, N::ZERO, z);
