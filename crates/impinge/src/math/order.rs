@@ -42,7 +42,7 @@ pub(crate) fn sort_few<T>(items: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
         return;
     }
     for step in (0..count + count / 2).rev() {
-        // The first `count` steps build the heap from the back. Each later step moves the heap's
+        // The first `count / 2` steps build the heap from the back. Each later step moves the heap's
         // greatest item behind it.
         let (mut at, end) = if step >= count {
             (step - count, count)

@@ -293,7 +293,7 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Sets the diagonal of a cell; its parts keep their indices and their holes.
+    /// Changes the diagonal of a cell; its parts keep their numbers and their holes.
     ///
     /// # Panics
     /// If there is no such cell.
