@@ -212,7 +212,8 @@ pub(super) fn unit_vector<N: Real, const D: usize>(
 
 /// Returns the nesting depth of a shape that holds shapes with the depths `inner`: one more than
 /// the deepest.
-/// || # Errors
+///
+/// # Errors
 /// If the depth exceeds [`MAX_NESTING`].
 pub(super) fn nesting(inner: impl Iterator<Item = u32>) -> Result<u32, ShapeError> {
     let depth = inner.max().map_or(1, |inner| inner.saturating_add(1));

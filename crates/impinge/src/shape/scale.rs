@@ -110,7 +110,8 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
     }
 
     /// Returns the common magnitude of the factors.
-    /// || # Errors
+    ///
+    /// # Errors
     /// If the magnitudes differ.
     pub(super) fn uniform(self) -> Result<N, ScaleError> {
         let magnitudes = self.magnitudes();
@@ -128,7 +129,8 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
     }
 
     /// Returns the scaled corners of a solid with a volume.
-    /// || # Errors
+    ///
+    /// # Errors
     /// If the extent along an axis vanishes or overflows.
     pub(super) fn corners(self, points: &[Point<N, D>]) -> Result<Vec<Point<N, D>>, ScaleError> {
         let scaled: Vec<_> = points.iter().map(|point| self.point(point)).collect();
@@ -138,7 +140,8 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
     }
 
     /// Returns the outward unit normal of a scaled half-space with the outward normal `normal`.
-    /// || # Errors
+    ///
+    /// # Errors
     /// If the scaled normal vanishes or is not finite.
     pub(super) fn normal(self, normal: &Vector<N, D>) -> Result<Vector<N, D>, ScaleError> {
         let largest = self.magnitudes().iter().copied().fold(N::ZERO, crate::math::max);
@@ -149,7 +152,8 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
 
 impl<N: Real> Scale<'_, N, 3> {
     /// Returns the magnitudes of the factors along the y axis and across it.
-    /// || # Errors
+    ///
+    /// # Errors
     /// If the magnitudes along x and z differ.
     pub(super) fn axial(self) -> Result<(N, N), ScaleError> {
         let magnitudes = self.magnitudes();

@@ -77,7 +77,8 @@ struct HullFaces {
 
 /// Computes the hull, and removes redundant vertices until there are none, or too few would be
 /// left.
-/// || # Errors
+///
+/// # Errors
 /// If the points span no volume.
 fn hull_of<N: Real>(points: &[Point<N, 3>]) -> Result<HullFaces, ShapeError> {
     let mut grown = Grown::of(&Scaled::of(points, 4)?)?;
@@ -120,7 +121,8 @@ impl Grown {
     }
 
     /// Returns the hull without the vertices in `redundant`.
-    /// || # Errors
+    ///
+    /// # Errors
     /// If too few points are left to span a volume.
     fn without(&self, redundant: &[u32]) -> Result<Self, ShapeError> {
         let is_kept = |&vertex: &usize| redundant.binary_search(&index_of(vertex)).is_err();

@@ -187,7 +187,8 @@ impl<N: Real> Weighing<'_, N> {
     }
 
     /// Returns the sum of the parts of a user's composite.
-    /// || # Errors
+    ///
+    /// # Errors
     /// If the composite is a surface.
     fn of_parts<const D: usize>(
         &mut self,
@@ -213,7 +214,8 @@ impl<N: Real> Weighing<'_, N> {
     }
 
     /// Calls the user's function for the density of the current child.
-    /// || # Errors
+    ///
+    /// # Errors
     /// If the density is negative or not finite.
     fn density(&mut self) -> Result<f64, MassError> {
         amount("the density", (self.density)(&self.path).as_f64())

@@ -15,7 +15,8 @@ const FLAT: f64 = 64.0;
 
 /// Returns the moments of a convex solid from its support points, accurate to about 1e-9; polygons
 /// are exact.
-/// || # Errors
+///
+/// # Errors
 /// If a support point is not finite.
 pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 2>) -> Result<Moments<2>, MassError> {
     let axes = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].mapped(V2::from);

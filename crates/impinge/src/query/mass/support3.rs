@@ -47,7 +47,8 @@ const MAX_STEPS: usize = 40;
 const NOTHING: f64 = 1e-6;
 
 /// Returns the moments of a convex solid from its support points, accurate to about 1e-4.
-/// || # Errors
+///
+/// # Errors
 /// If a support point is not finite.
 pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 3>) -> Result<Moments<3>, MassError> {
     let mut points = Vec::new();
@@ -62,7 +63,8 @@ pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 3>) -> Result<Moments<
 
 /// Appends the support points in 98 directions, spread evenly in the frame in which the solid is
 /// round.
-/// || # Errors
+///
+/// # Errors
 /// If a support point is not finite.
 fn sow<N: Real>(
     map: &dyn SupportMap<N, 3>,

@@ -52,7 +52,8 @@ impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
     }
 
     /// Writes the result of each ray to the entry with the ray's index.
-    /// || # Panics
+    ///
+    /// # Panics
     /// If `answers` does not have as many entries as there are rays.
     #[track_caller]
     pub(crate) fn each<A>(&self, answers: &mut [A], mut answer: impl FnMut(&Ray<N, D>) -> A) {

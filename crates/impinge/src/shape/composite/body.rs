@@ -85,7 +85,8 @@ fn root(above: &mut [u32], mut at: u32) -> u32 {
 ///
 /// `cone(part)` returns the signed content between a part and a fixed point; `is_cavity(part)`
 /// returns whether the other pieces wind around that part.
-/// || # Errors
+///
+/// # Errors
 /// [`MeshError::InsideOut`] with the first part of a piece that is negative and bounds no cavity.
 pub(super) fn check_fronts(
     pieces: &[u32],

@@ -234,7 +234,8 @@ fn own_factors<N: Real, const D: usize>(
 }
 
 /// Computes [`Compound::firsts`].
-/// || # Errors
+///
+/// # Errors
 /// If the parts do not fit 32-bit indices.
 fn first_parts<N: Space<D>, const D: usize>(
     children: &[(N::Isometry, ShapeHandle<N, D>)],

@@ -411,7 +411,8 @@ fn is_cycle(vertices: usize, segments: &[[u32; 2]], joints: &Joints) -> bool {
 }
 
 /// Returns the segments from each vertex to the next; a later check rejects too many vertices.
-/// || # Errors
+///
+/// # Errors
 /// If there are fewer than two vertices.
 fn chain(vertices: usize) -> Result<Vec<[u32; 2]>, MeshError> {
     if vertices < 2 {

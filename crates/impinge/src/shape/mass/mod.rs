@@ -162,7 +162,8 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
     }
 
     /// Returns the properties rounded to the scalar.
-    /// || # Errors
+    ///
+    /// # Errors
     /// If a property is NaN or exceeds the range of the scalar.
     pub(crate) fn try_of_moments(moments: &Moments<D>) -> Result<Self, MassError> {
         let found = Self::of_moments(moments);

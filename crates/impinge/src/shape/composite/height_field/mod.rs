@@ -143,7 +143,8 @@ impl<N: Real, const D: usize> HeightField<N, D> {
     }
 
     /// Returns the field with the scale `scale`; `depth` is its extent along z.
-    /// || # Errors
+    ///
+    /// # Errors
     /// If a coordinate is not finite.
     fn with_scale(&self, scale: Vector<N, D>, depth: N) -> Result<Self, ShapeError> {
         let mut scaled = self.clone();

@@ -58,7 +58,8 @@ impl<N: Real> TriMesh<N, 3> {
     ///   volume](Self::is_volume), with the first edge at fault.
     /// - [`MeshError::InsideOut`] if a closed piece has its front inside and lies in no other
     ///   piece, with a triangle of that piece.
-    /// || A piece without volume has no inside and causes no error.
+    ///
+    /// A piece without volume has no inside and causes no error.
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
     /// use impinge::dim3::procedural;
