@@ -41,7 +41,8 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
-    /// Calls `finish` with each packet of up to 8 configurations, after the scan.
+    /// Scans the configurations of `range` in packets of up to 8, up to the distance `limit`. After
+    /// each scan calls `finish` with the index range of the packet's configurations.
     fn each(
         &mut self,
         range: Range<usize>,
