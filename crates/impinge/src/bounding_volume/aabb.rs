@@ -26,7 +26,7 @@ pub struct Aabb<N: Real, const D: usize> {
     pub(super) maxs: Point<N, D>,
 }
 
-/// The reason why two corners are refused. Values are given as `f64`, exactly.
+/// Why two corners were rejected as a box. Values are given as `f64`, exactly.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::{Aabb, AabbError};
@@ -77,7 +77,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// Creates the box between two corners.
     ///
     /// # Panics
-    /// If a coordinate is NaN or `mins` exceeds `maxs` on an axis; [`Aabb::try_new`] returns these.
+    /// If a coordinate is NaN or `mins` exceeds `maxs` on an axis; [`Aabb::try_new`] returns an
+    /// error instead.
     #[must_use]
     #[track_caller]
     pub fn new(mins: Point<N, D>, maxs: Point<N, D>) -> Self {
@@ -106,10 +107,11 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Ok(Self { mins, maxs })
     }
 
-    /// Creates the box with this centre and these half extents, rounded outwards.
+    /// Creates the box with the given centre and half extents, rounded outwards.
     ///
     /// # Panics
-    /// If a coordinate is NaN or a half extent negative; [`Aabb::try_from_half_extents`] returns these.
+    /// If a coordinate is NaN or a half extent negative; [`Aabb::try_from_half_extents`] returns an
+    /// error instead.
     #[must_use]
     #[track_caller]
     pub fn from_half_extents(center: Point<N, D>, half_extents: Vector<N, D>) -> Self {
@@ -119,7 +121,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         }
     }
 
-    /// Creates the box with this centre and these half extents, rounded outwards.
+    /// Creates the box with the given centre and half extents, rounded outwards.
     ///
     /// # Errors
     /// If a coordinate is NaN or a half extent negative.
@@ -131,18 +133,19 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self::try_new(aabb.mins, aabb.maxs)
     }
 
-    /// Returns the box of a single point; the numbers are not checked.
+    /// Returns the box of a single point; the coordinates are not checked.
     pub(crate) const fn at(point: Point<N, D>) -> Self {
         Self { mins: point, maxs: point }
     }
 
-    /// Returns the smallest box around some points; `None` for no points or a NaN among them.
+    /// Returns the smallest box around some points; `None` if there are no points or a coordinate
+    /// is NaN.
     #[must_use]
     pub fn from_points(points: &[Point<N, D>]) -> Option<Self> {
         Self::around_all(points.iter().copied())
     }
 
-    /// As [`Self::from_points`], for an iterator.
+    /// Implements [`Self::from_points`] for an iterator.
     pub(crate) fn around_all(mut points: impl Iterator<Item = Point<N, D>>) -> Option<Self> {
         let first = points.next()?;
         let is_usable = |point: &Point<N, D>| point.iter().all(|x| x.partial_cmp(x).is_some());
@@ -190,10 +193,10 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         self.mins.iter().chain(self.maxs.iter()).all(|x| x.is_finite_number())
     }
 
-    /// Returns the times at which the ray enters and leaves the box, clamped to `t ≥ 0`; `None` for
-    /// a miss.
+    /// Returns the times at which the ray enters and leaves the box, clamped to `t ≥ 0`; `None` if
+    /// it misses.
     ///
-    /// Slab test (Kay and Kajiya 1986); a ray that lies in a face hits.
+    /// Slab test (Kay and Kajiya 1986); a ray that lies in a face hits the box.
     pub fn ray_interval(&self, ray: &Ray<N, D>) -> Option<(N, N)> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for axis in 0..D {
@@ -211,11 +214,12 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         (enter <= leave).then_some((enter, leave))
     }
 
-    /// Returns the times at which another box that moves with `velocity` begins and ceases to touch
-    /// this one, clamped to `t ≥ 0`; `None` if it never does.
+    /// Returns the times at which the box `moving`, with `velocity`, begins and ceases to touch
+    /// this box, clamped to `t ≥ 0`; `None` if it never touches.
     ///
-    /// The slab test on the sums of both extents: for a single point, [`Self::ray_interval`]. A box
-    /// at rest touches always or never. The velocity must be finite.
+    /// The slab test on the sums of both extents; if `moving` is a single point, the result is that
+    /// of [`Self::ray_interval`]. A box at rest touches always or never. The velocity must be
+    /// finite.
     pub fn sweep_interval(&self, moving: &Self, velocity: &Vector<N, D>) -> Option<(N, N)> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for axis in 0..D {
@@ -239,8 +243,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         self.distance_to_aabb(&Self::at(*point))
     }
 
-    /// Returns the distance between two boxes, zero if they overlap. Distances whose squares
-    /// underflow count as zero.
+    /// Returns the distance between two boxes, zero if they overlap. A distance whose square
+    /// underflows is treated as zero.
     pub fn distance_to_aabb(&self, other: &Self) -> N {
         let below = (self.mins - other.maxs).map(|x| max(x, N::ZERO));
         let above = (other.mins - self.maxs).map(|x| max(x, N::ZERO));
@@ -257,9 +261,9 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     }
 }
 
-/// Returns the length of a vector whose square overflows. It is never less than a length whose
-/// square does not, so that distances stay monotonic: a box that encloses another is not farther
-/// away.
+/// Returns the length of a vector whose square overflows. The result is never less than a length
+/// whose square does not overflow. So distances stay monotonic: a box that encloses another is not
+/// farther away.
 #[cold]
 fn long_distance<N: Real, const D: usize>(gaps: &Vector<N, D>) -> N {
     let largest = max_component(gaps);
@@ -306,7 +310,7 @@ impl<N: Real, const D: usize> BoundingVolume<N> for Aabb<N, D> {
     fn swept(&self, velocity: &Vector<N, D>, max_time: N) -> Self {
         let mut swept = *self;
         for axis in 0..D {
-            // A component of zero moves nothing, even in infinite time.
+            // A velocity component of zero causes no motion, even in infinite time.
             if velocity[axis] != N::ZERO {
                 let [back, forth] = product_within(velocity[axis], max_time);
                 swept.mins[axis] = sum_below(self.mins[axis], min(back, N::ZERO));

@@ -11,11 +11,11 @@ pub use sphere::{BoundingSphere, BoundingSphereError};
 
 use crate::math::Real;
 
-/// A volume that stands for an object in a broad phase.
+/// A volume that encloses an object in a broad phase.
 ///
-/// Computed volumes are rounded outwards: [`merged`](Self::merged) contains both to the last bit,
+/// Computed volumes are rounded outwards: [`merged`](Self::merged) contains both volumes exactly,
 /// and [`loosened`](Self::loosened) and [`swept`](Self::swept) contain the exact result. Boxes are
-/// exact if the exact corners are representable, apart from [`swept`](Self::swept) with a rounded
+/// exact if the exact corners are representable, except [`swept`](Self::swept) with a rounded
 /// product; spheres are larger by some units in the last place.
 ///
 /// All tests are closed: volumes that only touch intersect.
@@ -29,25 +29,25 @@ use crate::math::Real;
 /// assert!(volume.swept(&Vector::new(2.0, 0.0), 1.0).contains_point(&Point::new(3.0, 1.0)));
 /// ```
 pub trait BoundingVolume<N: Real>: Clone {
-    /// The points of the volume's space.
+    /// The type of points in the volume's space.
     type Point;
-    /// The rays of the volume's space.
+    /// The type of rays in the volume's space.
     type Ray;
-    /// The velocities of the volume's space.
+    /// The type of velocities in the volume's space.
     type Vector;
 
     /// Returns `true` if the two volumes have a common point.
     fn intersects(&self, other: &Self) -> bool;
     /// Returns `true` if every point of `other` is in this volume.
     fn contains(&self, other: &Self) -> bool;
-    /// Returns the smallest volume of this kind around both.
+    /// Returns the smallest volume of this kind around both volumes.
     #[must_use]
     fn merged(&self, other: &Self) -> Self;
     /// Returns the volume grown by `margin` (zero or more) on every side.
     #[must_use]
     fn loosened(&self, margin: N) -> Self;
-    /// Returns the smallest volume of this kind around the whole motion of this one with `velocity`
-    /// (finite) from time zero to `max_time` (zero or more, possibly infinite).
+    /// Returns the smallest volume of this kind that contains this volume at all times from zero to
+    /// `max_time` (zero or more, may be infinite), moving with `velocity` (finite).
     #[must_use]
     fn swept(&self, velocity: &Self::Vector, max_time: N) -> Self;
     /// Returns `true` if the point is in the volume.

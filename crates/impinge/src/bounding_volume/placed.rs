@@ -10,7 +10,8 @@ use crate::math::outward::{slack_of, sum_above, sum_below};
 use crate::math::{Point, Pose, Real, Vector, max, min};
 
 impl<N: Real, const D: usize> Aabb<N, D> {
-    /// Returns the box with this centre and these half extents, rounded outwards; the numbers are not checked.
+    /// Returns the box with the given centre and half extents, rounded outwards; the coordinates
+    /// are not checked.
     #[inline]
     pub(crate) fn around(center: Point<N, D>, half_extents: Vector<N, D>) -> Self {
         Self::moved([&-half_extents, &half_extents], &center.coords)
@@ -27,8 +28,9 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self { mins: Point::from(mins), maxs: Point::from(maxs) }
     }
 
-    /// Returns the box around a solid that is symmetric about its local origin, placed at `pose`. `extents` is its extent
-    /// along each outer axis: a sum of magnitudes with an error of at most four of its rounding units.
+    /// Returns the box around a solid that is symmetric about its local origin, placed at `pose`.
+    /// `extents` has the half extent of the solid along each outer axis: a sum of magnitudes with
+    /// an error of at most four of its rounding units.
     #[inline(always)]
     pub(crate) fn around_rotated(pose: &Pose<N, D>, mut extents: Vector<N, D>) -> Self {
         if !pose.is_aligned() {
@@ -40,9 +42,10 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self::around(Point::from(pose.translation), extents)
     }
 
-    /// Returns the box around points that `pose` has rotated but not yet translated: `low` and `high` are the least and
-    /// greatest of their coordinates as computed by [`Pose::vector`]. `size` bounds the distance of the points from the
-    /// local origin. Unbounded where the numbers overflow.
+    /// Returns the box around points that `pose` has rotated but not yet translated. `low` and
+    /// `high` are the least and greatest of their coordinates as computed by [`Pose::vector`].
+    /// `size` bounds the distance of the points from the local origin. The result is unbounded if
+    /// the coordinates overflow.
     ///
     /// A coordinate of a rotated point is a sum of D products with an error of at most D·ε·size/2 (Higham, "Accuracy
     /// and Stability of Numerical Algorithms", 2002, section 3.1).
@@ -66,7 +69,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// Returns the smallest box, in the outer frame, around this box placed at `pose`; rounded outwards, and exact if
     /// the pose maps axes to axes and the corners are representable.
     ///
-    /// An unbounded local axis makes every outer axis unbounded to which it contributes.
+    /// If the box is unbounded on a local axis, the result is unbounded on every outer axis to
+    /// which that axis contributes.
     #[must_use]
     pub fn transformed_by(&self, pose: &Pose<N, D>) -> Self {
         let is_aligned = pose.is_aligned();
@@ -75,7 +79,8 @@ impl<N: Real, const D: usize> Aabb<N, D> {
             let (mut below, mut above) = (N::ZERO, N::ZERO);
             for column in 0..D {
                 let factor = pose.rotation[(row, column)];
-                // Skips 0 · ∞, which is NaN: such an axis does not contribute to this one.
+                // Skips 0 · ∞, which is NaN: this local axis does not contribute to this outer
+                // axis.
                 if factor != N::ZERO {
                     let (a, b) = (factor * self.mins[column], factor * self.maxs[column]);
                     let (least, most) = (min(a, b), max(a, b));

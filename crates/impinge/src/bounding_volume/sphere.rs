@@ -24,7 +24,7 @@ pub struct BoundingSphere<N: Real, const D: usize> {
     radius: N,
 }
 
-/// The reason why a centre and a radius are refused.
+/// Why a centre and a radius were rejected as a sphere.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::{BoundingSphere, BoundingSphereError};
@@ -57,7 +57,8 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
     /// Creates the sphere around `center`.
     ///
     /// # Panics
-    /// If the radius is negative or NaN or the centre is not finite; [`Self::try_new`] returns these.
+    /// If the radius is negative or NaN or the centre is not finite; [`Self::try_new`] returns an
+    /// error instead.
     #[must_use]
     #[track_caller]
     pub fn new(center: Point<N, D>, radius: N) -> Self {
@@ -95,7 +96,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         self.radius
     }
 
-    /// Returns the sphere around a box; unbounded if the box is.
+    /// Returns the sphere around a box; unbounded if the box is unbounded.
     pub(crate) fn around_box(aabb: &Aabb<N, D>) -> Self {
         let center = aabb.center();
         let farthest = Vector::<N, D>::from_fn(|axis, _| {
@@ -119,7 +120,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
             radius = sum_above(radius, slack_of(size));
         }
         if !pose.is_aligned() {
-            // A rounded rotation matrix may stretch.
+            // A rounded rotation matrix may lengthen vectors.
             radius = sum_above(radius, slack_of(radius));
         }
         Self { center, radius }
@@ -157,7 +158,7 @@ impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
             return *other;
         }
         let Some((direction, distance)) = unit(&(other.center - self.center)) else {
-            // The distance overflows.
+            // The distance between the centres overflows.
             return Self::unbounded();
         };
         let share = (other.radius - self.radius + distance) * N::HALF;
@@ -176,7 +177,7 @@ impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
         let rounding = slack_of(length_above(&self.center.coords) + travel);
         let radius = sum_above(self.radius, rounding);
         let moved = Self::try_new(self.center + velocity * max_time, radius);
-        // An infinite path leads everywhere.
+        // A path that is not finite may lead anywhere.
         moved.map_or_else(|_| Self::unbounded(), |moved| self.merged(&moved))
     }
 

@@ -1,4 +1,4 @@
-//! The three queries of many configurations.
+//! The three queries of a checker, each for many configurations.
 
 use crate::math::order::sort_few;
 use core::ops::Range;
@@ -12,8 +12,8 @@ use crate::batch::{BatchError, Control, Progress};
 use crate::math::simd::Level;
 use crate::math::{Real, Space, max};
 
-/// Angles up to `NEAR_ANGLE` need no reduction; beyond `FAR_ANGLE` they are too coarse to reduce to
-/// `f32`.
+/// Angles up to `NEAR_ANGLE` need no reduction. Angles above `FAR_ANGLE` have too few digits after
+/// the point for a reduction to `f32`.
 const NEAR_ANGLE: f64 = 4.0;
 const FAR_ANGLE: f64 = 1e8;
 
@@ -41,7 +41,8 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
-    /// Calls `finish` with each packet of up to 8 configurations, after the scan.
+    /// Scans the configurations of `range` in packets of up to 8, up to the distance `limit`. After
+    /// each scan calls `finish` with the index range of the packet's configurations.
     fn each(
         &mut self,
         range: Range<usize>,
@@ -58,7 +59,8 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
-    /// Scans a packet: reads its numbers in `f32` and collects candidate pairs up to `limit`.
+    /// Scans a packet: reads its configurations in `f32` and collects candidate pairs up to
+    /// `limit`.
     fn scan(&mut self, packet: &Range<usize>, limit: N) {
         let slides = self.read_numbers(packet);
         let lanes = u8::MAX >> (LANES - packet.len());
@@ -68,7 +70,8 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         scan_at(self.level, robot, &self.checker.surroundings, scratch, search);
     }
 
-    /// Reads the numbers of the nodes in `f32`; returns the total slide of all joints in each lane.
+    /// Reads the joint values of the nodes in `f32`; returns the total slide of all joints in each
+    /// lane.
     fn read_numbers(&mut self, packet: &Range<usize>) -> LaneRow<f32> {
         let tree = &self.checker.tree;
         let (width, mut slides) = (tree.columns(), [0.0; LANES]);
@@ -91,7 +94,8 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         slides
     }
 
-    /// The candidate pairs of a lane in their order; all pairs for a blind lane.
+    /// Returns the candidate pairs of a lane in their order; all pairs for a lane that the scan
+    /// could not evaluate.
     fn candidates(&self, lane: usize) -> Vec<CandidatePair> {
         if self.search.blind >> lane & 1 == 0 {
             let candidate = self.search.candidates.iter();
@@ -105,7 +109,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
     }
 }
 
-/// An angle in `f32`, with an error of little more than the rounding error of 4; NaN above
+/// Returns an angle in `f32`, with an error of little more than the rounding error of 4; NaN above
 /// `FAR_ANGLE`.
 #[inline(always)]
 fn angle<N: Real>(value: N) -> f32 {
@@ -113,7 +117,7 @@ fn angle<N: Real>(value: N) -> f32 {
     if size <= NEAR_ANGLE { value.as_f32() } else { reduced(value) }
 }
 
-/// The angle modulo a full turn, reduced in `f64`; NaN above `FAR_ANGLE`.
+/// Returns the angle modulo a full turn, reduced in `f64`; NaN above `FAR_ANGLE`.
 #[cold]
 fn reduced<N: Real>(value: N) -> f32 {
     let value = value.as_f64();
@@ -125,7 +129,7 @@ fn reduced<N: Real>(value: N) -> f32 {
     }
 }
 
-/// See [`Checker::are_free`].
+/// Implements [`Checker::are_free`].
 pub(super) fn are_free<N: Space<D>, const D: usize>(
     checker: &Checker<N, D>,
     (configurations, clearance): (&[N], N),
@@ -146,7 +150,7 @@ pub(super) fn are_free<N: Space<D>, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
-    /// Returns the lanes that are not free, as bits.
+    /// Returns the lanes that are not free, as a bit mask.
     fn hits(&mut self, clearance: N) -> u8 {
         let mut hits = self.search.hits;
         let mut put_off = Vec::new();
@@ -179,14 +183,15 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
         hits
     }
 
-    /// Whether a search of parts finds a pair within the clearance; counts the result in the odds.
+    /// Whether a search of parts finds a pair within the clearance. Also records the result in the
+    /// statistics.
     fn search_parts(&mut self, pair: (u32, Other), lane: usize, clearance: N) -> bool {
         let is_hit = self.exact.searched(pair, lane, clearance).is_some();
         self.odds.count(pair, is_hit);
         is_hit
     }
 
-    /// Returns the first pair of a lane within the clearance.
+    /// Returns the first pair of a lane within the clearance; `None` if the lane is free.
     fn first(&mut self, lane: usize, clearance: N) -> Option<(u32, Other)> {
         let found = self.candidates(lane).into_iter().find(|candidate| {
             candidate.is_certain || self.exact.distance(candidate.pair, lane, clearance).is_some()
@@ -195,7 +200,7 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
     }
 }
 
-/// See [`Checker::first_pairs`].
+/// Implements [`Checker::first_pairs`].
 pub(super) fn first_pairs<N: Space<D>, const D: usize>(
     checker: &Checker<N, D>,
     (configurations, clearance): (&[N], N),
@@ -217,7 +222,7 @@ pub(super) fn first_pairs<N: Space<D>, const D: usize>(
     })
 }
 
-/// See [`Checker::nearest`].
+/// Implements [`Checker::nearest`].
 pub(super) fn nearest<N: Space<D>, const D: usize>(
     checker: &Checker<N, D>,
     (configurations, limit, count): (&[N], N, usize),
@@ -245,11 +250,12 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
-    /// Returns the nearest pair of a lane up to a limit, of equally near ones the first.
+    /// Returns the nearest pair of a lane up to a limit, the first if several are equally near;
+    /// `None` if there is none.
     ///
     /// Candidates are computed in the order of their lower bounds, those that may touch in pair
-    /// order. So the search ends once the best distance is below the next bound, and of two pairs
-    /// that touch the first is found.
+    /// order. So the search ends once the best distance is below the next lower bound, and the
+    /// first of several touching pairs is found.
     fn nearest(&mut self, lane: usize, limit: N) -> Option<(N, (u32, Other))> {
         let bound = |candidate: &CandidatePair| max(candidate.lower, 0.0);
         let mut candidates = self.candidates(lane);
@@ -284,7 +290,7 @@ mod tests {
     use crate::math::{Mapped, Point, Pose, Unit, Vector};
     use crate::shape::{ShapeHandle, TriMesh};
 
-    /// The surface of a tetrahedron with its right angles at the origin.
+    /// Returns the surface of a tetrahedron with its right angles at the origin.
     fn surface(size: f64) -> ShapeHandle<f64, 3> {
         let corners = [[0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size]];
         let corners = corners.mapped(Point::<f64, 3>::from).to_vec();
@@ -292,7 +298,8 @@ mod tests {
         ShapeHandle::new(TriMesh::new(corners, faces))
     }
 
-    /// Surfaces of given sizes and positions, of which the last slides along the diagonal.
+    /// Returns a checker with surfaces of given sizes and positions, of which the last slides along
+    /// the diagonal.
     fn slider(surfaces: &[(f64, [f64; 3])], pairs: &[[u32; 2]]) -> Checker<f64, 3> {
         let diagonal = Unit::new_normalize(Vector::<f64, 3>::repeat(1.0));
         let frame = |joint| Frame { parent: None, origin: Pose::identity(), joint };
@@ -306,8 +313,8 @@ mod tests {
         Checker::try_new(tree, bodies.collect(), pairs).expect("bodies")
     }
 
-    /// The configurations that are not free, as bits, and the number of part searches of each pair
-    /// of bodies.
+    /// Returns the configurations that are not free, as a bit mask, and the number of part searches
+    /// of each pair of bodies.
     fn searches(checker: &Checker<f64, 3>, rows: &[f64]) -> (u64, Vec<u32>) {
         let mut sweep = EightByEight::new(checker, rows, SearchMode::Any);
         let mut all = 0;
@@ -321,8 +328,8 @@ mod tests {
     #[test]
     fn parts_are_searched_where_hulls_touch() {
         let checker = slider(&[(1.0, [0.0; 3]), (1.0, [0.0; 3])], &[[0, 1]]);
-        // They touch up to the height of the corner above the opposite face, 0.577; balls around
-        // them up to 1.7.
+        // The surfaces touch up to the height of the corner above the opposite face, 0.577; the
+        // balls around them up to 1.7.
         let rows = [0.6, 0.25, 0.75, 0.5, 1.0, 0.57, 1.25, 0.58, 1.5, 1.65];
         assert_eq!(searches(&checker, &rows).0, 0b10_1010);
         assert_eq!(searches(&checker, &rows), (0b10_1010, vec![6]), "of the first six all");
@@ -331,7 +338,8 @@ mod tests {
 
     #[test]
     fn pairs_that_seldom_touch_are_asked_last() {
-        // One inside another, whose hulls overlap; and two that touch in all rows but the last.
+        // In one pair a surface is inside another, so that only the hulls overlap; the other pair
+        // touches in all rows but the last.
         let surfaces = [(8.0, [0.0; 3]), (0.5, [1.0; 3]), (1.0, [20.0; 3]), (1.0, [20.0; 3])];
         let checker = slider(&surfaces, &[[0, 1], [2, 3]]);
         let mut rows = [0.3; 17];

@@ -15,11 +15,11 @@ use crate::shape::ShapeHandle;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Body<N: Real, const D: usize> {
-    /// The number of the frame.
+    /// The index of the frame.
     pub frame: usize,
-    /// Its shape.
+    /// The shape of the body.
     pub shape: ShapeHandle<N, D>,
-    /// Its pose in the frame.
+    /// The pose of the shape in the frame.
     pub pose: Pose<N, D>,
 }
 
@@ -36,8 +36,8 @@ pub struct Body<N: Real, const D: usize> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Obstacle<N: Real, const D: usize> {
-    /// Its shape.
+    /// The shape of the obstacle.
     pub shape: ShapeHandle<N, D>,
-    /// Its pose in the world.
+    /// The pose of the shape in the world.
     pub pose: Pose<N, D>,
 }

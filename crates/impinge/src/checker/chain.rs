@@ -1,4 +1,4 @@
-//! Forward kinematics of 8 configurations at a time.
+//! Forward kinematics of 8 configurations at a time, one in each SIMD lane.
 //!
 //! ```text
 //!   frames   world ── a (fixed) ── b (turns) ── c (fixed) ── d (slides)
@@ -6,8 +6,9 @@
 //!   rows     rotation[column][row][lane], translation[row][lane]          one block for each node
 //! ```
 //!
-//! The rotation by an angle θ with the generator K is I + sin θ K + (1 - cos θ) K² (O. Rodrigues), in 2D as in 3D. So
-//! a joint's rotation in its parent is A + sin θ B + cos θ C with constant matrices.
+//! The rotation by an angle θ with the generator K is I + sin θ K + (1 - cos θ) K² (O. Rodrigues),
+//! in 2D as in 3D. So the rotation of a joint in its parent's frame is A + sin θ B + cos θ C with
+//! constant matrices A, B, C.
 
 use super::joint::{Frame, JointMotion};
 use crate::math::lanes::{bits, load, plus};
@@ -15,42 +16,44 @@ use crate::math::simd::Simd;
 use crate::math::trigonometry::sine_cosine;
 use crate::math::{Matrix, Pose, Real, Vector, Wide, filled};
 
-/// Configurations that are computed at once.
+/// The number of configurations that are computed at once.
 pub(super) const LANES: usize = 8;
 
-/// A number for each of 8 configurations.
+/// A number for each of 8 configurations, one per lane.
 pub(super) type LaneRow<N> = [N; LANES];
 
-/// Poses in 8 lanes.
+/// The poses of a frame in 8 configurations, one per lane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseRows<N, const D: usize> {
-    /// By columns of the matrix.
+    /// The rotation matrix, column by column.
     rotation: [[LaneRow<N>; D]; D],
     translation: [LaneRow<N>; D],
 }
 
-/// A frame that moves, on another frame or on the world.
+/// A frame with a moving joint, on another such frame or on the world.
 #[derive(Clone, Debug)]
 pub(super) struct Node<N: Real, const D: usize> {
-    /// The index of the parent's block of rows: 0 is the world; a node's own block is its index
-    /// plus one.
+    /// The index of the parent's block of rows: 0 is the world, and the block of node `i` is `i +
+    /// 1`.
     pub(super) parent: usize,
-    /// The position of its joint on the parent.
+    /// The position of the node's joint in the parent's frame.
     pub(super) origin: Vector<N, D>,
     rotation: Swing<N, D>,
 }
 
-/// The motion of a node by its number.
+/// The motion of a node as a function of its joint value.
 #[derive(Clone, Debug)]
 enum Swing<N: Real, const D: usize> {
-    /// A, B and C of the rotation.
+    /// A revolute joint: the matrices A, B and C of its rotation.
     Turn([Matrix<N, D>; 3]),
-    /// The constant rotation, and the direction of the shift in the parent.
+    /// A prismatic joint: its constant rotation, and the direction of its slide in the parent's
+    /// frame.
     Slide(Matrix<N, D>, Vector<N, D>),
 }
 
 impl<N: Real, const D: usize> Node<N, D> {
-    /// A frame with a joint at `origin` on the parent node; `None` for a fixed joint.
+    /// Returns the node of a frame with a joint at `origin` on the parent node; `None` for a fixed
+    /// joint.
     pub(super) fn new(parent: usize, origin: &Pose<N, D>, frame: &Frame<N, D>) -> Option<Self> {
         let rotation = origin.rotation;
         let rotation = match frame.joint.motion {
@@ -65,7 +68,8 @@ impl<N: Real, const D: usize> Node<N, D> {
         Some(Self { parent, origin: origin.translation, rotation })
     }
 
-    /// Its rotation on its parent, if it is constant.
+    /// Returns the node's rotation in its parent's frame if it is constant, as for a prismatic
+    /// joint; else `None`.
     pub(super) const fn constant_rotation(&self) -> Option<Matrix<N, D>> {
         match &self.rotation {
             Swing::Slide(rotation, _) => Some(*rotation),
@@ -73,12 +77,12 @@ impl<N: Real, const D: usize> Node<N, D> {
         }
     }
 
-    /// Whether its number is a length.
+    /// Whether the joint is prismatic, so that its value is a length.
     pub(super) const fn slides(&self) -> bool {
         matches!(self.rotation, Swing::Slide(..))
     }
 
-    /// Converts the node to `f32`, with its origin moved by `-shift` if its parent is the world.
+    /// Converts the node to `f32`; if its parent is the world, its origin is moved by `-shift`.
     pub(super) fn in_f32(&self, shift: &Vector<N, D>) -> Node<f32, D> {
         let origin = if self.parent == 0 { self.origin - shift } else { self.origin };
         let rotation = match &self.rotation {
@@ -90,7 +94,8 @@ impl<N: Real, const D: usize> Node<N, D> {
         Node { parent: self.parent, origin: origin.map(N::as_f32), rotation }
     }
 
-    /// One column of its rotation on its parent, from the sine and the cosine of its number.
+    /// Returns one column of the node's rotation in its parent's frame, from the sine and the
+    /// cosine of the joint value.
     #[inline(always)]
     fn column<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -111,7 +116,7 @@ impl<N: Real, const D: usize> Node<N, D> {
         )
     }
 
-    /// Its position on its parent.
+    /// Returns the node's position in its parent's frame.
     #[inline(always)]
     fn position<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> [V; D] {
         filled(
@@ -128,7 +133,7 @@ impl<N: Real, const D: usize> Node<N, D> {
 }
 
 impl<N: Real, const D: usize> PoseRows<N, D> {
-    /// The identity in all lanes: the world's block, or a block to be written.
+    /// Returns the identity in all lanes, for the world's block or a block to be overwritten.
     pub(super) fn identity() -> Self {
         let mut rows =
             Self { rotation: [[[N::ZERO; LANES]; D]; D], translation: [[N::ZERO; LANES]; D] };
@@ -139,7 +144,7 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         rows
     }
 
-    /// The pose in one lane.
+    /// Returns the pose in one lane.
     pub(super) fn pose(&self, lane: usize) -> Pose<N, D> {
         Pose {
             rotation: Matrix::<N, D>::from_fn(|row, column| self.rotation[column][row][lane]),
@@ -188,7 +193,8 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         )
     }
 
-    /// The lanes, as bits, in which no coordinate is NaN or above `most` in magnitude.
+    /// Returns, as a bit mask, the lanes in which no coordinate is NaN or above `most` in
+    /// magnitude.
     #[inline(always)]
     pub(super) fn lanes_within<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, most: N) -> u8 {
         let most = V::all(simd, most);
@@ -201,8 +207,8 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
     }
 }
 
-/// Computes the poses of all nodes for 8 configurations. `numbers` has one row for each node;
-/// `rows` has the world's block and one for each node.
+/// Computes the poses of all nodes for 8 configurations. `numbers` has one row of joint values for
+/// each node; `rows` has the world's block, then one block for each node.
 #[inline(always)]
 pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -215,7 +221,8 @@ pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         let swing = if node.slides() { [number; 2] } else { sine_cosine(simd, number) };
         let (before, own) = rows.split_at_mut(index + 1);
         let (parent, own) = (&before[node.parent], &mut own[0]);
-        // Directly on the world the product with the identity is skipped, which changes no bit.
+        // For a parent that is the world, the product with the identity is skipped; the result is
+        // bitwise equal.
         let is_inner = node.parent != 0;
         for column in 0..D {
             let inner = node.column(simd, column, &swing);

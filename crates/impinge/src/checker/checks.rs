@@ -1,4 +1,4 @@
-//! The checker.
+//! The configuration checker: construction, obstacles and queries.
 
 use super::entries;
 use super::filter::{Other, RobotFilter, Surroundings};
@@ -9,14 +9,15 @@ use super::{Body, CheckerError, FrameTree, NearestColumns, Obstacle};
 use crate::batch::{BatchError, Control};
 use crate::math::{Pose, Real, Space};
 
-/// The entry for a configuration without a pair.
+/// The entry of [`Checker::first_pairs`] and [`Checker::nearest`] for a configuration without a
+/// pair.
 pub const NO_PAIR: [u32; 2] = [u32::MAX; 2];
 
 /// Bodies on moving frames, pairs of them that must not touch, and obstacles.
 ///
-/// Bodies and obstacles share one numbering: obstacles follow the bodies. Pairs are ordered by
-/// their numbers, the lower of the two first: those of body 0 with other bodies, then with
-/// obstacles, then those of body 1.
+/// Bodies and obstacles share one numbering: obstacle `i` has the index `bodies + i`. Pairs are
+/// ordered by their two indices, the lower index first: first all pairs of body 0, with other
+/// bodies and then with obstacles, then all pairs of body 1, and so on.
 ///
 /// A configuration is free if no pair touches, or, with a clearance, if all pairs are farther apart
 /// than the clearance. If a frame has a pose that is not finite, the configuration is not free, has
@@ -60,23 +61,23 @@ pub const NO_PAIR: [u32; 2] = [u32::MAX; 2];
 pub struct Checker<N: Real, const D: usize> {
     pub(super) tree: FrameTree<N, D>,
     pub(super) bodies: Vec<Body<N, D>>,
-    /// The place of each body on the node that moves it.
+    /// For each body, its pose on the node that moves it.
     pub(super) on_nodes: Vec<OnNode<N, D>>,
-    /// Ascending, the lower number first.
+    /// The pairs of body indices in ascending order, the lower index first.
     pairs: Vec<[u32; 2]>,
     pub(super) obstacles: Vec<Obstacle<N, D>>,
     pub(super) hulls: BodyHulls<N, D>,
     pub(super) robot: RobotFilter<D>,
     pub(super) surroundings: Surroundings<D>,
-    /// Pairs of a body and an obstacle that may touch, ascending.
+    /// The pairs of a body and an obstacle that may touch, in ascending order.
     ignored: Vec<[u32; 2]>,
 }
 
 impl<N: Space<D>, const D: usize> Checker<N, D> {
     /// Builds a checker from bodies on the frames of a tree and the pairs of bodies that must not
-    /// touch, in any order. It has no obstacles.
+    /// touch, in any order. The checker has no obstacles yet.
     ///
-    /// Cost: O(n log n) for n bodies and pairs.
+    /// The cost is O(n log n) for n bodies and pairs.
     ///
     /// # Errors
     /// [`CheckerError::BodyFrame`], [`CheckerError::NotFinite`], [`CheckerError::Pair`] or
@@ -110,14 +111,14 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         })
     }
 
-    /// Replaces all obstacles; `ignored` has pairs `[body, obstacle]` that may touch, each numbered
-    /// from zero.
+    /// Replaces all obstacles; `ignored` has the pairs `[body, obstacle]` that may touch, with both
+    /// indices starting at zero.
     ///
-    /// Cost: the distance of each obstacle from a point for each group of balls.
+    /// The cost is the distance of each obstacle from a point for each group of balls.
     ///
     /// # Errors
     /// [`CheckerError::NotFinite`], [`CheckerError::Pair`] or [`CheckerError::TooMany`], for the
-    /// first fault; then nothing is replaced.
+    /// first fault; the obstacles are then unchanged.
     pub fn try_set_obstacles(
         &mut self,
         obstacles: Vec<Obstacle<N, D>>,
@@ -141,35 +142,36 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         Ok(())
     }
 
-    /// The frames.
+    /// Returns the tree of frames.
     #[must_use]
     pub const fn frames(&self) -> &FrameTree<N, D> {
         &self.tree
     }
 
-    /// The bodies.
+    /// Returns the bodies.
     #[must_use]
     pub fn bodies(&self) -> &[Body<N, D>] {
         &self.bodies
     }
 
-    /// The pairs of bodies that must not touch, ascending, the lower number first.
+    /// Returns the pairs of bodies that must not touch, in ascending order, the lower index first.
     #[must_use]
     pub fn pairs(&self) -> &[[u32; 2]] {
         &self.pairs
     }
 
-    /// The obstacles.
+    /// Returns the obstacles.
     #[must_use]
     pub fn obstacles(&self) -> &[Obstacle<N, D>] {
         &self.obstacles
     }
 
-    /// Writes the poses of all bodies for each configuration, row by row, as [`FrameTree::place`]
-    /// does for frames.
+    /// Writes the poses of all bodies for each configuration, row by row: `poses[configuration *
+    /// bodies + body]`.
     ///
     /// # Errors
-    /// As for [`FrameTree::place`].
+    /// [`BatchError::PartialRow`], [`BatchError::Length`] or [`BatchError::Cancelled`], as for
+    /// [`FrameTree::place`].
     pub fn place_bodies(
         &self,
         configurations: &[N],
@@ -190,20 +192,20 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         )
     }
 
-    /// Writes whether each configuration is free: all pairs are farther apart than `clearance`, or
-    /// do not touch if it is zero.
+    /// Writes whether each configuration is free: all pairs are farther apart than `clearance`, or,
+    /// if `clearance` is zero, no pair touches.
     ///
     /// `configurations` has a number for each column of the tree, row by row. A `clearance` that is
-    /// negative or NaN counts as zero.
+    /// negative or NaN is treated as zero.
     ///
-    /// Cost: some microseconds for 8 configurations of a robot of some fifty balls among ten
-    /// obstacles. Some tens of microseconds for each configuration of a robot of meshes, most of it
-    /// for pairs whose convex hulls touch. The hull of a mesh is computed once, in O(n log n) for n
-    /// vertices, after it was needed for some configurations.
+    /// The cost is some microseconds for 8 configurations of a robot of about 50 balls among 10
+    /// obstacles. For a robot of meshes it is some tens of microseconds for each configuration,
+    /// most of it for pairs whose convex hulls touch. The hull of a mesh is computed once, in O(n
+    /// log n) for n vertices, after it was needed for some configurations.
     ///
     /// # Errors
     /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` does not have as
-    /// many rows as `out` has slots, [`BatchError::Cancelled`].
+    /// many rows as `out` has slots; [`BatchError::Cancelled`].
     pub fn are_free(
         &self,
         configurations: &[N],
@@ -219,7 +221,8 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
     /// configuration is free.
     ///
     /// # Errors
-    /// As for [`Self::are_free`].
+    /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` does not have as
+    /// many rows as `out` has slots; [`BatchError::Cancelled`].
     pub fn first_pairs(
         &self,
         configurations: &[N],
@@ -231,15 +234,15 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         entries::first_pairs(self, (configurations, clearance), control, out)
     }
 
-    /// Writes the distance of the nearest pair of each configuration up to `limit`, and that pair:
-    /// the first of equally near ones.
+    /// Writes the distance of the nearest pair of each configuration up to `limit`, and that pair;
+    /// of equally near pairs the first.
     ///
-    /// A `limit` that is negative or NaN counts as zero. It never changes a distance, only whether
-    /// there is one; a low limit saves time.
+    /// A `limit` that is negative or NaN is treated as zero. The limit never changes a distance,
+    /// only whether a pair is reported; a low limit saves time.
     ///
     /// # Errors
     /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` does not have as
-    /// many rows as each column that is not empty has slots, [`BatchError::Cancelled`].
+    /// many rows as each non-empty column has slots; [`BatchError::Cancelled`].
     pub fn nearest(
         &self,
         configurations: &[N],
@@ -253,7 +256,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         entries::nearest(self, (configurations, limit, count), control, out)
     }
 
-    /// Checks that there are as many configurations as slots.
+    /// Checks that there are as many configurations as output slots.
     fn check(
         &self,
         argument: &'static str,
@@ -264,7 +267,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         if given == needed { Ok(()) } else { Err(BatchError::Length { argument, given, needed }) }
     }
 
-    /// A pair in the shared numbering of bodies and obstacles.
+    /// Converts a pair to indices in the shared numbering of bodies and obstacles.
     pub(super) fn numbers_of(&self, (body, other): (u32, Other)) -> [u32; 2] {
         let bodies = u32::try_from(self.bodies.len()).expect("32 bits can number the bodies");
         match other {
@@ -273,7 +276,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         }
     }
 
-    /// Bodies' pairs in order, then all pairs of a body and an obstacle.
+    /// Returns the pairs of bodies in order, then all pairs of a body and an obstacle.
     pub(super) fn pairs_in_order(&self) -> impl Iterator<Item = (u32, Other)> + '_ {
         let pairs = self.pairs.iter().map(|&[one, other]| (one, Other::Body(other)));
         let bodies = 0..u32::try_from(self.bodies.len()).expect("32 bits can number the bodies");
@@ -286,7 +289,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
     }
 }
 
-/// See [`Checker::try_new`].
+/// Builds the filter of [`Checker::try_new`].
 pub(super) fn robot<N: Space<D>, const D: usize>(
     tree: &FrameTree<N, D>,
     bodies: &[Body<N, D>],
@@ -319,7 +322,7 @@ fn check_bodies<N: Real, const D: usize>(
     Ok(())
 }
 
-/// Checks that `is_pair` holds for all pairs; `argument` names the list in the error.
+/// Checks that `is_pair` is true for all pairs; `argument` names the list in the error.
 fn check_pairs(
     argument: &'static str,
     pairs: &[[u32; 2]],

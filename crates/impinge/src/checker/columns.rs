@@ -1,4 +1,4 @@
-//! Output columns of the distances.
+//! Output columns of the distance query.
 
 use crate::batch::BatchError;
 use crate::chunks::Cut;
@@ -15,15 +15,15 @@ use crate::math::Real;
 /// ```
 #[derive(Debug, Default)]
 pub struct NearestColumns<'a, N: Real> {
-    /// The distance of the nearest pair: zero if it touches, infinite without a pair within the
-    /// limit, NaN for a configuration that is not finite.
+    /// The distance of the nearest pair: zero if the pair touches, infinite if there is no pair
+    /// within the limit, NaN for a configuration that is not finite.
     pub distance: &'a mut [N],
-    /// The nearest pair, numbered as by [`Checker::first_pairs`](super::Checker::first_pairs).
+    /// The nearest pair, with the indices of [`Checker::first_pairs`](super::Checker::first_pairs).
     pub pair: &'a mut [[u32; 2]],
 }
 
 impl<N: Real> NearestColumns<'_, N> {
-    /// Checks that each column has `needed` slots or none.
+    /// Checks that each column has either `needed` slots or none.
     pub(super) const fn check(&self, needed: usize) -> Result<(), BatchError> {
         let (distances, pairs) = (self.distance.len(), self.pair.len());
         if distances != 0 && distances != needed {

@@ -1,4 +1,4 @@
-//! The entries of checkers.
+//! Entry points of checkers.
 
 use super::filter::{RobotFilter, Surroundings};
 use super::frames::OnNode;
@@ -11,7 +11,7 @@ use crate::tables::compiled;
 type Done = Result<(), BatchError>;
 
 compiled! {
-    /// Checkers.
+    /// Entry points of checkers, compiled once per scalar type and dimension.
     trait CheckerEntries where feature = "batch";
 
     /// Writes the poses of objects on the nodes of a tree.
@@ -35,7 +35,7 @@ compiled! {
         pairs: &[[u32; 2]],
     ) -> Surroundings<D> = Surroundings::new;
 
-    /// `asked` has the configurations and the clearance.
+    /// Runs [`Checker::are_free`]; `asked` has the configurations and the clearance.
     fn are_free(
         checker: &Checker<N, D>,
         asked: (&[N], N),
@@ -50,7 +50,8 @@ compiled! {
         out: &mut [[u32; 2]],
     ) -> Done = answers::first_pairs;
 
-    /// `asked` has the configurations, the limit, and the number of configurations.
+    /// Runs [`Checker::nearest`]; `asked` has the configurations, the limit, and the number of
+    /// configurations.
     fn nearest(
         checker: &Checker<N, D>,
         asked: (&[N], N, usize),

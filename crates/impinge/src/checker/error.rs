@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Why frames, bodies, pairs or obstacles were refused.
+/// Why frames, bodies, pairs or obstacles were rejected.
 ///
 /// ```
 /// use impinge::dim2::checker::{CheckerError, Frame, FrameTree, Joint};
@@ -18,61 +18,61 @@ use core::fmt;
 pub enum CheckerError {
     /// The parent of a frame does not exist.
     Parent {
-        /// The frame.
+        /// The index of the frame.
         frame: usize,
-        /// Its parent.
+        /// The index of the parent.
         parent: usize,
-        /// How many frames there are.
+        /// The number of frames.
         frames: usize,
     },
     /// A frame is its own ancestor.
     Loop {
-        /// The frame.
+        /// The index of the frame.
         frame: usize,
     },
     /// The column that drives a joint does not exist.
     Column {
-        /// The frame of the joint.
+        /// The index of the joint's frame.
         frame: usize,
-        /// The column.
+        /// The index of the column.
         column: usize,
-        /// How many columns there are.
+        /// The number of columns.
         columns: usize,
     },
-    /// The axis of a joint is not a unit vector, or its generator not that of a rotation about one.
+    /// The axis of a joint is not a unit vector, or its generator is not that of a rotation about a
+    /// unit axis.
     Axis {
-        /// The frame of the joint.
+        /// The index of the joint's frame.
         frame: usize,
     },
-    /// A pose or a joint has a number that is infinite or NaN.
+    /// A pose or a joint contains a number that is infinite or NaN.
     NotFinite {
-        /// The list with the pose: `frames`, `bodies` or `obstacles`.
+        /// The name of the list: `frames`, `bodies` or `obstacles`.
         argument: &'static str,
-        /// The index within the list.
+        /// The index in the list.
         index: usize,
     },
     /// The frame of a body does not exist.
     BodyFrame {
-        /// The body.
+        /// The index of the body.
         body: usize,
-        /// The frame.
+        /// The index of the frame.
         frame: usize,
-        /// How many frames there are.
+        /// The number of frames.
         frames: usize,
     },
-    /// A pair of bodies, or of a body and an obstacle, refers to one that does not exist, or to a
-    /// body twice.
+    /// A pair refers to a body or obstacle that does not exist, or to one body twice.
     Pair {
-        /// The list of pairs: `pairs` or `ignored`.
+        /// The name of the list of pairs: `pairs` or `ignored`.
         argument: &'static str,
-        /// The index of the pair.
+        /// The index of the pair in the list.
         index: usize,
-        /// The pair.
+        /// The pair itself.
         pair: [u32; 2],
     },
-    /// There are more bodies and obstacles than 32 bits can number.
+    /// The bodies and obstacles do not fit 32-bit indices.
     TooMany {
-        /// How many were given.
+        /// The number of bodies and obstacles given.
         given: usize,
     },
 }

@@ -1,4 +1,4 @@
-//! The exact queries that decide the pairs left open by the filter.
+//! The exact queries, which decide the pairs that the filter leaves undecided.
 
 use core::ops::Range;
 
@@ -32,13 +32,13 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         }
     }
 
-    /// Switches to other configurations.
+    /// Switches to another range of configurations.
     pub(super) const fn begin(&mut self, range: Range<usize>) {
         self.range = range;
         self.is_placed = false;
     }
 
-    /// The poses of all nodes, computed on first use.
+    /// Returns the poses of all nodes; computes them on first use.
     fn rows(&mut self) -> &[PoseRows<N, D>] {
         if !self.is_placed {
             let tree = &self.checker.tree;
@@ -49,14 +49,14 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         &self.rows
     }
 
-    /// Whether all frames of a configuration have finite poses.
+    /// Whether all frames of a configuration have finite poses. Computes the poses on first use.
     pub(super) fn is_finite(&mut self, lane: usize) -> bool {
         let frames = &self.checker.tree.frames;
         let rows = self.rows();
         frames.iter().all(|frame| frame.at(rows, lane).is_finite())
     }
 
-    /// Computes the distance of a pair up to a limit, unless that needs a search of parts.
+    /// Computes the distance of a pair up to a limit, unless this needs a search of parts.
     pub(super) fn quick_distance(
         &mut self,
         pair: (u32, Other),
@@ -73,7 +73,7 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         if is_beyond { QuickDistance::Known(None) } else { QuickDistance::Unknown }
     }
 
-    /// The distance of a pair in a configuration; `None` beyond a limit.
+    /// Returns the distance of a pair in a configuration; `None` if it exceeds `limit`.
     pub(super) fn distance(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Option<N> {
         match self.quick_distance(pair, lane, limit) {
             QuickDistance::Known(distance) => distance,
@@ -81,13 +81,15 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         }
     }
 
-    /// The distance of a pair up to a limit, by a search of parts where it has any.
+    /// Returns the distance of a pair up to a limit, by a search of parts for composites; `None` if
+    /// it exceeds `limit`.
     pub(super) fn searched(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Option<N> {
         let [(one, _), (other, _)] = self.solids(pair, lane);
         distance_within(&one, &other, limit)
     }
 
-    /// The solids of a pair, with their body numbers; `None` for an obstacle.
+    /// Returns the solids of a pair, each with its body index; `None` instead of an index for an
+    /// obstacle.
     fn solids(
         &mut self,
         (first, other): (u32, Other),
@@ -112,8 +114,8 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
     }
 }
 
-/// The result of [`Exact::quick_distance`]: the distance up to a limit, or unknown without a search of
-/// parts.
+/// The result of [`Exact::quick_distance`]: the distance (`None` above the limit), or unknown if a
+/// search of parts is needed.
 pub(super) enum QuickDistance<N> {
     Known(Option<N>),
     Unknown,

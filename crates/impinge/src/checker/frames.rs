@@ -12,13 +12,13 @@ use crate::math::lanes::with_lanes;
 use crate::math::simd::Level;
 use crate::math::{Pose, Real, Space};
 
-/// Frames that move on each other, by the numbers of a configuration.
+/// A tree of frames whose poses are determined by the numbers of a configuration.
 ///
 /// A configuration is a row of `columns` numbers: radians or lengths, according to the joints.
-/// Frames are numbered as given, in any order; a parent may come after its child.
+/// Frames are indexed as given, in any order; a parent may come after its child.
 ///
-/// Sines and cosines are polynomials of the library: they have the same bits on every machine, with
-/// an error of at most two units of the last place of 1.
+/// The library computes sines and cosines by its own polynomials. The results are bitwise equal on
+/// every machine, with an error of at most two units in the last place of 1.
 ///
 /// ```
 /// use impinge::dim2::batch::{BatchError, Control};
@@ -41,31 +41,32 @@ use crate::math::{Pose, Real, Space};
 /// ```
 #[derive(Clone, Debug)]
 pub struct FrameTree<N: Real, const D: usize> {
-    /// Parents before children.
+    /// The moving frames, parents before children.
     pub(super) nodes: Vec<Node<N, D>>,
     /// The joint of each node.
     pub(super) joints: Vec<Joint<N, D>>,
-    /// The place of each frame.
+    /// The node and the constant pose of each frame.
     pub(super) frames: Vec<OnNode<N, D>>,
     columns: usize,
 }
 
-/// A constant pose on a node: 0 is the world, else node index plus one.
+/// A constant pose on a node. `node` is the index of a block of rows: 0 is the world, else the node
+/// index plus one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OnNode<N: Real, const D: usize> {
     pub(super) node: usize,
-    /// `None` for the node itself.
+    /// The pose in the frame of the node; `None` for the identity.
     pub(super) pose: Option<Pose<N, D>>,
 }
 
 impl<N: Real, const D: usize> OnNode<N, D> {
-    /// The place of an object at a constant pose on this.
+    /// Returns the node and pose of an object at the constant pose `inner` in this frame.
     pub(super) fn then(&self, inner: &Pose<N, D>) -> Self {
         let pose = self.pose.map_or(*inner, |outer| outer.compose(inner));
         Self { node: self.node, pose: Some(pose) }
     }
 
-    /// Its pose in a lane.
+    /// Returns the pose, in the world, in a lane.
     pub(super) fn at(&self, rows: &[PoseRows<N, D>], lane: usize) -> Pose<N, D> {
         let on_world = self.node == 0;
         match (&self.pose, on_world) {
@@ -77,8 +78,8 @@ impl<N: Real, const D: usize> OnNode<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> FrameTree<N, D> {
-    /// Builds the tree of these frames, moved by configurations of `columns` numbers. Columns may
-    /// be unused.
+    /// Builds the tree of the given frames for configurations of `columns` numbers. A column need
+    /// not drive any joint.
     ///
     /// # Errors
     /// [`CheckerError::Parent`], [`CheckerError::Loop`], [`CheckerError::Column`],
@@ -103,7 +104,8 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         Ok(tree)
     }
 
-    /// Adds a node for a frame that moves; `origin` is the place of its joint.
+    /// Appends a node for a frame with a moving joint at `origin`, and returns the frame on that
+    /// node. For a fixed joint appends nothing and returns `origin`.
     fn with_frame(&mut self, origin: &OnNode<N, D>, frame: &Frame<N, D>) -> OnNode<N, D> {
         let at = origin.pose.unwrap_or_else(Pose::identity);
         let Some(node) = Node::new(origin.node, &at, frame) else { return *origin };
@@ -112,7 +114,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         OnNode { node: self.nodes.len(), pose: None }
     }
 
-    /// The number of frames.
+    /// Returns the number of frames.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.frames.len()
@@ -124,7 +126,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         self.frames.is_empty()
     }
 
-    /// The number of numbers in a configuration.
+    /// Returns the count of numbers in a configuration.
     #[inline]
     #[must_use]
     pub const fn columns(&self) -> usize {
@@ -134,13 +136,13 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
     /// Writes the poses of all frames for each configuration, row by row: `poses[configuration *
     /// len + frame]`.
     ///
-    /// `configurations` has [`Self::columns`] numbers for each configuration, row by row. Numbers
-    /// that are not finite give poses that are not.
+    /// `configurations` has [`Self::columns`] numbers for each configuration, row by row. If a
+    /// number is not finite, the poses that depend on it are not finite.
     ///
     /// # Errors
-    /// [`BatchError::PartialRow`] if `configurations` ends within a row, or has numbers where there
-    /// are no columns, [`BatchError::Length`] if `poses` does not have one pose for each,
-    /// [`BatchError::Cancelled`].
+    /// [`BatchError::PartialRow`] if `configurations` ends within a row, or is not empty although
+    /// there are no columns; [`BatchError::Length`] if `poses` does not have one pose for each
+    /// frame of each configuration; [`BatchError::Cancelled`].
     pub fn place(
         &self,
         configurations: &[N],
@@ -156,7 +158,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         entries::place((self, &self.frames), configurations, control, rows)
     }
 
-    /// Returns the number of configurations; `wanted` if there are no columns.
+    /// Returns the number of configurations; if there are no columns, returns `wanted`.
     pub(super) fn count_of(
         &self,
         configurations: &[N],
@@ -171,7 +173,8 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         }
     }
 
-    /// Reads the numbers of all nodes for up to 8 configurations; the last one fills the rest.
+    /// Reads the joint values of all nodes for up to 8 configurations; the last configuration pads
+    /// the other lanes.
     pub(super) fn numbers(
         &self,
         configurations: &[N],
@@ -187,14 +190,14 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         }
     }
 
-    /// Computes the poses of all nodes from their numbers.
+    /// Computes the poses of all nodes from their joint values.
     pub(super) fn forward(&self, numbers: &[LaneRow<N>], rows: &mut [PoseRows<N, D>]) {
         let (level, nodes) = (Level::new(), &*self.nodes);
         with_lanes!(level, simd => forward::<_, N, N::Lanes<_>, D>(simd, nodes, numbers, rows));
     }
 }
 
-/// See [`FrameTree::place`]: writes the poses of objects on the nodes of a tree.
+/// Implements [`FrameTree::place`]: writes the poses of objects on the nodes of a tree.
 pub(super) fn place<N: Space<D>, const D: usize>(
     (tree, placed): (&FrameTree<N, D>, &[OnNode<N, D>]),
     configurations: &[N],

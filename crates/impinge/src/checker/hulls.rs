@@ -1,8 +1,9 @@
-//! Convex hulls of bodies made of triangles or segments: if the hulls are apart, so are the bodies.
+//! Convex hulls of bodies made of triangles or segments. If the hulls of two bodies are apart, so
+//! are the bodies.
 //!
-//! Two hulls are separated by one query, two meshes by a descent of their trees. The hulls of a
-//! robot's meshes rarely touch where the meshes do not, so nearly all remaining descents find a
-//! contact.
+//! The separation of two hulls takes one query, that of two meshes a descent of their trees. The
+//! hulls of a robot's meshes rarely touch where the meshes do not, so nearly all remaining descents
+//! find a contact.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -14,22 +15,23 @@ use crate::shape::{CompositeShape, Geometry, PartSolid, ShapeHandle, TriMesh};
 use crate::tables::ByDimension;
 
 /// The margin, in rounding errors of all lengths, by which hulls must be farther apart than the
-/// limit. The corners of a mesh are at most 32 outside of its hull, and the pair algorithms are off
-/// by some hundred.
+/// limit. The corners of a mesh are outside its hull by at most 32 rounding errors, and the pair
+/// algorithms have an error of a few hundred.
 const ROUNDING_ERRORS: f64 = 1024.0;
 
-/// How often a hull is requested before it is computed, which costs as much as some descents: a
-/// query of a single configuration does not wait for it.
+/// The number of requests of a hull before it is computed, which costs as much as some descents. So
+/// a query of a single configuration does not wait for a hull.
 const REQUESTS_BEFORE: u32 = 16;
 
-/// The hulls of the bodies of a robot, each computed after some requests. They change no answer.
+/// The hulls of a robot's bodies, each computed after some requests. They change no result.
 #[derive(Clone, Debug)]
 pub(super) struct BodyHulls<N: Real, const D: usize>(Vec<LazyHull<N, D>>);
 
 #[derive(Debug)]
 struct LazyHull<N: Real, const D: usize> {
     requests: AtomicU32,
-    /// `None` inside for a body that is not made of corners, or whose hull has no volume.
+    /// The hull; the inner `None` is for a body that is not made of corners, or whose hull has no
+    /// volume.
     made: OnceLock<Option<ShapeHandle<N, D>>>,
 }
 
@@ -39,8 +41,8 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
         Self((0..bodies).map(hull).collect())
     }
 
-    /// Whether two solids, each with the number of its body, are certainly farther apart than a
-    /// limit, by their hulls.
+    /// Whether the hulls of two solids prove that the solids are farther apart than `limit`. Each
+    /// solid comes with the index of its body.
     pub(super) fn are_beyond(
         &self,
         solids: [(&Placed<'_, N, D>, Option<u32>); 2],
@@ -58,7 +60,8 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
         slack.is_finite_number() && distance_within(&one, &other, limit + slack).is_none()
     }
 
-    /// The hull of a body at the body's pose, if the body is a composite with a hull.
+    /// Returns the hull of a body at the body's pose; `None` if the body is not a composite or has
+    /// no hull yet.
     fn of<'a>(&'a self, body: &Placed<'_, N, D>, number: Option<u32>) -> Option<Placed<'a, N, D>> {
         let parts = body.shape.as_composite()?;
         let hull = self.0[number? as usize].get(parts)?;
@@ -84,14 +87,15 @@ impl<N: Real, const D: usize> Clone for LazyHull<N, D> {
     }
 }
 
-/// An upper bound of the distance of a solid's points from the origin of its frame.
+/// Returns an upper bound of the distance of a solid's points from the origin of its frame.
 fn bounding_radius<N: Real, const D: usize>(shape: &Geometry<'_, N, D>) -> N {
     let Some(parts) = shape.as_composite() else { return shape.extent() };
     let bounds = parts.search().bounds();
     (bounds.center().coords.abs() + bounds.half_extents()).norm()
 }
 
-/// The hull of a composite of triangles and segments only.
+/// Returns the hull of a composite that has only triangles and segments; `None` for other
+/// composites or without a volume.
 fn hull_of<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
 ) -> Option<ShapeHandle<N, D>> {
@@ -124,7 +128,7 @@ mod tests {
         Placed { pose: Pose::from_translation(position.into()), shape: shape.geometry() }
     }
 
-    /// The answer after enough requests for the hull to be computed.
+    /// Returns the result after enough requests for the hull to be computed.
     fn last_of<const D: usize>(
         hulls: &BodyHulls<f64, D>,
         solids: [(&Placed<'_, f64, D>, Option<u32>); 2],
@@ -140,7 +144,7 @@ mod tests {
     fn a_mesh_is_as_far_as_its_hull_at_least() {
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let corners = corners.mapped(Point::<f64, 3>::from).to_vec();
-        // The face across is missing: the hull is nearer to the ball than the mesh.
+        // The opposite face is missing, so the hull is nearer to the ball than the mesh.
         let flat = TriMesh::new(corners[..3].to_vec(), vec![[0, 2, 1]]);
         let mesh = TriMesh::new(corners, vec![[0, 2, 1], [0, 3, 2], [0, 1, 3]]);
         let ball = Ball::new(0.5);

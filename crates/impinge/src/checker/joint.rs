@@ -2,12 +2,12 @@
 
 use crate::math::{Matrix, Pose, Real, Unit, Vector};
 
-/// The motion of a frame on its parent: by a number of the configuration, or none.
+/// The motion of a frame in its parent's frame, driven by a number of the configuration, or fixed.
 ///
 /// A revolute joint rotates by radians about an axis through the frame's origin, in 2D
-/// counter-clockwise; a prismatic joint shifts along an axis. The axis is in the frame of the
-/// joint. The number is that of a column of the configuration, times a factor, plus an offset: so
-/// one column can drive several joints.
+/// counter-clockwise; a prismatic joint slides along an axis. The axis is in the frame of the
+/// joint. The joint value is the number in a column of the configuration, times a factor, plus an
+/// offset: so one column can drive several joints.
 ///
 /// ```
 /// use impinge::dim3::checker::Joint;
@@ -25,7 +25,7 @@ pub struct Joint<N: Real, const D: usize> {
     offset: N,
 }
 
-/// The motion of a joint by its number.
+/// The motion of a joint as a function of its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum JointMotion<N: Real, const D: usize> {
     Fixed,
@@ -36,20 +36,20 @@ pub(super) enum JointMotion<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Joint<N, D> {
-    /// A joint without motion.
+    /// Returns a joint without motion.
     #[must_use]
     pub fn fixed() -> Self {
         Self::driven(JointMotion::Fixed, 0)
     }
 
-    /// A joint that shifts along an axis by the number in a column.
+    /// Returns a joint that slides along an axis by the number in a column.
     #[must_use]
     pub fn prismatic(axis: Unit<Vector<N, D>>, column: usize) -> Self {
         Self::driven(JointMotion::Slide(axis.into_inner()), column)
     }
 
-    /// A joint with the rotation exp(θ K), for the number θ in a column and the generator K: v ↦
-    /// axis × v for a unit axis in 3D, a rotation by 90° in 2D.
+    /// Returns a joint with the rotation exp(θ K), for the number θ in a column and the generator
+    /// K: v ↦ axis × v for a unit axis in 3D, a rotation by 90° in 2D.
     ///
     /// ```
     /// use impinge::dim2::checker::Joint;
@@ -66,33 +66,33 @@ impl<N: Real, const D: usize> Joint<N, D> {
         Self { motion, column, factor: N::ONE, offset: N::ZERO }
     }
 
-    /// Returns the joint with a factor for its number; 1 by default.
+    /// Returns the joint with another factor of its number; 1 by default.
     #[must_use]
     pub const fn with_factor(self, factor: N) -> Self {
         Self { factor, ..self }
     }
 
-    /// Returns the joint with an offset added to its number; 0 by default.
+    /// Returns the joint with another offset, which is added to its number; 0 by default.
     #[must_use]
     pub const fn with_offset(self, offset: N) -> Self {
         Self { offset, ..self }
     }
 
-    /// The column of the configuration that drives it; `None` for a fixed joint.
+    /// Returns the column of the configuration that drives the joint; `None` for a fixed joint.
     #[must_use]
     pub fn column(&self) -> Option<usize> {
         (self.motion != JointMotion::Fixed).then_some(self.column)
     }
 
-    /// Converts the number in its column to its own value: radians or a length.
+    /// Converts the number in the joint's column to the joint value: radians or a length.
     #[inline]
     #[must_use]
     pub fn value_at(&self, number: N) -> N {
         number * self.factor + self.offset
     }
 
-    /// Whether its axis is a unit vector, or its generator that of a rotation about one, up to
-    /// rounding: other numbers would stretch the bodies.
+    /// Whether the axis is a unit vector, or the generator that of a rotation about a unit axis, up
+    /// to rounding. Other values would stretch the bodies.
     pub(super) fn has_unit_axis(&self) -> bool {
         let is_one = |x: N| (x - N::ONE).abs() <= N::lit(64.0) * N::EPSILON;
         match &self.motion {
@@ -117,7 +117,7 @@ impl<N: Real, const D: usize> Joint<N, D> {
 }
 
 impl<N: Real> Joint<N, 2> {
-    /// A joint that rotates counter-clockwise by the radians in a column.
+    /// Returns a joint that rotates counter-clockwise by the radians in a column.
     #[must_use]
     pub fn revolute(column: usize) -> Self {
         let quarter = Matrix::<N, 2>::new(N::ZERO, -N::ONE, N::ONE, N::ZERO);
@@ -126,16 +126,17 @@ impl<N: Real> Joint<N, 2> {
 }
 
 impl<N: Real> Joint<N, 3> {
-    /// A joint that rotates about an axis by the radians in a column, by the right-hand rule.
+    /// Returns a joint that rotates about an axis by the radians in a column, by the right-hand
+    /// rule.
     #[must_use]
     pub fn revolute(axis: Unit<Vector<N, 3>>, column: usize) -> Self {
         Self::turning(axis.cross_matrix(), column)
     }
 }
 
-/// A frame on its parent, or on the world.
+/// A frame, placed on its parent frame or on the world.
 ///
-/// Its pose is `parent ∘ origin ∘ motion of the joint`.
+/// The pose of the frame in the parent is `origin ∘ motion of the joint`.
 ///
 /// ```
 /// use impinge::dim2::checker::{Frame, Joint};
@@ -150,10 +151,10 @@ impl<N: Real> Joint<N, 3> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame<N: Real, const D: usize> {
-    /// The index of its parent frame; `None` for the world.
+    /// The index of the parent frame; `None` for the world.
     pub parent: Option<usize>,
     /// The pose of its joint in the parent's frame.
     pub origin: Pose<N, D>,
-    /// Its motion.
+    /// The motion of the frame relative to `origin`.
     pub joint: Joint<N, D>,
 }

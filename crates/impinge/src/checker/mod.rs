@@ -1,4 +1,5 @@
-//! The configuration checker: which of many configurations of a robot are free of collisions.
+//! The configuration checker: decides which of many configurations of a robot are free of
+//! collisions.
 //!
 //! ```text
 //!   FrameTree ── frames on joints, driven by the columns of a configuration ──┐
@@ -12,18 +13,18 @@
 //!   distance        [ 0.3 ]  [ 0.0 ]  [ 0.1 ]   …        Checker::nearest
 //! ```
 //!
-//! Eight configurations are moved and tested side by side, in `f32` with a margin for all rounding
+//! Eight configurations are placed and tested side by side, in `f32` with a margin for all rounding
 //! errors. Undecided pairs are left to [`proximity`](crate::query::proximity()) and
-//! [`distance`](crate::query::distance()) at the poses of [`Checker::place_bodies`]; so all answers
-//! equal theirs, to the bit, on any number of threads.
+//! [`distance`](crate::query::distance()) at the poses of [`Checker::place_bodies`]. So all results
+//! are bitwise equal to the results of those queries, on any number of threads.
 //!
-//! Balls are tested in lanes against balls, boxes, capsules, segments, cylinders and half-spaces.
-//! Other bodies are covered by balls and other obstacles by their boxes; pairs that these do not
-//! separate take one exact query each. Bodies of triangles or segments also have convex hulls:
-//! parts are searched only where hulls touch. Where any pair suffices, pairs whose searches mostly
-//! found nothing come last.
+//! Balls are tested in SIMD lanes against balls, boxes, capsules, segments, cylinders and
+//! half-spaces. Other bodies are covered by balls and other obstacles by their boxes; each pair
+//! that these do not separate takes one exact query. Bodies of triangles or segments also have
+//! convex hulls: their parts are searched only where hulls touch. In a query for any pair, the
+//! pairs whose searches mostly found nothing come last.
 //!
-//! The idea of lanes across configurations is that of W. Thomason, Z. Kingston and L. E. Kavraki, "Motions in
+//! Lanes across configurations follow W. Thomason, Z. Kingston and L. E. Kavraki, "Motions in
 //! Microseconds via Vectorized Sampling-Based Planning" (2024).
 
 mod answers;

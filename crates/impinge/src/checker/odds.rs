@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use super::filter::Other;
 
-/// The number of part searches of each pair, and how many of them found a contact.
+/// For each pair, the number of part searches, and how many of them found a contact.
 ///
-/// Any pair that touches decides a configuration, so pairs that seldom touch are searched last. The
-/// order changes no answer.
+/// Any touching pair decides a configuration, so pairs that seldom touch are searched last. The
+/// order changes no result.
 #[derive(Debug, Default)]
 pub(super) struct PairOdds(BTreeMap<(u32, Other), [u32; 2]>);
 
@@ -18,13 +18,13 @@ impl PairOdds {
         *hits += u32::from(is_hit);
     }
 
-    /// The number of part searches of a pair.
+    /// Returns the number of part searches of a pair.
     #[cfg(test)]
     pub(super) fn searches(&self, pair: (u32, Other)) -> u32 {
         self.0.get(&pair).map_or(0, |[searches, _]| *searches)
     }
 
-    /// Whether more than half of the searches found nothing.
+    /// Whether more than half of the searches of a pair found nothing.
     pub(super) fn are_poor(&self, pair: (u32, Other)) -> bool {
         self.0.get(&pair).is_some_and(|[searches, hits]| 2 * hits < *searches)
     }

@@ -1,4 +1,4 @@
-//! All instruction sets give the same results.
+//! Tests that all instruction sets give the same results.
 
 use super::chain::{LANES, LaneRow};
 use super::filter::{CollisionSearch, ScanScratch, SearchMode, scan_at};
@@ -8,7 +8,8 @@ use crate::math::simd::Level;
 use crate::math::{Pose, Space, Unit, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Plane, Segment, ShapeHandle};
 
-/// An arm of six joints, every third of which slides, with a ball and a box on each frame.
+/// Returns a checker of an arm of six joints, every third of which slides, with a ball and a box on
+/// each frame.
 fn arm<N: Space<D>, const D: usize>(turn: fn(usize) -> Joint<N, D>) -> Checker<N, D> {
     let at = |axis: usize, by: f64| {
         let mut translation = Vector::<N, D>::zeros();
@@ -46,7 +47,7 @@ fn arm<N: Space<D>, const D: usize>(turn: fn(usize) -> Joint<N, D>) -> Checker<N
     checker
 }
 
-/// The result of a search, as text.
+/// Returns the result of a search as text, and the number of configurations that touch.
 fn found<N: Space<D>, const D: usize>(
     (level, mode): (Level, SearchMode),
     checker: &Checker<N, D>,
@@ -75,7 +76,7 @@ fn agree<N: Space<D>, const D: usize>(checker: &Checker<N, D>) {
             hits += expected.1;
         }
     }
-    // Three searches of 200 packets.
+    // There are three searches of 200 packets.
     assert!((480..4320).contains(&hits), "{hits} of 4800 configurations touch");
 }
 

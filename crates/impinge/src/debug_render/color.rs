@@ -5,12 +5,12 @@
 pub struct Color {
     /// Red, green and blue, each from 0 to 255.
     pub rgb: [u8; 3],
-    /// 255 is opaque, 0 invisible.
+    /// The opacity: 255 is opaque, 0 invisible.
     pub alpha: u8,
 }
 
 impl Color {
-    /// An opaque colour.
+    /// Returns an opaque colour.
     #[must_use]
     pub const fn rgb(red: u8, green: u8, blue: u8) -> Self {
         Self { rgb: [red, green, blue], alpha: u8::MAX }

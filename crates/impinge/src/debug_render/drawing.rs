@@ -9,17 +9,17 @@ use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::shape::ShapeHandle;
 
-/// The colour of an object; `None` selects that of the style.
+/// A function that returns the colour of an object; `None` selects the colour of the style.
 type ObjectColor = dyn Fn(CollisionObjectHandle) -> Option<Color> + Send + Sync;
 
 /// Draws worlds, shapes and queries with a back end, and caches the meshes of the shapes.
 ///
-/// The mesh of each shape is made when it is first drawn. It is kept, by the shape that a handle
-/// shares, until [`Self::world`] is called and no other handle of the shape exists. Positions are
-/// world coordinates. The drawing order follows the order of the handles, and the same world gives
-/// the same picture. Objects that are not finite, such as the box of a half-space, are not drawn.
-/// This type does not begin or end the frames of a back end, since a frame may have several
-/// drawings.
+/// The mesh of each shape is built when it is first drawn. The mesh is kept, for the shape that a
+/// handle shares, until [`Self::world`] is called and no other handle of the shape exists.
+/// Positions are world coordinates. The drawing order follows the order of the handles, and the
+/// same world gives the same picture. Objects that are not finite, such as the box of a half-space,
+/// are not drawn. This type does not begin or end the frames of a back end, since a frame may have
+/// several drawings.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugDrawing, DebugOptions, DebugRender, Drawn};
@@ -49,11 +49,11 @@ type ObjectColor = dyn Fn(CollisionObjectHandle) -> Option<Color> + Send + Sync;
 pub struct DebugDrawing<N: Space<D>, const D: usize> {
     pub(super) options: DebugOptions<N>,
     object_color: Option<Box<ObjectColor>>,
-    /// By the address of the shape, which is stable while the handle is kept.
+    /// The meshes, by the address of the shape, which is stable while the handle is kept.
     meshes: BTreeMap<usize, KeptMesh<N, D>>,
 }
 
-/// The mesh of a shape, with its shape.
+/// The cached mesh of a shape, with a handle that keeps the shape alive.
 struct KeptMesh<N: Real, const D: usize> {
     shape: ShapeHandle<N, D>,
     mesh: ShapeMesh<N, D>,
@@ -75,14 +75,14 @@ impl<N: Space<D>, const D: usize> Default for DebugDrawing<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
-    /// A drawing without cached meshes.
+    /// Returns a drawing without cached meshes.
     #[must_use]
     pub fn new(options: DebugOptions<N>) -> Self {
         Self { options, object_color: None, meshes: BTreeMap::new() }
     }
 
-    /// Returns the drawing with object colours from a function of the handle; where that returns
-    /// `None`, the colour of the style is used.
+    /// Returns the drawing with object colours from a function of the handle. Where the function
+    /// returns `None`, the colour of the style is used.
     ///
     /// ```
     /// use impinge::debug_render::{Color, DebugDrawing, DebugOptions};
@@ -100,13 +100,13 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         Self { object_color: Some(Box::new(color)), ..self }
     }
 
-    /// The options.
+    /// Returns the options.
     #[must_use]
     pub const fn options(&self) -> &DebugOptions<N> {
         &self.options
     }
 
-    /// Replaces the options. Clears the cached meshes if they would change.
+    /// Replaces the options. Clears the cached meshes if [`DebugOptions::mesh`] changes.
     pub fn set_options(&mut self, options: DebugOptions<N>) {
         if self.options.mesh != options.mesh {
             self.meshes.clear();
@@ -114,7 +114,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         self.options = options;
     }
 
-    /// Returns the mesh of a shape, which is made on the first call; see [`ShapeMesh::of`].
+    /// Returns the mesh of a shape, and builds it on the first call; see [`ShapeMesh::of`].
     pub fn mesh(&mut self, shape: &ShapeHandle<N, D>) -> &ShapeMesh<N, D> {
         let options = self.options.mesh;
         let address = core::ptr::from_ref(&**shape).addr();
@@ -127,7 +127,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         self.meshes.retain(|_, kept| !kept.shape.is_sole());
     }
 
-    /// The style of an object.
+    /// Returns the style of an object; `None` if objects are not drawn.
     pub(super) fn object_style(&self, handle: CollisionObjectHandle) -> Option<Style<N>> {
         let style = self.options.object?;
         let own = self.object_color.as_ref().and_then(|color| color(handle));
@@ -167,7 +167,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     }
 }
 
-/// Draws the edges of a box, if all of them are finite.
+/// Draws the edges of a box, if all its coordinates are finite.
 pub(super) fn draw_box<N: Space<D>, const D: usize>(
     aabb: &Aabb<N, D>,
     style: &Style<N>,
@@ -177,7 +177,7 @@ pub(super) fn draw_box<N: Space<D>, const D: usize>(
     if !are_finite([aabb.mins(), aabb.maxs()]) {
         return;
     }
-    // Bit `axis` of a corner's number selects the maximum on that axis.
+    // Bit `axis` of a corner's index selects the maximum on that axis.
     let corner = |number: usize| {
         let at = |axis, _| {
             let side = if number >> axis & 1 == 0 { aabb.mins() } else { aabb.maxs() };
@@ -192,7 +192,7 @@ pub(super) fn draw_box<N: Space<D>, const D: usize>(
     }
 }
 
-/// Whether no coordinate of two points is infinite or NaN.
+/// Whether all coordinates of two points are finite.
 pub(super) fn are_finite<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> bool {
     points.into_iter().flat_map(Point::iter).all(|x| x.is_finite_number())
 }

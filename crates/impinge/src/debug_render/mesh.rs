@@ -5,26 +5,25 @@ use crate::math::{Point, Real, Space};
 use crate::procedural::MIN_SUBDIVISIONS;
 use crate::shape::Shape;
 
-/// The drawing of a shape: lines and, if it has a surface or an interior, triangles.
+/// The mesh that draws a shape: lines and, if the shape has a surface or an interior, triangles.
 ///
-/// The lines are the usual ones of a drawing: edges of a box, circles of a ball. In 2D the
-/// triangles fill the shape, in 3D they are its surface; shapes without either (segments,
-/// polylines) have none. A triangle in 3D, alone or in a mesh, has one side: the one from which its
-/// corners run counter-clockwise.
+/// The lines are those usual in drawings: edges of a box, circles of a ball. In 2D the triangles
+/// fill the shape, in 3D they are its surface; segments and polylines have none. A triangle in 3D,
+/// alone or in a mesh, has one side: that from which its corners run counter-clockwise.
 ///
 /// Lines and triangles whose corners coincide are left out, and each line occurs once. A shape
 /// without extent is one vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShapeMesh<N: Real, const D: usize> {
-    /// A hash of all other fields: equal for equal meshes, in every program and on every machine,
-    /// and different for different ones except for collisions of 64 bits. A back end can use it as
-    /// a cache key.
+    /// A hash of all other fields. Equal meshes have equal hashes, in every program and on every
+    /// machine; different meshes have different hashes, except for collisions of 64 bits. A back
+    /// end can use it as a cache key.
     pub id: u64,
     /// The corners of all lines and triangles.
     pub vertices: Vec<Point<N, D>>,
-    /// The indices of two vertices for each line.
+    /// The vertex indices of each line.
     pub lines: Vec<[u32; 2]>,
-    /// The indices of three vertices for each triangle, counter-clockwise as seen from outside.
+    /// The vertex indices of each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -38,7 +37,7 @@ pub struct ShapeMesh<N: Real, const D: usize> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshOptions<N: Real> {
-    /// The parts of a full turn of circles; 24 by default. Clamped to the range from 3 to
+    /// The number of parts of a full turn; 24 by default. Clamped to the range from 3 to
     /// [`Self::MAX_SUBDIVISIONS`].
     pub subdivisions: u32,
     /// The extent, around its origin, of the square (in 2D the line) that represents a half-space;
@@ -47,10 +46,10 @@ pub struct MeshOptions<N: Real> {
 }
 
 impl<N: Real> MeshOptions<N> {
-    /// The maximum number of parts of a turn: finer circles look the same on a screen.
+    /// The maximum number of parts of a full turn: finer circles look the same on a screen.
     pub const MAX_SUBDIVISIONS: u32 = 256;
 
-    /// The number of parts, clamped to the supported range.
+    /// Returns the number of parts of a full turn, clamped to the supported range.
     pub(super) fn parts_of_turn(&self) -> u32 {
         self.subdivisions.clamp(MIN_SUBDIVISIONS, Self::MAX_SUBDIVISIONS)
     }
@@ -65,12 +64,14 @@ impl<N: Real> Default for MeshOptions<N> {
 impl<N: Space<D>, const D: usize> ShapeMesh<N, D> {
     /// Returns the lines and triangles of a shape, in its own frame.
     ///
-    /// The vertices of round shapes lie on the surface, up to rounding. Composites give those of
-    /// their parts at their poses, and a seam once. A user's convex shape is sampled by its support
-    /// points in the directions of a ball's vertices. A half-space is a square (in 2D a line) of
-    /// [`MeshOptions::half_space_extent`] with short marks on its solid side.
+    /// The vertices of round shapes lie on the surface, up to rounding. The mesh of a composite has
+    /// the meshes of its parts at their poses, with each seam once. A user's convex shape is
+    /// sampled by its support points in the directions of a ball's vertices. A half-space is drawn
+    /// as a square (in 2D a line) of [`MeshOptions::half_space_extent`] with short marks on its
+    /// solid side.
     ///
-    /// Costs O(n log n) for n vertices, so keep it: a [`DebugDrawing`](super::DebugDrawing) does.
+    /// The cost is O(n log n) for n vertices, so cache the result, as
+    /// [`DebugDrawing`](super::DebugDrawing) does.
     ///
     /// ```
     /// use impinge::debug_render::{MeshOptions, ShapeMesh};
@@ -91,7 +92,7 @@ impl<N: Space<D>, const D: usize> ShapeMesh<N, D> {
 }
 
 impl<N: Real, const D: usize> ShapeMesh<N, D> {
-    /// The hash of all numbers of the mesh (Fowler, Noll and Vo, FNV-1a, 64 bits a step).
+    /// Returns the hash of all numbers of the mesh (Fowler, Noll and Vo, FNV-1a, 64 bits per step).
     pub(super) fn hash(&self) -> u64 {
         let coordinates = self.vertices.iter().flat_map(|vertex| vertex.iter().map(|x| x.bits()));
         let lines = self.lines.iter().flatten().map(|&index| u64::from(index));
@@ -99,8 +100,8 @@ impl<N: Real, const D: usize> ShapeMesh<N, D> {
         let counts = [self.vertices.len(), self.lines.len()].map(|count| count as u64);
         let numbers = counts.into_iter().chain(coordinates).chain(lines).chain(triangles);
         numbers.fold(0xcbf2_9ce4_8422_2325, |hash, number| {
-            // The upper bits of a product depend on all of its factors: they are mixed down for the
-            // next step.
+            // The upper bits of a product depend on all bits of its factors; the shift mixes them
+            // into the lower bits for the next step.
             let mixed = (hash ^ number).wrapping_mul(0x0100_0000_01b3);
             mixed ^ (mixed >> 32)
         })

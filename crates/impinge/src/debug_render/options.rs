@@ -13,9 +13,10 @@ use crate::math::Real;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style<N: Real> {
-    /// The colour.
+    /// The colour of lines, points and texts.
     pub color: Color,
-    /// The size of points and normals, in world lengths. Other objects have a size of their own.
+    /// The size of points and normals, as a world length. Other objects have their own size and
+    /// ignore it.
     pub size: N,
 }
 
@@ -27,7 +28,7 @@ impl<N: Real> Style<N> {
     }
 }
 
-/// The style of each kind of object, or `None` to leave it out, which costs nothing.
+/// The style of each kind of object; `None` leaves the kind out, which costs nothing.
 ///
 /// Each field is named after the variant of [`Drawn`](super::Drawn) that the back end receives. By
 /// default shapes, contact points and normals, and queries are drawn. Sizes suit objects of size 1;
@@ -46,16 +47,16 @@ impl<N: Real> Style<N> {
 pub struct DebugOptions<N: Real> {
     /// The shapes of objects.
     pub object: Option<Style<N>>,
-    /// Their boxes.
+    /// The tight boxes of objects.
     pub tight_box: Option<Style<N>>,
-    /// Their boxes in the broad phase, if that has any.
+    /// The boxes of objects in the broad phase, if the broad phase has boxes.
     pub loosened_box: Option<Style<N>>,
-    /// The boxes of the nodes of the broad phase's trees, if it has any.
+    /// The boxes of the nodes of the broad phase's trees, if it has trees.
     pub tree_node: Option<Style<N>>,
     /// Contact points, on both shapes.
     pub contact_point: Option<Style<N>>,
-    /// A line from the point on the first shape to that on the second, whose length is the depth;
-    /// the depth as a text; and the normal as an arrow of the style's size.
+    /// For each contact, a line from the point on the first shape to the point on the second, whose
+    /// length is the depth; the depth as a text; and the normal as an arrow of the style's size.
     pub contact_normal: Option<Style<N>>,
     /// The area between the points of a manifold that has three or more.
     pub manifold: Option<Style<N>>,
@@ -70,7 +71,7 @@ pub struct DebugOptions<N: Real> {
 }
 
 impl<N: Real> DebugOptions<N> {
-    /// Options that draw nothing.
+    /// Returns options that draw nothing.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -88,7 +89,7 @@ impl<N: Real> DebugOptions<N> {
         }
     }
 
-    /// Options that draw everything.
+    /// Returns options that draw everything.
     #[must_use]
     pub fn all() -> Self {
         let style = |color, size| Some(Style { color, size: N::lit(size) });

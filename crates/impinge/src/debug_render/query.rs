@@ -25,13 +25,13 @@ use crate::tables::ByDimension;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct SweptShape<'a, N: Space<D>, const D: usize> {
-    /// The shape.
+    /// The moving shape.
     pub shape: &'a ShapeHandle<N, D>,
-    /// Its position at time zero.
+    /// The position of the shape at time zero.
     pub position: N::Isometry,
-    /// Its velocity in the world, per unit of time.
+    /// The velocity of the shape in the world, per unit of time.
     pub velocity: Vector<N, D>,
-    /// The time at which its path ends; may be infinite.
+    /// The time at which the path ends; may be infinite.
     pub max_time: N,
 }
 
@@ -45,8 +45,8 @@ impl<N: Space<D>, const D: usize> SweptShape<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
-    /// Draws the contacts of one manifold: points, normals, depths and, if there are at least
-    /// three, the area.
+    /// Draws the contacts of one manifold: points, normals, depths and, for at least three
+    /// contacts, the area.
     ///
     /// ```
     /// use impinge::debug_render::{Color, DebugDrawing, DebugRender, Drawn};
@@ -196,7 +196,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     }
 }
 
-/// A length with four significant digits.
+/// Formats a length with four significant digits.
 fn shortened<N: Real>(length: N) -> String {
     let length = length.as_f64();
     // Parsed again to remove trailing zeros. Adding zero makes a zero positive.
@@ -205,8 +205,8 @@ fn shortened<N: Real>(length: N) -> String {
     if is_tiny { format!("{rounded:e}") } else { rounded.to_string() }
 }
 
-/// A number from 0 to 4 that grows with the angle of a vector from x, along the square `|x| + |y| =
-/// 1`. Zero for the zero vector.
+/// Returns a number from 0 to 4 that grows with the angle of (x, y) from the x axis, along the
+/// square `|x| + |y| = 1`. Zero for the zero vector.
 fn diamond_angle<N: Real>(x: N, y: N) -> N {
     let sum = x.abs() + y.abs();
     let part = if sum > N::ZERO { y / sum } else { N::ZERO };

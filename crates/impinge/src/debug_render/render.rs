@@ -32,8 +32,8 @@ pub enum Drawn {
 
 /// A back end of debug drawing: a picture, a window, a file, a network.
 ///
-/// Lengths and positions are world coordinates. Only [`line`](Self::line) is required; the other
-/// methods use it by default, except that text is left out. The scalar and the dimension are those
+/// Lengths and positions are in world coordinates. Only [`line`](Self::line) is required; by
+/// default the other methods use it, and text is not drawn. The scalar and the dimension are those
 /// of the drawing, so a back end for both dimensions implements the trait twice, or for all `D`.
 ///
 /// ```
@@ -67,7 +67,7 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
         }
     }
 
-    /// Draws an arrow; by default its head is a fifth of its length, and without length it is a
+    /// Draws an arrow. By default its head is a fifth of its length; an arrow without length is a
     /// line between equal points.
     fn arrow(&mut self, from: &Point<N, D>, to: &Point<N, D>, color: Color, what: Drawn) {
         self.line([*from, *to], color, what);
@@ -98,8 +98,8 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
 
     /// Draws a shape; by default its lines.
     ///
-    /// The mesh of a shape does not change, and keeps its [`id`](ShapeMesh::id): a back end with a
-    /// mesh cache stores it on the first call, and then needs only the id and the pose.
+    /// The mesh of a shape does not change, and keeps its [`id`](ShapeMesh::id). A back end with a
+    /// mesh cache stores the mesh on the first call, and then needs only the id and the pose.
     fn mesh(&mut self, mesh: &ShapeMesh<N, D>, pose: &N::Isometry, color: Color, what: Drawn) {
         let pose = N::pose(pose);
         for ends in &mesh.lines {

@@ -1,5 +1,5 @@
-//! Polyhedra inflated by a radius: offset faces, cylinder parts around edges, ball parts around
-//! corners.
+//! Polyhedra inflated by a radius, drawn as offset faces, cylinder parts around edges, and ball
+//! parts around corners.
 //!
 //! Every vertex is a corner plus the radius times a unit vector between the normals of the faces at
 //! that corner (the Gauss map of the polyhedron), so it lies on the surface up to rounding.
@@ -15,7 +15,8 @@ use crate::shape::Feature;
 /// The flat faces of a solid and their adjacency across sides.
 struct Inflation<'a, N: Real> {
     faces: &'a [Feature<N, 3>],
-    /// The face with a side from the first to the second of two points, identified by their bits.
+    /// The index of the face that has a side from the first point to the second; points are
+    /// identified by their bits.
     face_of_side: BTreeMap<[[u64; 3]; 2], usize>,
     radius: N,
     /// The cosine of the largest angle between neighbouring directions of an arc.
@@ -58,55 +59,55 @@ pub(super) fn inflated<N: Real>(
 /// A corner of the polyhedron, and the part of the ball around it.
 struct RoundedCorner<N: Real> {
     point: Point<N, 3>,
-    /// The directions around the part, clockwise seen from outside.
+    /// The directions on the border of the part, clockwise seen from outside.
     around: Vec<Vector<N, 3>>,
     /// A direction inside the part.
     middle: Vector<N, 3>,
 }
 
-/// The central direction of those around a corner; `None` if they form nearly a whole circle, as at
-/// the end of a needle, where their sum is mostly rounding error.
+/// Returns the central direction of the directions around a corner. `None` if they form nearly a
+/// whole circle, as at the end of a needle, where their sum is mostly rounding error.
 fn middle_of<N: Real>(around: &[Vector<N, 3>]) -> Option<Vector<N, 3>> {
     let sum = around.iter().fold(Vector::<N, 3>::zeros(), |sum, direction| sum + direction);
     let (direction, length) = unit(&sum)?;
     (length > N::lit(around.len() as f64 / 64.0)).then_some(direction)
 }
 
-/// The sides of a face, counter-clockwise.
+/// Returns the sides of a face, counter-clockwise.
 fn sides<N: Real>(face: &Feature<N, 3>) -> impl Iterator<Item = [Point<N, 3>; 2]> + '_ {
     let next = face.vertices.iter().cycle().skip(1);
     face.vertices.iter().zip(next).map(|(a, b)| [*a, *b])
 }
 
-/// The key of a corner: the faces of a solid repeat its coordinates to the bit.
+/// Returns the key of a corner; all faces of a solid have bitwise equal coordinates for it.
 fn bits<N: Real>(point: Point<N, 3>) -> [u64; 3] {
     // Adding zero makes zeros positive.
     [0, 1, 2].map(|axis| (point[axis] + N::ZERO).bits())
 }
 
-/// The outward unit normal.
+/// Returns the outward unit normal of a face.
 fn normal<N: Real>(face: &Feature<N, 3>) -> Vector<N, 3> {
     face.normal.unwrap_or_else(Vector::<N, 3>::zeros)
 }
 
 impl<N: Real> Inflation<'_, N> {
-    /// Whether the reverse of each side is a side, and none has no length.
+    /// Whether the reverse of each side is also a side, and every side has a length.
     fn is_closed(&self) -> bool {
         self.face_of_side.keys().all(|[a, b]| a != b && self.face_of_side.contains_key(&[*b, *a]))
     }
 
-    /// The point of the surface over a corner in a direction.
+    /// Returns the point of the surface over a corner in a direction.
     fn moved(&self, corner: &Point<N, 3>, direction: &Vector<N, 3>) -> Point<N, 3> {
         corner + direction * self.radius
     }
 
-    /// The face beyond a side of a face.
+    /// Returns the face beyond a side; `None` if there is none.
     fn beyond(&self, [a, b]: [Point<N, 3>; 2]) -> Option<usize> {
         self.face_of_side.get(&[bits(b), bits(a)]).copied()
     }
 
-    /// The directions from the normal of a face to that of the face beyond a side. The order of the
-    /// two faces may change their bits; see [`Self::ordered_arc`].
+    /// Returns the directions from the normal of a face to the normal of the face beyond a side.
+    /// Exchanging the two faces may change their bits; see [`Self::ordered_arc`].
     fn arc(&self, face: usize, side: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         let Some(other) = self.beyond(side) else { return Vec::new() };
         let [first, last] = [face, other].map(|index| normal(&self.faces[index]));
@@ -122,7 +123,7 @@ impl<N: Real> Inflation<'_, N> {
         arc
     }
 
-    /// Appends the directions between two, without the first, each midway between its neighbours.
+    /// Appends the directions after `first` up to `last`, each midway between its neighbours.
     fn bisect(&self, first: Vector<N, 3>, last: Vector<N, 3>, arc: &mut Vec<Vector<N, 3>>) {
         let middle = unit_or(&(first + last), last);
         // A right angle takes at most six halvings at the finest option. Equal directions, and
@@ -153,7 +154,7 @@ impl<N: Real> Inflation<'_, N> {
         }
     }
 
-    /// All corners; `None` if one is as sharp as a needle.
+    /// Returns all corners; `None` if one is as sharp as a needle.
     fn corners(&self) -> Option<Vec<RoundedCorner<N>>> {
         let mut begun = BTreeMap::new();
         for (index, face) in self.faces.iter().enumerate() {
@@ -168,12 +169,12 @@ impl<N: Real> Inflation<'_, N> {
         begun.into_values().map(corner).collect()
     }
 
-    /// The directions around the start of a side of a face, clockwise seen from outside: from face
-    /// to face, each beyond the side that leaves the corner.
+    /// Returns the directions around the start of a side of a face, clockwise seen from outside.
+    /// Proceeds from face to face, each beyond the side that leaves the corner.
     fn directions_around(&self, start: usize, side: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         let (mut face, mut side, mut around) = (start, side, Vec::new());
         for _ in 0..self.face_of_side.len() {
-            // Its last direction is the first of the next.
+            // The last direction of each arc is the first of the next arc.
             let mut arc = self.ordered_arc(face, side);
             arc.pop();
             around.extend(arc);
@@ -188,7 +189,8 @@ impl<N: Real> Inflation<'_, N> {
         around
     }
 
-    /// An arc computed from the face with the lower index, as for the cylinder part.
+    /// Returns an arc computed from the face with the lower index, so that its bits equal those of
+    /// the cylinder part.
     fn ordered_arc(&self, face: usize, [a, b]: [Point<N, 3>; 2]) -> Vec<Vector<N, 3>> {
         match self.beyond([a, b]) {
             Some(other) if other < face => self.arc(other, [b, a]).into_iter().rev().collect(),
@@ -196,7 +198,8 @@ impl<N: Real> Inflation<'_, N> {
         }
     }
 
-    /// Adds the ball part around a corner inside a loop of directions: rings from their centre.
+    /// Adds the ball part around a corner, inside a loop of directions, as rings around its central
+    /// direction.
     fn patch(&self, sketch: &mut Sketch<N, 3>, corner: &RoundedCorner<N>) {
         let RoundedCorner { point, around, middle } = corner;
         let steps = |direction: &Vector<N, 3>| {

@@ -12,16 +12,16 @@ use crate::shape::{CompositeShape, Geometry, Kind, Plane};
 /// The number of marks from the centre of a half-space's square to its side.
 const MARKS: i32 = 2;
 
-/// A mesh under construction. Equal points share one vertex; points that are not finite are left
-/// out.
+/// A mesh under construction. Equal points share one vertex. Lines and triangles with a point that
+/// is not finite are left out.
 pub(crate) struct Sketch<N: Real, const D: usize> {
     options: MeshOptions<N>,
-    /// The pose of the next additions in the frame of the whole shape.
+    /// The pose, in the frame of the whole shape, of the part that is being added.
     pose: Pose<N, D>,
     mesh: ShapeMesh<N, D>,
-    /// The index of the vertex whose coordinates have these bits.
+    /// The index of each vertex, by the bits of its coordinates.
     numbers: BTreeMap<[u64; D], u32>,
-    /// The lines so far, the smaller index first.
+    /// The lines added so far, each with the smaller vertex index first.
     lines: BTreeSet<[u32; 2]>,
 }
 
@@ -36,18 +36,19 @@ impl<N: Real, const D: usize> Sketch<N, D> {
         }
     }
 
-    /// The mesh of all that was added.
+    /// Returns the mesh of everything that was added, with its id.
     pub(super) fn finish(mut self) -> ShapeMesh<N, D> {
         self.mesh.id = self.mesh.hash();
         self.mesh
     }
 
-    /// The parts of a full turn.
+    /// Returns the number of parts of a full turn.
     pub(super) fn parts_of_turn(&self) -> u32 {
         self.options.parts_of_turn()
     }
 
-    /// The index of the vertex at a local point; `None` if the point is not finite.
+    /// Returns the index of the vertex at a local point, and appends the vertex if it is new;
+    /// `None` if the point is not finite.
     fn vertex(&mut self, local: &Point<N, D>) -> Option<u32> {
         // Adding zero makes zeros positive, so that equal points have equal bits.
         let point = self.pose.point(local).map(|x| x + N::ZERO);
@@ -61,7 +62,7 @@ impl<N: Real, const D: usize> Sketch<N, D> {
         Some(number)
     }
 
-    /// Adds a line, unless it has no length or exists already.
+    /// Adds a line, unless it has no length or was added before.
     pub(super) fn line(&mut self, ends: [&Point<N, D>; 2]) {
         let [Some(a), Some(b)] = ends.map(|end| self.vertex(end)) else { return };
         if a != b && self.lines.insert([a.min(b), a.max(b)]) {
@@ -105,7 +106,8 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
         }
     }
 
-    /// Adds a square around the origin, in 2D a line, with marks into the solid.
+    /// Adds the square (in 2D the line) around the origin that represents a half-space, with marks
+    /// into the solid.
     fn half_space(&mut self, plane: &Plane<N, D>) {
         let extent = self.options.half_space_extent;
         let [u, v] = <N::Algorithms>::tangents(plane.normal()).map(|tangent| tangent * extent);
@@ -124,7 +126,7 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
         }
     }
 
-    /// Adds the parts that searches find, which excludes the holes of height fields.
+    /// Adds the parts that searches find, which excludes the holes and ghosts of height fields.
     fn composite(&mut self, composite: &dyn CompositeShape<N, D>) {
         let (outer, mut parts) = (self.pose, Vec::new());
         composite.search().overlapping(&Aabb::unbounded(), &mut |part| parts.push(part));

@@ -12,8 +12,8 @@ pub(crate) fn sketch2<N: Real>(solid: Kind<'_, N, 2>, sketch: &mut Sketch<N, 2>)
     sketch.fan(&outline);
 }
 
-/// The corners around a convex solid, counter-clockwise: two for a segment, none if it is not
-/// convex.
+/// Returns the corners around a convex solid, counter-clockwise: two for a segment, none for a
+/// shape that is not convex.
 fn outline<N: Real>(solid: Kind<'_, N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     match solid {
         Kind::Ball(ball) => plane::ball(ball, parts).points,
@@ -30,18 +30,19 @@ fn outline<N: Real>(solid: Kind<'_, N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     }
 }
 
-/// The directions around a circle, counter-clockwise from x.
+/// Returns the directions around a circle, counter-clockwise from x.
 fn directions<N: Real>(parts: u32) -> Vec<Vector<N, 2>> {
     let unit = Ball::new(N::ONE);
     plane::ball(&unit, parts).points.into_iter().map(|point| point.coords).collect()
 }
 
-/// The support points around a solid.
+/// Returns support points around a solid.
 fn sampled<N: Real>(map: &dyn SupportMap<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     directions(parts).iter().map(|direction| map.support_point(direction)).collect()
 }
 
-/// The outline of a rounded solid: exact sides for a polygon, support points for other solids.
+/// Returns the outline of a rounded solid: exact sides for a polygon, support points for other
+/// solids.
 fn rounded<N: Real>(solid: &Rounded<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     let inner = solid.inner().0;
     match inner {
@@ -57,8 +58,9 @@ fn rounded<N: Real>(solid: &Rounded<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     }
 }
 
-/// The outline at a distance from a convex polygon, given counter-clockwise and without sides of
-/// length zero: the sides, moved outwards, and an arc around each corner.
+/// Returns the outline of a convex polygon inflated by `radius`. The polygon is counter-clockwise,
+/// without sides of length zero. The outline has the sides, moved outwards, and an arc around each
+/// corner.
 fn inflated<N: Real>(corners: &[Point<N, 2>], radius: N, parts: u32) -> Vec<Point<N, 2>> {
     let around = directions::<N>(parts);
     if let [corner] = corners {
@@ -79,7 +81,8 @@ fn inflated<N: Real>(corners: &[Point<N, 2>], radius: N, parts: u32) -> Vec<Poin
     corners.iter().zip(arcs).flat_map(of_corner).collect()
 }
 
-/// Two unit vectors and the directions between them, counter-clockwise over at most 180°.
+/// Returns two unit vectors and the directions of `around` between them, counter-clockwise over at
+/// most 180°.
 fn arc<N: Real>(around: &[Vector<N, 2>], [first, last]: [&Vector<N, 2>; 2]) -> Vec<Vector<N, 2>> {
     let is_between = |v: &Vector<N, 2>| cross2(first, v) > N::ZERO && cross2(v, last) > N::ZERO;
     let before = around.iter().cycle().skip(around.len().saturating_sub(1));

@@ -64,7 +64,7 @@ fn surface<N: Real>(sketch: &mut Sketch<N, 3>, surface: &TriangleSurface<N>) {
     }
 }
 
-/// The points of a circle in the plane of two vectors, from the first towards the second.
+/// Returns the points of a circle in the plane of two vectors, from the first towards the second.
 fn circle<N: Real>(center: &Point<N, 3>, axes: [Vector<N, 3>; 2], parts: u32) -> Vec<Point<N, 3>> {
     let around = plane::ball(&Ball::new(N::ONE), parts).points;
     around.iter().map(|toward| center + axes[0] * toward.x + axes[1] * toward.y).collect()
@@ -88,8 +88,8 @@ fn round_ends<N: Real>(sketch: &mut Sketch<N, 3>, capsule: &TaperedCapsule<N, 3>
     let axis = unit_or(&(capsule.segment().b() - capsule.segment().a()), Vector::<N, 3>::y());
     let (u, v) = orthonormal_basis(&axis);
     let [radius1, radius2] = capsule.radii();
-    // The 2D capsule that generates it by revolution: sizes beyond the range of the scalar give no
-    // outline.
+    // The 2D capsule that generates the solid by revolution. Sizes beyond the range of the scalar
+    // give no outline.
     let flat = TaperedCapsule::<N, 2>::try_new(capsule.half_height(), radius1, radius2);
     for (flat, across) in flat.iter().flat_map(|flat| [(flat, u), (flat, v)]) {
         let outline = plane::tapered_capsule(flat, parts).points;
@@ -107,7 +107,7 @@ fn round_ends<N: Real>(sketch: &mut Sketch<N, 3>, capsule: &TaperedCapsule<N, 3>
     }
 }
 
-/// Adds a box. Corner `i` has the positive half extent on the axes of its bits.
+/// Adds a box. Corner `i` has the positive half extent on the axes whose bits are set in `i`.
 fn cuboid<N: Real>(sketch: &mut Sketch<N, 3>, cuboid: &Cuboid<N, 3>) {
     let corner = |index| cuboid.vertex(FeatureId::Vertex(index));
     for axis in [1, 2, 4] {
@@ -147,7 +147,7 @@ fn cone<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Cone<N>) {
     }
 }
 
-/// The first `count` faces of a solid.
+/// Returns the first `count` faces of a solid.
 fn faces<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, count: usize) -> Vec<Feature<N, 3>> {
     let face = |index| {
         let mut face = Feature::default();
@@ -158,8 +158,8 @@ fn faces<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, count: usize) -> Vec<Featu
     (0..).map(face).take(count).collect()
 }
 
-/// Adds a rounded solid: exactly if the inner shape has flat faces, else, and for flat boxes, by
-/// support points.
+/// Adds a rounded solid: exactly if the inner shape has flat faces; other shapes, and flat boxes,
+/// are sampled by support points.
 fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Rounded<N, 3>) {
     let faces = match solid.inner().0 {
         Kind::Cuboid(cuboid) => faces(cuboid, 6),
@@ -173,7 +173,8 @@ fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Rounded<N, 3>) {
     }
 }
 
-/// Adds the surface of a ball with each direction replaced by its support point.
+/// Adds the surface of a ball in which each direction is replaced by the support point in that
+/// direction.
 fn sampled<N: Real>(sketch: &mut Sketch<N, 3>, map: &dyn SupportMap<N, 3>) {
     let mut directions = space::ball(&Ball::new(N::ONE), sketch.parts_of_turn());
     for vertex in &mut directions.vertices {

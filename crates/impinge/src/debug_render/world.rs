@@ -12,12 +12,12 @@ use crate::world::{CollisionObject, CollisionWorld};
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     /// Draws a world: everything for which [`options`](Self::options) has a style.
     ///
-    /// Shapes and boxes are at the objects' present positions, all else is as of the last update.
-    /// Two objects of a pair with proximity are joined by a line between their nearest points, or
-    /// between their origins if they intersect; disjoint objects are not joined.
+    /// Shapes and boxes are drawn at the objects' current positions, everything else as of the last
+    /// update. Two objects of a pair with proximity are joined by a line between their nearest
+    /// points, or between their origins if they intersect; disjoint objects are not joined.
     ///
-    /// Costs O(n) for n drawn objects, and the sorting of contacts by handles; a mesh for each
-    /// shape that was not drawn before.
+    /// The cost is O(n) for n drawn objects, plus sorting the contacts by handles, plus a mesh for
+    /// each shape that was not drawn before.
     pub fn world<T>(
         &mut self,
         world: &CollisionWorld<N, D, T>,
@@ -36,7 +36,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         self.proximities(world, renderer);
     }
 
-    /// Draws the boxes of the broad phase's nodes; first, so that they cover nothing.
+    /// Draws the boxes of the broad phase's nodes. They come first, so that they cover nothing.
     fn tree_nodes<T>(&self, world: &CollisionWorld<N, D, T>, renderer: &mut dyn DebugRender<N, D>) {
         if let Some(style) = &self.options.tree_node {
             let mut draw = |aabb: &Aabb<N, D>| draw_box(aabb, style, Drawn::TreeNode, renderer);
@@ -92,7 +92,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
     }
 }
 
-/// The nearest points of two objects; their origins if they intersect.
+/// Returns the nearest points of two objects; their origins if they intersect.
 fn ends_between<N: Space<D>, const D: usize, T>(
     object1: &CollisionObject<N, D, T>,
     object2: &CollisionObject<N, D, T>,

@@ -1,6 +1,6 @@
 //! 2D: every name of the library with the dimension filled in.
 //!
-//! A type here is the generic one of the same name at the crate's root with `D` = 2:
+//! A type here is the generic type of the same name at the crate's root with `D` = 2:
 //! `dim2::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 2, T>`. The modules follow the
 //! user guide; [`prelude`] re-exports the names that common programs need.
 //!

@@ -1,11 +1,11 @@
-//! Pair filters under their short name.
+//! The pair filter with the dimension filled in.
 
 use super::world::CollisionObject;
 use crate::math::Real;
 
 /// Decides which pairs may exist at all; see [`crate::world::BroadPhasePairFilter`].
 ///
-/// Closures of two references to objects are filters too.
+/// Closures that take two references to objects and return a `bool` implement this trait.
 ///
 /// ```
 /// use impinge::dim3::world::{BroadPhasePairFilter, CollisionObject, CollisionWorld};

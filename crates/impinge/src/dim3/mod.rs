@@ -1,6 +1,6 @@
 //! 3D: every name of the library with the dimension filled in.
 //!
-//! A type here is the generic one of the same name at the crate's root with `D` = 3:
+//! A type here is the generic type of the same name at the crate's root with `D` = 3:
 //! `dim3::world::CollisionWorld<N, T>` is `world::CollisionWorld<N, 3, T>`. The modules follow the
 //! user guide; [`prelude`] re-exports the names that common programs need.
 //!
@@ -50,9 +50,9 @@ pub mod debug_render {
 
     /// Draws worlds, shapes and queries in 3D.
     pub type DebugDrawing<N> = crate::debug_render::DebugDrawing<N, 3>;
-    /// The lines and triangles of a shape.
+    /// The lines and triangles that draw a shape.
     pub type ShapeMesh<N> = crate::debug_render::ShapeMesh<N, 3>;
-    /// A shape along its path.
+    /// A shape that moves along a straight path.
     pub type SweptShape<'a, N> = crate::debug_render::SweptShape<'a, N, 3>;
 }
 
@@ -122,7 +122,7 @@ pub mod broad_phase {
 
 /// The narrow phase: contacts and proximities of the pairs that the broad phase proposes.
 ///
-/// Traits to implement name the dimension: `ContactDispatcher<N, 3>`, `Shape<N, 3>`,
+/// Traits to implement have the dimension as a parameter: `ContactDispatcher<N, 3>`, `Shape<N, 3>`,
 /// `NarrowPhase<N, 3, T>`.
 pub mod narrow_phase {
     pub use crate::narrow_phase::{
@@ -158,7 +158,7 @@ pub mod events {
     pub use crate::query::Proximity;
 }
 
-/// Objects, and who touches whom as of the last update.
+/// Objects, and the pairs that touch as of the last update.
 pub mod world {
     pub use super::filter::BroadPhasePairFilter;
     pub use crate::narrow_phase::{
@@ -200,7 +200,7 @@ pub mod query {
     pub type Ray<N> = crate::query::Ray<N, 3>;
     /// The time and place at which a ray meets a solid.
     pub type RayIntersection<N> = crate::query::RayIntersection<N, 3>;
-    /// See [`crate::query::RayBatch`].
+    /// Rays that are cast together; see [`crate::query::RayBatch`].
     pub type RayBatch<'a, N> = crate::query::RayBatch<'a, N, 3>;
     /// The point of a solid that is nearest to a given one.
     pub type PointProjection<N> = crate::query::PointProjection<N, 3>;
@@ -220,9 +220,9 @@ pub mod query {
     pub type MassProperties<N> = crate::query::MassProperties<N, 3>;
     /// The motion of a contact relative to its solids.
     pub type ContactKinematic<N> = crate::query::ContactKinematic<N, 3>;
-    /// One solid's share of a contact, for custom algorithms.
+    /// The data of one solid in a contact, for custom algorithms.
     pub type ContactSide<N> = crate::query::ContactSide<N, 3>;
-    /// The shape of a solid near a contact.
+    /// The local geometry of a solid near a contact.
     pub type NeighborhoodGeometry<N> = crate::query::NeighborhoodGeometry<N, 3>;
     /// A contact with its kinematic and its id.
     pub type TrackedContact<N> = crate::query::TrackedContact<N, 3>;
@@ -244,13 +244,13 @@ pub mod shape {
         ShapeError, ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
-    /// A curved support point, and its rate of change with the direction.
+    /// A support point on a curved feature, and its derivative with respect to the direction.
     pub type CurvedSupport<N> = crate::shape::CurvedSupport<N, 3>;
     /// A box.
     pub type Cuboid<N> = crate::shape::Cuboid<N, 3>;
-    /// The points near a segment.
+    /// The points within a radius of a segment.
     pub type Capsule<N> = crate::shape::Capsule<N, 3>;
-    /// A half-space: all that is behind a plane.
+    /// A half-space: all points behind a plane.
     pub type HalfSpace<N> = crate::shape::Plane<N, 3>;
     /// Another name of [`HalfSpace`], which is preferred.
     pub type Plane<N> = crate::shape::Plane<N, 3>;
@@ -260,15 +260,15 @@ pub mod shape {
     pub type Triangle<N> = crate::shape::Triangle<N, 3>;
     /// The points within a radius of a convex shape.
     pub type Rounded<N> = crate::shape::Rounded<N, 3>;
-    /// The hull of two balls.
+    /// The convex hull of two balls.
     pub type TaperedCapsule<N> = crate::shape::TaperedCapsule<N, 3>;
-    /// A stretched ball.
+    /// A ball scaled along the axes.
     pub type Ellipsoid<N> = crate::shape::Ellipsoid<N, 3>;
     /// A surface of triangles.
     pub type TriMesh<N> = crate::shape::TriMesh<N, 3>;
     /// A line of segments, open or closed.
     pub type Polyline<N> = crate::shape::Polyline<N, 3>;
-    /// A vertex, an edge or a face, as points.
+    /// A vertex, an edge or a face, with its points.
     pub type Feature<N> = crate::shape::Feature<N, 3>;
     /// The form in which queries read a shape.
     pub type Geometry<'a, N> = crate::shape::Geometry<'a, N, 3>;
@@ -276,7 +276,7 @@ pub mod shape {
     pub type Part<'a, N> = crate::shape::Part<'a, N, 3>;
     /// The solid of a part.
     pub type PartSolid<'a, N> = crate::shape::PartSolid<'a, N, 3>;
-    /// Several shapes as one.
+    /// A union of placed shapes.
     pub type Compound<N> = crate::shape::Compound<N, 3>;
     /// A surface given by heights over a grid.
     pub type HeightField<N> = crate::shape::HeightField<N, 3>;

@@ -1,7 +1,7 @@
 //! SIMD vectors emulated by arrays of 8 numbers, for targets without SIMD.
 //!
-//! Each operation is a function that is not inlined. If it were, a kernel of a thousand operations
-//! would become functions with thousands of loops, which takes compilers too long.
+//! The operations are functions that are not inlined. Inlining them would turn a kernel of a
+//! thousand operations into functions with thousands of loops, which takes compilers too long.
 
 use crate::math::filled;
 use core::ops::{
@@ -12,19 +12,19 @@ use super::na::ComplexField;
 use super::na::RealField;
 use super::simd::{Simd, SimdMask, Wide};
 
-/// Numbers in a vector.
+/// The number of lanes in a vector.
 const LANES: usize = 8;
 
-/// The vectors of every machine, as a [`Simd`] set.
+/// The set of vector types that every machine supports.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrays;
 
-/// Eight numbers.
+/// A vector of 8 numbers.
 #[derive(Clone, Copy, Debug)]
 #[allow(unnameable_types, unreachable_pub, reason = "in the interface only where `f64` is")]
 pub struct Array<N>([N; LANES]);
 
-/// A bit for each lane, the first lowest.
+/// A mask with a bit for each lane; the first lane is the lowest bit.
 #[derive(Clone, Copy, Debug)]
 #[allow(unnameable_types, unreachable_pub, reason = "in the interface only where `f64` is")]
 pub struct Bits(u8);

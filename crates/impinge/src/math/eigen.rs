@@ -1,25 +1,25 @@
-//! Eigenvalues and eigenvectors of small symmetric matrices, with the same bits on every platform.
+//! Eigenvalues and eigenvectors of small symmetric matrices, bitwise equal on every platform.
 //!
-//! Jacobi's rotations: each makes one off-diagonal element zero. They need only square roots and
-//! divisions, and are accurate for small eigenvalues of positive matrices beside large ones (Demmel
-//! and Veselić, "Jacobi's method is more accurate than QR", 1992).
+//! Uses Jacobi rotations, each of which makes one off-diagonal element zero. They need only square
+//! roots and divisions, and are accurate for small eigenvalues of positive matrices beside large
+//! ones (Demmel and Veselić, "Jacobi's method is more accurate than QR", 1992).
 
 use super::real::f64_power_of_two_below;
 use super::{Matrix, Vector};
 
-/// The maximum number of sweeps over all elements. Each squares the error: five are usual.
+/// The maximum number of sweeps over all elements. Each sweep squares the error; five are usual.
 const MAX_SWEEPS: usize = 32;
 
-/// An element is negligible up to this fraction of the geometric mean of its two diagonal elements:
-/// it is rounding error of the matrix.
+/// An element is negligible if it is at most this fraction of the geometric mean of its two
+/// diagonal elements: it is then rounding error of the matrix.
 const NEGLIGIBLE: f64 = 8.0 * f64::EPSILON;
 
 /// Returns the eigenvalues of a finite symmetric matrix, and a rotation whose columns are the
 /// eigenvectors: `matrix = rotation · diagonal · rotationᵀ`.
 ///
-/// Each rotation is by at most 45°, so that the eigenvectors of a nearly diagonal matrix are near
-/// the axes, in their order; those of a diagonal one are the axes. Scaling by powers of two is
-/// exact.
+/// Each rotation is by at most 45°. So the eigenvectors of a nearly diagonal matrix are near the
+/// axes, in their order, and those of a diagonal matrix are the axes. Scaling the matrix by powers
+/// of two scales the eigenvalues exactly.
 pub(crate) fn symmetric_eigen<const D: usize>(
     matrix: &Matrix<f64, D>,
 ) -> (Vector<f64, D>, Matrix<f64, D>) {
@@ -44,7 +44,7 @@ pub(crate) fn symmetric_eigen<const D: usize>(
     (diagonal.diagonal() * scale, rotation)
 }
 
-/// Rotates by the angle that makes the element at `(p, q)` zero.
+/// Rotates `matrix` and `rotation` by the angle that makes the element at `(p, q)` zero.
 fn rotate<const D: usize>(
     matrix: &mut Matrix<f64, D>,
     rotation: &mut Matrix<f64, D>,
@@ -102,7 +102,7 @@ mod tests {
         let plane = Matrix::<f64, 2>::new(2.0, 1.0, 1.0, 2.0);
         let values = check(&plane);
         assert!((values - Vector::<f64, 2>::new(1.0, 3.0)).norm() < 1e-15, "{values}");
-        // A line: two of the three values are zero.
+        // The matrix of a line: two of the three eigenvalues are zero.
         let line = V3::new(1.0, 2.0, -2.0);
         let values = check(&(line * line.transpose()));
         assert!((values.sum() - 9.0).abs() < 1e-14 && values.amin() < 1e-15, "{values}");
@@ -126,12 +126,12 @@ mod tests {
         }
     }
 
-    /// The small eigenvalue of a needle keeps its digits where the matrix has them.
+    /// Tests that a small eigenvalue keeps its digits where the matrix has them.
     #[test]
     fn small_values_beside_large_ones() {
         let graded = M3::new(1.0, 1e-6, 0.0, 1e-6, 1e-9, 1e-13, 0.0, 1e-13, 1e-18);
         let (values, _) = symmetric_eigen(&graded);
-        // The smallest is 1e-18 minus (1e-13)² over 1e-9 - 1e-12.
+        // The smallest eigenvalue is 1e-18 minus (1e-13)² over 1e-9 - 1e-12.
         let expected = 1e-18 - 1e-26 / (1e-9 - 1e-12);
         assert!((values[2] / expected - 1.0).abs() < 1e-6, "{values}, not {expected}");
     }

@@ -1,10 +1,11 @@
 //! Orientation predicates in 2D and 3D with the exact sign.
 //!
-//! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates"
-//! (1997): a rounded determinant with a bound on its error and, if the bound does not decide, the
-//! determinant as an unevaluated sum of doubles. Two stages are enough here: the second is rare.
-//! Exact unless a product underflows, which for coordinates scaled to 1 takes differences below
-//! 1e-90; then the sign may be wrong, but the callers still end.
+//! The method is from Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
+//! Geometric Predicates" (1997): a rounded determinant with a bound on its error and, if the bound
+//! does not decide, the exact determinant as an unevaluated sum of doubles. Two stages suffice
+//! here, as the second is rare. The sign is exact unless a product underflows, which for
+//! coordinates scaled to 1 takes differences below 1e-90. The sign may then be wrong, but the
+//! callers still terminate.
 
 use crate::math::Mapped;
 use smallvec::SmallVec;
@@ -18,15 +19,15 @@ type P3 = Point<f64, 3>;
 /// A sum of nonoverlapping doubles, smallest first; empty for zero.
 type Expansion = SmallVec<[f64; 32]>;
 
-/// A double as two halves of 26 bits (Dekker, Veltkamp).
+/// Splits a double into two halves of 26 bits (Dekker, Veltkamp).
 fn split(a: f64) -> (f64, f64) {
     let c = 134_217_729.0 * a;
     let high = c - (c - a);
     (high, a - high)
 }
 
-/// `a · b` as the rounded product and its error; without fused multiply-add, for the same bits on
-/// every machine.
+/// Returns the rounded product `a · b` and its rounding error. It does not use fused multiply-add,
+/// so that the bits are equal on every machine.
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
@@ -34,7 +35,7 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, a_low * b_low - error)
 }
 
-/// Adds one double to an expansion.
+/// Adds one double to an expansion, exactly.
 fn grow(expansion: &mut Expansion, addend: f64) {
     let mut carry = addend;
     let mut kept = 0;
@@ -52,7 +53,7 @@ fn grow(expansion: &mut Expansion, addend: f64) {
     }
 }
 
-/// `a − b`, exactly.
+/// Returns `a − b`, exactly.
 fn difference(a: f64, b: f64) -> Expansion {
     let (high, low) = sum_and_error(a, -b);
     let mut expansion = Expansion::new();
@@ -72,7 +73,7 @@ fn add_product(sum: &mut Expansion, a: &[f64], b: &[f64], sign: f64) {
     }
 }
 
-/// `a · d − b · c`.
+/// Returns `a · d − b · c`, exactly.
 fn minor(a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> Expansion {
     let mut sum = Expansion::new();
     add_product(&mut sum, a, d, 1.0);
@@ -80,12 +81,12 @@ fn minor(a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> Expansion {
     sum
 }
 
-/// The value, rounded, with the exact sign: the largest term exceeds the sum of all others.
+/// Returns the rounded value, whose sign is exact: the largest term exceeds the sum of all others.
 fn value(expansion: &[f64]) -> f64 {
     expansion.iter().sum::<f64>()
 }
 
-/// Twice the area of the triangle, positive if it is counter-clockwise. The sign is exact.
+/// Returns twice the area of the triangle, positive if it is counter-clockwise. The sign is exact.
 pub(crate) fn area(a: &P2, b: &P2, c: &P2) -> f64 {
     let (u, v) = (a - c, b - c);
     let (left, right) = (u.x * v.y, u.y * v.x);
@@ -99,17 +100,18 @@ fn area_exact(a: &P2, b: &P2, c: &P2) -> f64 {
     value(&minor(&ux, &uy, &vx, &vy))
 }
 
-/// A rounded volume is used above this fraction of the sum of magnitudes.
+/// A rounded volume is used if its magnitude exceeds this fraction of the sum of its terms'
+/// magnitudes.
 const MARGIN: f64 = 4.0 * 1_048_576.0 * f64::EPSILON;
 
-/// `a · b − c · d`, accurate to the last digits despite cancellation.
+/// Returns `a · b − c · d`, accurate to the last digits despite cancellation.
 fn product_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
     let ((left, left_error), (right, right_error)) = (two_product(a, b), two_product(c, d));
     (left - right) + (left_error - right_error)
 }
 
-/// The normal of the triangle on the side from which it appears counter-clockwise, with the length
-/// of twice its area: accurate to the last digits also for slivers.
+/// Returns the normal of the triangle on the side from which it appears counter-clockwise, with the
+/// length of twice its area. Accurate to the last digits, also for slivers.
 pub(crate) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
     let two_sums = |p: &P3| [0, 1, 2].mapped(|axis| sum_and_error(p[axis], -a[axis]));
     let (u, v) = (two_sums(b), two_sums(c));
@@ -121,8 +123,8 @@ pub(crate) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
     })
 }
 
-/// Six times the volume of the tetrahedron: positive if `q` lies on the side of the triangle `abc`
-/// from which it appears counter-clockwise. The sign is exact.
+/// Returns six times the volume of the tetrahedron, positive if `q` lies on the side of the
+/// triangle `abc` from which `abc` appears counter-clockwise. The sign is exact.
 #[inline]
 pub(crate) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
     let (u, v, w): (Vector<f64, 3>, Vector<f64, 3>, Vector<f64, 3>) = (a - q, b - q, c - q);
@@ -133,12 +135,12 @@ pub(crate) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
     let permanent = u.z.abs() * (vw.abs() + wv.abs())
         + v.z.abs() * (wu.abs() + uw.abs())
         + w.z.abs() * (uv.abs() + vu.abs());
-    // Shewchuk's bound is 7 half-units. A million times that also makes the magnitude accurate to
-    // six digits, which heights over slivers need, and is still rare.
+    // Shewchuk's bound is 7 half-units. A million times this bound also makes the magnitude
+    // accurate to six digits, which heights over slivers need; the exact stage is still rare.
     if det.abs() > MARGIN * permanent { -det } else { volume_exact([a, b, c], q) }
 }
 
-/// [`volume`] from the exact determinant.
+/// Computes [`volume`] from the exact determinant.
 #[cold]
 fn volume_exact(corners: [&P3; 3], q: &P3) -> f64 {
     let [u, v, w] = corners.map(|p| [0, 1, 2].map(|axis| difference(p[axis], q[axis])));
@@ -188,7 +190,7 @@ mod tests {
         let (a, b) = (P3::new(0.1, 0.3, 0.7), P3::new(1.1, 1.3, 1.7));
         let c = P3::new(0.6, 0.8, 1.2 + f64::EPSILON);
         let normal = area_vector(&a, &b, &c);
-        // Exact: the heights of both ends over the plane of the three points vanish.
+        // The normal is exact: the heights of both ends over the plane of the three points vanish.
         for p in [b, c] {
             let height = normal.normalize().dot(&(p - a));
             assert!(height.abs() < 1e-16, "{p} lies {height} out of the plane");

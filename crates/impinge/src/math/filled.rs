@@ -1,10 +1,10 @@
-//! Arrays made by a function of the index, or of the elements of another one.
+//! Arrays built by a function of the index, or of the elements of another array.
 //!
-//! [`core::array::from_fn`] and `map` drop the elements made so far if the function panics, for
+//! If the function panics, [`core::array::from_fn`] and `map` drop the elements built so far, for
 //! every type. For numbers this has no use, and costs five nested functions for each closure: a
 //! tenth of all code given to the compiler.
 
-/// The array of the values of a function at each index.
+/// Returns the array of the values of a function at each index.
 #[inline(always)]
 pub(crate) fn filled<T: Copy, const L: usize>(mut value: impl FnMut(usize) -> T) -> [T; L] {
     let mut all = [value(0); L];
@@ -16,9 +16,9 @@ pub(crate) fn filled<T: Copy, const L: usize>(mut value: impl FnMut(usize) -> T)
     all
 }
 
-/// `map` for arrays of `Copy` types.
+/// The method `map` for arrays of `Copy` types, without code that drops elements.
 pub(crate) trait Mapped<T, const L: usize> {
-    /// The array of the values of a function at each element.
+    /// Returns the array of the values of a function at each element.
     fn mapped<U: Copy>(self, value: impl FnMut(T) -> U) -> [U; L];
 }
 

@@ -1,7 +1,7 @@
 //! Vectors and poses in SIMD lanes: each coordinate is a SIMD vector.
 //!
-//! Each operation has the order of its scalar counterpart, so that a lane has the same bits as the
-//! scalar. Nothing here uses `map`: closures passed to it are not inlined into SIMD code.
+//! Each operation has the order of its scalar counterpart, so that a lane is bitwise equal to the
+//! scalar result. This file avoids `map`: closures passed to `map` are not inlined into SIMD code.
 
 use super::simd::{Simd, SimdMask};
 use super::{Matrix, Pose, Real, Vector, Wide, max};
@@ -27,8 +27,8 @@ macro_rules! with_lanes {
     };
 }
 
-/// Runs `$body` with `$simd` bound to the vectors, or the single lane, of a
-/// [`Run`](super::simd::Run).
+/// Runs `$body` with `$simd` bound to the vectors of a [`Run`](super::simd::Run), or to its single
+/// lane.
 macro_rules! in_lanes {
     ($run:expr, $simd:ident => $body:expr) => {
         match $run.vectors {
@@ -74,13 +74,13 @@ macro_rules! vectorized {
 
 pub(crate) use {in_lanes, vectorized, with_lanes, with_vectors};
 
-/// Broadcasts a number to all lanes.
+/// Broadcasts a literal to all lanes.
 #[inline(always)]
 pub(crate) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64) -> V {
     V::all(simd, N::lit(value))
 }
 
-/// The greatest of 8 lanes.
+/// Returns the greatest of 8 lanes.
 #[inline(always)]
 pub(crate) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V) -> N {
     let mut lanes = [N::ZERO; 8];
@@ -101,7 +101,7 @@ pub(crate) fn spread<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     )
 }
 
-/// Loads one vector for each lane, by coordinates.
+/// Loads one vector for each lane; the block has one row per coordinate.
 #[inline(always)]
 pub(crate) fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, const L: usize>(
     simd: S,
@@ -113,7 +113,7 @@ pub(crate) fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, con
     )
 }
 
-/// The difference.
+/// Returns `a − b` in each lane.
 #[inline(always)]
 pub(crate) fn minus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
     filled(
@@ -122,7 +122,7 @@ pub(crate) fn minus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D])
     )
 }
 
-/// The sum.
+/// Returns `a + b` in each lane.
 #[inline(always)]
 pub(crate) fn plus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
     filled(
@@ -131,7 +131,7 @@ pub(crate) fn plus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) 
     )
 }
 
-/// Each vector times the factor of its lane.
+/// Returns each vector times the factor of its lane.
 #[inline(always)]
 pub(crate) fn times<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], factor: V) -> [V; D] {
     filled(
@@ -140,7 +140,7 @@ pub(crate) fn times<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], factor: V) 
     )
 }
 
-/// The opposite.
+/// Returns `−v` in each lane.
 #[inline(always)]
 pub(crate) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D] {
     filled(
@@ -149,7 +149,7 @@ pub(crate) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D]
     )
 }
 
-/// Each vector divided by the divisor of its lane.
+/// Returns each vector divided by the divisor of its lane.
 #[inline(always)]
 pub(crate) fn over<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], divisor: V) -> [V; D] {
     filled(
@@ -158,7 +158,7 @@ pub(crate) fn over<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], divisor: V) 
     )
 }
 
-/// The dot product, summed in the order of the axes.
+/// Returns the dot product in each lane, summed in the order of the axes.
 #[inline(always)]
 pub(crate) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> V {
     let mut sum = a[0] * b[0];
@@ -168,19 +168,19 @@ pub(crate) fn dot<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -
     sum
 }
 
-/// The length.
+/// Returns the length of the vector in each lane.
 #[inline(always)]
 pub(crate) fn norm<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> V {
     dot(v, v).sqrt()
 }
 
-/// The cross product.
+/// Returns the cross product in each lane.
 #[inline(always)]
 pub(crate) fn cross<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Rotates a vector to the frame with these axes.
+/// Rotates a vector in each lane into the frame with the given axes.
 #[inline(always)]
 pub(crate) fn rotated_into<S: Simd, V: Wide<S>, const D: usize>(
     axes: &[[V; D]; D],
@@ -192,7 +192,7 @@ pub(crate) fn rotated_into<S: Simd, V: Wide<S>, const D: usize>(
     )
 }
 
-/// Rotates vectors by the inverse of a rotation, which is the same in all lanes.
+/// Rotates the vector in each lane by the inverse of a rotation that is equal for all lanes.
 #[inline(always)]
 pub(crate) fn rotated_back<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -211,7 +211,7 @@ pub(crate) fn rotated_back<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     )
 }
 
-/// Selects one of two vectors in each lane.
+/// Selects `one` in each lane where `is` is true, else `other`.
 #[inline(always)]
 pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
     is: V::Mask,
@@ -224,20 +224,20 @@ pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
     )
 }
 
-/// Selects one of two masks in each lane.
+/// Selects the mask `one` in each lane where `is` is true, else `other`.
 #[inline(always)]
 pub(crate) fn either_mask<S: Simd, M: SimdMask<S>>(is: M, one: M, other: M) -> M {
     (is & one) | (!is & other)
 }
 
-/// A bit for each of 8 lanes.
+/// Returns a mask of 8 lanes as bits, the first lane lowest.
 #[inline(always)]
 pub(crate) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
     let [low, ..] = mask.to_bitmask().to_le_bytes();
     low
 }
 
-/// A [`Pose`] in each lane, its rotation by columns.
+/// A [`Pose`] in each lane; the rotation is stored column by column.
 pub(crate) struct LanePose<V, const D: usize> {
     pub(crate) rotation: [[V; D]; D],
     pub(crate) translation: [V; D],
@@ -262,7 +262,7 @@ impl<V, const D: usize> LanePose<V, D> {
         Self { rotation, translation: spread(simd, &pose.translation) }
     }
 
-    /// `Pose::vector`.
+    /// Computes [`Pose::vector`] in each lane.
     #[inline(always)]
     pub(crate) fn vector<S: Simd>(&self, local: &[V; D]) -> [V; D]
     where
@@ -284,7 +284,7 @@ impl<V, const D: usize> LanePose<V, D> {
         )
     }
 
-    /// `Pose::point`.
+    /// Computes [`Pose::point`] in each lane.
     #[inline(always)]
     pub(crate) fn point<S: Simd>(&self, local: &[V; D]) -> [V; D]
     where
@@ -293,7 +293,7 @@ impl<V, const D: usize> LanePose<V, D> {
         plus(&self.vector(local), &self.translation)
     }
 
-    /// `Pose::inverse_point`.
+    /// Computes [`Pose::inverse_point`] in each lane.
     #[inline(always)]
     pub(crate) fn inverse_point<S: Simd>(&self, outer: &[V; D]) -> [V; D]
     where
@@ -302,7 +302,7 @@ impl<V, const D: usize> LanePose<V, D> {
         rotated_into(&self.rotation, &minus(outer, &self.translation))
     }
 
-    /// `Pose::inverse_point` of the origin.
+    /// Computes [`Pose::inverse_point`] of the origin in each lane.
     #[inline(always)]
     pub(crate) fn inverse_origin<S: Simd, N: Real>(&self, simd: S) -> [V; D]
     where
@@ -311,7 +311,7 @@ impl<V, const D: usize> LanePose<V, D> {
         self.inverse_point(&[V::all(simd, N::ZERO); D])
     }
 
-    /// The distance of the second solid's origin from the first's.
+    /// Returns, for a relative pose, the distance between the origins of the two solids.
     #[inline(always)]
     pub(crate) fn apart<S: Simd>(&self) -> V
     where

@@ -1,5 +1,5 @@
-//! A vector of one number: a kernel compiled for it computes one of 8 lanes, with the bits of
-//! that lane.
+//! A vector with one lane. A kernel compiled for it computes one of 8 lanes, bitwise equal to that
+//! lane of a SIMD vector.
 
 use core::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,
@@ -9,7 +9,8 @@ use super::na::{ComplexField, RealField};
 use super::simd::{Simd, SimdMask, Wide};
 use super::{Vector, filled};
 
-/// The lane to compute: loads read this one of 8 numbers, stores write it to all 8.
+/// The index of the lane to compute: loads read that one of 8 numbers, stores write the result to
+/// all 8.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OneLane(pub(crate) usize);
 
@@ -18,13 +19,13 @@ impl Simd for OneLane {
     type F64x8 = Lone<f64>;
 }
 
-/// One number as a vector.
+/// A number as a vector with one lane.
 #[derive(Clone, Copy, Debug)]
 #[allow(unnameable_types, unreachable_pub, reason = "in the interface of `Eight`")]
 pub struct Lone<N>(pub(crate) N);
 
 impl<N: RealField + Copy> Lone<N> {
-    /// A vector with one number for each coordinate.
+    /// Returns one single-lane vector for each coordinate.
     #[inline(always)]
     pub(crate) fn each<const D: usize>(vector: &Vector<N, D>) -> [Self; D] {
         filled(
@@ -43,12 +44,12 @@ impl<N: RealField + Copy> Lone<N> {
     }
 }
 
-/// One truth value as a mask; its bitmask repeats it for all 8 lanes.
+/// A truth value as a mask with one lane; its bitmask repeats it for all 8 lanes.
 #[derive(Clone, Copy, Debug)]
 #[allow(unnameable_types, unreachable_pub, reason = "in the interface of `Eight`")]
 pub struct LoneMask(pub(crate) bool);
 
-/// Operators on the number inside.
+/// Implements operators on the number inside.
 macro_rules! by_number {
     ($($operator:ident $method:ident),*) => {$(
         impl<N: RealField + Copy> $operator for Lone<N> {
@@ -159,7 +160,7 @@ impl SimdMask<OneLane> for LoneMask {
     }
 }
 
-/// Operators on the truth value inside.
+/// Implements operators on the truth value inside.
 macro_rules! by_truth {
     ($($operator:ident $method:ident),*) => {$(
         impl $operator for LoneMask {

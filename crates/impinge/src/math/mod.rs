@@ -1,11 +1,11 @@
-//! Numbers, vectors and poses: the only module that uses nalgebra.
+//! Numbers, vectors and poses. No other module of the library uses nalgebra directly.
 //!
-//! Everything above this floor names vectors by these aliases. The library is generic over the
-//! scalar `N` (`f32` or `f64`) and the dimension `D` (2 or 3); [`Space`] is the bound for code that
-//! depends on the dimension.
+//! The other modules name vectors by these aliases. The library is generic over the scalar `N`
+//! (`f32` or `f64`) and the dimension `D` (2 or 3); [`Space`] is the bound for code that depends on
+//! the dimension.
 //!
-//! Arithmetic here keeps the rule "the same bits everywhere": no fused multiply-add, no library
-//! trigonometry, and [`min`]/[`max`] are compare-and-select.
+//! All results are bitwise equal on every platform. For this, the module uses no fused multiply-add
+//! and no trigonometry of the system, and [`min`]/[`max`] are compare-and-select.
 
 pub(crate) mod arrays;
 pub(crate) mod eigen;
@@ -55,5 +55,5 @@ pub use vector::{
 pub type Vector<N, const D: usize> = nalgebra::SVector<N, D>;
 /// A point of `D` coordinates.
 pub type Point<N, const D: usize> = nalgebra::OPoint<N, nalgebra::Const<D>>;
-/// A square matrix; rotations are stored as such.
+/// A square matrix; also the type of rotations in a [`Pose`].
 pub type Matrix<N, const D: usize> = nalgebra::SMatrix<N, D, D>;

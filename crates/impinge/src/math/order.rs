@@ -1,16 +1,16 @@
-//! Sorting by numbers, compiled once for all callers, and a total order of positions.
+//! Sorting by numbers, compiled once for all callers, and a direction that orders positions.
 
 use super::{Real, Vector};
 
-/// Maps each number to an integer in the total order of IEEE 754.
+/// Maps each number to an integer such that the integers have the total order of IEEE 754.
 pub(crate) fn order_of<N: Real>(value: N) -> u64 {
     const SIGN: u64 = 1 << 63;
     let bits = value.as_f64().to_bits();
     if bits & SIGN == 0 { bits | SIGN } else { !bits }
 }
 
-/// The component of a vector along a direction that is perpendicular to no axis and no diagonal:
-/// among positions that people choose, ties are rare.
+/// Returns the component of a vector along a direction that is perpendicular to no axis and no
+/// diagonal. Ties are rare among positions that people choose.
 #[inline]
 pub(crate) fn askew<N: Real, const D: usize>(vector: &Vector<N, D>) -> N {
     const DIRECTION: [f64; 3] = [1.0, 1.6875, 2.5625];
@@ -21,14 +21,14 @@ pub(crate) fn askew<N: Real, const D: usize>(vector: &Vector<N, D>) -> N {
     coordinate
 }
 
-/// Up to this many items are sorted by insertion.
+/// A list with at most this many items is sorted by insertion.
 const FEW: usize = 20;
 
 /// Sorts a list that is usually short; equal items of a short list stay in order.
 ///
 /// The sorts of the standard library are faster for long lists, but have forty times the machine
-/// code, once for each type and key. This one inserts, and beyond [`FEW`] items it uses a heap
-/// (Williams, "Algorithm 232: Heapsort", 1964): O(n log n) at worst, in place.
+/// code, once for each type and key. This sort inserts; for more than [`FEW`] items it uses a heap
+/// (Williams, "Algorithm 232: Heapsort", 1964): O(n log n) in the worst case, in place.
 pub(crate) fn sort_few<T>(items: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
     let count = items.len();
     if count <= FEW {
@@ -42,8 +42,8 @@ pub(crate) fn sort_few<T>(items: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
         return;
     }
     for step in (0..count + count / 2).rev() {
-        // First the heap is built from the back, then its greatest item is moved behind it,
-        // repeatedly.
+        // The first `count / 2` steps build the heap from the back. Each later step moves the heap's
+        // greatest item behind it.
         let (mut at, end) = if step >= count {
             (step - count, count)
         } else {
@@ -63,7 +63,7 @@ pub(crate) fn sort_few<T>(items: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
     }
 }
 
-/// Sorts by the first number, equals by the second.
+/// Sorts by the first number, and equal first numbers by the second.
 #[inline(never)]
 pub(crate) fn sort_keyed(items: &mut [(u64, u32)]) {
     items.sort_unstable();

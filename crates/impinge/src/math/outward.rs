@@ -1,14 +1,15 @@
-//! Sums and products rounded to a known side, for bounding volumes.
+//! Sums and products rounded in a known direction, for bounding volumes.
 //!
-//! The rounding error of a sum is a number of the scalar (Knuth, "The Art of Computer Programming",
-//! volume 2, theorem 4.2.2 B), so that a sum without an error stays as it is: boxes whose corners
+//! The rounding error of a sum is representable (Knuth, "The Art of Computer Programming", volume
+//! 2, theorem 4.2.2 B), so that a sum without an error can be left unchanged: boxes whose corners
 //! are representable are exact.
 
 use core::ops::{Add, Sub};
 
 use super::Real;
 
-/// `a + b`, and the exact sum minus the rounded one; NaN beyond the range of the scalar.
+/// Returns the rounded sum `a + b`, and the exact sum minus the rounded one; NaN beyond the range
+/// of the scalar.
 #[inline(always)]
 pub(super) fn sum_and_error<N: Copy + Add<Output = N> + Sub<Output = N>>(a: N, b: N) -> (N, N) {
     let sum = a + b;
@@ -16,24 +17,24 @@ pub(super) fn sum_and_error<N: Copy + Add<Output = N> + Sub<Output = N>>(a: N, b
     (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
-/// `a + b`, or one or two numbers below it: never above the exact sum, and equal to it if that is
-/// representable.
+/// Returns `a + b`, or one or two representable numbers below it. The result is never above the
+/// exact sum, and equal to the exact sum if that is representable.
 #[inline(always)]
 pub(crate) fn sum_below<N: Real>(a: N, b: N) -> N {
     let (sum, error) = sum_and_error(a, b);
     if error < N::ZERO { sum - sum.abs() * N::EPSILON } else { sum }
 }
 
-/// `a + b`, or one or two numbers above it: never below the exact sum, and equal to it if that is
-/// representable.
+/// Returns `a + b`, or one or two representable numbers above it. The result is never below the
+/// exact sum, and equal to the exact sum if that is representable.
 #[inline(always)]
 pub(crate) fn sum_above<N: Real>(a: N, b: N) -> N {
     let (sum, error) = sum_and_error(a, b);
     if error > N::ZERO { sum + sum.abs() * N::EPSILON } else { sum }
 }
 
-/// Two numbers that enclose the exact product: twice the product itself if a factor is zero or a
-/// power of two; infinities or NaN beyond the range of the scalar.
+/// Returns a lower and an upper bound of the exact product. Both equal the product if a factor is
+/// zero or a power of two; infinities or NaN beyond the range of the scalar.
 pub(crate) fn product_within<N: Real>(a: N, b: N) -> [N; 2] {
     let product = a * b;
     let is_zero_or_power = |x: N| x == N::ZERO || x.abs() == x.power_of_two_below();
@@ -45,14 +46,15 @@ pub(crate) fn product_within<N: Real>(a: N, b: N) -> [N; 2] {
     [product - slack, product + slack]
 }
 
-/// A bound of the error of a few sums and products of lengths up to `size`, as for the coordinates
-/// of a rotated point: 8 units of rounding plus 8 times the smallest number.
+/// Returns a bound of the error of a few sums and products of lengths up to `size`, as for the
+/// coordinates of a rotated point: 8 epsilon times `size` plus 8 times the smallest positive
+/// number.
 #[inline(always)]
 pub(crate) fn slack_of<N: Real>(size: N) -> N {
     N::lit(8.0) * (N::EPSILON * size + smallest::<N>())
 }
 
-/// The smallest number above zero.
+/// Returns the smallest positive (subnormal) number.
 #[inline(always)]
 fn smallest<N: Real>() -> N {
     N::MIN_POSITIVE * N::EPSILON
@@ -78,7 +80,7 @@ mod tests {
         let numbers = [1.0_f32, 0.1, -0.3, 1e-8, 3e7, -2e-40, 1.5e-39, 3e38, -3e38, 7e-23];
         for a in numbers {
             for b in numbers {
-                // Beyond the range there are infinities.
+                // Infinite results have no rounding error to check.
                 if (a * b).is_infinite() || (a + b).is_infinite() {
                     continue;
                 }

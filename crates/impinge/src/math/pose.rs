@@ -1,21 +1,21 @@
-//! Rigid transformations with the rotation as a matrix: generic over the dimension, and about twice
-//! as fast to apply as nalgebra's quaternion isometry.
+//! Rigid transformations with the rotation as a matrix. They are generic over the dimension, and
+//! about twice as fast to apply as nalgebra's quaternion isometries.
 
 use super::na::ArrayStorage;
 use super::{AbstractRotation, Isometry, Mapped, Matrix, Point, Real, Vector, filled};
 
-// nalgebra's products pass through some thirty functions for each number, which are real calls in a
-// build without optimisation. These have the same bits: each sum runs over the columns, from the
-// first.
+// These replace nalgebra's products, which pass through about thirty functions for each number; in
+// a build without optimisation these are real calls. The results are bitwise equal: each sum runs
+// over the columns in order.
 
-/// `matrix · v`.
+/// Returns `matrix · v`.
 #[inline]
 fn times<N: Real, const D: usize>(matrix: &Matrix<N, D>, v: &Vector<N, D>) -> Vector<N, D> {
     let (columns, v) = (&matrix.data.0, &v.data.0[0]);
     vector(filled(|row| sum_of::<N, D>(|column| columns[column][row] * v[column])))
 }
 
-/// `matrixᵀ · v`.
+/// Returns `matrixᵀ · v`.
 #[inline]
 fn transposed_times<N: Real, const D: usize>(
     matrix: &Matrix<N, D>,
@@ -25,14 +25,14 @@ fn transposed_times<N: Real, const D: usize>(
     vector(columns.mapped(|column| sum_of::<N, D>(|row| column[row] * v[row])))
 }
 
-/// `a + b`.
+/// Returns `a + b`.
 #[inline]
 fn plus<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N, D>) -> Vector<N, D> {
     let (a, b) = (&a.data.0[0], &b.data.0[0]);
     vector(filled(|axis| a[axis] + b[axis]))
 }
 
-/// `a - b`.
+/// Returns `a - b`.
 #[inline]
 fn minus<N: Real, const D: usize>(a: &Vector<N, D>, b: &Vector<N, D>) -> Vector<N, D> {
     let (a, b) = (&a.data.0[0], &b.data.0[0]);
@@ -54,7 +54,7 @@ fn vector<N: Real, const D: usize>(components: [N; D]) -> Vector<N, D> {
     Vector::<N, D>::from_array_storage(ArrayStorage([components]))
 }
 
-/// `terms(0) + … + terms(D − 1)`, from left to right.
+/// Returns `terms(0) + … + terms(D − 1)`, summed from left to right.
 #[inline]
 fn sum_of<N: Real, const D: usize>(terms: impl Fn(usize) -> N) -> N {
     let mut sum = terms(0);
@@ -69,29 +69,29 @@ fn sum_of<N: Real, const D: usize>(terms: impl Fn(usize) -> N) -> N {
 /// The position and orientation of a solid: `x ↦ rotation · x + translation` maps its local frame
 /// to the world.
 ///
-/// Everywhere in the library, `pose12` is the pose of the second solid in the frame of the first.
+/// In the whole library, `pose12` is the pose of the second solid in the frame of the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<N: Real, const D: usize> {
     /// The rotation, an orthogonal matrix of determinant 1.
     pub rotation: Matrix<N, D>,
-    /// The image of the local origin.
+    /// The position of the local origin in the outer frame.
     pub translation: Vector<N, D>,
 }
 
 impl<N: Real, const D: usize> Pose<N, D> {
-    /// The pose of a solid whose frame is the world's.
+    /// Returns the pose of a solid whose frame is the world's.
     #[must_use]
     pub fn identity() -> Self {
         Self { rotation: Matrix::<N, D>::identity(), translation: Vector::<N, D>::zeros() }
     }
 
-    /// A translation alone.
+    /// Returns a pose with the identity as its rotation.
     #[must_use]
     pub fn from_translation(translation: Vector<N, D>) -> Self {
         Self { rotation: Matrix::<N, D>::identity(), translation }
     }
 
-    /// The pose that a nalgebra isometry describes.
+    /// Returns the pose that a nalgebra isometry describes.
     #[must_use]
     #[inline]
     pub fn from_isometry<R: AbstractRotation<N, D>>(isometry: &Isometry<N, R, D>) -> Self {
@@ -104,35 +104,37 @@ impl<N: Real, const D: usize> Pose<N, D> {
         Self { rotation, translation: isometry.translation.vector }
     }
 
-    /// The pose of a solid that no rotation changes: the rotation is dropped. The translation is
-    /// infinite if the rotation is not finite.
+    /// Returns the pose, without its rotation, of a solid that no rotation changes, such as a ball.
+    /// If the rotation is not finite, the translation is infinite.
     #[must_use]
     #[inline]
     pub fn unturned<R: AbstractRotation<N, D>>(isometry: &Isometry<N, R, D>) -> Self {
         let mut e = Vector::<N, D>::zeros();
         e[0] = N::ONE;
-        // Every number of a rotation is a factor of some term in each rotated axis.
+        // Every number of a rotation is a factor of some term in each rotated axis, so one axis
+        // suffices.
         let rotated = isometry.rotation.transform_vector(&e);
         Self::from_translation(isometry.translation.vector).unless_broken(rotated.as_slice())
     }
 
-    /// This pose without its rotation, for a solid that no rotation changes; see
+    /// Returns this pose without its rotation, for a solid that no rotation changes; see
     /// [`Self::unturned`].
     #[must_use]
     pub(crate) fn without_rotation(&self) -> Self {
         Self::from_translation(self.translation).unless_broken(self.rotation.as_slice())
     }
 
-    /// Makes the translation infinite if one of `numbers`, those of the rotation, is not finite.
+    /// Returns the pose with an infinite translation if one of `numbers`, which are those of the
+    /// rotation, is not finite.
     #[inline]
     pub(super) fn unless_broken(self, numbers: &[N]) -> Self {
-        // An infinity or NaN times zero is NaN, which every sum keeps.
+        // An infinity or NaN times zero is NaN, and a sum with NaN is NaN.
         let is_finite = numbers.iter().fold(N::ZERO, |sum, &x| sum + x * N::ZERO) == N::ZERO;
         let nowhere = Vector::<N, D>::repeat(N::INFINITY);
         Self { translation: if is_finite { self.translation } else { nowhere }, ..self }
     }
 
-    /// The pose of `second` in the frame of `first`.
+    /// Returns the pose of `second` in the frame of `first`.
     ///
     /// The translations are subtracted first, so that solids close to each other lose no digits far
     /// from the origin.
@@ -145,7 +147,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
         }
     }
 
-    /// The pose of the first solid in the frame of the second, given that of the second in the first.
+    /// Returns the pose of the first solid in the frame of the second, if this is the pose of the
+    /// second in the frame of the first.
     #[must_use]
     #[inline]
     pub fn inverse(&self) -> Self {
@@ -153,7 +156,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
         Self { rotation, translation: -times(&rotation, &self.translation) }
     }
 
-    /// This pose after `inner`: maps the frame of `inner`'s solid to the outer frame.
+    /// Returns this pose applied after `inner`: it maps the local frame of `inner` to the outer
+    /// frame.
     #[must_use]
     #[inline]
     pub fn compose(&self, inner: &Self) -> Self {
@@ -191,7 +195,7 @@ impl<N: Real, const D: usize> Pose<N, D> {
         transposed_times(&self.rotation, outer)
     }
 
-    /// The extents, along each outer axis, of a rotated box about the origin.
+    /// Returns the half extents, along each outer axis, of a rotated box about the origin.
     #[inline]
     pub(crate) fn rotated_extents(&self, half_extents: &Vector<N, D>) -> Vector<N, D> {
         let mut extents = Vector::<N, D>::zeros();
@@ -203,15 +207,16 @@ impl<N: Real, const D: usize> Pose<N, D> {
         extents
     }
 
-    /// Whether it maps axes to axes: every coordinate of a rotated point is plus or minus one of
-    /// the point's, exactly.
+    /// Whether the pose maps axes to axes, so that every coordinate of a rotated point is exactly
+    /// plus or minus a coordinate of the point.
     #[inline]
     #[must_use]
     pub(crate) fn is_aligned(&self) -> bool {
         self.rotation.as_slice().iter().all(|&x| x == N::ZERO || x.abs() == N::ONE)
     }
 
-    /// Whether all components are equal, as by `==`: faster, since the optimiser sees plain arrays.
+    /// Whether all components are equal, as by `==`. It is faster, since the optimiser sees plain
+    /// arrays.
     #[inline]
     #[must_use]
     pub(crate) fn is_same(&self, other: &Self) -> bool {
@@ -223,8 +228,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
     #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        // Nearly always all are finite, so without early exit. A finite number times zero is zero;
-        // an infinity or NaN times zero is NaN, which every sum keeps.
+        // Nearly always all components are finite, so there is no early exit. A finite number times
+        // zero is zero; an infinity or NaN times zero is NaN, and a sum with NaN is NaN.
         let mut sum = N::ZERO;
         for row in 0..D {
             let mut in_row = self.translation[row] * N::ZERO;

@@ -22,7 +22,8 @@ pub trait Real: RealField + Scalar + Copy + Default + Compiled<2> + Compiled<3> 
     const ONE: Self;
     /// 2.
     const TWO: Self;
-    /// The distance from 1 to the next larger number; tolerances are this times a length.
+    /// The distance from 1 to the next larger number; tolerances are multiples of this times a
+    /// length.
     const EPSILON: Self;
     /// The largest finite number.
     const MAX: Self;
@@ -30,43 +31,46 @@ pub trait Real: RealField + Scalar + Copy + Default + Compiled<2> + Compiled<3> 
     const MIN_POSITIVE: Self;
     /// Positive infinity.
     const INFINITY: Self;
-    /// π/2 as a sum, the largest first: integers up to 2¹⁶ times the first two are exact (W. J. Cody and W. Waite,
-    /// "Software Manual for the Elementary Functions", 1980).
+    /// π/2 as a sum of three parts, the largest first. Integers up to 2¹⁶ times the first two parts
+    /// are exact (W. J. Cody and W. Waite, "Software Manual for the Elementary Functions", 1980).
     #[doc(hidden)]
     const QUARTER_TURN: [Self; 3];
 
-    /// The scalar nearest to a literal.
+    /// Returns the scalar nearest to a literal.
     fn lit(value: f64) -> Self;
-    /// The value as `f64`, exactly.
+    /// Returns the value as `f64`, exactly.
     fn as_f64(self) -> f64;
-    /// The value rounded to the nearest `f32`.
+    /// Returns the value rounded to the nearest `f32`.
     #[expect(clippy::cast_possible_truncation, reason = "rounds to nearest, as documented")]
     #[inline]
     fn as_f32(self) -> f32 {
         self.as_f64() as f32
     }
-    /// The largest `f32` that is not above the value (−∞ below the range of `f32`); a zero is positive.
+    /// Returns the largest `f32` that is not above the value (−∞ below the range of `f32`); a zero
+    /// is positive.
     #[inline]
     fn as_f32_below(self) -> f32 {
         f32_below(self.as_f64())
     }
-    /// The smallest `f32` that is not below the value (+∞ above the range of `f32`); a zero is positive.
+    /// Returns the smallest `f32` that is not below the value (+∞ above the range of `f32`); a zero
+    /// is positive.
     #[inline]
     fn as_f32_above(self) -> f32 {
         f32_above(self.as_f64())
     }
-    /// The bits, widened to 64; equal for equal bits.
+    /// Returns the bits of the value, widened to 64.
     fn bits(self) -> u64;
     /// The number of these bits, the inverse of [`Self::bits`]; of more than the scalar has, the lowest count.
     fn of_bits(bits: u64) -> Self;
     /// The largest power of two that is not above the magnitude; dividing by it is exact.
     ///
-    /// The smallest normal number for zero and subnormal numbers, 1 for infinity and NaN.
+    /// For zero and subnormal numbers the result is the smallest normal number, for infinity and
+    /// NaN it is 1.
     #[must_use]
     fn power_of_two_below(self) -> Self;
-    /// Neither infinite nor NaN.
+    /// Whether the value is neither infinite nor NaN.
     fn is_finite_number(self) -> bool;
-    /// Sine and cosine by a software library: the same bits on every platform.
+    /// Returns sine and cosine, computed by a software library: bitwise equal on every platform.
     fn sine_cosine(self) -> (Self, Self);
 }
 
@@ -118,7 +122,8 @@ impl Real for f32 {
     }
 }
 
-/// [`Real::power_of_two_below`] of a double, which need not be a scalar of the library.
+/// Computes [`Real::power_of_two_below`] for a double, which is a scalar of the library only with
+/// the feature `f64`.
 #[inline]
 pub(crate) fn f64_power_of_two_below(value: f64) -> f64 {
     let power = f64::from_bits(value.to_bits() & 0x7ff0_0000_0000_0000);
@@ -131,8 +136,8 @@ pub(crate) fn f64_power_of_two_below(value: f64) -> f64 {
     }
 }
 
-/// The largest `f32` not above a number. It selects instead of branching, since the direction of
-/// rounding is unpredictable. A zero is positive.
+/// Returns the largest `f32` that is not above a number; a zero is positive. It selects instead of
+/// branching, since the direction of rounding is unpredictable.
 #[expect(clippy::cast_possible_truncation, reason = "one step down where it went up")]
 #[inline]
 pub(crate) fn f32_below(x: f64) -> f32 {
@@ -143,7 +148,7 @@ pub(crate) fn f32_below(x: f64) -> f32 {
     f32::from_bits(if f64::from(nearest) > x { smaller } else { bits })
 }
 
-/// The smallest `f32` that is not below a number; a zero is positive.
+/// Returns the smallest `f32` that is not below a number; a zero is positive.
 #[inline]
 pub(crate) fn f32_above(x: f64) -> f32 {
     0.0 - f32_below(-x)

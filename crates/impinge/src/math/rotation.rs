@@ -6,11 +6,11 @@ use crate::tables::entries;
 
 /// A rotation of nalgebra: a unit complex number, a unit quaternion or a rotation matrix. Sealed.
 ///
-/// Functions that take an isometry take it with any of them. The operations of a rotation are in
-/// nalgebra's trait of the same name.
+/// Functions that take an isometry accept any of these rotations. The operations of a rotation are
+/// in nalgebra's trait of the same name.
 pub trait AbstractRotation<N: Real, const D: usize>: na::AbstractRotation<N, D> {
-    /// The isometry with the kind of its rotation as a value, so that functions for all kinds are
-    /// compiled once.
+    /// Returns the isometry with the kind of its rotation as an enum, so that a function for all
+    /// kinds is compiled once.
     #[doc(hidden)]
     fn view(isometry: &Isometry<N, Self, D>) -> IsometryRef<'_, N, D>
     where
@@ -21,7 +21,7 @@ pub trait AbstractRotation<N: Real, const D: usize>: na::AbstractRotation<N, D> 
 #[expect(unnameable_types, reason = "for this crate alone")]
 #[derive(Clone, Copy, Debug)]
 pub enum IsometryRef<'i, N: Space<D>, const D: usize> {
-    /// The user's usual pose type.
+    /// An isometry with the usual rotation: a unit complex number or quaternion.
     Own(&'i N::Isometry),
     /// An isometry with a rotation matrix.
     ByMatrix(&'i Isometry<N, Rotation<N, D>, D>),
@@ -58,7 +58,7 @@ impl<N: Space<D>, const D: usize> IsometryRef<'_, N, D> {
         entries::pose_of(self)
     }
 
-    /// See [`Pose::unturned`].
+    /// Implements [`Pose::unturned`].
     #[inline]
     pub(crate) fn unturned(self) -> Pose<N, D> {
         match self {
@@ -67,7 +67,7 @@ impl<N: Space<D>, const D: usize> IsometryRef<'_, N, D> {
         }
     }
 
-    /// The image of the origin.
+    /// Returns the position of the local origin.
     #[inline]
     pub(crate) fn translation(self) -> Vector<N, D> {
         match self {
@@ -77,7 +77,7 @@ impl<N: Space<D>, const D: usize> IsometryRef<'_, N, D> {
     }
 }
 
-/// See [`IsometryRef::pose`].
+/// Implements [`IsometryRef::pose`].
 #[inline]
 pub(crate) fn pose_of<N: Space<D>, const D: usize>(isometry: IsometryRef<'_, N, D>) -> Pose<N, D> {
     match isometry {

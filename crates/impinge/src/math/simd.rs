@@ -1,13 +1,13 @@
 //! SIMD vectors of 8 numbers, and the instruction sets of each target.
 //!
 //! A kernel is one source over [`Simd`] and [`Wide`]. All operations are those of IEEE 754, so that
-//! each lane has the same bits as a scalar. There are two kinds of kernels:
+//! each lane is bitwise equal to a scalar computation. There are two kinds of kernels:
 //!
-//! * in some, each lane is a pair or a part and independent of the others. [`in_lanes!`] runs them
-//!   with the vectors of the target, or lane by lane if there are none: [`Level::runs`];
-//! * in the others, lanes interact: they are features of one solid, of which the best is chosen, or
-//!   a step reads rows that the previous one wrote for all lanes (chains, balls among triangles,
-//!   checkers). [`with_lanes!`] runs them with all lanes on every target, on
+//! * in some kernels, each lane is a pair or a part, independent of the other lanes. [`in_lanes!`]
+//!   runs these with the vectors of the target, or lane by lane if there are none: [`Level::runs`];
+//! * in the other kernels, lanes interact: the lanes are features of one solid, of which the best
+//!   is chosen, or a step reads rows that the previous step wrote for all lanes (chains, balls
+//!   among triangles, checkers). [`with_lanes!`] runs these with all lanes on every target, on
 //!   [`Arrays`](super::arrays::Arrays) if there are no vectors.
 //!
 //! [`in_lanes!`]: super::lanes::in_lanes
@@ -26,19 +26,19 @@ use fearless_simd::{Select, SimdBase, SimdFloat};
 ))]
 use super::halves::Halves;
 
-/// The instruction set to use. No result depends on it.
+/// The instruction set to use. It never changes a result.
 ///
-/// On x86 it is AVX2, and the baseline SSE2 for some kernels: sets between them bring little, and
-/// 8 lanes gain nothing from wider registers, whereas each set adds one more copy of all
-/// kernels.
+/// On x86 this is AVX2, and for some kernels the baseline SSE2. Instruction sets between these two
+/// bring little, 8 lanes gain nothing from wider registers, and each instruction set adds one more
+/// copy of all kernels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Level {
     Wide(Vectors),
-    /// Vectors of four `f32`. Kernels with independent lanes run lane by lane instead: half the
-    /// code.
+    /// Vectors of four `f32`. Kernels with independent lanes run lane by lane instead, which halves
+    /// the code.
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
     Sse2(fearless_simd::Sse2),
-    /// No vectors; also for tests.
+    /// No vectors: arrays of numbers; also used in tests.
     Arrays,
 }
 
@@ -53,7 +53,7 @@ pub(crate) enum Vectors {
     Simd128(fearless_simd::WasmSimd128),
 }
 
-/// Whether kernels are compiled for arrays too: on targets without vectors, and for tests.
+/// Whether kernels are also compiled for arrays: on targets without vectors, and for tests.
 pub(crate) const ON_ARRAYS: bool = cfg!(any(
     test,
     not(any(
@@ -64,7 +64,7 @@ pub(crate) const ON_ARRAYS: bool = cfg!(any(
 ));
 
 impl Level {
-    /// The best level of this machine.
+    /// Returns the best level of this machine.
     #[inline]
     pub(crate) fn new() -> Self {
         let level = fearless_simd::Level::new();
@@ -91,11 +91,12 @@ impl Level {
         best
     }
 
-    /// The vectors for kernels with independent lanes; `None` where they compute one lane instead.
+    /// Returns the vectors for kernels with independent lanes; `None` where these kernels compute
+    /// one lane at a time.
     ///
-    /// Without optimization every operation on a vector is a chain of calls, dearer than the same
-    /// operation on each of its numbers: a debug build computes a pile of boxes 2.5 times as fast in
-    /// single lanes. The bits are the same.
+    /// Without optimization every vector operation is a chain of calls, slower than the operation
+    /// on each of its numbers: a debug build computes a pile of boxes 2.5 times as fast in single
+    /// lanes. The results are bitwise equal.
     #[inline]
     pub(crate) fn vectors(self) -> Option<Vectors> {
         match self {
@@ -104,8 +105,8 @@ impl Level {
         }
     }
 
-    /// The runs in which a kernel processes the first `lanes` lanes of a packet: all at once, or
-    /// one after the other.
+    /// Returns the runs in which a kernel processes the first `lanes` lanes of a packet: a single
+    /// run for all lanes, or one run per lane.
     #[inline]
     pub(crate) fn runs(self, lanes: usize) -> impl Iterator<Item = Run> {
         let vectors = self.vectors();
@@ -113,7 +114,7 @@ impl Level {
         (0..lanes).step_by(step).map(move |first| Run { vectors, first, end: first + step })
     }
 
-    /// All levels of this machine, the best first and arrays last, for tests.
+    /// Returns all levels of this machine, the best first and arrays last, for tests.
     pub(crate) fn available() -> Vec<Self> {
         let mut all = vec![Self::new()];
         #[cfg(target_arch = "x86_64")]
@@ -123,11 +124,11 @@ impl Level {
     }
 }
 
-/// Lanes that a kernel processes at once: all used lanes, with vectors, or one of them
+/// The lanes that a kernel processes at once: with vectors all used lanes, else one of them
 /// ([`OneLane`](super::lone::OneLane)).
 ///
-/// A kernel stores valid results for its lanes only; other lanes are undefined. Each lane has the
-/// same bits in both cases, since lanes are independent.
+/// A kernel stores valid results for the lanes of its run only; other lanes are undefined. Each
+/// lane is bitwise equal in both cases, since lanes are independent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
     pub(crate) vectors: Option<Vectors>,
@@ -136,23 +137,23 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// Its lanes.
+    /// Returns the lanes of this run.
     #[inline]
     pub(crate) fn lanes(&self) -> core::ops::Range<usize> {
         self.first..self.end
     }
 
-    /// Keeps those of some bits, one for each lane, that belong to its lanes.
+    /// Keeps the bits that belong to the lanes of this run; `bits` has a bit for each lane.
     #[inline]
     pub(crate) fn of_bits(&self, bits: u8) -> u8 {
         self.lanes().fold(0, |own, lane| own | bits & 1 << lane)
     }
 }
 
-/// A scalar with vectors of 8.
+/// A scalar that has vectors of 8 lanes.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Eight: Sized {
-    /// A vector of 8.
+    /// The type of its vectors of 8 lanes.
     type Lanes<S: Simd>: Wide<S, Scalar = Self>;
 }
 
@@ -164,16 +165,16 @@ impl Eight for f64 {
     type Lanes<S: Simd> = S::F64x8;
 }
 
-/// A set of vector types. A value of it proves that the machine supports them.
+/// A set of vector types. A value of this type proves that the machine supports them.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Simd: Copy {
-    /// Eight `f32`.
+    /// A vector of eight `f32`.
     type F32x8: Wide<Self, Scalar = f32>;
-    /// Eight `f64`.
+    /// A vector of eight `f64`.
     type F64x8: Wide<Self, Scalar = f64>;
 }
 
-/// A truth value in each lane.
+/// A vector mask: a truth value in each lane.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait SimdMask<S: Simd>:
     Copy
@@ -187,14 +188,14 @@ pub trait SimdMask<S: Simd>:
     /// The number of lanes.
     const LEN: usize;
 
-    /// A bit for each lane, the first lowest.
+    /// Returns a bit for each lane, the first lane lowest.
     fn to_bitmask(self) -> u64;
-    /// Whether it is true in any lane.
+    /// Whether the mask is true in any lane.
     fn any_true(self) -> bool;
-    /// Whether it is true in all lanes.
+    /// Whether the mask is true in all lanes.
     fn all_true(self) -> bool;
 
-    /// Selects the first vector where the mask is true, else the second.
+    /// Selects the lanes of `one` where the mask is true, else those of `other`.
     #[inline(always)]
     fn select<V: Wide<S, Mask = Self>>(self, one: V, other: V) -> V {
         V::selected(self, one, other)
@@ -219,37 +220,37 @@ pub trait Wide<S: Simd>:
 
     /// Broadcasts a number to all lanes.
     fn all(simd: S, value: Self::Scalar) -> Self;
-    /// Loads as many numbers as there are lanes.
+    /// Loads one number for each lane from the start of `numbers`.
     fn load(simd: S, numbers: &[Self::Scalar]) -> Self;
-    /// Stores as many numbers as there are lanes.
+    /// Stores the number of each lane to the start of `numbers`.
     fn store(self, numbers: &mut [Self::Scalar]);
 
-    /// The square root.
+    /// Returns the square root of each lane.
     fn sqrt(self) -> Self;
-    /// The magnitude.
+    /// Returns the magnitude of each lane.
     fn abs(self) -> Self;
 
-    /// Whether each number is less; false for NaN.
+    /// Lanes where `self` is less than `other`; false for NaN.
     fn simd_lt(self, other: Self) -> Self::Mask;
-    /// Whether each number is greater; false for NaN.
+    /// Lanes where `self` is greater than `other`; false for NaN.
     fn simd_gt(self, other: Self) -> Self::Mask;
-    /// Whether each number is not greater; false for NaN.
+    /// Lanes where `self` is at most `other`; false for NaN.
     fn simd_le(self, other: Self) -> Self::Mask;
-    /// Whether each number is not less; false for NaN.
+    /// Lanes where `self` is at least `other`; false for NaN.
     fn simd_ge(self, other: Self) -> Self::Mask;
-    /// Whether each number is equal; false for NaN.
+    /// Lanes where `self` equals `other`; false for NaN.
     fn simd_eq(self, other: Self) -> Self::Mask;
 
-    /// See [`SimdMask::select`].
+    /// Implements [`SimdMask::select`].
     fn selected(mask: Self::Mask, one: Self, other: Self) -> Self;
 
-    /// The smaller number; the second if either is NaN.
+    /// Returns the smaller number in each lane; `other` if either is NaN.
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
         self.simd_lt(other).select(self, other)
     }
 
-    /// The larger number; the second if either is NaN.
+    /// Returns the larger number in each lane; `other` if either is NaN.
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
         self.simd_gt(other).select(self, other)
@@ -262,8 +263,8 @@ impl Simd for fearless_simd::Avx2 {
     type F64x8 = Halves<fearless_simd::f64x4<Self>>;
 }
 
-/// Eight `f64` are arrays: a vector would take four of the sixteen registers and gain little, and
-/// these kernels were a tenth of the library's compile time.
+/// Eight `f64` are emulated by an array: a vector would take four of the 16 registers and gain
+/// little, and these kernels were a tenth of the library's compile time.
 #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
 impl Simd for fearless_simd::Sse2 {
     type F32x8 = Halves<fearless_simd::f32x4<Self>>;

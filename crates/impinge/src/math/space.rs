@@ -5,10 +5,10 @@ use super::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
 use crate::tables::{ByDimension, Compiled, Here};
 use core::fmt::Debug;
 
-/// The scalar `Self` in `D` dimensions: implemented for every [`Real`] with `D` = 2 and `D` = 3.
+/// A scalar `Self` in `D` dimensions: implemented for every [`Real`] with `D` = 2 and `D` = 3.
 ///
-/// Generic code that needs an operation of one dimension has the bound `N: Space<D>`; a function
-/// for one dimension needs only `N: Real`, which implies it.
+/// Generic code that needs an operation which depends on the dimension has the bound `N: Space<D>`.
+/// A function for one dimension needs only `N: Real`, which implies it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not known to be a scalar of impinge in {D} dimensions",
     label = "`Space<{D}>` is not implemented for `{Self}`",
@@ -27,14 +27,15 @@ pub trait Space<const D: usize>: Real + Compiled<D> {
     /// Converts an isometry to a pose.
     fn pose(isometry: &Self::Isometry) -> Pose<Self, D>;
 
-    /// The pose of a solid that no rotation changes; see [`Pose::unturned`].
+    /// Returns the pose, without its rotation, of a solid that no rotation changes; see
+    /// [`Pose::unturned`].
     #[doc(hidden)]
     fn unturned(isometry: &Self::Isometry) -> Pose<Self, D>;
 
-    /// The image of the origin under an isometry.
+    /// Returns the position of the origin under an isometry.
     fn translation(isometry: &Self::Isometry) -> Vector<Self, D>;
 
-    /// The numbers of an isometry in a row, padded with zeros.
+    /// Returns the numbers of an isometry as an array, padded with zeros.
     #[doc(hidden)]
     fn numbers(isometry: &Self::Isometry) -> [Self; 7];
 
@@ -45,12 +46,12 @@ pub trait Space<const D: usize>: Real + Compiled<D> {
     /// Converts a pose to an isometry, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
 
-    /// The squared length of the complex number or quaternion of an isometry: 1 up to rounding, if that is a
-    /// rotation.
+    /// Returns the squared length of the complex number or quaternion of an isometry: 1 up to
+    /// rounding for a rotation.
     #[doc(hidden)]
     fn squared_length_of_rotation(isometry: &Self::Isometry) -> Self;
 
-    /// The determinant of a matrix.
+    /// Returns the determinant of a matrix.
     #[doc(hidden)]
     fn determinant(matrix: &Matrix<Self, D>) -> Self;
 }
@@ -165,8 +166,8 @@ impl<N: Real> Space<3> for N {
     }
 }
 
-/// The matrix of a 3D rotation: its columns are the rotated axes, bit for bit, but computed without
-/// their products with zero.
+/// Returns the matrix of a 3D rotation. Its columns are bitwise equal to the rotated axes, but
+/// computed without the products with zero.
 #[inline]
 fn matrix_of<N: Real>(rotation: &UnitQuaternion<N>) -> Matrix<N, 3> {
     let q = rotation.coords;
@@ -175,7 +176,7 @@ fn matrix_of<N: Real>(rotation: &UnitQuaternion<N>) -> Matrix<N, 3> {
     let (xx, yy, zz) = (x * x2, y * y2, z * z2);
     let (xy, xz, yz) = (x * y2, x * z2, y * z2);
     let (wx, wy, wz) = (x2 * w, y2 * w, z2 * w);
-    // Zeros are positive, as after the addition of a component of the axis.
+    // Adding zero makes zeros positive, as the addition of a zero component of the axis would.
     let zero = N::ZERO;
     Matrix::<N, 3>::new(
         (-yy - zz) + N::ONE,

@@ -1,8 +1,9 @@
-//! Sine and cosine in 8 lanes: the same bits on every platform.
+//! Sine and cosine in 8 lanes, bitwise equal on every platform.
 //!
-//! An angle is reduced to at most 45° by the three parts of π/2 (Cody and Waite); the rest is two
-//! polynomials that interpolate at Chebyshev points. The error is at most 2 ε for angles up to
-//! [`MAX_ANGLE`]; for larger and non-finite angles each lane is that of [`Real::sine_cosine`].
+//! An angle is reduced to at most 45° with the three parts of π/2 (Cody and Waite); then two
+//! polynomials, which interpolate at Chebyshev points, are evaluated. The error is at most 2 ε for
+//! angles up to [`MAX_ANGLE`]. For larger and non-finite angles each lane is computed by
+//! [`Real::sine_cosine`].
 
 use super::lanes::lit;
 use super::simd::{Simd, SimdMask};
@@ -11,7 +12,7 @@ use super::{Real, Wide};
 /// Angles up to this many radians are reduced in lanes: 2¹⁶ quarter turns.
 pub(crate) const MAX_ANGLE: f64 = 1e5;
 
-/// (sin r - r) / r³ by powers of r², for r up to π/4.
+/// Coefficients of (sin r - r) / r³ in powers of r², for r up to π/4.
 const SINE: [f64; 6] = [
     -0.166_666_666_666_666_66,
     0.008_333_333_333_330_7,
@@ -21,7 +22,7 @@ const SINE: [f64; 6] = [
     1.591_530_918_305_772_4e-10,
 ];
 
-/// (cos r - 1 + r²/2) / r⁴ by powers of r².
+/// Coefficients of (cos r - 1 + r²/2) / r⁴ in powers of r², for r up to π/4.
 const COSINE: [f64; 6] = [
     0.041_666_666_666_666_664,
     -1.388_888_888_888_724_1e-3,
@@ -31,7 +32,7 @@ const COSINE: [f64; 6] = [
     -1.138_086_817_144_977_1e-11,
 ];
 
-/// Sine and cosine in each lane.
+/// Returns sine and cosine in each lane, for any angle.
 #[inline(always)]
 pub(crate) fn sine_cosine<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2] {
     let found = reduced(simd, angle);
@@ -39,7 +40,7 @@ pub(crate) fn sine_cosine<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, ang
     if is_near.all_true() { found } else { mended(simd, angle, found) }
 }
 
-/// [`sine_cosine`] for angles up to [`MAX_ANGLE`].
+/// Returns sine and cosine in each lane, for angles up to [`MAX_ANGLE`].
 #[inline(always)]
 fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2] {
     let quarters = rounded(simd, angle * lit(simd, core::f64::consts::FRAC_2_PI));
@@ -51,7 +52,7 @@ fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2
     let sine = rest + rest * squared * polynomial(simd, &SINE, squared);
     let fourth = squared * squared * polynomial(simd, &COSINE, squared);
     let cosine = (lit::<S, N, V>(simd, 1.0) - squared * lit(simd, 0.5)) + fourth;
-    // The quarter of the turn, from -2 to 2; -2 and 2 are equal.
+    // The quarter of the turn, from -2 to 2, where -2 and 2 are equivalent.
     let quarter = quarters - rounded(simd, quarters * lit(simd, 0.25)) * lit(simd, 4.0);
     let (half, low): (V, V) = (lit(simd, 0.5), lit(simd, -1.5));
     let is_odd = quarter.abs().simd_eq(lit(simd, 1.0));
@@ -61,7 +62,7 @@ fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2
     [is_below.select(-sine, sine), is_left.select(-cosine, cosine)]
 }
 
-/// The nearest integer of a number far below 1 / epsilon.
+/// Returns the nearest integer of a number far below 1 / epsilon.
 #[inline(always)]
 fn rounded<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: V) -> V {
     let large = V::all(simd, N::lit(1.5) / N::EPSILON);
@@ -82,7 +83,7 @@ fn polynomial<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     sum
 }
 
-/// Replaces the lanes whose angle is too large.
+/// Recomputes the lanes whose angle is above [`MAX_ANGLE`] or not finite.
 #[inline(always)]
 fn mended<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V, found: [V; 2]) -> [V; 2] {
     let (mut angles, mut pairs) = ([N::ZERO; 8], [[N::ZERO; 8]; 2]);
@@ -110,7 +111,7 @@ mod tests {
     use crate::math::lanes::with_lanes;
     use crate::math::simd::Level;
 
-    /// Sines and cosines, computed at each level, which must have the same bits.
+    /// Returns the sines and cosines; checks that every level gives bitwise equal results.
     fn of<N: Real>(angles: [N; 8]) -> [[N; 8]; 2] {
         let mut all = Level::available().into_iter().map(|level| {
             let mut found = [[N::ZERO; 8]; 2];

@@ -2,19 +2,19 @@
 
 use super::{Point, Real, Vector};
 
-/// The smaller of two numbers; the second if either is NaN.
+/// Returns the smaller of two numbers; the second if either is NaN.
 #[inline]
 pub fn min<N: Real>(a: N, b: N) -> N {
     if a < b { a } else { b }
 }
 
-/// The larger of two numbers; the second if either is NaN.
+/// Returns the larger of two numbers; the second if either is NaN.
 #[inline]
 pub fn max<N: Real>(a: N, b: N) -> N {
     if a > b { a } else { b }
 }
 
-/// The largest magnitude among the components; 0 if all are zero or NaN.
+/// Returns the largest magnitude among the components; 0 if all are zero or NaN.
 #[inline]
 pub fn max_component<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     let mut largest = N::ZERO;
@@ -24,10 +24,10 @@ pub fn max_component<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     largest
 }
 
-/// The unit vector along `v` and the length of `v`; `None` for a zero or non-finite vector.
+/// Returns the unit vector along `v` and the length of `v`; `None` for a zero or non-finite vector.
 ///
-/// Rescales by a power of two if needed, so that it is right for lengths whose square overflows or
-/// underflows, and commutes exactly with scaling by powers of two.
+/// Rescales by a power of two if needed, so that the result is right even if the squared length
+/// overflows or underflows, and so that scaling `v` by a power of two scales the length exactly.
 #[inline]
 pub fn unit<N: Real, const D: usize>(v: &Vector<N, D>) -> Option<(Vector<N, D>, N)> {
     let squared = v.norm_squared();
@@ -44,32 +44,33 @@ pub fn unit<N: Real, const D: usize>(v: &Vector<N, D>) -> Option<(Vector<N, D>, 
     usable.then(|| (scaled / length, length * scale))
 }
 
-/// The unit vector along `v`, or `fallback` if `v` has no direction.
+/// Returns the unit vector along `v`, or `fallback` if `v` is zero or not finite.
 #[inline]
 pub fn unit_or<N: Real, const D: usize>(v: &Vector<N, D>, fallback: Vector<N, D>) -> Vector<N, D> {
     unit(v).map_or(fallback, |(direction, _)| direction)
 }
 
-/// `v` rotated by 90° counter-clockwise.
+/// Returns `v` rotated by 90° counter-clockwise.
 #[inline]
 pub fn perp<N: Real>(v: &Vector<N, 2>) -> Vector<N, 2> {
     Vector::<N, 2>::new(-v.y, v.x)
 }
 
-/// The signed area of the parallelogram of `a` and `b`: positive if `b` lies counter-clockwise of `a`.
+/// Returns the signed area of the parallelogram of `a` and `b`: positive if `b` is
+/// counter-clockwise of `a`.
 #[inline]
 pub fn cross2<N: Real>(a: &Vector<N, 2>, b: &Vector<N, 2>) -> N {
     a.x * b.y - a.y * b.x
 }
 
-/// The cross product in 3D.
+/// Returns the cross product `a × b`.
 #[inline]
 pub fn cross<N: Real>(a: &Vector<N, 3>, b: &Vector<N, 3>) -> Vector<N, 3> {
     Vector::<N, 3>::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }
 
-/// A unit vector perpendicular to the unit vector `d`, as close as possible to the axis of the
-/// smallest component of `d` (the first of equals).
+/// Returns a unit vector perpendicular to the unit vector `d`, as close as possible to the axis
+/// along which `d` has its smallest component (the first if there are several).
 pub fn perpendicular_to<N: Real, const D: usize>(d: &Vector<N, D>) -> Vector<N, D> {
     let mut least = 0;
     for axis in 1..D {
@@ -82,7 +83,8 @@ pub fn perpendicular_to<N: Real, const D: usize>(d: &Vector<N, D>) -> Vector<N, 
     unit_or(&v, v)
 }
 
-/// Two unit vectors that complete the unit vector `n` to a right-handed basis `(u, v, n)`.
+/// Returns two unit vectors `u` and `v` that complete the unit vector `n` to a right-handed basis
+/// `(u, v, n)`.
 ///
 /// Duff et al., "Building an Orthonormal Basis, Revisited" (JCGT 2017): no branch except the sign.
 #[inline]
@@ -95,19 +97,19 @@ pub fn orthonormal_basis<N: Real>(n: &Vector<N, 3>) -> (Vector<N, 3>, Vector<N, 
     (u, v)
 }
 
-/// The mean of some points; the origin if there are none.
+/// Returns the mean of some points; the origin if there are none.
 pub fn centroid<N: Real, const D: usize>(points: &[Point<N, D>]) -> Point<N, D> {
     let sum = points.iter().fold(Vector::<N, D>::zeros(), |sum, p| sum + p.coords);
     let count = points.iter().fold(N::ZERO, |count, _| count + N::ONE);
     Point::from(if points.is_empty() { sum } else { sum / count })
 }
 
-/// The largest difference from 1 of the squared length of a unit vector or of the quaternion of a
-/// rotation: rounding error may accumulate for hours.
+/// The largest accepted difference from 1 of the squared length of a unit vector or of a rotation's
+/// quaternion. It allows for rounding errors that accumulate over hours.
 const UNIT_SLACK: f64 = 1.0 / 64.0;
 
-/// Whether a squared length is that of a unit vector or of the quaternion of a rotation: the length is within 0.8 %
-/// of 1. False for NaN.
+/// Whether `squared_length` belongs to a length within 0.8 % of 1, as that of a unit vector or of a
+/// rotation's quaternion. False for NaN.
 #[inline]
 pub(crate) fn is_unit<N: Real>(squared_length: N) -> bool {
     (squared_length - N::ONE).abs() <= N::lit(UNIT_SLACK)

@@ -2,7 +2,7 @@
 
 use super::{Real, Vector};
 
-/// Numbers from -1 to 1 (Marsaglia, "Xorshift RNGs", 2003).
+/// A generator of numbers from -1 to 1 (Marsaglia, "Xorshift RNGs", 2003).
 pub(crate) struct Xorshift(pub(crate) u64);
 
 impl Xorshift {

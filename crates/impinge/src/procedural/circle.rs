@@ -4,23 +4,23 @@ use core::f64::consts::FRAC_PI_2;
 
 use crate::math::{Real, Vector};
 
-/// The minimum number of parts of a full turn: fewer enclose no area.
+/// The minimum number of subdivisions of a full turn: fewer enclose no area.
 pub const MIN_SUBDIVISIONS: u32 = 3;
 
-/// The maximum number of parts of a full turn. The gap to a ball of radius 1 is then 4e-8, below
-/// the resolution of `f32`, and 32 bits can number the vertices of every surface.
+/// The maximum number of subdivisions of a full turn. The gap to a ball of radius 1 is then 4e-8,
+/// below the resolution of `f32`, and the vertices of every surface fit 32-bit indices.
 pub const MAX_SUBDIVISIONS: u32 = 1 << 14;
 
-/// Clamps a requested number of parts to the supported range.
+/// Clamps a requested number of subdivisions to the supported range.
 pub(super) fn parts_of_turn(subdivisions: u32) -> u32 {
     subdivisions.clamp(MIN_SUBDIVISIONS, MAX_SUBDIVISIONS)
 }
 
-/// The unit vector at `index / count` of a full turn from x towards y; `index` may be up to some
-/// turns, `count` up to four times [`MAX_SUBDIVISIONS`].
+/// Returns the unit vector at `index / count` of a full turn from x towards y. `index` may be
+/// several times `count`; `count` may be up to four times [`MAX_SUBDIVISIONS`].
 ///
-/// Each is computed on its own, from an angle of at most 45°: errors do not accumulate, and quarter
-/// turns are exact.
+/// Each vector is computed independently, from an angle of at most 45°: errors do not accumulate,
+/// and quarter turns are exact.
 pub(super) fn direction<N: Real>(index: u32, count: u32) -> Vector<N, 2> {
     let (quarters, rest) = (4 * index / count, 4 * index % count);
     let is_mirrored = 2 * rest > count;

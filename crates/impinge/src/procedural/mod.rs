@@ -1,16 +1,16 @@
-//! Surfaces of the built-in shapes as points and triangles: for drawing and for tests.
+//! Surfaces of the built-in shapes as points and triangles, for drawing and for tests.
 //!
-//! [`plane`] has outlines, [`space`] closed surfaces of triangles; both are plain data in the frame
-//! of the shape, independent of any drawing. Half-spaces are unbounded and segments have no
-//! surface, so they are missing.
+//! [`plane`] has outlines, [`space`] closed surfaces of triangles. Both are plain data in the frame
+//! of the shape, independent of any drawing. Half-spaces, which are unbounded, and segments, which
+//! have no surface, are left out.
 //!
 //! Common properties:
 //! * every vertex is a point of the true surface, up to a few rounding units, so that the result
 //!   lies inside the solid, within the gap that each function states;
 //! * a size of zero changes no vertex count and no triangle: some triangles then have no area;
-//! * scaling a shape by a power of two scales every vertex exactly, and the bits are the same on
-//!   every machine;
-//! * the number of subdivisions is that of a full turn. It is clamped to the range from
+//! * scaling a shape by a power of two scales every vertex exactly, and the results are bitwise
+//!   equal on every machine;
+//! * the number of subdivisions is for a full turn. It is clamped to the range from
 //!   [`MIN_SUBDIVISIONS`] to [`MAX_SUBDIVISIONS`].
 
 mod circle;

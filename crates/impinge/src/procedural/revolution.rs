@@ -13,14 +13,14 @@ use crate::math::{Point, Real, Vector, cross, orthonormal_basis};
 pub(super) struct Stop<N: Real> {
     pub(super) center: Point<N, 3>,
     pub(super) radius: N,
-    /// The normal at the end of the preceding band.
+    /// The normal, as (away from the axis, along the axis), at the end of the preceding band.
     pub(super) before: Vector<N, 2>,
-    /// The normal at the start of the following band.
+    /// The normal, as (away from the axis, along the axis), at the start of the following band.
     pub(super) after: Vector<N, 2>,
 }
 
 impl<N: Real> Stop<N> {
-    /// A circle with the same normal on both sides.
+    /// Returns a circle with the same normal on both sides.
     pub(super) fn smooth(center: Point<N, 3>, radius: N, normal: Vector<N, 2>) -> Self {
         Self { center, radius, before: normal, after: normal }
     }
@@ -35,13 +35,13 @@ pub(super) struct RevolutionFrame<N: Real> {
 }
 
 impl<N: Real> RevolutionFrame<N> {
-    /// A frame around a unit vector.
+    /// Returns a frame around a unit vector.
     pub(super) fn around(axis: Vector<N, 3>) -> Self {
         let (across, _) = orthonormal_basis(&axis);
         Self { across, axis, third: cross(&across, &axis) }
     }
 
-    /// Converts a 2D unit vector to the direction away from the axis.
+    /// Converts a 2D unit vector to the 3D direction away from the axis.
     fn radial(&self, toward: &Vector<N, 2>) -> Vector<N, 3> {
         self.across * toward.x + self.third * toward.y
     }
@@ -109,7 +109,8 @@ impl<N: Real> Bands<'_, N> {
         }
     }
 
-    /// The normals at two neighbouring columns; at a pole twice the normal midway between them.
+    /// Returns the normals at two neighbouring columns; at a pole, twice the normal midway between
+    /// the columns.
     fn normals(
         &self,
         profile: &Vector<N, 2>,

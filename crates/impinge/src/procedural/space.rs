@@ -26,9 +26,9 @@ use crate::shape::{
 /// ```
 #[must_use]
 pub fn ball<N: Real>(ball: &Ball<N>, subdivisions: u32) -> TriangleSurface<N> {
-    // Quadrilaterals between meridians and parallels are flat trapezoids inscribed in the sphere.
-    // The one whose middle is nearest to the centre would straddle the equator: its middle is at
-    // cos(π / n) · cos(π / 4k) of the radius, which is not below cos²(π / n).
+    // Quadrilaterals between meridians and parallels are flat trapezoids inscribed in the sphere. A
+    // quadrilateral across the equator would be the nearest to the centre: its middle is at cos(π /
+    // n) · cos(π / 4k) of the radius, which is at least cos²(π / n).
     let count = parts_of_turn(subdivisions);
     let quarter = count.div_ceil(4);
     let sphere =
@@ -71,7 +71,8 @@ pub fn ellipsoid<N: Real>(ellipsoid: &Ellipsoid<N, 3>, subdivisions: u32) -> Tri
     let is_flat = half_axes.iter().any(|&half| half == N::ZERO);
     let least = half_axes.iter().fold(N::INFINITY, |least, &half| min(half, least));
     for normal in surface.normals.iter_mut().flatten() {
-        // Along the axes that are zero, or else divided by the half axes.
+        // If a half axis is zero, the normal is along the zero axes; else its components are
+        // divided by the half axes.
         let steep = normal.zip_map(half_axes, |x, half| match (is_flat, half == N::ZERO) {
             (true, false) => N::ZERO,
             (true, true) => x,
@@ -164,7 +165,7 @@ pub fn cylinder<N: Real>(cylinder: &Cylinder<N>, subdivisions: u32) -> TriangleS
 pub fn cone<N: Real>(cone: &Cone<N>, subdivisions: u32) -> TriangleSurface<N> {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     let below = Vector::<N, 2>::new(N::ZERO, -N::ONE);
-    // Halved, so that twice the half height cannot overflow.
+    // Halves the radius instead of doubling the half height, which could overflow.
     let slope = Vector::<N, 2>::new(half_height, radius * N::HALF);
     let slope = unit_or(&slope, Vector::<N, 2>::new(N::ONE, N::ZERO));
     let base = on_axis(-half_height);
@@ -229,7 +230,7 @@ pub fn triangle<N: Real>(triangle: &Triangle<N, 3>) -> TriangleSurface<N> {
     surface
 }
 
-/// The circles of a sphere across an axis, with `quarter` parts to a quarter turn.
+/// The parallels of a sphere about an axis, with `quarter` parts to a quarter turn.
 #[derive(Clone, Copy)]
 struct Sphere<N: Real> {
     radius: N,
@@ -239,7 +240,7 @@ struct Sphere<N: Real> {
 }
 
 impl<N: Real> Sphere<N> {
-    /// The circle at `index` parts from the pole towards which the axis points.
+    /// Returns the parallel at `index` parts from the pole towards which the axis points.
     fn stop(&self, center: &Point<N, 3>, index: u32) -> Stop<N> {
         let toward = direction::<N>(index, 4 * self.quarter);
         let center = center + self.axis * (toward.x * self.radius);
@@ -247,12 +248,12 @@ impl<N: Real> Sphere<N> {
     }
 }
 
-/// The y axis.
+/// Returns the unit vector of the y axis.
 fn up<N: Real>() -> Vector<N, 3> {
     Vector::<N, 3>::new(N::ZERO, N::ONE, N::ZERO)
 }
 
-/// A point of the y axis.
+/// Returns a point of the y axis.
 fn on_axis<N: Real>(y: N) -> Point<N, 3> {
     Point::<N, 3>::new(N::ZERO, y, N::ZERO)
 }

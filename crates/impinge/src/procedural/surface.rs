@@ -22,7 +22,7 @@ pub struct Outline<N: Real> {
 /// A closed surface of triangles in 3D.
 ///
 /// Triangles share their vertices: each edge belongs to two triangles, once in each direction. At a
-/// crease, the triangles on its two sides differ in their normals only.
+/// crease, the triangles on the two sides have different normals at the same vertices.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -40,18 +40,18 @@ pub struct TriangleSurface<N: Real> {
     pub vertices: Vec<Point<N, 3>>,
     /// The vertices of each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// For each triangle the outward unit normals of the true surface at its vertices, for smooth
-    /// shading. At the tip of a cone it is the normal at the middle of the triangle.
+    /// For each triangle, the outward unit normals of the true surface at its vertices, for smooth
+    /// shading. At the tip of a cone the normal is that at the middle of the triangle.
     pub normals: Vec<[Vector<N, 3>; 3]>,
 }
 
 impl<N: Real> TriangleSurface<N> {
-    /// The points of each triangle, counter-clockwise seen from outside.
+    /// Returns the corner points of each triangle, counter-clockwise seen from outside.
     pub fn corners(&self) -> impl ExactSizeIterator<Item = [Point<N, 3>; 3]> + '_ {
         self.triangles.iter().map(|triangle| triangle.map(|index| self.vertices[index as usize]))
     }
 
-    /// A surface of these vertices, without triangles.
+    /// Returns a surface with these vertices and without triangles.
     pub(super) const fn of_vertices(vertices: Vec<Point<N, 3>>) -> Self {
         Self { vertices, triangles: Vec::new(), normals: Vec::new() }
     }
@@ -66,7 +66,7 @@ impl<N: Real> TriangleSurface<N> {
     }
 }
 
-/// Converts the closed surface to a shape. Its vertices and triangles keep their numbers.
+/// Converts the closed surface to a shape; its vertices and triangles keep their indices.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;

@@ -22,15 +22,15 @@ use crate::tables::entries;
 pub enum ClosestPoints<N: Real, const D: usize> {
     /// The solids touch or overlap.
     Intersecting,
-    /// A point on the first solid and one on the second, in the world frame, whose distance is the
-    /// distance of the solids.
+    /// A point on the first solid and a point on the second, in the world frame. Their distance is
+    /// the distance of the solids.
     WithinMargin(Point<N, D>, Point<N, D>),
     /// The solids are farther apart than `max_distance`.
     Disjoint,
 }
 
 impl<N: Real, const D: usize> ClosestPoints<N, D> {
-    /// Returns the answer with the solids swapped.
+    /// Returns the result with the solids swapped.
     #[must_use]
     pub fn flipped(&self) -> Self {
         match self {
@@ -42,10 +42,11 @@ impl<N: Real, const D: usize> ClosestPoints<N, D> {
 
 /// Returns the nearest points of two solids that are at most `max_distance` apart.
 ///
-/// If several pairs of points are equally near, one is chosen, the same for both orders of the
-/// arguments. A distance equal to `max_distance` counts as within; a negative or NaN `max_distance`
-/// counts as zero. [`ClosestPoints::Disjoint`] if a pose is not finite. For composites the points
-/// lie on the nearest parts; [`witness`](super::witness()) returns their numbers.
+/// If several pairs of points are equally near, one pair is chosen, the same for both orders of the
+/// arguments. A distance equal to `max_distance` is within the limit; a negative or NaN
+/// `max_distance` is treated as zero. Returns [`ClosestPoints::Disjoint`] if a pose is not finite.
+/// For composites the points lie on the nearest parts; [`witness`](super::witness()) returns the
+/// indices of these parts.
 pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
@@ -56,7 +57,7 @@ pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     entries::closest_points(R::view(m1), g1, R::view(m2), g2, max_distance)
 }
 
-/// See [`closest_points`].
+/// Implements [`closest_points`] with poses by reference.
 #[inline]
 pub(crate) fn closest_points_at<N: Space<D>, const D: usize>(
     isometry1: IsometryRef<'_, N, D>,

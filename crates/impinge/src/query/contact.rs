@@ -29,14 +29,14 @@ pub struct Contact<N: Real, const D: usize> {
     pub world2: Point<N, D>,
     /// The unit vector from the first solid to the second.
     pub normal: Unit<Vector<N, D>>,
-    /// How deep the solids overlap along the normal: positive when penetrating, zero when touching,
-    /// minus the distance when apart.
+    /// The penetration depth along the normal: positive if the solids overlap, zero if they touch,
+    /// minus the distance if they are apart.
     pub depth: N,
 }
 
 impl<N: Real, const D: usize> Contact<N, D> {
-    /// The contact of the solids inflated by these lengths; its points are on the inflated
-    /// surfaces.
+    /// Returns the contact of the solids inflated by the lengths `first` and `second`; its points
+    /// are on the inflated surfaces.
     pub(crate) fn grown(&self, [first, second]: [N; 2]) -> Self {
         let normal = self.normal.into_inner();
         Self {
@@ -56,15 +56,16 @@ impl<N: Real, const D: usize> Contact<N, D> {
 
 /// Returns the contact of two solids that overlap, touch, or are at most `prediction` apart.
 ///
-/// If they overlap, the depth is the length of the shortest translation that separates them, and
-/// the normal its direction for the second solid. A distance equal to `prediction` counts. A
-/// negative `prediction` restricts the answer to contacts at least that deep. `None` if
-/// `prediction` is NaN or a pose is not finite, and for half-spaces that overlap without bound,
-/// which have no depth.
+/// If the solids overlap, the depth is the length of the shortest translation that separates them,
+/// and the normal is the direction of that translation for the second solid. A distance equal to
+/// `prediction` is within it. A negative `prediction` restricts the result to contacts at least
+/// that deep. Returns `None` if the solids are farther apart, if `prediction` is NaN or a pose is
+/// not finite, and for half-spaces that overlap without bound, which have no depth.
 ///
-/// For a composite it is the deepest contact of its manifolds: the contact of a part, with a normal
-/// of the whole surface ([`Surface`](crate::shape::Surface)). A surface with one side has none from
-/// behind. Cost: that of [`distance`](crate::query::distance), plus the parts that overlap.
+/// For a composite the result is the deepest contact of its manifolds: the contact of a part, with
+/// a normal of the whole surface ([`Surface`](crate::shape::Surface)). A one-sided surface has no
+/// contacts from behind. The cost is that of [`distance`](crate::query::distance), plus the parts
+/// that overlap.
 ///
 /// ```
 /// use impinge::math::{Isometry3, Vector};
@@ -87,7 +88,7 @@ pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     entries::contact(R::view(m1), g1, R::view(m2), g2, prediction)
 }
 
-/// See [`contact`].
+/// Implements [`contact`] with poses by reference.
 #[inline]
 pub(crate) fn contact_at<N: Space<D>, const D: usize>(
     isometry1: IsometryRef<'_, N, D>,
@@ -102,7 +103,8 @@ pub(crate) fn contact_at<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Contact<N, D> {
-    /// Converts a separation in the world; `None` for half-spaces that overlap without bound.
+    /// Converts a separation in the world frame to a contact; `None` for half-spaces that overlap
+    /// without bound.
     #[inline]
     pub(crate) fn of_separation(found: &Separation<N, D>) -> Option<Self> {
         found.distance.is_finite_number().then(|| Self {

@@ -7,11 +7,12 @@ use crate::tables::entries;
 
 /// Returns the distance between two solids: zero if they touch or overlap.
 ///
-/// It is the length of the shortest translation that makes them touch. Swapping the solids gives
-/// the same bits. Infinite if a pose is not finite, and for a composite without parts.
+/// The distance is the length of the shortest translation that makes the solids touch. Swapping the
+/// solids gives a bitwise equal result. Infinite if a pose is not finite, and for a composite
+/// without parts.
 ///
-/// The distance of composites is that of their nearest parts; [`witness`](super::witness()) returns
-/// the parts and documents the cost.
+/// The distance of composites is the distance of their nearest parts; [`witness`](super::witness())
+/// returns these parts and documents the cost.
 ///
 /// ```
 /// use impinge::math::{Isometry2, Vector};
@@ -32,7 +33,7 @@ pub fn distance<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     entries::distance(R::view(m1), g1, R::view(m2), g2)
 }
 
-/// See [`distance`].
+/// Implements [`distance`] with poses by reference.
 #[inline]
 pub(crate) fn distance_at<N: Space<D>, const D: usize>(
     isometry1: IsometryRef<'_, N, D>,
@@ -43,7 +44,7 @@ pub(crate) fn distance_at<N: Space<D>, const D: usize>(
     distance_between(&AtIsometry::new(isometry1, shape1), &AtIsometry::new(isometry2, shape2))
 }
 
-/// [`distance`] of shapes placed by any [`Placing`].
+/// Implements [`distance`] for shapes placed by any [`Placing`].
 #[inline]
 pub(crate) fn distance_between<'a, N: Space<D>, const D: usize>(
     one: &impl Placing<'a, N, D>,
@@ -53,7 +54,7 @@ pub(crate) fn distance_between<'a, N: Space<D>, const D: usize>(
     found.map_or(N::INFINITY, |distance| max(distance, N::ZERO))
 }
 
-/// The distance of two shapes, zero or more; `None` if it is above `limit`.
+/// Returns the distance of two shapes, zero or more; `None` if it exceeds `limit`.
 #[inline]
 pub(crate) fn distance_within<'a, N: Space<D>, const D: usize>(
     one: &impl Placing<'a, N, D>,

@@ -1,5 +1,5 @@
-//! Contact kinematics: the motion of a contact with its solids, to first order and without a new
-//! query.
+//! Contact kinematics: they predict a contact after small motions of its solids, to first order and
+//! without a new query.
 
 mod own;
 mod side;
@@ -30,32 +30,33 @@ use crate::shape::{FeatureId, Geometry};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NeighborhoodGeometry<N: Real, const D: usize> {
-    /// A point that moves with the solid.
+    /// A point that is fixed to the solid.
     Point,
     /// A line along this unit vector.
     Line(Vector<N, D>),
-    /// A flat piece with this outward unit normal.
+    /// A plane with this outward unit normal.
     Plane(Vector<N, D>),
 }
 
-/// The source of the normal of a moved contact.
+/// How the normal of a moved contact is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NormalRule<N: Real, const D: usize> {
-    /// It rotates with the first solid, one of whose faces defines it.
+    /// The normal rotates with the first solid, one of whose faces defines it.
     First,
-    /// It rotates with the second solid.
+    /// The normal rotates with the second solid.
     Second,
-    /// The points and lines of the contact: it is perpendicular to the lines.
+    /// The points and lines of the contact define the normal: it is perpendicular to the lines, or
+    /// along the connection of the points.
     Geometry,
-    /// It is perpendicular to an edge of either solid, each in its own frame: the two edges whose
-    /// crossing defines the manifold's normal.
+    /// The normal is perpendicular to an edge of either solid, each in its own frame: the two edges
+    /// whose crossing defines the manifold's normal.
     Edges(Vector<N, D>, Vector<N, D>),
 }
 
 /// The data to predict a contact at new poses of its two solids.
 ///
-/// All in the local frames of the solids, on their cores; the rounding radii are added at the end.
-/// A round side is represented by its axis, with a radius.
+/// All vectors are in the local frames of the solids and describe their cores; the rounding radii
+/// are added at the end. A round side is represented by its axis, with a radius.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -85,8 +86,8 @@ pub struct ContactKinematic<N: Real, const D: usize> {
     pub(crate) geometry2: NeighborhoodGeometry<N, D>,
     pub(crate) rounding1: N,
     pub(crate) rounding2: N,
-    /// The normal from the first solid to the second, in the frame of the first: used if the
-    /// geometry defines none.
+    /// The normal from the first solid to the second, in the frame of the first; used if the
+    /// geometry defines no normal.
     pub(crate) normal1: Vector<N, D>,
     /// The normal from the first solid to the second, in the frame of the second.
     pub(crate) normal2: Vector<N, D>,
@@ -106,12 +107,12 @@ impl<N: Real, const D: usize> fmt::Debug for ContactKinematic<N, D> {
     }
 }
 
-/// Two points of the cores, in the frame of the first solid.
+/// A point of the first core and a point of the second, both in the frame of the first solid.
 type Feet<N, const D: usize> = (Point<N, D>, Point<N, D>);
 
 impl<N: Real, const D: usize> ContactKinematic<N, D> {
-    /// The kinematic of a point of a manifold with the normal `normal`, in the frame of the first
-    /// solid.
+    /// Returns the kinematic of a point of a manifold; `normal` is the manifold's normal in the
+    /// frame of the first solid.
     #[cfg(test)]
     pub(crate) fn new(
         pair: &Pair<'_, N, D>,
@@ -121,13 +122,13 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         KinematicSides::new(pair, normal).kinematic(point)
     }
 
-    /// The feature of the first solid that touches.
+    /// Returns the feature of the first solid that touches.
     #[must_use]
     pub fn feature1(&self) -> FeatureId {
         self.feature1
     }
 
-    /// The feature of the second solid that touches.
+    /// Returns the feature of the second solid that touches.
     #[must_use]
     pub fn feature2(&self) -> FeatureId {
         self.feature2
@@ -135,15 +136,15 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
 
     /// Returns the contact of the same features with the solids at new poses, without a new query.
     ///
-    /// At the poses of the last update it is the contact itself; for a small motion its error is of
-    /// second order. It does not detect that other features came nearer, or that the contact left
-    /// its features: query again after a larger motion. A corner stays on the plane or line of the
-    /// other solid, two crossing lines give their nearest points, two points or a point and a line
-    /// the shortest connection. If that vanishes, and for lines that are nearly parallel, the
-    /// points and the normal at the last update move with their solids. The deepest contact on a
-    /// round rim has distance and normal of that accuracy, but its position on the rim is accurate
-    /// to first order only; so are the other contacts on that rim, which follow the deepest one.
-    /// Poses that are not finite give a contact that is not.
+    /// At the poses of the last update the result is the contact itself; for a small motion its
+    /// error is of second order. The prediction does not detect that other features came nearer, or
+    /// that the contact left its features: query again after a larger motion. A corner stays on the
+    /// plane or line of the other solid. Two crossing lines give their nearest points; two points,
+    /// or a point and a line, give the shortest connection. If the connection vanishes, and for
+    /// lines that are nearly parallel, the points and the normal at the last update move with their
+    /// solids. The deepest contact on a round rim has distance and normal of second order, but its
+    /// position on the rim is of first order only; so are the other contacts on that rim, which
+    /// follow the deepest one. If a pose is not finite, the result is not finite.
     #[must_use]
     pub fn contact<R: AbstractRotation<N, D>>(
         &self,
@@ -163,13 +164,13 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
-    /// The kinematic of the solids inflated by these lengths, which adds to their rounding.
+    /// Returns the kinematic of the solids with `first` and `second` added to their radii.
     pub(super) fn grown(&self, [first, second]: [N; 2]) -> Self {
         let (rounding1, rounding2) = (self.rounding1 + first, self.rounding2 + second);
         Self { rounding1, rounding2, ..*self }
     }
 
-    /// The kinematic with the solids swapped.
+    /// Returns the kinematic with the solids swapped.
     pub(crate) fn flipped(&self) -> Self {
         Self {
             feature1: self.feature2,
@@ -192,17 +193,17 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
-    /// The kinematic of a contact whose normal belongs to a face of the first or second shape that
-    /// the solid alone does not have: unless the geometry gives the normal, it rotates with that
-    /// solid.
+    /// Returns the kinematic of a contact whose normal belongs to a face of the first or second
+    /// shape, but not of the touching part alone. The normal then rotates with that shape, unless
+    /// the geometry gives the normal.
     pub(super) fn turning_with(self, is_second: bool) -> Self {
         let own = if is_second { NormalRule::Second } else { NormalRule::First };
         let rule = if self.rule == NormalRule::Geometry { NormalRule::Geometry } else { own };
         Self { rule, ..self }
     }
 
-    /// The kinematic in the frames of two shapes whose parts the solids are: `pose1` and `pose2`
-    /// are the poses of the solids in these frames, `turns` is whether rotations change the shapes.
+    /// Returns the kinematic in the frames of two shapes that have the solids as parts. `pose1` and
+    /// `pose2` are the poses of the solids there; `turns` is whether rotations change the shapes.
     pub(super) fn in_frames(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
         Self {
             turns,
@@ -222,7 +223,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
-    /// Predicts the contact in the frame of the first solid, for a pose of the second in it.
+    /// Predicts the contact, in the frame of the first solid, for the new relative pose `pose12`.
     pub(crate) fn predicted(&self, pose12: &Pose<N, D>) -> Separation<N, D> {
         let point2 = pose12.point(&self.local2);
         let geometry2 = self.geometry2.moved(pose12);
@@ -247,9 +248,8 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         (normal - self.normal1).norm() <= least_angle()
     }
 
-    /// Whether the slope of a line along the manifold's normal excludes that any normal
-    /// perpendicular to the line is near it: a quick sufficient test. Of two nearly parallel lines
-    /// only the first counts.
+    /// A quick sufficient test whether some line has such a slope along the manifold's normal that
+    /// no normal perpendicular to the line is near it. Of two nearly parallel lines, only the first.
     fn is_steep(&self) -> bool {
         let is_tilted = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
             match geometry {
@@ -285,27 +285,27 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 }
 
-/// Unit vectors that differ by at most this differ by rounding. The margin is for normals from a
-/// query, which accumulates more rounding than one operation.
+/// Returns the difference up to which unit vectors are treated as equal. The margin is for normals
+/// from a query, which accumulates more rounding than one operation.
 fn least_angle<N: Real>() -> N {
     N::lit(256.0) * N::EPSILON
 }
 
-/// The common data of the kinematics of all points of one manifold.
+/// The data that the kinematics of all points of one manifold share.
 pub(super) struct KinematicSides<'a, N: Real, const D: usize> {
     pose12: &'a Pose<N, D>,
-    /// The manifold's normal in the frames of the two solids.
+    /// The manifold's normal in the frames of the first and the second solid.
     normal1: Vector<N, D>,
     normal2: Vector<N, D>,
     side1: KinematicSide<N, D>,
     side2: KinematicSide<N, D>,
     turns: [bool; 2],
-    /// The rule of points whose own geometry does not give the normal, computed on first use.
+    /// The rule of points whose own geometry does not give the normal; computed on first use.
     rule: Option<NormalRule<N, D>>,
 }
 
 impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
-    /// The sides of a manifold; `normal` is in the frame of the first solid.
+    /// Returns the shared data of a manifold; `normal` is in the frame of the first solid.
     pub(super) fn new(pair: &'a Pair<'_, N, D>, normal: &Vector<N, D>) -> Self {
         let normal2 = pair.pose12.inverse_vector(normal);
         Self {
@@ -342,9 +342,9 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
         kinematic
     }
 
-    /// The rule if a contact's own geometry does not give the manifold's normal: the face
-    /// perpendicular to it, else the edges perpendicular to it, else the face with the smaller
-    /// tilt.
+    /// Returns the rule for contacts whose own geometry does not give the manifold's normal: the
+    /// face perpendicular to the normal, else the edges perpendicular to it, else the face with the
+    /// smaller tilt. Caches the result.
     fn rule(&mut self) -> NormalRule<N, D> {
         let (side1, side2) = (&self.side1, &self.side2);
         *self.rule.get_or_insert_with(|| {
@@ -361,7 +361,8 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
     }
 }
 
-/// Edges of the two solids, each in its own frame, whose crossing defines the manifold's normal.
+/// Returns an edge of each solid, in its own frame, whose crossing defines the manifold's normal;
+/// `None` if there are no such edges.
 fn perpendicular_edges<N: Real, const D: usize>(
     side1: &KinematicSide<N, D>,
     side2: &KinematicSide<N, D>,
@@ -373,7 +374,7 @@ fn perpendicular_edges<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> NeighborhoodGeometry<N, D> {
-    /// The geometry in the frame that `pose` maps to.
+    /// Returns the geometry in the frame that `pose` maps to.
     fn moved(self, pose: &Pose<N, D>) -> Self {
         match self {
             Self::Point => Self::Point,
@@ -410,20 +411,21 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
         }
     }
 
-    /// The component of a vector perpendicular to the lines.
+    /// Returns the component of a vector perpendicular to the lines.
     fn reject(&self, v: &Vector<N, D>) -> Vector<N, D> {
         let once = v - self.first * self.first.dot(v);
         once - self.second * self.second.dot(&once)
     }
 
-    /// A unit vector projected perpendicular to the lines and normalised.
+    /// Returns a unit vector projected perpendicular to the lines and normalised; `fallback` itself
+    /// if the projection vanishes.
     fn upright(&self, fallback: &Vector<N, D>) -> Vector<N, D> {
         unit(&self.reject(fallback)).map_or(*fallback, |(upright, _)| upright)
     }
 
-    /// The unit vector of the shortest connection of two points that may slide along the lines, on
-    /// the side of `fallback`. Returns `fallback` itself, projected perpendicular, if the connection
-    /// vanishes or two lines leave no choice.
+    /// Returns the unit vector of the shortest connection of two points that may slide along the
+    /// lines, on the side of `fallback`. Returns `fallback`, projected perpendicular to the lines,
+    /// if the connection vanishes or two lines leave no choice.
     fn connection(
         &self,
         point1: &Point<N, D>,
@@ -444,13 +446,13 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
     }
 }
 
-/// Below this squared sine of the angle between two lines, their crossing is not computed.
+/// The crossing of two lines is computed if their squared sine is at least this.
 const MIN_SINE_SQUARED: f64 = 1e-6;
 
-/// The points of the two cores that face each other along the normal.
+/// Returns the points of the two cores that face each other along the normal.
 ///
-/// A point or line moves with its solid, and the point on a plane follows it; for two planes the
-/// point on the first stays.
+/// A point or line is fixed to its solid, and the point on a plane follows it. For two planes the
+/// point on the first is fixed.
 fn feet<N: Real, const D: usize>(
     [point1, point2]: [&Point<N, D>; 2],
     geometries: [NeighborhoodGeometry<N, D>; 2],
@@ -472,14 +474,14 @@ fn feet<N: Real, const D: usize>(
     }
 }
 
-/// The coordinate of a vector along `side`, in units of `side`; 0 if `side` is zero.
+/// Returns the coordinate of a vector along `side`, in units of `side`; 0 if `side` is zero.
 fn ratio<N: Real, const D: usize>(v: &Vector<N, D>, side: &Vector<N, D>) -> N {
     let squared = side.norm_squared();
     if squared > N::ZERO { v.dot(side) / squared } else { N::ZERO }
 }
 
-/// The parameters of the nearest points of two lines whose starting points are `gap` apart; zeros
-/// if the lines are nearly parallel.
+/// Returns the parameters of the nearest points of two lines whose starting points are `gap` apart;
+/// zeros if the lines are nearly parallel.
 fn crossing<N: Real, const D: usize>(
     gap: &Vector<N, D>,
     along1: &Vector<N, D>,

@@ -5,14 +5,14 @@ use super::{Contact, ContactKinematic};
 use crate::collide::{Pair, Placed, RawManifold, RawPoint};
 use crate::math::{Pose, Real, Unit, Vector};
 
-/// The id of a contact: no two contacts of a world, at any time, share one.
+/// The id of a contact, unique among all contacts of a world at all times.
 ///
-/// A contact that moved between two updates keeps its id: one on the same features, or one that has
-/// moved by no more than 1/16 of the size of the smaller solid (half the diagonal of its box), on
-/// either solid, while the normal rotated by less than 45°. Two edges that cross are the same
-/// features up to half of that size. The id has no other meaning; its order is that of creation
-/// within one pair. [`ContactId::NULL`], which is also the default, is the id of no contact: for
-/// empty slots of a cache.
+/// A contact that moved between two updates keeps its id if it is on the same features. It also
+/// keeps its id if it has moved by no more than 1/16 of the size of the smaller solid (half the
+/// diagonal of its box), on either solid, while the normal rotated by less than 45°. Two crossing
+/// edges are treated as the same features up to a movement of half of that size. The id has no
+/// other meaning; ids of one pair are ordered by creation. [`ContactId::NULL`], which is also the
+/// default, is the id of no contact, for empty slots of a cache.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -39,15 +39,15 @@ use crate::math::{Pose, Real, Unit, Vector};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactId {
-    /// The number of the pair, never reused.
+    /// The id of the pair, never reused.
     pub(crate) pair: u64,
-    /// The number of the contact within the pair, never reused.
+    /// The id of the contact within the pair, never reused.
     pub(crate) number: u32,
 }
 
 impl ContactId {
-    /// The id of no contact: no world and no algorithm of the library ever assigns it. It is the
-    /// largest id.
+    /// The id of no contact: neither a world nor an algorithm of the library ever assigns it. It is
+    /// the largest id.
     ///
     /// ```
     /// use impinge::query::ContactId;
@@ -60,22 +60,22 @@ impl ContactId {
     /// ```
     pub const NULL: Self = Self { pair: u64::MAX, number: u32::MAX };
 
-    /// The id of a contact of a user's algorithm: `pair` is a number that
-    /// [`IdAllocator`](crate::narrow_phase::IdAllocator) assigned to the pair, `number` one that no
-    /// other contact of the pair has.
+    /// Returns the id of a contact of a user's algorithm. `pair` is a number that
+    /// [`IdAllocator`](crate::narrow_phase::IdAllocator) assigned to the pair; `number` must be
+    /// unique within the pair.
     #[must_use]
     pub const fn new(pair: u64, number: u32) -> Self {
         Self { pair, number }
     }
 
-    /// Whether it is [`Self::NULL`].
+    /// Whether the id is [`Self::NULL`].
     #[must_use]
     pub const fn is_null(self) -> bool {
         self.pair == u64::MAX && self.number == u32::MAX
     }
 }
 
-/// [`ContactId::NULL`].
+/// The default is [`ContactId::NULL`].
 impl Default for ContactId {
     fn default() -> Self {
         Self::NULL
@@ -112,24 +112,24 @@ impl Default for ContactId {
 pub struct TrackedContact<N: Real, const D: usize> {
     /// The geometry at the last update, in the world frame.
     pub contact: Contact<N, D>,
-    /// Predicts the contact when its solids move.
+    /// The kinematic, which predicts the contact when its solids move.
     pub kinematic: ContactKinematic<N, D>,
-    /// The id, kept while the contact lives.
+    /// The id, which is kept while the contact exists.
     pub id: ContactId,
-    /// The part of the first shape that touches; 0 if the shape is not a composite.
+    /// The index of the first shape's part that touches; 0 if the shape is not a composite.
     pub part1: u32,
-    /// The part of the second shape that touches; 0 if the shape is not a composite.
+    /// The index of the second shape's part that touches; 0 if the shape is not a composite.
     pub part2: u32,
 }
 
 impl<N: Real, const D: usize> TrackedContact<N, D> {
-    /// The contact of the solids inflated by these lengths; see [`Contact::grown`].
+    /// Returns the contact of the solids inflated by the lengths `skins`; see [`Contact::grown`].
     pub(super) fn grown(&self, skins: [N; 2]) -> Self {
         let kinematic = self.kinematic.grown(skins);
         Self { contact: self.contact.grown(skins), kinematic, ..*self }
     }
 
-    /// The contact with the solids swapped.
+    /// Returns the contact with the solids swapped.
     pub(super) fn flipped(&self) -> Self {
         Self {
             contact: self.contact.flipped(),
@@ -141,19 +141,18 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
     }
 }
 
-/// Points that delimit a flat area of contact, with one common normal: a manifold with storage of
-/// its own.
+/// Contact points of a flat contact area with one common normal: a manifold that owns its data.
 ///
-/// [`ManifoldView`](super::ManifoldView) is the manifold to read in a world;
-/// [`ManifoldView::to_manifold`](super::ManifoldView::to_manifold) converts it to this type, to be
-/// kept across an update. Users' algorithms build this type, too.
+/// To read manifolds in a world, use [`ManifoldView`](super::ManifoldView);
+/// [`ManifoldView::to_manifold`](super::ManifoldView::to_manifold) converts a view to this type,
+/// which can be kept across an update. Users' algorithms also build this type.
 ///
 /// Two convex solids have one manifold, composites one for each flat patch of contact. A box that
-/// rests on a plane is one manifold of four points in 3D and two in 2D; a ball gives one point.
+/// rests on a plane has one manifold of four points in 3D and two in 2D; a ball gives one point.
 /// [`Self::deepest_contact`] has the depth that the query for one contact returns. The first
-/// manifold of a pair contains its deepest point; in later ones an older point may stand for it, if
-/// its depth is within 1/512 of the size of the smaller solid (half the diagonal of its box) of the
-/// deepest. Empty means that the solids are farther apart than the prediction.
+/// manifold of a pair contains its deepest point. In later manifolds an older point may replace the
+/// deepest one, if its depth is within 1/512 of the size of the smaller solid (half the diagonal of
+/// its box). An empty manifold means that the solids are farther apart than the prediction.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -176,7 +175,7 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactManifold<N: Real, const D: usize> {
-    /// On the heap: most pairs have fewer contacts than the maximum.
+    /// A heap vector: most pairs have fewer contacts than the maximum.
     contacts: Vec<TrackedContact<N, D>>,
 }
 
@@ -187,7 +186,7 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         Self { contacts: contacts.into_iter().collect() }
     }
 
-    /// The manifold of the solids inflated by these lengths; see [`Contact::grown`].
+    /// Returns the manifold of the solids inflated by the lengths `skins`; see [`Contact::grown`].
     pub(crate) fn grown(mut self, skins: [N; 2]) -> Self {
         if skins != [N::ZERO; 2] {
             self.contacts.iter_mut().for_each(|contact| *contact = contact.grown(skins));
@@ -195,31 +194,32 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         self
     }
 
-    /// Replaces the contacts, reusing the memory.
+    /// Replaces the contacts, reusing the allocation.
     pub(super) fn refill(&mut self, contacts: impl Iterator<Item = TrackedContact<N, D>>) {
         self.contacts.clear();
         self.contacts.extend(contacts);
     }
 
-    /// The number of contacts.
+    /// Returns the number of contacts.
     #[must_use]
     pub fn len(&self) -> usize {
         self.contacts.len()
     }
 
-    /// Whether it has no contact.
+    /// Whether the manifold has no contacts.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.contacts.is_empty()
     }
 
-    /// The contacts, in the order in which they began.
+    /// Returns the contacts, in the order in which they began.
     #[must_use]
     pub fn contacts(&self) -> &[TrackedContact<N, D>] {
         &self.contacts
     }
 
-    /// The index of the deepest contact, the first of equals; 0 for an empty manifold.
+    /// Returns the index of the deepest contact, the first if there are several; 0 for an empty
+    /// manifold.
     #[must_use]
     pub fn deepest_contact_id(&self) -> usize {
         let depth = |index: usize| self.contacts[index].contact.depth;
@@ -227,34 +227,36 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         (1..self.contacts.len()).fold(0, deeper)
     }
 
-    /// The contact of the largest depth, the first of equals; `None` for an empty manifold.
+    /// Returns the contact with the largest depth, the first if there are several; `None` for an
+    /// empty manifold.
     #[must_use]
     pub fn deepest_contact(&self) -> Option<&TrackedContact<N, D>> {
         self.contacts.get(self.deepest_contact_id())
     }
 }
 
-/// The data that convert a raw manifold to one in the world.
+/// The data that convert a raw manifold to a manifold in the world frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement<'a, N: Real, const D: usize> {
     /// The pose of the first solid of the raw pair in the world.
     pub(crate) pose1: &'a Pose<N, D>,
-    /// The number of the pair, for the ids.
+    /// The id of the pair, for the ids of its contacts.
     pub(crate) pair: u64,
-    /// Whether the user's first solid is the second of the raw pair: then the result is flipped.
+    /// Whether the user's first solid is the second of the raw pair, so that the result must be
+    /// flipped.
     pub(crate) is_swapped: bool,
 }
 
 impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
-    /// The placement of two solids in the user's order.
+    /// Returns the placement of two solids given in the user's order.
     #[inline]
     pub(crate) fn of_pair(placed: &'a [Placed<'_, N, D>; 2], pair: u64, is_swapped: bool) -> Self {
         Self { pose1: &placed[usize::from(is_swapped)].pose, pair, is_swapped }
     }
 }
 
-/// Converts a raw manifold to the public type; `pair` is the one for which `raw` was built. Reuses
-/// the memory of `old`.
+/// Converts a raw manifold to the public type; `pair` must be the pair for which `raw` was built.
+/// Reuses the memory of `old`.
 pub(crate) fn materialise<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     raw: &RawManifold<N, D>,
@@ -269,7 +271,7 @@ pub(crate) fn materialise<N: Real, const D: usize>(
     ContactManifold { contacts }
 }
 
-/// Converts a contact of two convex solids; `sides` and `normal` are those of its manifold.
+/// Converts a contact of two convex solids; `sides` and `normal` belong to its manifold.
 pub(super) fn tracked<N: Real, const D: usize>(
     sides: &mut KinematicSides<'_, N, D>,
     normal: &Vector<N, D>,
@@ -283,7 +285,8 @@ pub(super) fn tracked<N: Real, const D: usize>(
     if placement.is_swapped { tracked.flipped() } else { tracked }
 }
 
-/// A point in the world; `own` is the manifold's normal as stored, `normal` the same in the world.
+/// Returns a contact point in the world frame; `own` is the stored normal of the manifold, `normal`
+/// is `own` rotated to the world.
 #[inline]
 pub(super) fn placed<N: Real, const D: usize>(
     own: &Vector<N, D>,

@@ -1,6 +1,6 @@
-//! Views of manifolds, read in place.
+//! Views of manifolds, which read the stored contacts in place.
 //!
-//! A view has the contacts of the public manifold, to the bit.
+//! The contacts of a view are bitwise equal to those of the manifold that it converts to.
 
 use crate::tables::entries;
 use core::fmt;
@@ -15,8 +15,8 @@ use crate::collide::{Pair, RawManifold, RawPoint};
 use crate::math::{Pose, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Geometry};
 
-/// A contact as [`ManifoldView::contacts`] returns it: its geometry, id, features and parts. Its
-/// motion is [`ManifoldView::kinematic`].
+/// A contact as [`ManifoldView::contacts`] returns it: its geometry, id, features and parts.
+/// [`ManifoldView::kinematic`] returns the kinematic.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -41,15 +41,15 @@ use crate::shape::{FeatureId, Geometry};
 pub struct ContactPoint<N: Real, const D: usize> {
     /// The geometry at the last update, in the world frame.
     pub contact: Contact<N, D>,
-    /// The id, kept while the contact lives.
+    /// The id, which is kept while the contact exists.
     pub id: ContactId,
     /// The feature of the first solid that touches.
     pub feature1: FeatureId,
     /// The feature of the second solid that touches.
     pub feature2: FeatureId,
-    /// The part of the first shape that touches; 0 if the shape is not a composite.
+    /// The index of the first shape's part that touches; 0 if the shape is not a composite.
     pub part1: u32,
-    /// The part of the second shape that touches; 0 if the shape is not a composite.
+    /// The index of the second shape's part that touches; 0 if the shape is not a composite.
     pub part2: u32,
 }
 
@@ -68,11 +68,11 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
     }
 }
 
-/// Points that delimit a flat area of contact, with one common normal: the manifold to read.
+/// A view of a manifold: contact points of a flat contact area with one common normal.
 ///
-/// It reads the narrow phase's storage. Each contact is placed in the world on access, and nothing
-/// is stored: reading every contact of a world once, as a solver does, moves a fifth of the memory
-/// that a [`ContactManifold`] for each pair would. It always has at least one contact.
+/// A view reads the narrow phase's storage. Each contact is placed in the world on access, and
+/// nothing is stored. Reading every contact of a world once, as a solver does, moves a fifth of the
+/// memory that a [`ContactManifold`] for each pair would. A view has at least one contact.
 ///
 /// | to read | use |
 /// |---|---|
@@ -85,10 +85,10 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 ///
 /// A world returns views of all its manifolds
 /// ([`CollisionWorld::contact_views`](crate::world::CollisionWorld::contact_views)) and of those of
-/// a pair ([`ContactPair::views`](crate::narrow_phase::ContactPair::views));
+/// one pair ([`ContactPair::views`](crate::narrow_phase::ContactPair::views)).
 /// [`CollisionWorld::contact_manifolds`](crate::world::CollisionWorld::contact_manifolds) and
-/// [`ContactPair::contacts`](crate::narrow_phase::ContactPair::contacts) return the same contacts,
-/// to the bit and in the same order, as manifolds that are made on first use.
+/// [`ContactPair::contacts`](crate::narrow_phase::ContactPair::contacts) return bitwise equal
+/// contacts in the same order, as manifolds that are built on first use.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -114,15 +114,15 @@ impl<N: Real, const D: usize> ContactPoint<N, D> {
 #[derive(Clone, Copy)]
 pub struct ManifoldView<'a, N: Real, const D: usize>(ViewSource<'a, N, D>);
 
-/// The objects of a pair. A view reads the pose of one; it reads both only for kinematics.
+/// The objects of a pair. A view reads the pose of one object; only kinematics read both.
 #[derive(Clone, Copy)]
 pub(crate) struct PairRef<'a, N: Real, const D: usize> {
     solids: &'a dyn PlacedSolids<N, D>,
-    /// In the user's order.
+    /// The indices of the two objects, in the user's order.
     key: [u32; 2],
 }
 
-/// Objects by index, as of the last update.
+/// The poses and geometries of objects by index, as of the last update.
 pub(crate) trait PlacedSolids<N: Real, const D: usize>: Sync {
     /// Returns the pose and the geometry of an object.
     fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>);
@@ -134,7 +134,7 @@ impl<'a, N: Real, const D: usize> PairRef<'a, N, D> {
         Self { solids, key }
     }
 
-    /// The solids in the order in which their contacts are stored.
+    /// Returns the solids in the order in which their contacts are stored.
     fn in_order(&self, is_swapped: bool) -> Pair<'a, N, D> {
         let [first, second] = [usize::from(is_swapped), usize::from(!is_swapped)];
         let (pose1, solid1) = self.solids.placed(self.key[first]);
@@ -143,12 +143,12 @@ impl<'a, N: Real, const D: usize> PairRef<'a, N, D> {
     }
 }
 
-/// The storage behind a view.
+/// The storage that a view reads.
 #[derive(Clone, Copy)]
 enum ViewSource<'a, N: Real, const D: usize> {
-    /// The contacts of two convex solids.
+    /// The manifold of two convex solids.
     Convex(&'a RawManifold<N, D>, Placement<'a, N, D>, PairRef<'a, N, D>),
-    /// Some of the contacts of a composite.
+    /// One patch of the contacts of a composite.
     Patch(&'a Patch<N, D>, Placement<'a, N, D>, PairRef<'a, N, D>),
     /// The manifold of a user's algorithm.
     Made(&'a ContactManifold<N, D>),
@@ -161,10 +161,10 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ManifoldView<'_, N, D> {
     }
 }
 
-/// The contacts of a view, each placed on access.
+/// An iterator over the contacts of a view, each placed in the world on access.
 struct Contacts<'a, N: Real, const D: usize> {
     view: ManifoldView<'a, N, D>,
-    /// See [`ManifoldView::own_normal`].
+    /// The result of [`ManifoldView::own_normal`].
     normal: [Vector<N, D>; 2],
     index: usize,
     count: usize,
@@ -209,13 +209,13 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         Self(ViewSource::Patch(patch, placement, pair))
     }
 
-    /// A view of a manifold; `None` if it is empty.
+    /// Returns a view of a manifold; `None` if the manifold is empty.
     #[must_use]
     pub fn of_manifold(manifold: &'a ContactManifold<N, D>) -> Option<Self> {
         (!manifold.is_empty()).then_some(Self(ViewSource::Made(manifold)))
     }
 
-    /// The number of contacts: at least one.
+    /// Returns the number of contacts, at least one.
     #[inline]
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "a view is never empty")]
@@ -227,8 +227,8 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         }
     }
 
-    /// The unit vector from the first solid to the second, in the world frame: the normal of the
-    /// first contact, which all contacts of a manifold share.
+    /// Returns the unit vector from the first solid to the second, in the world frame. It is the
+    /// normal of the first contact, which all contacts of a manifold share.
     #[must_use]
     pub fn normal(&self) -> Unit<Vector<N, D>> {
         let world = |own: &Vector<N, D>, placement: &Placement<'_, N, D>| {
@@ -242,13 +242,13 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         }
     }
 
-    /// The contacts, in the order in which they began.
+    /// Returns the contacts, in the order in which they began.
     #[inline]
     pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
         Contacts { view: self, normal: entries::own_normal(&self), index: 0, count: self.len() }
     }
 
-    /// The contact of the largest depth, the first of equals.
+    /// Returns the contact with the largest depth, the first if there are several.
     #[must_use]
     pub fn deepest_contact(&self) -> ContactPoint<N, D> {
         let depth = |index: usize| match self.0 {
@@ -260,8 +260,8 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         self.contact((1..self.len()).fold(0, deeper), &self.own_normal())
     }
 
-    /// The stored normal, from the first solid in stored order, and the same rotated to the world;
-    /// zeros, which are not used, for a user's manifold.
+    /// Returns the stored normal, which points away from the first solid in stored order, and this
+    /// normal rotated to the world. Both are zero, and unused, for a user's manifold.
     #[inline]
     pub(crate) fn own_normal(&self) -> [Vector<N, D>; 2] {
         let (own, pose1) = match self.0 {
@@ -272,7 +272,7 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
         [own, pose1.vector(&own)]
     }
 
-    /// The contact at an index; `normal` is [`Self::own_normal`].
+    /// Returns the contact at an index; `normal` must be the result of [`Self::own_normal`].
     #[inline]
     pub(crate) fn contact(&self, index: usize, normal: &[Vector<N, D>; 2]) -> ContactPoint<N, D> {
         match self.0 {
@@ -298,33 +298,34 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
     }
 }
 
-/// Values computed on each call, from the solids as of the last update.
+/// Values that are computed on each call, from the solids as of the last update.
 impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
-    /// Returns the kinematic of a contact, which predicts it at other poses without a new query.
+    /// Returns the kinematic of a contact, which predicts the contact at other poses without a new
+    /// query.
     ///
     /// # Panics
-    /// If there is no contact of this index; the order is that of [`Self::contacts`].
+    /// If `index` is not below [`Self::len`]; contacts have the order of [`Self::contacts`].
     #[must_use]
     pub fn kinematic(&self, index: usize) -> ContactKinematic<N, D> {
         self.tracked_contact(index).kinematic
     }
 
-    /// A contact with its kinematic.
+    /// Returns a contact with its kinematic.
     ///
     /// # Panics
-    /// If there is no contact of this index; the order is that of [`Self::contacts`].
+    /// If `index` is not below [`Self::len`]; contacts have the order of [`Self::contacts`].
     #[must_use]
     pub fn tracked_contact(&self, index: usize) -> TrackedContact<N, D> {
         entries::tracked_contact(self, index)
     }
 
-    /// Converts the view to a manifold of its own: all contacts with their kinematics.
+    /// Converts the view to a manifold that owns its data: all contacts with their kinematics.
     #[must_use]
     pub fn to_manifold(&self) -> ContactManifold<N, D> {
         ContactManifold::from_contacts((0..self.len()).map(|index| self.tracked_contact(index)))
     }
 
-    /// See [`Self::tracked_contact`].
+    /// Implements [`Self::tracked_contact`].
     pub(crate) fn tracked(&self, index: usize) -> TrackedContact<N, D> {
         match self.0 {
             ViewSource::Convex(raw, placement, pair) => {
@@ -341,7 +342,8 @@ impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
     }
 }
 
-/// A point in the world, in the user's order, from the stored normal and the same in the world.
+/// Returns a contact point in the world and in the user's order; `own` is the stored normal,
+/// `normal` is `own` rotated to the world.
 #[inline]
 fn point<N: Real, const D: usize>(
     [own, normal]: &[Vector<N, D>; 2],

@@ -1,4 +1,4 @@
-//! Queries about one shape or two, computed from the arguments alone.
+//! Queries about one or two shapes, computed from the arguments alone.
 
 mod closest_points;
 pub(crate) mod composite;

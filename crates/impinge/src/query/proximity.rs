@@ -22,16 +22,16 @@ use crate::tables::entries;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Proximity {
-    /// They touch or penetrate: their distance is zero.
+    /// The solids touch or overlap: their distance is zero.
     Intersecting,
-    /// They are apart, by the margin at most.
+    /// The solids are apart, by at most the margin.
     WithinMargin,
-    /// They are farther apart than the margin.
+    /// The solids are farther apart than the margin.
     Disjoint,
 }
 
 impl Proximity {
-    /// The proximity of solids whose distance is known to be within the margin.
+    /// Returns the proximity of solids whose distance is known to be within the margin.
     #[inline]
     pub(crate) fn within<N: Real>(distance: N) -> Self {
         if distance <= N::ZERO { Self::Intersecting } else { Self::WithinMargin }
@@ -40,9 +40,9 @@ impl Proximity {
 
 /// Returns whether two solids touch or overlap, are at most `margin` apart, or are farther apart.
 ///
-/// Touching counts as intersecting and a distance equal to `margin` as within it. A negative or NaN
-/// `margin` counts as zero. Half-spaces that overlap without bound intersect.
-/// [`Proximity::Disjoint`] if a pose is not finite. For composites the nearest parts count; their
+/// Touching solids intersect, and a distance equal to `margin` is within it. A negative or NaN
+/// `margin` is treated as zero. Half-spaces that overlap without bound intersect. The result is
+/// [`Proximity::Disjoint`] if a pose is not finite. For composites the nearest parts decide; their
 /// search ends at the first two that touch.
 pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
@@ -54,7 +54,7 @@ pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     entries::proximity_at(R::view(m1), g1, R::view(m2), g2, margin)
 }
 
-/// See [`proximity`].
+/// Implements [`proximity`] with poses by reference.
 #[inline]
 pub(crate) fn proximity_at<N: Space<D>, const D: usize>(
     isometry1: IsometryRef<'_, N, D>,

@@ -1,4 +1,4 @@
-//! The nearest points of two shapes, with the parts and features that they lie on.
+//! The nearest points of two shapes, with the parts and features that contain them.
 
 use crate::collide::pair::Ordered;
 use crate::collide::parts::{Between, Wanted, nearest_between};
@@ -10,7 +10,7 @@ use crate::shape::{FeatureId, Shape};
 use crate::tables::ByDimension;
 use crate::tables::entries;
 
-/// Placeholders for features that were not computed.
+/// Placeholders for features that are not computed.
 const NO_FEATURES: [FeatureId; 2] = [FeatureId::Face(u32::MAX); 2];
 
 /// The points of two shapes that are nearest to each other, or deepest in each other, with their
@@ -37,16 +37,16 @@ pub struct Witness<N: Real, const D: usize> {
     pub point2: Point<N, D>,
     /// The unit vector from the first shape to the second.
     pub normal: Unit<Vector<N, D>>,
-    /// The distance; negative if they overlap: minus the length of the shortest translation that
-    /// separates the two parts.
+    /// The distance. If the shapes overlap, it is negative: minus the length of the shortest
+    /// translation that separates the two parts.
     pub distance: N,
-    /// The part of the first shape that the point lies on; 0 for a convex solid.
+    /// The index of the first shape's part that contains `point1`; 0 for a convex solid.
     pub part1: u32,
-    /// The part of the second shape that the point lies on; 0 for a convex solid.
+    /// The index of the second shape's part that contains `point2`; 0 for a convex solid.
     pub part2: u32,
-    /// The feature of that part of the first shape.
+    /// The feature of the first shape's part that contains `point1`.
     pub feature1: FeatureId,
-    /// The feature of that part of the second shape.
+    /// The feature of the second shape's part that contains `point2`.
     pub feature2: FeatureId,
 }
 
@@ -68,23 +68,24 @@ impl<N: Real, const D: usize> Witness<N, D> {
 }
 
 /// Returns the nearest points of two shapes that are at most `max_distance` apart, with the parts
-/// of composites and the features that they lie on.
+/// of composites and the features that contain the points.
 ///
 /// [`distance`](super::distance()), [`closest_points`](super::closest_points()) and
-/// [`proximity`](super::proximity()) follow from the same result. If several pairs of points are
-/// equally near, one is chosen, the same for both orders of the arguments; among the parts of
-/// composites the lowest numbers win. For composites that overlap it is the pair of parts that are
-/// deepest in each other: moving by `distance` along the normal separates these two, not always the
-/// shapes.
+/// [`proximity`](super::proximity()) are derived from the same result. If several pairs of points
+/// are equally near, one pair is chosen, the same for both orders of the arguments; among the parts
+/// of composites the lowest indices win. For composites that overlap, the result is the pair of
+/// parts that are deepest in each other: a translation by `distance` along the normal separates
+/// these two parts, not always the shapes.
 ///
-/// A rounded solid has the features of its core. A distance equal to `max_distance` counts; a
-/// negative `max_distance` restricts the answer to overlaps at least that deep. `None` if it is NaN
-/// or a pose is not finite, for a composite without parts, and for half-spaces that overlap without
-/// bound.
+/// A rounded solid has the features of its core. A distance equal to `max_distance` is within it; a
+/// negative `max_distance` restricts the result to overlaps at least that deep. Returns `None` if
+/// the shapes are farther apart, if `max_distance` is NaN or a pose is not finite, for a composite
+/// without parts, and for half-spaces that overlap without bound.
 ///
-/// Cost: that of the distance of two convex solids; a composite is searched for the parts near the
-/// other shape. For two composites each part of the one with fewer that is near enough searches the
-/// other: n log m at most. A half-space not aligned with an axis is tested against every part.
+/// The cost for two convex solids is that of their distance; a composite is searched for the parts
+/// near the other shape. Of two composites, each part near enough of the one with fewer parts
+/// searches the other: n log m at most. A half-space not aligned with an axis is tested against
+/// every part.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -109,7 +110,7 @@ pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     entries::witness(R::view(m1), g1, R::view(m2), g2, max_distance)
 }
 
-/// See [`witness`].
+/// Implements [`witness`] with poses by reference.
 #[inline]
 pub(crate) fn witness_at<N: Space<D>, const D: usize>(
     isometry1: IsometryRef<'_, N, D>,
@@ -126,7 +127,7 @@ pub(crate) fn witness_at<N: Space<D>, const D: usize>(
     )
 }
 
-/// [`witness`] of shapes placed by any [`Placing`]. Features take long to find: without
+/// Implements [`witness`] for shapes placed by any [`Placing`]. Features are slow to find: without
 /// `with_features` they are `Face(u32::MAX)`.
 #[inline]
 pub(crate) fn witness_between<'a, N: Space<D>, const D: usize>(
@@ -139,7 +140,7 @@ pub(crate) fn witness_between<'a, N: Space<D>, const D: usize>(
     entries::witness_in_world(&placed1, &placed2, max_distance, with_features)
 }
 
-/// See [`witness`].
+/// Implements [`witness`] for placed shapes.
 pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
@@ -167,7 +168,7 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
 /// A separation in the frame of the first shape, with its parts and their features.
 type Found<N, const D: usize> = (Separation<N, D>, [u32; 2], [FeatureId; 2]);
 
-/// The result for two convex solids.
+/// Returns the result for two convex solids.
 #[inline]
 fn of_convex<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -182,7 +183,7 @@ fn of_convex<N: Space<D>, const D: usize>(
     Some((found, [0; 2], features))
 }
 
-/// The result for two shapes, at least one of them a composite.
+/// Returns the result for two shapes, at least one of which is a composite.
 fn of_composites<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     limit: N,
@@ -196,7 +197,8 @@ fn of_composites<N: Space<D>, const D: usize>(
     Some((found.separation, found.parts, features))
 }
 
-/// Returns the features of a pair of convex solids from their separation, if they are wanted.
+/// Returns the features of a pair of convex solids from their separation; placeholders if
+/// `is_wanted` is false.
 #[inline]
 fn features<N: Space<D>, const D: usize>(
     is_wanted: bool,
@@ -207,14 +209,14 @@ fn features<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Witness<N, D> {
-    /// Converts a separation of two convex solids in the world, without features; `None` for
+    /// Converts a separation of two convex solids in the world frame, without features; `None` for
     /// half-spaces that overlap without bound.
     #[inline]
     pub(crate) fn of_separation(found: &Separation<N, D>) -> Option<Self> {
         found.distance.is_finite_number().then(|| Self::new(found, [0; 2], NO_FEATURES))
     }
 
-    /// Builds a witness from a separation in the world.
+    /// Builds a witness from a separation in the world frame.
     #[inline]
     fn new(
         in_world: &Separation<N, D>,

@@ -67,8 +67,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
-/// Runs [`extents_in_lanes`] with the vectors of an instruction set, on which the result does not
-/// depend.
+/// Runs [`extents_in_lanes`] with the vector instructions of `level`; the result does not depend on
+/// `level`.
 fn extents<N: Real, const D: usize>(
     level: Level,
     blocks: &[[[N; LANES]; D]],
@@ -106,7 +106,7 @@ fn extents_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     Some([mins, maxs])
 }
 
-/// A bit for each lane.
+/// All lanes set in a lane mask.
 const ALL: u64 = (1 << LANES) - 1;
 
 #[cfg(test)]

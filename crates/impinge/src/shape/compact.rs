@@ -1,13 +1,14 @@
-//! A copy of the sizes of a ball or a box in the object's record, which saves the cache miss of the
+//! A copy of the size of a ball or a box in the object's record, which saves the cache miss of the
 //! shape behind its handle.
 //!
-//! Queries of a world read the copy; the answer is the same as from the shape itself.
+//! Queries of a world read the copy; the result equals the result of the shape itself.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Pose, Real, Space, Vector, filled};
 use crate::shape::{Ball, Cuboid, Geometry, Kind, Shape, ShapeHandle};
 
-/// The sizes of a ball or a box, the commonest shapes of worlds; for any other shape only a marker.
+/// The radius of a ball or the half extents of a box, the commonest shapes of worlds; for any other
+/// shape a negative first component as a marker.
 ///
 /// ```text
 /// box    h0    h1  [h2]     half extents, none negative
@@ -28,7 +29,7 @@ impl<N: Real, const D: usize> Compact<N, D> {
         Self(numbers)
     }
 
-    /// Returns the box of the shape `own` at `pose`.
+    /// Returns the AABB of the shape `own` at `pose`; reads `own` only if the copy is a marker.
     #[inline(always)]
     pub(crate) fn aabb(&self, own: &ShapeHandle<N, D>, pose: &Pose<N, D>) -> Aabb<N, D>
     where

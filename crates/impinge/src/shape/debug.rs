@@ -1,5 +1,5 @@
 //! `Debug` output of shapes: the input that a user gave, without trees and tables. Meshes, lines
-//! and fields may hold millions of numbers; they print counts.
+//! and fields may hold millions of elements; their output has counts only.
 
 use core::fmt;
 
@@ -8,7 +8,8 @@ use crate::shape::{
     Compound, ConvexHull, ConvexPolygon, HeightField, Polyline, Polytope, Tetrahedron, TriMesh,
 };
 
-/// The vertices, and the faces in 3D; in 2D the sides follow from the vertices.
+/// Writes the vertices of a polytope, and in 3D the faces; in 2D the sides follow from the
+/// vertices.
 fn polytope<N: Real, const D: usize>(
     f: &mut fmt::Formatter<'_>,
     name: &str,

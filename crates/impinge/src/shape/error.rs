@@ -1,14 +1,14 @@
 //! Errors of shape constructors.
 //!
-//! Sizes are finite and not negative, coordinates finite: constructors refuse everything else, so
-//! that no algorithm has to check again.
+//! Every size is finite and not negative, and every coordinate finite. Constructors reject anything
+//! else, so that no algorithm has to check again.
 
 use core::fmt;
 
 use crate::math::{Real, Vector, is_unit};
 use crate::shape::{MAX_NESTING, ShapeKind};
 
-/// Why a constructor refused its numbers. Values are given as `f64`, exactly.
+/// Why a constructor rejected its input. Values are given as `f64`, exactly.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, ShapeError};
@@ -22,59 +22,60 @@ use crate::shape::{MAX_NESTING, ShapeKind};
 pub enum ShapeError {
     /// A size or coordinate is NaN or infinite.
     NotFinite {
-        /// Which number, as the constructor names it.
+        /// The name of the size or coordinate, as in the constructor.
         what: &'static str,
-        /// The number.
+        /// The value given.
         value: f64,
     },
     /// A size is below zero.
     Negative {
-        /// Which number, as the constructor names it.
+        /// The name of the size, as in the constructor.
         what: &'static str,
-        /// The number.
+        /// The value given.
         value: f64,
     },
     /// A vector that has to be a unit vector is not: its length differs from 1 by more than 0.8 %.
     NotUnit {
-        /// Which vector, as the constructor names it.
+        /// The name of the vector, as in the constructor.
         what: &'static str,
-        /// Its length.
+        /// The length of the vector.
         length: f64,
     },
-    /// Fewer points than the shape needs.
+    /// Fewer points were given than the shape needs.
     TooFewPoints {
-        /// How many were given.
+        /// The number of points given.
         given: usize,
-        /// How many the shape needs.
+        /// The number of points that the shape needs.
         needed: usize,
     },
     /// The coordinate of a point is NaN or infinite.
     PointNotFinite {
-        /// The index of the point.
+        /// The index of the first such point.
         index: usize,
     },
     /// The points do not span the shape: they coincide or lie on a line or in a plane.
     Degenerate {
-        /// The dimension of what they span: 0 for a point, 1 for a line, 2 for a plane.
+        /// The dimension of the affine hull of the points: 0 for a point, 1 for a line, 2 for a
+        /// plane.
         dimension: usize,
     },
-    /// The points given as a convex outline turn the wrong way or fold back at this index.
+    /// The points given as a convex outline turn the wrong way or fold back at one point.
     NotConvex {
-        /// The index of the point.
+        /// The index of that point.
         index: usize,
     },
     /// A face of a solid refers to a point that does not exist.
     NoSuchPoint {
         /// The index of the face.
         face: usize,
-        /// The index that it refers to.
+        /// The point index that the face contains.
         point: u32,
-        /// How many points there are.
+        /// The number of points.
         points: usize,
     },
     /// The faces of a solid do not close: a side of one face is not a side of exactly one other.
     NotClosed {
-        /// The index of the face.
+        /// The index of a face with such a side.
         face: usize,
     },
     /// A face of a solid is not on the convex hull of its points, so the solid is not convex.
@@ -82,56 +83,56 @@ pub enum ShapeError {
         /// The index of the face.
         face: usize,
     },
-    /// A shape of this kind is not bounded and convex, so it has no rounded variant.
+    /// A shape of this kind is not both bounded and convex, so it has no rounded variant.
     NotRoundable {
         /// The kind of the shape.
         kind: ShapeKind,
     },
     /// A composite without parts.
     NoChildren,
-    /// The position of a child is NaN or infinite.
+    /// The position of a child of a compound is NaN or infinite.
     ChildPoseNotFinite {
         /// The index of the child.
         index: usize,
     },
-    /// The complex number or quaternion of the position of a child is no rotation: its length differs from 1 by
-    /// more than 0.8 %.
+    /// The rotation of a child's position, a complex number or quaternion, is not of unit length:
+    /// its length differs from 1 by more than 0.8 %.
     ChildRotation {
         /// The index of the child.
         index: usize,
-        /// Its length.
+        /// The length of the complex number or quaternion.
         length: f64,
     },
     /// The nesting depth of compounds and rounded shapes exceeds
     /// [`MAX_NESTING`](crate::shape::MAX_NESTING).
     TooDeep {
-        /// The depth that the shape would have.
+        /// The nesting depth that the shape would have.
         depth: u32,
     },
-    /// There are more parts than 32 bits can number.
+    /// The parts do not fit 32-bit indices.
     TooManyParts {
         /// The number of parts.
         needed: u64,
     },
-    /// A height field with too few heights along an axis for one cell.
+    /// A height field has too few heights along an axis for one cell.
     TooFewHeights {
-        /// How many there are along the axis.
+        /// The number of heights along the axis.
         given: usize,
-        /// How many a cell needs.
+        /// The number of heights that one cell needs.
         needed: usize,
     },
-    /// The number of heights differs from the product of the numbers of rows and columns.
+    /// The number of heights differs from the number of rows times the number of columns.
     WrongHeightCount {
-        /// How many were given.
+        /// The number of heights given.
         given: usize,
-        /// The product of rows and columns.
+        /// The number of rows times the number of columns.
         needed: usize,
     },
     /// A height, or the height times the scale, is NaN or infinite.
     HeightNotFinite {
-        /// The row; 0 in 2D.
+        /// The index of the row; 0 in 2D.
         row: usize,
-        /// The column.
+        /// The index of the column.
         column: usize,
     },
 }
@@ -209,14 +210,17 @@ pub(super) fn unit_vector<N: Real, const D: usize>(
     Err(ShapeError::NotUnit { what, length: squared.as_f64().sqrt() })
 }
 
-/// Returns the depth of a shape that holds shapes of the depths `inner`; an error above
-/// [`MAX_NESTING`].
+/// Returns the nesting depth of a shape that holds shapes with the depths `inner`: one more than
+/// the deepest.
+///
+/// # Errors
+/// If the depth exceeds [`MAX_NESTING`].
 pub(super) fn nesting(inner: impl Iterator<Item = u32>) -> Result<u32, ShapeError> {
     let depth = inner.max().map_or(1, |inner| inner.saturating_add(1));
     if depth <= MAX_NESTING { Ok(depth) } else { Err(ShapeError::TooDeep { depth }) }
 }
 
-/// Checks a size: finite and not negative.
+/// Checks that a size is finite and not negative, and returns it.
 pub(super) fn size<N: Real>(what: &'static str, value: N) -> Result<N, ShapeError> {
     if !value.is_finite_number() {
         return Err(ShapeError::NotFinite { what, value: value.as_f64() });
@@ -227,7 +231,7 @@ pub(super) fn size<N: Real>(what: &'static str, value: N) -> Result<N, ShapeErro
     Ok(value)
 }
 
-/// Checks coordinates: all finite.
+/// Checks that all coordinates are finite.
 pub(super) fn finite<N: Real, const D: usize>(
     what: &'static str,
     coordinates: &Vector<N, D>,
@@ -238,7 +242,8 @@ pub(super) fn finite<N: Real, const D: usize>(
     }
 }
 
-/// Returns the value, or panics with the error's text: the end of every panicking constructor.
+/// Returns the value, or panics with the text of the error; every panicking constructor ends with
+/// it.
 #[track_caller]
 pub(super) fn or_panic<S>(result: Result<S, ShapeError>) -> S {
     match result {

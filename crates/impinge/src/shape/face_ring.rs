@@ -13,29 +13,29 @@ use crate::shape::solids::cuboid::CuboidPart;
 use crate::shape::tilt::Tilt;
 use crate::shape::{Cuboid, FeatureId};
 
-/// The largest number of corners: as many as there are lanes.
+/// The maximum number of corners, equal to the number of SIMD lanes.
 const MAX: usize = 8;
 
-/// A face with its corners and sides, in the order of [`Feature`](super::Feature).
+/// A face with its corners and sides, in the order that [`Feature`](super::Feature) has.
 #[derive(Clone, Debug)]
 pub(crate) struct FaceRing<N: Real> {
     pub(crate) id: FeatureId,
-    /// At least 3 for a filled ring.
+    /// The number of corners; at least 3 for a filled ring.
     pub(crate) count: usize,
-    /// By coordinate; zero beyond `count`.
+    /// The coordinates of the corners, one row per axis; zero from index `count` on.
     pub(crate) corners: [[N; MAX]; 3],
     pub(crate) ids: [FeatureId; MAX],
     /// The id of the side from each corner to the next.
     pub(crate) sides: [FeatureId; MAX],
-    /// Unit, outward.
+    /// The outward unit normal.
     pub(crate) normal: Vector<N, 3>,
 }
 
 impl<N: Real> FaceRing<N> {
-    /// The largest number of corners of a ring.
+    /// The maximum number of corners of a ring.
     pub(crate) const MAX: usize = MAX;
 
-    /// A ring without corners.
+    /// Returns a ring without corners.
     #[inline]
     pub(crate) fn blank() -> Self {
         let (id, corners) = (FeatureId::Face(0), [[N::ZERO; MAX]; 3]);
@@ -56,8 +56,8 @@ impl<N: Real> FaceRing<N> {
 }
 
 impl<N: Real> Cuboid<N, 3> {
-    /// Returns the id of the [`core_feature`](super::SupportMap::core_feature) of a box with a
-    /// volume.
+    /// Returns the id of the [`core_feature`](super::SupportMap::core_feature) of a box, all of
+    /// whose half extents must be positive.
     #[inline]
     pub(crate) fn supporting_part(direction: &Vector<N, 3>) -> FeatureId {
         CuboidPart::<3>::toward(direction, Tilt::default_limit()).id()
@@ -90,7 +90,8 @@ mod tests {
         Point::<f64, 3>::new(x[at], y[at], z[at])
     }
 
-    /// The ring of the supporting feature, if that is a face.
+    /// Returns the ring of the supporting feature `part` if `part` is a face and `fill` succeeds,
+    /// else `None`.
     fn ring_of(
         part: FeatureId,
         fill: impl FnOnce(u32, &mut FaceRing<f64>) -> bool,
@@ -100,7 +101,8 @@ mod tests {
         fill(face, &mut ring).then_some(ring)
     }
 
-    /// Whether a ring and a feature are equal.
+    /// Checks that the ring and the feature describe the same face; returns whether there is a
+    /// face.
     fn same(ring: Option<FaceRing<f64>>, feature: &Feature<f64, 3>, what: &str) -> bool {
         let is_face = feature.normal.is_some() && feature.vertices.len() > 2;
         assert_eq!(ring.is_some(), is_face, "{what}: {feature:?}");

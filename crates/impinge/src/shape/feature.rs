@@ -1,14 +1,15 @@
-//! Vertices, edges and faces: the parts of a solid's surface, with the ids that contacts refer to.
+//! Vertices, edges and faces: the features of a solid's surface, with the ids that contacts refer
+//! to.
 
 use smallvec::SmallVec;
 
 use crate::math::{Point, Real, Vector};
 
-/// A part of a solid's surface.
+/// The id of a feature of a solid's surface.
 ///
-/// In 2D a polygon has vertices and faces (its sides). The curved parts of a surface are faces too,
-/// except that the side of a capsule is the segment that is its core: `Edge(0)`, in 2D too. Each
-/// shape documents its numbering.
+/// In 2D a polygon has vertices and faces (its sides), no edges. Curved surfaces are faces too,
+/// with one exception: the round side of a capsule is `Edge(0)`, also in 2D, as its core is a
+/// segment. Each shape documents its numbering.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -24,17 +25,17 @@ use crate::math::{Point, Real, Vector};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FeatureId {
-    /// A corner.
+    /// A corner, by its index.
     Vertex(u32),
-    /// A straight line between two faces.
+    /// A straight line between two faces, by its index.
     Edge(u32),
-    /// A flat or curved piece.
+    /// A flat or curved face, by its index.
     Face(u32),
 }
 
 impl FeatureId {
-    /// Returns the id of a flat part of dimension `dimension` of a solid in `D` dimensions: a point
-    /// is a vertex, a part of dimension `D - 1` a face, any other an edge.
+    /// Returns the id of a flat feature with the dimension `dimension` of a solid in `D`
+    /// dimensions. Dimension 0 is a vertex, dimension `D - 1` a face, any other an edge.
     pub(crate) const fn flat<const D: usize>(dimension: usize, index: u32) -> Self {
         if dimension == 0 {
             Self::Vertex(index)
@@ -45,7 +46,8 @@ impl FeatureId {
         }
     }
 
-    /// Returns the word for [`Self::flat`] of `dimension`, for messages.
+    /// Returns, for messages, the word for the kind of id that [`Self::flat`] returns for
+    /// `dimension`.
     pub(super) const fn word<const D: usize>(dimension: usize) -> &'static str {
         match Self::flat::<D>(dimension, 0) {
             Self::Vertex(_) => "vertex",
@@ -58,7 +60,7 @@ impl FeatureId {
 /// The supporting feature of a core for some direction: a point, a segment or a flat convex
 /// polygon.
 ///
-/// All in the local frame of the solid, without its rounding.
+/// Coordinates are in the local frame of the solid, for the core without its radius.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -71,16 +73,16 @@ impl FeatureId {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feature<N: Real, const D: usize> {
-    /// Its id.
+    /// The id of the feature.
     pub id: FeatureId,
-    /// One point, two for a segment, more for a polygon: in 3D counter-clockwise seen from
-    /// outside; in 2D a side is given with the solid on its left.
+    /// One point for a vertex, two for a segment, more for a polygon. In 3D a polygon runs
+    /// counter-clockwise seen from outside; a side in 2D has the solid on its left.
     pub vertices: SmallVec<[Point<N, D>; 8]>,
     /// The id of each vertex.
     pub vertex_ids: SmallVec<[FeatureId; 8]>,
     /// The id of the side from each vertex to the next: one for a segment, none for a point.
     pub side_ids: SmallVec<[FeatureId; 8]>,
-    /// The outward normal, where the feature has one: a polygon in 3D, a side in 2D.
+    /// The outward unit normal of a polygon in 3D or a side in 2D; `None` for other features.
     pub normal: Option<Vector<N, D>>,
 }
 
@@ -97,7 +99,7 @@ impl<N: Real, const D: usize> Default for Feature<N, D> {
 }
 
 impl<N: Real, const D: usize> Feature<N, D> {
-    /// Empties the feature, keeping its allocation.
+    /// Clears the feature, keeping its allocations.
     pub fn clear(&mut self) {
         self.id = FeatureId::Face(0);
         self.vertices.clear();
@@ -132,9 +134,9 @@ impl<N: Real, const D: usize> Feature<N, D> {
         self.vertex_ids.push(id);
     }
 
-    /// Drops each vertex that equals the next one, and the side between them. A polygon without
-    /// width becomes a segment, one without extent a point; both lose the normal and take the id of
-    /// what remains.
+    /// Removes each vertex that equals the next one, and the side between them. A polygon without
+    /// width becomes a segment, one without extent a point. Both lose the normal and take the id of
+    /// the remaining side or vertex.
     pub(super) fn drop_repeated(&mut self) {
         let mut at = self.vertices.len();
         while at > 0 && self.vertices.len() > 1 {
@@ -146,7 +148,7 @@ impl<N: Real, const D: usize> Feature<N, D> {
         }
     }
 
-    /// Drops a vertex and the side from it.
+    /// Removes the vertex `at` and the side from it to the next vertex.
     fn drop_vertex(&mut self, at: usize) {
         self.vertices.remove(at);
         self.vertex_ids.remove(at);
@@ -156,7 +158,7 @@ impl<N: Real, const D: usize> Feature<N, D> {
         self.rename_collapsed();
     }
 
-    /// Makes a feature of one or two vertices a point or a segment: sets its id and drops the
+    /// For a feature of one or two vertices, takes the id of that point or segment and removes the
     /// normal.
     fn rename_collapsed(&mut self) {
         match self.vertices.len() {

@@ -1,4 +1,4 @@
-//! Checks that hold for the features of every solid, run over every solid, scalar and dimension.
+//! Tests of the features of every solid, for each scalar and dimension.
 
 use crate::math::{Point, Real, Vector, cross, max, perp, unit};
 use crate::shape::{
@@ -6,7 +6,7 @@ use crate::shape::{
     Triangle,
 };
 
-/// A small generator of numbers in [-1, 1) (Marsaglia, "Xorshift RNGs", 2003).
+/// A random number generator for numbers in [-1, 1) (Marsaglia, "Xorshift RNGs", 2003).
 pub(super) struct Numbers(u64);
 
 impl Numbers {
@@ -42,7 +42,8 @@ fn tolerance<N: Real, const D: usize, S: SupportMap<N, D> + ?Sized>(solid: &S) -
     N::lit(16.0) * N::EPSILON * max(solid.reach(), N::MIN_POSITIVE)
 }
 
-/// The feature holds the support point, its lists fit, and its points belong to the solid.
+/// Returns the core feature for `direction`. Checks that it contains the support point, that its
+/// lists have matching lengths, and that its points belong to the solid.
 fn faces<N: Real, const D: usize>(
     solid: &dyn SupportMap<N, D>,
     direction: &Vector<N, D>,
@@ -65,7 +66,7 @@ fn faces<N: Real, const D: usize>(
     feature
 }
 
-/// Each point of the solid at the height of the supporting plane is in the feature.
+/// Checks that each vertex at the height of the supporting plane is in the feature.
 fn holds_what_touches<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     solid: &dyn SupportMap<N, D>,
@@ -79,7 +80,8 @@ fn holds_what_touches<N: Real, const D: usize>(
     }
 }
 
-/// The loop turns left around the normal, and the solid lies behind the face.
+/// Checks that the face's loop turns left around its normal and that the solid lies behind it.
+/// Returns false for a face without a normal.
 fn face3<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, id: FeatureId) -> bool {
     let mut face = Feature::default();
     solid.face(id, &mut face);
@@ -102,7 +104,7 @@ fn face3<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, id: FeatureId) -> bool {
     true
 }
 
-/// The solid lies on the left of the side, and the normal points away from it.
+/// Checks that the solid lies on the left of the side, and that the normal points away from it.
 fn face2<N: Real>(solid: &dyn ConvexPolyhedron<N, 2>, id: FeatureId) {
     let mut face = Feature::default();
     solid.face(id, &mut face);
@@ -117,7 +119,8 @@ fn face2<N: Real>(solid: &dyn ConvexPolyhedron<N, 2>, id: FeatureId) {
     assert_eq!(ends.map(|(id, ..)| id).as_slice(), face.vertex_ids.as_slice(), "one order");
 }
 
-/// The normal of a feature is unit, and the feature lies in the supporting plane of that normal.
+/// Checks that the normal of a feature is unit, and that the feature lies in the supporting plane
+/// of that normal.
 fn points_out<N: Real, const D: usize>(
     solid: &dyn ConvexPolyhedron<N, D>,
     id: FeatureId,
@@ -182,7 +185,7 @@ fn cuboid_numbers_are_the_documented_ones() {
         [4, 5, 7, 6].map(FeatureId::Vertex),
         "counter-clockwise about +z"
     );
-    // Edge 6: along y (4 · 1), and of z and x only x (the second bit) positive.
+    // Edge 6 runs along y (4 · 1); of z and x only x (the second bit) is positive.
     let ends = solid.edge(FeatureId::Edge(6)).map(|(_, end)| end);
     assert_eq!(ends[0], Point::<f64, 3>::new(1.0, -2.0, -3.0), "one end");
     assert_eq!(ends[1], Point::<f64, 3>::new(1.0, 2.0, -3.0), "the other");
@@ -339,7 +342,8 @@ fn round_solids_have_consistent_features() {
     round_solids::<f64>();
 }
 
-/// Octagons turn left around their normal.
+/// Returns the core feature for `direction`; checks that it is an octagon that turns left around
+/// its normal.
 fn cap<N: Real>(solid: &dyn SupportMap<N, 3>, direction: Vector<N, 3>) -> Feature<N, 3> {
     let feature = faces(solid, &direction);
     assert_eq!(feature.vertices.len(), 8, "{feature:?}");

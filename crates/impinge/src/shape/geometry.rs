@@ -1,4 +1,4 @@
-//! How queries see a shape: as one of a closed set of kinds.
+//! The closed set of kinds by which queries treat a shape.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use crate::shape::{
     Segment, SupportMap, TaperedCapsule, Triangle,
 };
 
-/// The kinds of solid that the pair tables know, in the canonical order of a pair.
+/// The kinds of shape that the pair tables distinguish, in the canonical order of a pair.
 ///
 /// ```
 /// use impinge::dim3::shape::{Ball, Capsule, Shape, ShapeKind};
@@ -42,7 +42,7 @@ pub enum ShapeKind {
     TaperedCapsule,
     /// A convex solid inflated by a radius: [`Rounded`](super::Rounded).
     Rounded,
-    /// A convex solid known by its support points only.
+    /// A user's convex solid, known by its support points only.
     SupportMap,
     /// [`Plane`]: the half-space.
     Plane,
@@ -50,7 +50,8 @@ pub enum ShapeKind {
     Composite,
 }
 
-/// A shape as queries see it. Users get one from a built-in shape or from [`Self::support_map`].
+/// A shape as queries treat it. Users obtain one from a built-in shape, from [`Self::support_map`]
+/// or from [`Self::composite`].
 ///
 /// ```
 /// use impinge::dim2::math::Vector;
@@ -65,8 +66,9 @@ pub enum ShapeKind {
 #[derive(Clone, Copy)]
 pub struct Geometry<'a, N: Real, const D: usize>(pub(crate) Kind<'a, N, D>);
 
-/// The closed set of kinds. A kind of one dimension only (cylinder, cone) carries its sizes and a
-/// support map, so that this type needs no bound; its constructor exists in that dimension only.
+/// The closed set of kinds with references to the shapes. A kind that exists in one dimension only
+/// (cylinder, cone) has its sizes and a support map instead, so that this type needs no bound. The
+/// constructor of such a kind exists in that dimension only.
 #[derive(Clone, Copy)]
 pub(crate) enum Kind<'a, N: Real, const D: usize> {
     Ball(&'a Ball<N>),
@@ -86,17 +88,17 @@ pub(crate) enum Kind<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
-    /// Wraps a user's convex solid.
+    /// Returns the geometry of a user's convex solid.
     pub fn support_map(map: &'a dyn SupportMap<N, D>) -> Self {
         Self(Kind::SupportMap(map))
     }
 
-    /// Wraps a user's composite.
+    /// Returns the geometry of a user's composite.
     pub fn composite(composite: &'a dyn CompositeShape<N, D>) -> Self {
         Self(Kind::Composite(composite))
     }
 
-    /// Returns the kind.
+    /// Returns the kind of the shape.
     #[inline]
     #[must_use]
     pub fn kind(&self) -> ShapeKind {
@@ -118,15 +120,14 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
         }
     }
 
-    /// Whether a rotation about the origin changes the solid, so that its pose needs one: false for
-    /// a ball.
+    /// Whether a rotation about the origin may change the solid, so that its pose needs a rotation:
+    /// false only for a ball.
     #[inline]
     pub(crate) fn turns(&self) -> bool {
         !matches!(self.0, Kind::Ball(_))
     }
 
-    /// Converts a user's isometry to a pose; the rotation is dropped where [`Self::turns`] is
-    /// false.
+    /// Converts a user's isometry to a pose; without its rotation if [`Self::turns`] is false.
     #[inline]
     pub(crate) fn pose_at(&self, isometry: &N::Isometry) -> Pose<N, D>
     where
@@ -135,7 +136,7 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
         if self.turns() { N::pose(isometry) } else { N::unturned(isometry) }
     }
 
-    /// The solid as a support map; `None` for a [`Plane`], which has no farthest points, and for a
+    /// Returns the solid as a support map; `None` for a [`Plane`], which is unbounded, and for a
     /// composite, which is not convex.
     #[must_use]
     pub fn as_support_map(&self) -> Option<&'a dyn SupportMap<N, D>> {
@@ -155,7 +156,8 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
     }
 
     /// Returns an upper bound, up to rounding, of the distance of the solid's points from the
-    /// origin of its frame: infinite for a half-space, a composite and a user's support map.
+    /// origin of its frame. The bound is infinite for a half-space, a composite and a user's
+    /// support map.
     #[inline]
     pub(crate) fn extent(&self) -> N {
         let squared = |point: &Point<N, D>| point.coords.norm_squared();
@@ -180,7 +182,7 @@ impl<'a, N: Real, const D: usize> Geometry<'a, N, D> {
         }
     }
 
-    /// The parts of a composite; `None` for a convex solid.
+    /// Returns the shape as a composite; `None` for a single solid.
     #[inline]
     #[must_use]
     pub fn as_composite(&self) -> Option<&'a dyn CompositeShape<N, D>> {

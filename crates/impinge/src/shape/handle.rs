@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::math::{Real, Vector};
 use crate::shape::{ScaleError, Shape};
 
-/// A reference-counted handle of an immutable shape; cloning it is cheap and shares the shape.
+/// A reference-counted handle of an immutable shape; a clone is cheap and shares the shape.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, Cuboid, Shape, ShapeHandle};
@@ -25,7 +25,7 @@ impl<N: Real, const D: usize> Clone for ShapeHandle<N, D> {
         Self(Arc::clone(&self.0))
     }
 
-    /// Leaves the count alone if both share the shape already.
+    /// If both handles already share the shape, the reference count is not touched.
     fn clone_from(&mut self, source: &Self) {
         if !self.is_same(source) {
             *self = source.clone();
@@ -34,17 +34,18 @@ impl<N: Real, const D: usize> Clone for ShapeHandle<N, D> {
 }
 
 impl<N: Real, const D: usize> ShapeHandle<N, D> {
-    /// Moves a shape into shared ownership.
+    /// Moves a shape into a new handle.
     pub fn new<S: Shape<N, D>>(shape: S) -> Self {
         Self(Arc::new(shape))
     }
 
-    /// Wraps a shape that is already shared.
+    /// Returns a handle of a shape that is already in an [`Arc`].
     pub fn from_arc(shape: Arc<dyn Shape<N, D>>) -> Self {
         Self(shape)
     }
 
-    /// The shape scaled along the axes of its frame, about its origin; see [`Shape::scaled`].
+    /// Returns the shape scaled along the axes of its frame, about its origin; see
+    /// [`Shape::scaled`].
     ///
     /// ```
     /// use impinge::dim2::math::{Vector, Point};
@@ -61,7 +62,8 @@ impl<N: Real, const D: usize> ShapeHandle<N, D> {
     /// ```
     ///
     /// # Errors
-    /// If a factor is zero or not finite, or the scaled solid is no shape of the library.
+    /// If a factor is zero or not finite, if no shape of the library can represent the scaled
+    /// solid, or if scaled coordinates are out of range.
     pub fn scaled(&self, scale: &Vector<N, D>) -> Result<Self, ScaleError> {
         self.0.scaled(scale)
     }

@@ -1,10 +1,10 @@
-//! Solids in their own frame. This module knows nothing about pairs or worlds.
+//! Solids in their own frame. This module does not depend on pairs or worlds.
 //!
 //! A convex solid is a *core* inflated by a *rounding* radius: a ball is a point inflated by its
 //! radius, a capsule a segment. Algorithms run on cores and subtract the radii at the end, which is
-//! exact and free. [`Shape`] is what a world stores; [`SupportMap`] is the trait by which a user's
-//! convex solid joins every query; [`ConvexPolyhedron`] gives access to the features of solids with
-//! flat faces; [`CompositeShape`] is a union of solids.
+//! exact and costs nothing. [`Shape`] is what a world stores; [`SupportMap`] is the trait by which
+//! queries accept a user's convex solid; [`ConvexPolyhedron`] gives access to the features of
+//! solids with flat faces; [`CompositeShape`] is a union of solids.
 
 mod bounds;
 mod compact;
@@ -72,7 +72,7 @@ pub(crate) use solids::tapered_capsule::Taper;
 pub use solids::tapered_capsule::TaperedCapsule;
 pub use solids::tetrahedron::Tetrahedron;
 pub use solids::triangle::Triangle;
-/// Limits below which a triangle leaves its supporting feature undecided.
+/// Limits below which the fast test of a triangle's supporting feature is inconclusive.
 pub(crate) use solids::triangle_feature::{CLEAR as CLEARLY_LARGER, THIN_SQUARED};
 pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
 #[doc(hidden)]
@@ -89,8 +89,8 @@ use crate::math::{Pose, Real, Vector};
 
 /// A solid in its own frame.
 ///
-/// Implement it for a type of your own to put that type into a world: return its box, and from
-/// [`Shape::geometry`] how queries treat it.
+/// Implement this trait to put your own type into a world. The two required methods return the
+/// shape's box and how queries treat it ([`Shape::geometry`]).
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -109,40 +109,42 @@ use crate::math::{Pose, Real, Vector};
             or `CompositeShape`"
 )]
 pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
-    /// How queries treat the solid: [`Geometry::support_map`] for a convex solid of your own, or
-    /// the geometry of a built-in shape that stands for yours.
+    /// Returns how queries treat the solid: [`Geometry::support_map`] for a convex solid of your
+    /// own, or the geometry of a built-in shape that represents it.
     fn geometry(&self) -> Geometry<'_, N, D>;
 
-    /// A box around the solid in its own frame; as small as is cheap.
+    /// Returns a box around the solid in its own frame; as small as is cheap to compute.
     fn local_aabb(&self) -> Aabb<N, D>;
 
-    /// A box around the solid placed at `pose`; as small as is cheap.
+    /// Returns a box around the solid placed at `pose`; as small as is cheap to compute.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         self.local_aabb().transformed_by(pose)
     }
 
-    /// The solid scaled along the axes of its frame, about its origin; factors may be negative.
+    /// Returns the solid scaled along the axes of its frame, about its origin; factors may be
+    /// negative.
     ///
-    /// The result is exact up to rounding, never an approximation, and of the same type, except
-    /// that a ball may become an [`Ellipsoid`]. Other round shapes need factors of one magnitude,
-    /// cylinders and cones across their axis; a cone cannot be reversed, a compound not be sheared.
+    /// The result is exact up to rounding, and of the same type, except that a ball may become an
+    /// [`Ellipsoid`]. Other round shapes need factors of equal magnitude, cylinders and cones
+    /// across their axis only. The axis of a cone cannot be reversed, and a compound cannot be
+    /// sheared.
     ///
-    /// Parts and features keep their numbers, unless the scale mirrors: then a polygon numbers its
+    /// Parts and features keep their indices, unless the scale mirrors. Then a polygon indexes its
     /// vertices in the opposite order, a hull renumbers its edges, and triangles of meshes and
     /// segments of polylines are reversed.
     ///
     /// # Errors
-    /// If a factor is zero or not finite, no shape of the library is the scaled solid, or its numbers
-    /// leave their range. The default is [`ScaleError::Unsupported`].
+    /// If a factor is zero or not finite, no shape of the library can represent the scaled solid,
+    /// or scaled coordinates are out of range. The default returns [`ScaleError::Unsupported`].
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         let _ = scale;
         Err(ScaleError::Unsupported)
     }
 
-    /// Returns the mass properties of the solid at density one, for a shape that has a better
-    /// method than [`mass_properties`](crate::query::mass_properties): that integrates a user's
-    /// convex solid by its support points, and refuses a user's surface. `None` (the default)
-    /// selects the method of the query.
+    /// Returns the mass properties of the solid at density 1, for a shape with a better method than
+    /// [`mass_properties`](crate::query::mass_properties). That function integrates a user's convex
+    /// solid by its support points, and rejects a user's surface. `None` (the default) selects its
+    /// method.
     fn unit_mass_properties(&self) -> Option<MassProperties<N, D>> {
         None
     }
@@ -160,19 +162,19 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     }
 
     /// Returns the nesting depth of the shape, at most [`MAX_NESTING`]; zero (the default) for a
-    /// shape that holds no other shape. A user's shape that holds others keeps zero and is itself
-    /// responsible for the depth of recursion.
+    /// shape that holds no other shape. A user's shape that holds others also returns zero, and
+    /// must itself limit the depth of recursion.
     #[doc(hidden)]
     fn nesting(&self) -> u32 {
         0
     }
 }
 
-/// The largest nesting depth of shapes: a [`Compound`] or [`Rounded`] is one deeper than the
-/// deepest shape that it holds. Constructors refuse more.
+/// The maximum nesting depth of shapes: a [`Compound`] or [`Rounded`] is one deeper than the
+/// deepest shape that it holds. Constructors reject deeper shapes.
 ///
-/// Dropping a shape recurses once per level, and so does every query. The limit keeps this
-/// recursion, for both shapes of a pair, to a small part of the 2 MB stack of a thread.
+/// Dropping a shape recurses once per level, and so does every query. The limit bounds this
+/// recursion, for both shapes of a pair, to a small part of a thread's 2 MB stack.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -187,7 +189,7 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 /// ```
 pub const MAX_NESTING: u32 = 64;
 
-/// Downcasts, for dispatchers that treat a type of their own.
+/// Downcasts, for custom dispatchers that handle a type of their own.
 ///
 /// ```
 /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
@@ -197,7 +199,7 @@ pub const MAX_NESTING: u32 = 64;
 /// assert!(!handle.is_shape::<Cuboid<f32>>());
 /// ```
 impl<N: Real, const D: usize> dyn Shape<N, D> {
-    /// Returns the path to part `part` of a composite, as queries number parts; empty for a convex
+    /// Returns the path to part `part` of a composite, as queries index parts; empty for a convex
     /// solid, whose only part is 0.
     #[must_use]
     pub fn path_to_part(&self, part: u32) -> PartPath {
@@ -214,7 +216,7 @@ impl<N: Real, const D: usize> dyn Shape<N, D> {
         self.as_shape::<S>().is_some()
     }
 
-    /// Returns the shape as an `S`; `None` if it is of another type.
+    /// Returns the shape as an `S`; `None` if it has another type.
     #[must_use]
     pub fn as_shape<S: Shape<N, D>>(&self) -> Option<&S> {
         (self as &dyn Any).downcast_ref()

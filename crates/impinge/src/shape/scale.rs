@@ -1,4 +1,4 @@
-//! Scaled shapes: exactly, or not at all.
+//! Scaled shapes, which are exact up to rounding or an error.
 
 use core::fmt;
 
@@ -6,7 +6,7 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{MeshError, ShapeError};
 
-/// Why a shape was not scaled.
+/// Why a shape cannot be scaled.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -22,25 +22,26 @@ use crate::shape::{MeshError, ShapeError};
 pub enum ScaleError {
     /// A factor is zero, infinite or NaN.
     BadFactor {
-        /// The axis: 0 for x.
+        /// The index of the axis: 0 for x.
         axis: usize,
-        /// The factor along it.
+        /// The factor along that axis.
         value: f64,
     },
-    /// No shape of the library is the scaled solid: it would have to be sheared, or its round
-    /// section would become oval.
+    /// No shape of the library can represent the scaled solid: the solid would have to be sheared,
+    /// or its circular section would become an ellipse.
     NotSuch {
-        /// The condition that the factors have to meet.
+        /// The condition that the factors must meet.
         needs: &'static str,
     },
-    /// The scaled coordinates are too large or too small for numbers of the type.
+    /// The scaled coordinates exceed the range of the scalar type.
     OutOfRange,
-    /// A child of a compound cannot be scaled by these factors, by itself or because it is rotated.
+    /// A child of a compound cannot be scaled by these factors, because of its shape or its
+    /// rotation.
     Child {
         /// The index of the child.
         index: usize,
     },
-    /// Shapes of this type are not scaled.
+    /// Shapes of this type cannot be scaled.
     Unsupported,
 }
 
@@ -60,14 +61,16 @@ impl fmt::Display for ScaleError {
 
 impl std::error::Error for ScaleError {}
 
-/// A shape that exists can only fail by its scaled size.
+/// The constructor of an already valid shape can fail only because its scaled sizes are out of
+/// range.
 impl From<ShapeError> for ScaleError {
     fn from(_: ShapeError) -> Self {
         Self::OutOfRange
     }
 }
 
-/// A mesh that exists can only fail by the factors or by its scaled size.
+/// The scaling of an already valid mesh can fail only because of the factors, or because scaled
+/// coordinates are out of range.
 impl From<MeshError> for ScaleError {
     fn from(error: MeshError) -> Self {
         match error {
@@ -77,12 +80,12 @@ impl From<MeshError> for ScaleError {
     }
 }
 
-/// Factors along the axes: finite, and not zero.
+/// Scale factors along the axes of a shape's frame: finite, and not zero.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale<'a, N: Real, const D: usize>(&'a Vector<N, D>);
 
 impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
-    /// Checks the factors: finite, and not zero.
+    /// Checks that each factor is finite and not zero.
     pub(super) fn try_new(factors: &'a Vector<N, D>) -> Result<Self, ScaleError> {
         let is_bad = |x: &N| *x == N::ZERO || !x.is_finite_number();
         match factors.iter().position(is_bad) {
@@ -91,22 +94,25 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
         }
     }
 
-    /// The factors without their signs.
+    /// Returns the magnitudes of the factors.
     pub(super) fn magnitudes(self) -> Vector<N, D> {
         self.0.abs()
     }
 
-    /// The signs of the factors, 1 or −1.
+    /// Returns the signs of the factors, 1 or −1.
     pub(super) fn signs(self) -> Vector<N, D> {
         self.0.map(|x| if x < N::ZERO { -N::ONE } else { N::ONE })
     }
 
-    /// Whether the factors mirror: an odd number of them is negative.
+    /// Whether the scale mirrors: an odd number of factors is negative.
     pub(super) fn is_mirror(self) -> bool {
         self.0.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1
     }
 
     /// Returns the common magnitude of the factors.
+    ///
+    /// # Errors
+    /// If the magnitudes differ.
     pub(super) fn uniform(self) -> Result<N, ScaleError> {
         let magnitudes = self.magnitudes();
         let is_uniform = magnitudes.iter().all(|&x| x == magnitudes[0]);
@@ -122,8 +128,10 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
         Point::from(self.vector(&point.coords))
     }
 
-    /// Scales the corners of a solid with a volume; fails if the extent along an axis vanishes or
-    /// overflows.
+    /// Returns the scaled corners of a solid with a volume.
+    ///
+    /// # Errors
+    /// If the extent along an axis vanishes or overflows.
     pub(super) fn corners(self, points: &[Point<N, D>]) -> Result<Vec<Point<N, D>>, ScaleError> {
         let scaled: Vec<_> = points.iter().map(|point| self.point(point)).collect();
         let solid = Aabb::from_points(&scaled).filter(Aabb::is_bounded);
@@ -131,7 +139,10 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
         solid.map(|_| scaled).ok_or(ScaleError::OutOfRange)
     }
 
-    /// Returns the unit normal of a scaled plane, pointing to the side of the same points.
+    /// Returns the outward unit normal of a scaled half-space with the outward normal `normal`.
+    ///
+    /// # Errors
+    /// If the scaled normal vanishes or is not finite.
     pub(super) fn normal(self, normal: &Vector<N, D>) -> Result<Vector<N, D>, ScaleError> {
         let largest = self.magnitudes().iter().copied().fold(N::ZERO, crate::math::max);
         let inverse = normal.component_div(&(self.0 / largest));
@@ -140,7 +151,10 @@ impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
 }
 
 impl<N: Real> Scale<'_, N, 3> {
-    /// The magnitudes of the factors along the y axis and across it.
+    /// Returns the magnitudes of the factors along the y axis and across it.
+    ///
+    /// # Errors
+    /// If the magnitudes along x and z differ.
     pub(super) fn axial(self) -> Result<(N, N), ScaleError> {
         let magnitudes = self.magnitudes();
         let needs = "factors along x and z that differ in sign at most";

@@ -3,11 +3,12 @@
 use crate::math::{Point, Real, Vector};
 use crate::shape::{Feature, FeatureId, Geometry, Kind, Segment, SupportMap};
 
-/// The result of [`SupportMap::core_feature`] in 2D, without a heap or a polygon's storage.
+/// The result of [`SupportMap::core_feature`] in 2D, without heap allocation or storage for a
+/// polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SideOrVertex<N: Real> {
     pub(crate) id: FeatureId,
-    /// Twice the same for a vertex.
+    /// The two ends of a side; the same point twice for a vertex.
     pub(crate) ends: [(FeatureId, Point<N, 2>); 2],
     pub(crate) is_side: bool,
 }
@@ -23,7 +24,7 @@ impl<N: Real> SideOrVertex<N> {
         Self { id, ends, is_side: true }
     }
 
-    /// Returns the supporting feature for the unit vector `direction`; `None` for half-spaces and
+    /// Returns the supporting feature for the unit vector `direction`. `None` for half-spaces and
     /// composites, and for support maps whose feature has more than two vertices.
     pub(crate) fn of(kind: Kind<'_, N, 2>, direction: &Vector<N, 2>) -> Option<Self> {
         let own = match kind {
@@ -38,14 +39,14 @@ impl<N: Real> SideOrVertex<N> {
         own.or_else(|| Self::of_map(Geometry(kind).as_support_map()?, direction))
     }
 
-    /// The feature of a segment is the segment itself, for every direction.
+    /// Returns the segment itself, which is its supporting feature for every direction.
     #[inline]
     pub(crate) fn of_segment(segment: &Segment<N, 2>) -> Self {
         let ends = [(FeatureId::Vertex(0), *segment.a()), (FeatureId::Vertex(1), *segment.b())];
         Self::side(FeatureId::Edge(0), ends)
     }
 
-    /// The feature of a support map; `None` if it has more than two vertices.
+    /// Returns the feature of a support map; `None` if the feature has more than two vertices.
     fn of_map(map: &dyn SupportMap<N, 2>, direction: &Vector<N, 2>) -> Option<Self> {
         let mut feature = Feature::default();
         map.core_feature(direction, &mut feature);

@@ -1,10 +1,10 @@
-//! Support maps: the interface of convex solids to the algorithms.
+//! Support maps: the interface between convex solids and the algorithms.
 
 use crate::math::{Matrix, Point, Real, Vector, max, unit};
 use crate::shape::solids::segment::length_of;
 use crate::shape::{Feature, FeatureId};
 
-/// The support point of a curved part, and its derivative by the direction.
+/// The support point on a curved feature, and its derivative with respect to the direction.
 ///
 /// ```
 /// use impinge::dim2::math::Vector;
@@ -18,17 +18,18 @@ use crate::shape::{Feature, FeatureId};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvedSupport<N: Real, const D: usize> {
-    /// The point of the part farthest along the direction.
+    /// The point of the curved feature farthest along the direction.
     pub point: Point<N, D>,
-    /// The derivative of the point by the direction, for a unit direction: a symmetric matrix that
-    /// takes the direction itself to zero. For a ball it is the radius times the projection across
-    /// the direction.
+    /// The derivative of the point with respect to a unit direction: a symmetric matrix that maps
+    /// the direction itself to zero. For a ball it is the radius times the projection perpendicular
+    /// to the direction.
     pub bend: Matrix<N, D>,
 }
 
-/// A convex solid: a core, known by its support points, inflated by a rounding radius.
+/// A convex solid: a core, given by its support points, inflated by a rounding radius.
 ///
-/// All in the local frame. Without rounding (the default zero) the core is the solid itself.
+/// All coordinates are in the local frame. With a rounding radius of zero (the default) the core is
+/// the solid itself.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -45,27 +46,27 @@ pub struct CurvedSupport<N: Real, const D: usize> {
     note = "a convex shape of your own implements `SupportMap`, whose one required method is `core_support`"
 )]
 pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
-    /// A point of the core farthest along `direction`.
+    /// Returns a point of the core farthest along `direction`.
     ///
-    /// `direction` is finite, of any length; for the zero vector any point of the core will do. The
-    /// answer depends on nothing but `direction`, and not on its length.
+    /// `direction` is finite and may have any length; for the zero vector any point of the core may
+    /// be returned. The result must depend on nothing but the orientation of `direction`.
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D>;
 
-    /// The radius by which the core is inflated; zero or more.
+    /// Returns the radius by which the core is inflated; zero or more.
     fn rounding(&self) -> N {
         N::ZERO
     }
 
-    /// Returns the point farthest along the unit vector `direction` on the curved part of the core
-    /// that `point` lies on, with its derivative. `None` if `point` is a corner, or if the
+    /// Returns the point farthest along the unit vector `direction` on the curved feature of the
+    /// core that contains `point`, with its derivative. `None` if `point` is a corner, or if the
     /// derivative does not exist for `direction`, such as along the axis of a disk.
     ///
-    /// `point` is an answer of [`Self::core_support`] for a direction nearby, up to rounding. A
-    /// core may have several curved parts, as a cylinder has two rims; the part of `point` need not
-    /// be the one that is farthest along `direction`.
+    /// `point` is a result of [`Self::core_support`] for a nearby direction, up to rounding. A core
+    /// may have several curved features, such as the two rims of a cylinder. The one that contains
+    /// `point` need not be the farthest along `direction`.
     ///
-    /// The default is `None`, which is right for cores that are hulls of points. For curved cores
-    /// without this method, normals are accurate to about half of their digits.
+    /// The default is `None`, which is right for cores that are hulls of finitely many points. For
+    /// curved cores without this method, contact normals have about half of their digits correct.
     fn curved_support(
         &self,
         point: &Point<N, D>,
@@ -75,32 +76,32 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
         None
     }
 
-    /// Returns the outward unit normal of the flat round face of the core that faces `direction`,
-    /// such as the cap of a cylinder; `None` if there is none on that side.
+    /// Returns the outward unit normal of a flat round face on the side of `direction`, such as the
+    /// cap of a cylinder; `None` if there is none on that side.
     ///
-    /// Near such a face support points carry little information: they run around its rim. The
-    /// default is `None`.
+    /// Near such a face support points carry little information: small changes of the direction
+    /// move them around its rim. The default is `None`.
     fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
         let _ = direction;
         None
     }
 
-    /// Returns the unit axis of the round side of the core, and the sine of the angle by which the
-    /// normals of the side tilt towards it: zero for a cylinder. `None` if there is no such side.
+    /// Returns the unit axis of the round side of the core, and the component along the axis of the
+    /// side's unit normals: zero for a cylinder. `None` if there is no round side.
     ///
-    /// Against another solid about the same axis a whole ring of these normals is nearly optimal,
-    /// which leaves a local search without a gradient. The default is `None`.
+    /// If another solid has the same axis, a whole ring of these normals is nearly optimal, and a
+    /// local search has no gradient. The default is `None`.
     fn round_side(&self) -> Option<(Vector<N, D>, N)> {
         None
     }
 
-    /// Returns a point well inside the core.
+    /// Returns a point well inside the core; the default is the origin.
     fn center(&self) -> Point<N, D> {
         Point::origin()
     }
 
-    /// Returns an upper bound of the distance of the core's points from the local origin, not much
-    /// larger than the maximum: tolerances are proportional to it.
+    /// Returns an upper bound of the distance of the core's points from the local origin. The bound
+    /// must not be much larger than the maximum, as tolerances are proportional to it.
     fn reach(&self) -> N {
         let mut corner = Vector::<N, D>::zeros();
         for axis in 0..D {
@@ -113,7 +114,8 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
         length_of(&corner)
     }
 
-    /// A point of the whole solid farthest along `direction`.
+    /// Returns a point of the whole solid, including its rounding radius, farthest along
+    /// `direction`.
     fn support_point(&self, direction: &Vector<N, D>) -> Point<N, D> {
         let core = self.core_support(direction);
         match unit(direction) {
@@ -123,21 +125,21 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
     }
 
     /// Writes the supporting feature of the core for the unit vector `direction`, for contact
-    /// manifolds: a polygon, a segment or a point that contains every point of the core on the
-    /// supporting plane perpendicular to `direction`.
+    /// manifolds. This is a polygon, a segment or a point that contains every point of the core on
+    /// the supporting plane perpendicular to `direction`.
     ///
-    /// The rule for flat faces: among the edges at the support vertex take the one with the
-    /// smallest tilt out of the supporting plane; of the two faces beside it take the one whose
-    /// normal is most aligned with `direction`. Return that face if its tilt is at most atan(1/2) ≈
-    /// 26.6°, else the edge if its tilt is, else the vertex. In 2D the sides at the vertex are the
-    /// faces. So the two crossing edges of an edge-edge contact are found as edges or as sides of
-    /// the returned faces. The rule depends on angles only and treats mirrored directions alike;
-    /// near its two limits both alternatives contain the touching part. No regular polyhedron, nor
-    /// a regular prism on an edge, lies at a limit.
+    /// The rule for flat faces: among the edges at the support vertex, take the edge with the
+    /// smallest tilt out of the supporting plane. Of the two faces beside that edge, take the face
+    /// whose normal is most aligned with `direction`. Return the face if its tilt is at most
+    /// atan(1/2) ≈ 26.6°, else the edge if its tilt is, else the vertex. In 2D the sides at the
+    /// vertex are the faces. So the two crossing edges of an edge-edge contact are found as edges
+    /// or as sides of the returned faces. The rule depends on angles only and treats mirrored
+    /// directions alike. Near its limits both alternatives contain the touching part. No regular
+    /// polyhedron, and no regular prism on an edge, is at a limit.
     ///
     /// A flat round cap is returned as an inscribed polygon with a vertex towards `direction`, a
-    /// round side as its generating segment. The default is the support point alone with the id
-    /// `Face(0)`: right for surfaces that are curved everywhere.
+    /// round side as its generating segment. The default returns the support point alone with the
+    /// id `Face(0)`, which suits surfaces that are curved everywhere.
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
         out.set_point(FeatureId::Face(0), self.core_support(direction));
     }
@@ -145,8 +147,9 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
 
 /// A convex solid whose core has flat faces: the geometry of its features.
 ///
-/// All in the local frame, of the core (the faces of a rounded solid lie `rounding` inside its
-/// surface). A method panics if the solid does not have the feature; the message contains its id.
+/// All coordinates are in the local frame and describe the core: the faces of a rounded solid lie
+/// `rounding` inside its surface. A method panics if the solid does not have the feature; the
+/// message contains its id.
 ///
 /// ```
 /// use impinge::dim2::math::{Point, Vector};
@@ -158,42 +161,42 @@ pub trait SupportMap<N: Real, const D: usize>: Send + Sync {
 /// assert_eq!(square.vertex(corner), Point::new(1.0, 1.0));
 /// ```
 pub trait ConvexPolyhedron<N: Real, const D: usize>: SupportMap<N, D> {
-    /// The position of a vertex.
+    /// Returns the position of a vertex.
     ///
     /// # Panics
     /// If `id` is not a vertex of the solid.
     fn vertex(&self, id: FeatureId) -> Point<N, D>;
 
-    /// The two ends of an edge (in 2D: of a side) and their ids.
+    /// Returns the two ends of an edge (in 2D: of a side) and their ids.
     ///
     /// # Panics
     /// If `id` is not an edge of the solid (in 2D: a face).
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2];
 
-    /// A face, as a polygon (in 2D: as a segment with a normal).
+    /// Writes a face as a polygon (in 2D: as a segment with a normal) to `out`.
     ///
     /// # Panics
     /// If `id` is not a face of the solid.
     fn face(&self, id: FeatureId, out: &mut Feature<N, D>);
 
-    /// Returns a unit vector that points out of the solid at the feature: the face's normal, or the
-    /// normalised sum of the normals of the faces around a vertex or an edge.
+    /// Returns a unit vector that points out of the solid at the feature: the normal of a face, or
+    /// for a vertex or an edge the normalised sum of the normals of the faces around it.
     ///
     /// # Panics
     /// If `id` is not a feature of the solid.
     fn feature_normal(&self, id: FeatureId) -> Vector<N, D>;
 
-    /// The face whose normal is most aligned with the unit vector `direction`.
+    /// Writes the face whose normal is most aligned with the unit vector `direction` to `out`.
     fn support_face_toward(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>);
 
-    /// Writes the largest feature that touches the supporting plane in `direction` after the solid
-    /// is rotated by up to `angle` radians: a face, else an edge, else a vertex.
+    /// Writes the largest feature that can touch the supporting plane in `direction` if the solid
+    /// rotates by up to `angle` radians: a face, else an edge, else a vertex.
     ///
-    /// The rule of [`SupportMap::core_feature`] with `angle` in place of its limit. `angle` is
-    /// clamped to the range from the smallest angle that arithmetic resolves to a little below a
-    /// right angle.
+    /// The rule is that of [`SupportMap::core_feature`] with the limit `angle` instead of
+    /// atan(1/2). `angle` is clamped to the range from the smallest angle that rounded arithmetic
+    /// resolves to a little below a right angle.
     fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>);
 
-    /// The id of the feature that [`Self::support_feature_toward`] finds for a tiny angle.
+    /// Returns the id of the feature that [`Self::support_feature_toward`] finds for a tiny angle.
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId;
 }

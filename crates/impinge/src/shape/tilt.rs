@@ -1,4 +1,4 @@
-//! The largest tilt of a feature out of the supporting plane at which it still is the supporting
+//! The maximum tilt out of the supporting plane up to which a face or edge is the supporting
 //! feature.
 
 use crate::math::{Real, Vector};
@@ -6,27 +6,28 @@ use crate::math::{Real, Vector};
 /// The squared sine of atan(1/2), the limit of [`super::SupportMap::core_feature`].
 pub(crate) const FACING_SINE_SQUARED: f64 = 0.2;
 
-/// A limit of the tilt, stored as its squared sine: small angles lose no digits to rounding.
+/// A limit of the tilt, stored as its squared sine, so that small angles lose no digits to
+/// rounding.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tilt<N: Real> {
     sine_squared: N,
 }
 
 impl<N: Real> Tilt<N> {
-    /// The limit of [`super::SupportMap::core_feature`].
+    /// Returns the limit of [`super::SupportMap::core_feature`].
     #[inline]
     pub(super) fn default_limit() -> Self {
         Self { sine_squared: N::lit(FACING_SINE_SQUARED) }
     }
 
-    /// The smallest angle that unit vectors in rounded arithmetic distinguish from zero.
+    /// Returns the smallest angle that unit vectors in rounded arithmetic distinguish from zero.
     pub(super) fn least() -> Self {
         let sine = N::lit(64.0) * N::EPSILON;
         Self { sine_squared: sine * sine }
     }
 
-    /// The limit of `angle` radians, clamped to the range from [`Self::least`] to a little below a
-    /// right angle. NaN counts as a right angle.
+    /// Returns the limit for `angle` radians, clamped to the range from [`Self::least`] to a little
+    /// below a right angle. NaN is treated as a right angle.
     pub(super) fn of_angle(angle: N) -> Self {
         let largest = N::ONE - N::lit(0.001);
         let sine = if angle < N::lit(1.57) { angle.sine_cosine().0 } else { N::ONE };
@@ -36,7 +37,7 @@ impl<N: Real> Tilt<N> {
         Self { sine_squared: if sine_squared < largest { sine_squared } else { largest } }
     }
 
-    /// Whether a part whose tilt has this squared sine is within the limit.
+    /// Whether a tilt with this squared sine is within the limit.
     #[inline]
     pub(super) fn admits(self, sine_squared: N) -> bool {
         sine_squared <= self.sine_squared

@@ -1,4 +1,4 @@
-//! The algorithms that differ between 2D and 3D.
+//! The algorithms that differ between 2D and 3D, as a table.
 
 use super::Here;
 use crate::batch::{SolidGroup, update_group2, update_group3};
@@ -69,8 +69,8 @@ pub trait ByDimension<N: Real, const D: usize>:
         request: &ManifoldRequest<N>,
     ) -> bool;
 
-    /// Computes the distance of a pair up to `limit`; for solids that clearly overlap, some number that is not
-    /// positive.
+    /// Computes the distance of a pair; `None` above `limit`. For solids that clearly overlap,
+    /// returns some number that is not positive.
     fn distance(pair: &Pair<'_, N, D>, limit: N) -> Option<N>;
 
     /// Computes the distances of many pairs of convex solids, up to a limit.
@@ -129,10 +129,10 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// Computes some pairs of a batch in SIMD lanes; `false` if there is no kernel for their kinds.
     fn update_group(solids: [&Solid<N, D>; 2], group: &mut SolidGroup<'_, '_, N, D>) -> bool;
 
-    /// Returns two directions perpendicular to a normal; the second is zero in 2D.
+    /// Returns two unit vectors perpendicular to a normal; the second is zero in 2D.
     fn tangents(normal: &Vector<N, D>) -> [Vector<N, D>; 2];
 
-    /// Returns the features that the nearest points of two convex solids lie on.
+    /// Returns the features that contain the nearest points of two convex solids.
     fn witness_features(pair: &Pair<'_, N, D>, separation: &Separation<N, D>) -> [FeatureId; 2];
 
     /// Returns the feature of one of the two solids alone.
@@ -143,8 +143,8 @@ pub trait ByDimension<N: Real, const D: usize>:
         is_second: bool,
     ) -> FeatureId;
 
-    /// Returns the feature of a triangle whose Voronoi region contains the centre of a ball; distances within
-    /// `tolerance` count as rounding errors.
+    /// Returns the feature of a triangle whose Voronoi region contains the centre of a ball. `None`
+    /// in 2D, for a thin triangle, and where `tolerance` leaves the region uncertain.
     fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
 
     /// Returns the interval of times in which the line of a ray is inside a solid.

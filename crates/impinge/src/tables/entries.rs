@@ -1,4 +1,4 @@
-//! The entries of queries and of pairs.
+//! Entry points of queries and of pairs.
 
 use super::{ByDimension, Here, compiled};
 use crate::bounding_volume::Ray;
@@ -24,7 +24,7 @@ use crate::query::{
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 compiled! {
-    /// Entries of queries and pairs.
+    /// Entry points of queries and pairs, compiled once per scalar type and dimension.
     trait Entries;
 
     /// Computes the separation of two placed shapes, up to `limit`.

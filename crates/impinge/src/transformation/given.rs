@@ -3,15 +3,15 @@
 use crate::math::{Point, Real, Vector, max, max_component};
 use crate::shape::{ConvexHull, ShapeError};
 
-/// The centre of a face may lie up to this many rounding units of the largest coordinate below the
-/// hull: the error of a flat face with rounded corners.
+/// The centre of a face may lie up to this many epsilon of the largest coordinate below the hull.
+/// This is the error of a flat face with rounded corners.
 const SLACK: f64 = 64.0;
 
 impl<N: Real> ConvexHull<N> {
-    /// The solid with these corners and faces; see [`Self::try_new`].
+    /// Returns the solid with the given corners and faces; see [`Self::try_new`].
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new<F: AsRef<[u32]>>(points: &[Point<N, 3>], faces: &[F]) -> Self {
@@ -21,15 +21,15 @@ impl<N: Real> ConvexHull<N> {
         }
     }
 
-    /// Builds the solid with these corners and faces. Faces are triangles or other polygons, each
-    /// given by the indices of its corners in order, in either direction.
+    /// Builds the solid with the given corners and faces. Each face is a polygon, given by the
+    /// indices of its corners in order, in either direction.
     ///
     /// The hull is computed from the points, as by [`Self::try_from_points`]: coplanar faces become
-    /// one, and points that are no corners are left out, so vertices and faces are renumbered. The
-    /// given faces are only checked: each must lie on the hull, up to 64 rounding units of the
-    /// largest coordinate at its centre, and together they must close.
+    /// one, and points that are not corners are left out, so vertices and faces get new indices.
+    /// The given faces are only checked: the centre of each must lie on the hull, within 64 epsilon
+    /// of the largest coordinate, and together they must close.
     ///
-    /// Cost: the hull, and one test of all its faces for each given face.
+    /// The cost is that of the hull, plus one test of all its faces for each given face.
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -47,8 +47,8 @@ impl<N: Real> ConvexHull<N> {
     ///
     /// # Errors
     /// If a face has fewer than three corners or refers to a point that does not exist; if a side
-    /// does not belong to two faces; if a face is not on the hull, as for solids that are not
-    /// convex; and as for [`Self::try_from_points`].
+    /// does not belong to exactly two faces; if a face is not on the hull, as for solids that are
+    /// not convex; and if [`Self::try_from_points`] returns an error.
     pub fn try_new<F: AsRef<[u32]>>(
         points: &[Point<N, 3>],
         faces: &[F],
@@ -63,14 +63,14 @@ impl<N: Real> ConvexHull<N> {
             height >= lowest
         };
         match faces.iter().position(|face| !is_on_hull(face)) {
-            // A face whose centre is on the boundary of a convex set lies there wholly.
+            // A face whose centre is on the boundary of a convex set lies entirely on the boundary.
             Some(face) => Err(ShapeError::FaceNotOnHull { face }),
             None => Ok(hull),
         }
     }
 }
 
-/// Checks that faces have at least three corners, all of which exist.
+/// Checks that faces have at least three corners, and that all corner indices are valid.
 fn check_corners<F: AsRef<[u32]>>(points: usize, faces: &[F]) -> Result<(), ShapeError> {
     for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {
         if corners.len() < 3 {
@@ -83,7 +83,7 @@ fn check_corners<F: AsRef<[u32]>>(points: usize, faces: &[F]) -> Result<(), Shap
     Ok(())
 }
 
-/// Checks that each side belongs to two faces.
+/// Checks that each side belongs to exactly two faces.
 fn check_closed<F: AsRef<[u32]>>(faces: &[F]) -> Result<(), ShapeError> {
     let mut sides = Vec::new();
     for (face, corners) in faces.iter().map(AsRef::as_ref).enumerate() {
@@ -98,7 +98,7 @@ fn check_closed<F: AsRef<[u32]>>(faces: &[F]) -> Result<(), ShapeError> {
     }
 }
 
-/// The mean of the corners of a face.
+/// Returns the mean of the corners of a face.
 fn middle<N: Real>(points: &[Point<N, 3>], corners: &[u32]) -> Point<N, 3> {
     let count = u32::try_from(corners.len()).map_or(f64::INFINITY, f64::from);
     let share = N::ONE / N::lit(count);

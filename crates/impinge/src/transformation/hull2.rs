@@ -7,16 +7,16 @@ use crate::math::{Point, Real};
 use crate::shape::ShapeError;
 
 /// Returns the convex hull of some points: the indices of its corners, counter-clockwise, starting
-/// at the least x (and least y among equals).
+/// at the smallest x, and among several of these at the smallest y.
 ///
-/// The first of coinciding points is used; points on a side are left out. A corner within 4
-/// rounding units of the largest coordinate (`4 · N::EPSILON · max |x|`) of the line between its
-/// neighbours counts as a point on a side, so every given point is inside the polygon or within
-/// twice that distance of it. Time is O(n log n).
+/// Of coinciding points the first is used; points on a side are left out. A corner within `4 ·
+/// N::EPSILON · max |x|` of the line between its neighbours is treated as a point on a side. So
+/// every given point is inside the polygon or within twice that distance of it. The time is O(n log
+/// n).
 ///
 /// # Errors
-/// For fewer than three points, a coordinate that is not finite, or points that span no area beyond
-/// rounding: [`ShapeError::Degenerate`] has the dimension of a point or a line.
+/// If there are fewer than three points, a coordinate is not finite, or the points span no area
+/// beyond rounding: [`ShapeError::Degenerate`] with the dimension 0 (a point) or 1 (a line).
 ///
 /// ```
 /// use impinge::math::Point;
@@ -31,14 +31,14 @@ pub fn convex_hull2<N: Real>(points: &[Point<N, 2>]) -> Result<Vec<usize>, Shape
     let order = distinct(&scaled.points);
     let mut ring = chain(&scaled.points, order.iter().copied());
     let upper = chain(&scaled.points, order.iter().rev().copied());
-    // Each chain ends where the other starts.
+    // The last point of each chain is the first of the other.
     ring.pop();
     ring.extend_from_slice(&upper[..upper.len() - 1]);
     let ring = thinned(&scaled.points, ring, scaled.flat());
     if ring.len() < 3 { Err(ShapeError::Degenerate { dimension: 1 }) } else { Ok(ring) }
 }
 
-/// The indices sorted by coordinates; of equal points only the first.
+/// Returns the indices sorted by coordinates; of equal points only the first.
 fn distinct(points: &[Point<f64, 2>]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     // The coordinates are finite, and `precedes` orders them by value: a total order.
@@ -51,7 +51,8 @@ fn distinct(points: &[Point<f64, 2>]) -> Vec<usize> {
     order
 }
 
-/// One side of the hull, from the first point to the last: every corner turns left.
+/// Returns one side of the hull, from the first point of `order` to the last: every corner turns
+/// left.
 ///
 /// Andrew, "Another Efficient Algorithm for Convex Hulls in Two Dimensions" (1979).
 fn chain(points: &[Point<f64, 2>], order: impl Iterator<Item = usize>) -> Vec<usize> {

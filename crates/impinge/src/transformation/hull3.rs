@@ -20,35 +20,36 @@ use crate::shape::{ConvexHull, ShapeError};
 pub struct IndexedHull<N: Real> {
     /// The indices of the points that are vertices, ascending.
     pub vertices: Vec<usize>,
-    /// The polygons: for each the indices of its vertices, counter-clockwise seen from outside.
-    /// Each side of one is, reversed, a side of exactly one other.
+    /// For each face, the indices of its vertices, counter-clockwise seen from outside. Each side
+    /// of a face occurs, reversed, in exactly one other face.
     pub faces: Vec<Vec<usize>>,
     /// The outward unit normal of each face.
     pub normals: Vec<Vector<N, 3>>,
 }
 
-/// The maximum number of times that redundant vertices are removed. No two neighbours are removed
-/// at once; vertices left after the last round have flat angles, not wrong ones.
+/// The maximum number of rounds in which redundant vertices are removed; a round never removes two
+/// adjacent vertices. Vertices that remain after the last round are valid, but flat.
 const ROUNDS: usize = 8;
 
 /// Returns the convex hull of some points.
 ///
-/// Let `u = N::EPSILON · max |coordinate|`, one rounding unit of the points. Points that are
-/// outside by less than 2 u are left out, triangles within 4 u of a plane are merged into one
-/// polygon, vertices within 4 u of the segment between two neighbors or of the plane of all their
-/// neighbors are removed. A face has the normal of its largest triangle. So every given point is in
-/// front of no face, measured from its highest vertex, by more than 8 u, and usually by no more
-/// than 4 u. Where two faces meet at an angle that is itself pure rounding, as at the rim of a dish
-/// some 100 u deep, the bound is 32 u. No vertex of a face lies lower than the highest by more than
-/// 8 u; every vertex is one of the points, bit by bit; of coinciding points one is used. The faces
-/// visible from a point are decided exactly, so no input breaks the algorithm.
+/// Let `u = N::EPSILON · max |coordinate|`, one rounding unit of the points. Points outside by less
+/// than 2 u are left out. Triangles within 4 u of a plane are merged into one polygon. Vertices
+/// within 4 u of the segment between two neighbors, or of the plane of all their neighbors, are
+/// removed. A face has the normal of its largest triangle. So no given point is in front of a face,
+/// measured from the face's highest vertex, by more than 8 u, and usually not by more than 4 u.
+/// Where two faces meet at an angle that is itself rounding error, as at the rim of a dish about
+/// 100 u deep, the bound is 32 u. No vertex of a face lies lower than the highest one by more than
+/// 8 u. Every vertex is bitwise equal to one of the points; of coinciding points one is used. The
+/// faces visible from a point are decided exactly, so no input breaks the algorithm.
 ///
-/// Expected time is O(n log n), with a quickhull. The result depends on the points and their order
-/// only, and scaling them by a power of two changes nothing.
+/// The algorithm is quickhull, with an expected time of O(n log n). The result depends only on the
+/// points and their order, and scaling them by a power of two changes no index.
 ///
 /// # Errors
-/// For fewer than four points, a coordinate that is not finite, or points that span no volume: all
-/// within 4 u of a point, line or plane ([`ShapeError::Degenerate`] with dimension 0, 1 or 2).
+/// If there are fewer than four points, a coordinate is not finite, or the points span no volume:
+/// all within 4 u of a point, line or plane ([`ShapeError::Degenerate`] with the dimension 0, 1 or
+/// 2).
 ///
 /// ```
 /// use impinge::math::Point;
@@ -67,14 +68,18 @@ pub fn convex_hull3<N: Real>(points: &[Point<N, 3>]) -> Result<IndexedHull<N>, S
     Ok(IndexedHull { faces: faces.rings().map(ring).collect(), normals, vertices: point_indices })
 }
 
-/// A hull in terms of its own vertices.
+/// A hull whose faces refer to its own vertices.
 struct HullFaces {
-    /// The index of the point of each vertex, ascending.
+    /// For each vertex, the index of its point, in ascending order.
     point_indices: Vec<usize>,
     faces: FaceRings,
 }
 
-/// Removes redundant vertices until there are none, or too few would be left.
+/// Computes the hull, and removes redundant vertices until there are none, or too few would be
+/// left.
+///
+/// # Errors
+/// If the points span no volume.
 fn hull_of<N: Real>(points: &[Point<N, 3>]) -> Result<HullFaces, ShapeError> {
     let mut grown = Grown::of(&Scaled::of(points, 4)?)?;
     for _ in 0..ROUNDS {
@@ -92,9 +97,9 @@ fn hull_of<N: Real>(points: &[Point<N, 3>]) -> Result<HullFaces, ShapeError> {
     Ok(HullFaces { point_indices, faces })
 }
 
-/// The hull of some points, as triangles.
+/// The triangles of the hull of some points.
 struct Grown {
-    /// The index of the point of each vertex, ascending.
+    /// For each vertex, the index of its point, in ascending order.
     point_indices: Vec<usize>,
     /// The positions of the vertices.
     vertices: Scaled<3>,
@@ -115,7 +120,10 @@ impl Grown {
         Ok(Self { point_indices, vertices: Scaled { points, unit: scaled.unit }, facets })
     }
 
-    /// The hull without some vertices.
+    /// Returns the hull without the vertices in `redundant`.
+    ///
+    /// # Errors
+    /// If too few points are left to span a volume.
     fn without(&self, redundant: &[u32]) -> Result<Self, ShapeError> {
         let is_kept = |&vertex: &usize| redundant.binary_search(&index_of(vertex)).is_err();
         let kept: Vec<usize> = (0..self.point_indices.len()).filter(is_kept).collect();
@@ -126,7 +134,8 @@ impl Grown {
     }
 }
 
-/// Returns the used vertices, ascending, and the index of each among them.
+/// Returns the used vertices in ascending order, and for each old vertex its index among the used
+/// ones.
 fn numbered(count: usize, corners: impl Iterator<Item = u32>) -> (Vec<usize>, Vec<u32>) {
     let (mut new_indices, mut used) = (vec![0; count], Vec::with_capacity(count));
     corners.for_each(|corner| new_indices[at(corner)] = 1);
@@ -138,10 +147,11 @@ fn numbered(count: usize, corners: impl Iterator<Item = u32>) -> (Vec<usize>, Ve
 }
 
 impl<N: Real> ConvexHull<N> {
-    /// The convex hull of points in any order; see [`convex_hull3`].
+    /// Returns the convex hull of points in any order; see [`convex_hull3`].
     ///
     /// # Errors
-    /// For fewer than four points, a coordinate that is not finite, and points that span no volume.
+    /// If there are fewer than four points, a coordinate is not finite, or the points span no
+    /// volume.
     pub fn try_from_points(points: &[Point<N, 3>]) -> Result<Self, ShapeError> {
         let HullFaces { point_indices, faces } = hull_of(points)?;
         let corners = point_indices.iter().map(|&index| points[index]).collect();

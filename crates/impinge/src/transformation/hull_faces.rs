@@ -1,4 +1,4 @@
-//! Faces of a hull from its triangles: removal of redundant vertices, and merging of coplanar
+//! Builds the faces of a hull from its triangles: removes redundant vertices, and merges coplanar
 //! triangles into polygons.
 
 use super::lattice::area_vector;
@@ -9,7 +9,8 @@ use crate::math::{Mapped, Point, Vector};
 
 type P3 = Point<f64, 3>;
 
-/// Whether the smaller of two neighbors lies in the plane of the larger.
+/// Whether the smaller of two neighboring triangles lies in the plane of the larger one, within the
+/// tolerance.
 fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
     let is_first_larger = facet1.doubled_area >= facet2.doubled_area;
     let (large, small) = if is_first_larger { (facet1, facet2) } else { (facet2, facet1) };
@@ -17,11 +18,11 @@ fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
     far.all(|&corner| large.height(&points.points, corner).abs() <= points.flat())
 }
 
-/// Returns vertices, no two of them adjacent, without which the hull stays the same within `flat`:
-/// each lies on the segment between two neighbors or in the plane of all its neighbors.
+/// Returns vertices, no two of them adjacent, whose removal changes the hull by at most `flat`.
+/// Each lies on the segment between two neighbors or in the plane of all its neighbors.
 pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
     let points = &scaled.points;
-    // For each vertex one of its facets, and the number of its edges at which the surface bends.
+    // For each vertex, one of its facets, and the number of its edges at which the surface bends.
     let mut around = vec![(0, 0_u32); points.len()];
     for (index, facet) in (0..).zip(facets) {
         for side in 0..3 {
@@ -33,7 +34,7 @@ pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
             around[from].0 = index;
         }
     }
-    // At a true corner at least three such edges meet, unless slivers hide some of them.
+    // At a true corner the surface bends at three or more edges, unless slivers hide some of them.
     let candidates = (0..).zip(around).filter(|&(_, (_, turns))| turns <= 2);
     let (mut kept, mut redundant) = (Vec::new(), Vec::new());
     for (vertex, (facet, _)) in candidates {
@@ -51,7 +52,8 @@ pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
     redundant
 }
 
-/// The vertices adjacent to a vertex, ascending, found from one of its facets.
+/// Returns the vertices adjacent to a vertex, in ascending order, starting the walk at the facet
+/// `first`.
 fn ring_around(vertex: u32, first: u32, facets: &[Facet]) -> Vec<u32> {
     let (mut ring, mut facet) = (Vec::new(), first);
     loop {
@@ -68,8 +70,8 @@ fn ring_around(vertex: u32, first: u32, facets: &[Facet]) -> Vec<u32> {
     ring
 }
 
-/// Whether a vertex lies, within `flat`, on the segment between two neighbors or amid all of them
-/// in one plane.
+/// Whether a vertex lies, within `flat`, on the segment between two neighbors, or is surrounded by
+/// its neighbors in one plane.
 fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
     let pairs =
         neighbors.iter().enumerate().flat_map(|(i, a)| neighbors[..i].iter().map(move |b| (a, b)));
@@ -81,9 +83,9 @@ fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
         || widest_normal(vertex, pairs).is_some_and(is_amid)
 }
 
-/// Whether, projected along a normal, there are neighbors on both sides of each line from the
-/// vertex to one of them. At the rim of a solid hardly thicker than rounding, all neighbors lie in
-/// one plane, but on one side.
+/// Whether the projection along `normal` has neighbors on both sides of each line from the vertex
+/// to a neighbor. False at the rim of a solid hardly thicker than rounding: all neighbors lie in
+/// one plane, but on one side of the vertex.
 fn is_surrounded(vertex: &P3, neighbors: &[P3], normal: &Vector<f64, 3>) -> bool {
     neighbors.iter().all(|to| {
         let across = normal.cross(&(to - vertex));
@@ -92,7 +94,8 @@ fn is_surrounded(vertex: &P3, neighbors: &[P3], normal: &Vector<f64, 3>) -> bool
     })
 }
 
-/// The unit normal of the largest triangle of a vertex and two of its neighbors.
+/// Returns the unit normal of the largest triangle of a vertex and two of its neighbors; `None` if
+/// none has an area.
 fn widest_normal<'a>(
     vertex: &P3,
     pairs: impl Iterator<Item = (&'a P3, &'a P3)>,
@@ -103,16 +106,16 @@ fn widest_normal<'a>(
     direction(&widest).map(|(normal, _)| normal)
 }
 
-/// The faces of a hull in one list.
+/// The faces of a hull, stored in common lists.
 #[derive(Default)]
 pub(super) struct FaceRings {
-    /// The outward unit normal of the largest triangle in each face: the hull has no point in front
-    /// of that, however much smaller triangles deviate within the tolerance.
+    /// For each face, the outward unit normal of its largest triangle. The hull has no point in
+    /// front of that triangle, however far smaller triangles deviate within the tolerance.
     pub(super) normals: Vec<Vector<f64, 3>>,
-    /// The vertices of each face, counter-clockwise from outside, starting at the first in order of
-    /// coordinates.
+    /// The vertices of each face, counter-clockwise from outside, starting at the lowest vertex in
+    /// order of coordinates.
     pub(super) corners: Vec<u32>,
-    /// The end of each face's vertices.
+    /// For each face, the end index of its vertices in `corners`.
     ends: Vec<usize>,
 }
 
@@ -122,8 +125,8 @@ impl FaceRings {
         Self { normals, corners: Vec::with_capacity(3 * faces), ends }
     }
 
-    /// Appends a face with the normal of a facet, recomputed exactly unless the points came in
-    /// `f32`, whose rounding is far coarser than the facet's normal.
+    /// Appends a face with the normal of a facet. The normal is recomputed exactly, unless the
+    /// points were `f32`, whose rounding is far coarser than the error of the facet's normal.
     fn push(&mut self, scaled: &Scaled<3>, seed: &Facet, ring: &[u32]) {
         let points = &scaled.points;
         let exact = || area_vector(seed.corners.mapped(|corner| &points[at(corner)]));
@@ -140,15 +143,15 @@ impl FaceRings {
         self.ends.push(self.corners.len());
     }
 
-    /// The vertices around each face.
+    /// Returns the vertices of each face.
     pub(super) fn rings(&self) -> impl Iterator<Item = &[u32]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, &end)| &self.corners[start..end])
     }
 
-    /// Drops the vertices that only two faces share, where the sides of each form one line. Returns
-    /// false if there is one where they do not, as where two nearly coplanar faces meet all around:
-    /// a vertex of two sides is invalid.
+    /// Removes each vertex that only two faces share, if it lies on a straight line between its
+    /// neighbors in both. Returns false if such a vertex is not on a straight line, as where two
+    /// nearly coplanar faces meet all around: a vertex with two sides is invalid.
     fn straighten(&mut self, scaled: &Scaled<3>) -> bool {
         let mut uses = vec![(0_u32, [0; 2]); scaled.points.len()];
         for (face, ring) in self.rings().enumerate() {
@@ -181,7 +184,7 @@ impl FaceRings {
         self.is_closed()
     }
 
-    /// Whether each side of a face is, reversed, a side of one other face.
+    /// Whether each side of a face occurs, reversed, in exactly one other face.
     fn is_closed(&self) -> bool {
         let sides = self.rings().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
         let mut forward: Vec<(u32, u32)> = sides.map(|(&from, &to)| (from, to)).collect();
@@ -192,7 +195,7 @@ impl FaceRings {
     }
 }
 
-/// Whether a vertex of a ring lies on the segment between those before and after it.
+/// Whether a vertex of a ring lies on the segment between the vertices before and after it.
 fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
     let Some(index) = ring.iter().position(|&corner| corner == vertex) else { return false };
     let corner = |step: usize| &scaled.points[at(ring[(index + step) % ring.len()])];
@@ -201,8 +204,8 @@ fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
 
 /// Merges triangles within the tolerance of one plane into faces.
 ///
-/// Each side of such a face is, reversed, a side of the triangle beyond and so of the face that
-/// contains that triangle. Only straightening can break that; then the triangles are the faces.
+/// Each side of a face is, reversed, a side of the triangle beyond, and so of the face that
+/// contains that triangle. Only `straighten` can break this; then the triangles are used as faces.
 pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> FaceRings {
     let mut faces = Merger::new(facets, scaled).merged();
     if !faces.straighten(scaled) {
@@ -217,13 +220,13 @@ pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> FaceRings {
 struct Merger<'a> {
     facets: &'a [Facet],
     scaled: &'a Scaled<3>,
-    /// Whether each facet is part of a face.
+    /// For each facet, whether it is part of a face already.
     is_taken: Vec<bool>,
-    /// For each vertex, one more than the last seed whose face contains it.
+    /// For each vertex, one more than the seed of the last face that contains it.
     in_face_of: Vec<u32>,
     /// The vertices of the face under construction.
     ring: Vec<u32>,
-    /// For each of them the facet beyond the side to the next.
+    /// For each vertex in `ring`, the facet beyond the side to the next vertex.
     beyond: Vec<u32>,
 }
 
@@ -239,9 +242,9 @@ impl<'a> Merger<'a> {
         }
     }
 
-    /// Grows a face from each facet that is in none yet, the largest first.
+    /// Grows a face from each facet that is not in a face yet, the largest first.
     fn merged(mut self) -> FaceRings {
-        // The bits of nonnegative numbers have the order of the numbers.
+        // The bits of nonnegative floats, taken as integers, have the order of the floats.
         let area = |facet: &Facet| !facet.doubled_area.to_bits();
         let mut seeds: Vec<(u64, u32)> = self.facets.iter().map(area).zip(0..).collect();
         sort_keyed(&mut seeds);
@@ -255,7 +258,8 @@ impl<'a> Merger<'a> {
         faces
     }
 
-    /// Grows a face from the facet `seed`: its loop goes to `ring`, the facets beyond to `beyond`.
+    /// Grows a face from the facet `seed`: writes its loop to `ring` and the facets beyond to
+    /// `beyond`.
     fn grow(&mut self, seed: u32) {
         let facet = &self.facets[at(seed)];
         self.is_taken[at(seed)] = true;
@@ -264,7 +268,7 @@ impl<'a> Merger<'a> {
         self.beyond.clear();
         self.beyond.extend(facet.neighbors);
         facet.corners.iter().for_each(|&corner| self.in_face_of[at(corner)] = seed + 1);
-        // Each success adds one facet; after a whole turn without any the face is complete.
+        // Each success adds one facet; after a whole turn without success the face is complete.
         let (mut position, mut failures) = (0, 0);
         while failures < self.ring.len() {
             position %= self.ring.len();
@@ -278,6 +282,7 @@ impl<'a> Merger<'a> {
     }
 
     /// Adds the facet beyond a side, if it is coplanar with the seed and the face stays convex.
+    /// Returns whether it was added.
     fn take_beyond(&mut self, seed: u32, position: usize) -> bool {
         let (from, beyond) = (self.ring[position], self.beyond[position]);
         let facet = &self.facets[at(beyond)];
@@ -287,8 +292,8 @@ impl<'a> Merger<'a> {
         let Some(shared) = facet.corners.iter().position(|&corner| corner == from) else {
             return false;
         };
-        // In that facet the side runs backwards, to `from`; then come the far corner and the way
-        // back.
+        // In the facet beyond, the side runs backwards, to `from`; then follow the far corner and
+        // the side back.
         let far = facet.corners[(shared + 1) % 3];
         let Scaled { points, .. } = self.scaled;
         let is_coplanar = || self.facets[at(seed)].height(points, far).abs() <= self.scaled.flat();

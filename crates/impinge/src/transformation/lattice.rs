@@ -1,27 +1,27 @@
 //! Exact areas and volumes for points on the lattice of multiples of 2⁻⁶⁰ with coordinates below 2.
 //!
-//! Times 2⁶⁰ such a coordinate is an integer of 61 bits and a sign, a difference of two has 62
-//! bits, a 2×2 minor of differences 125: it fits an `i128`. A volume has some 190, so its minors
-//! are split in two. No product underflows, and the cost is the same for every input.
+//! Times 2⁶⁰ such a coordinate is an integer of 61 bits and a sign. A difference of two has 62
+//! bits, and a 2×2 minor of differences 125, which fits an `i128`. A volume has about 190 bits, so
+//! its minors are split in two. No product underflows.
 
 use crate::math::{Mapped, Point, Vector, filled};
 
 type P2 = Point<f64, 2>;
 type P3 = Point<f64, 3>;
 
-/// 2⁶⁰.
+/// 2⁶⁰, the number of lattice steps per unit.
 const PER_UNIT: f64 = (1_u64 << 60) as f64;
 
 /// The number of bits of the lower half of a minor.
 const HALF: u32 = 63;
 
-/// 2⁶³.
+/// 2⁶³, the weight of the upper half of a minor.
 const PER_HALF: f64 = (1_u64 << HALF) as f64;
 
 /// Rounds a number to a multiple of 2⁻⁶⁰.
 pub(super) fn rounded(x: f64) -> f64 {
-    // The sum lies between 2⁻⁸ and 2⁻⁷, where doubles are 2⁻⁶⁰ apart. Larger numbers are multiples
-    // already.
+    // The sum lies between 2⁻⁸ and 2⁻⁷, where doubles are 2⁻⁶⁰ apart, so the addition rounds.
+    // Larger numbers are multiples already.
     let rounder = (1.0_f64 / 256.0).copysign(x);
     if x.abs() < 1.0 / 256.0 { (x + rounder) - rounder } else { x }
 }
@@ -31,31 +31,31 @@ fn whole(x: f64) -> i64 {
     (x * PER_UNIT) as i64
 }
 
-/// `p - q` as integers.
+/// Returns `p - q` as integers, in lattice steps.
 fn offset<const D: usize>(p: &Point<f64, D>, q: &Point<f64, D>) -> [i64; D] {
     filled(|axis| whole(p[axis]) - whole(q[axis]))
 }
 
-/// `a · d − b · c`.
+/// Returns `a · d − b · c`.
 fn minor(a: i64, b: i64, c: i64, d: i64) -> i128 {
     i128::from(a) * i128::from(d) - i128::from(b) * i128::from(c)
 }
 
-/// The cross product.
+/// Returns the cross product of two integer vectors.
 fn minors([ux, uy, uz]: [i64; 3], [vx, vy, vz]: [i64; 3]) -> [i128; 3] {
     [minor(uy, uz, vy, vz), minor(uz, ux, vz, vx), minor(ux, uy, vx, vy)]
 }
 
-/// Converts an integer to an area.
+/// Converts an integer in squared lattice steps to an area.
 #[expect(clippy::cast_precision_loss, reason = "rounds to nearest")]
 fn area_of(minor: i128) -> f64 {
     minor as f64 / (PER_UNIT * PER_UNIT)
 }
 
-/// Twice the area of the triangle, positive if it is counter-clockwise. The sign is exact.
+/// Returns twice the area of the triangle, positive if it is counter-clockwise. The sign is exact.
 ///
-/// The error bound of the rounded determinant is that of Shewchuk, "Adaptive Precision
-/// Floating-Point Arithmetic and Fast Robust Geometric Predicates" (1997).
+/// The error bound of the rounded determinant is from Shewchuk, "Adaptive Precision Floating-Point
+/// Arithmetic and Fast Robust Geometric Predicates" (1997).
 pub(super) fn area(a: &P2, b: &P2, c: &P2) -> f64 {
     let (u, v) = (a - c, b - c);
     let (left, right) = (u.x * v.y, u.y * v.x);
@@ -69,15 +69,15 @@ fn exact_area(a: &P2, b: &P2, c: &P2) -> f64 {
     area_of(minor(ux, uy, vx, vy))
 }
 
-/// The normal of the triangle on the side from which it appears counter-clockwise, with the length
-/// of twice its area: each coordinate is the double nearest to the exact one.
+/// Returns the normal of the triangle on the side from which it appears counter-clockwise, with the
+/// length of twice its area. Each coordinate is the double nearest to the exact value.
 pub(super) fn area_vector([a, b, c]: [&P3; 3]) -> Vector<f64, 3> {
     Vector::from(minors(offset(b, a), offset(c, a)).mapped(area_of))
 }
 
-/// Six times the volume of the tetrahedron, accurate to the last digits: positive if `q` lies on
-/// the side of the triangle from which its corners appear counter-clockwise, exactly 0 if it lies
-/// in the plane.
+/// Returns six times the volume of the tetrahedron, accurate to the last digits. Positive if `q`
+/// lies on the side of the triangle from which its corners appear counter-clockwise; exactly 0 if
+/// it lies in the plane.
 #[expect(clippy::cast_possible_truncation, reason = "an upper half has 62 bits, a lower one 63")]
 #[expect(clippy::cast_precision_loss, reason = "rounds to nearest")]
 #[cold]
@@ -91,7 +91,8 @@ pub(super) fn volume([a, b, c]: [&P3; 3], q: &P3) -> f64 {
     }
     upper += lower >> HALF;
     lower &= i128::from(i64::MAX);
-    // If the upper half has more than 64 bits, it dominates the rounding of the lower one.
+    // If the upper half has more than 64 bits, the lower half is below the rounding error of the
+    // result.
     let is_short = i128::from(upper as i64) == upper;
     let value = if is_short { ((upper << HALF) + lower) as f64 } else { upper as f64 * PER_HALF };
     value / (PER_UNIT * PER_UNIT) / PER_UNIT
@@ -102,7 +103,7 @@ mod tests {
     use super::*;
     use crate::math::exact;
 
-    /// Numbers from −2 to 2 on the lattice, of all magnitudes.
+    /// Returns a generator of numbers from −2 to 2 on the lattice, of all magnitudes.
     fn numbers() -> impl FnMut() -> f64 {
         let mut state = 1_u64;
         move || {
@@ -131,7 +132,7 @@ mod tests {
         }
     }
 
-    /// Signs and magnitudes compared with expansions, for random points and for points in planes
+    /// Compares signs and magnitudes with expansions, for random points and for points in planes
     /// and beside them.
     #[test]
     fn volumes_are_those_of_expansions() {
@@ -141,7 +142,7 @@ mod tests {
             let mut point = || P3::from(Vector::<f64, 3>::from_fn(|_, _| next()));
             let [a, b, c, mut q] = [(); 4].mapped(|()| point());
             if round % 2 == 0 {
-                // In the plane up to rounding, and exactly for some.
+                // A point in the plane up to rounding, sometimes exactly.
                 q = (a + (b - a) * 0.25 + (c - a) * 0.5).map(rounded);
             }
             let (found, expected) = (volume([&a, &b, &c], &q), exact::volume(&a, &b, &c, &q));

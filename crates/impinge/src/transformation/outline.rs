@@ -8,7 +8,7 @@ use crate::shape::{ConvexPolygon, ShapeError};
 
 type P2 = Point<f64, 2>;
 
-/// Removes points of a ring that lie, within `tolerance`, between their neighbours.
+/// Removes points of a ring that lie, within `tolerance`, on the segment between their neighbours.
 pub(super) fn thinned(points: &[P2], ring: Vec<usize>, tolerance: f64) -> Vec<usize> {
     let adds_nothing = |before: usize, at: usize, after: usize| {
         distance_from_segment(&points[at], &points[before], &points[after]) <= tolerance
@@ -22,7 +22,7 @@ pub(super) fn thinned(points: &[P2], ring: Vec<usize>, tolerance: f64) -> Vec<us
         }
         kept.push(index);
     }
-    // At the ends of the list each iteration removes a point or ends the loop.
+    // At the ends of the list, each iteration removes a point or ends the loop.
     while let [first, second, .., before, last] = kept[..] {
         if adds_nothing(before, last, first) {
             kept.pop();
@@ -68,15 +68,15 @@ fn outline(points: &[P2], tolerance: f64) -> Result<Vec<usize>, ShapeError> {
 }
 
 impl<N: Real> ConvexPolygon<N> {
-    /// Builds the polygon with a given convex outline, counter-clockwise or clockwise; a clockwise
-    /// one is reversed, so its vertices then come in the opposite order.
+    /// Builds the polygon with a given convex outline, counter-clockwise or clockwise. A clockwise
+    /// outline is reversed, so its vertices get the opposite order.
     ///
     /// Points that coincide with a neighbour or lie, within 4 rounding units of the largest
     /// coordinate, on the segment between their neighbours are left out.
     ///
     /// # Errors
-    /// For fewer than three points, a coordinate that is not finite, points that span no area
-    /// ([`ShapeError::Degenerate`]), and an outline that is not convex or goes around twice
+    /// If there are fewer than three points, a coordinate is not finite, the points span no area
+    /// ([`ShapeError::Degenerate`]), or the outline is not convex or goes around twice
     /// ([`ShapeError::NotConvex`], with the index of the point at which this is detected).
     pub fn try_new(points: &[Point<N, 2>]) -> Result<Self, ShapeError> {
         let scaled = Scaled::of(points, 3)?;
@@ -88,10 +88,11 @@ impl<N: Real> ConvexPolygon<N> {
         Ok(Self::from_corners(ring.into_iter().map(|index| points[index]).collect()))
     }
 
-    /// The convex hull of points in any order; see [`convex_hull2`].
+    /// Returns the convex hull of points in any order; see [`convex_hull2`].
     ///
     /// # Errors
-    /// For fewer than three points, a coordinate that is not finite, and points that span no area.
+    /// If there are fewer than three points, a coordinate is not finite, or the points span no
+    /// area.
     pub fn try_from_points(points: &[Point<N, 2>]) -> Result<Self, ShapeError> {
         let ring = convex_hull2(points)?;
         Ok(Self::from_corners(ring.into_iter().map(|index| points[index]).collect()))

@@ -1,9 +1,9 @@
-//! Quickhull in 3D, with exact decisions and a tolerance for adding vertices.
+//! Quickhull in 3D, with exact visibility tests and a tolerance below which points are not added.
 //!
 //! Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls" (1996). The facets
-//! visible from a point are decided by exact orientation, so they are always connected, their
+//! visible from a point are decided by exact orientation. So they are always connected, their
 //! border is always one loop, and no facet is without area: the surface stays closed and weakly
-//! convex for every input. Points outside by at most the tolerance stay there.
+//! convex for every input. Points outside by at most the tolerance are not added.
 
 use super::lattice::{area_vector, volume};
 use super::span::{distance_from_segment, larger, precedes};
@@ -14,30 +14,31 @@ type P3 = Point<f64, 3>;
 
 const NONE: u32 = u32::MAX;
 
-/// The value of `visited` of a facet that was removed from the surface.
+/// The value of [`Facet::visited`] for a facet that was removed from the surface.
 const GONE: u32 = u32::MAX;
 
-/// 2⁻⁴⁰: heights above the plane of a facet beyond this have the right sign and a magnitude
-/// accurate within a quarter.
+/// 2⁻⁴⁰. If a rounded height above a facet's plane exceeds this in magnitude, its sign is right and
+/// its magnitude is accurate within a quarter.
 ///
-/// The error of a normal is 2⁻⁴⁵, times offsets below 7; rounding the products adds 2⁻⁴⁹.
+/// The error of a normal is 2⁻⁴⁵, which is multiplied by offsets below 7; rounding the products
+/// adds 2⁻⁴⁹.
 pub(super) const DOUBT: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// A triangle of the surface, counter-clockwise from outside.
+/// A triangle of the surface, with its corners counter-clockwise seen from outside.
 #[derive(Clone, Debug)]
 pub(super) struct Facet {
     pub(super) corners: [u32; 3],
     /// The facet beyond the side from each corner to the next.
     pub(super) neighbors: [u32; 3],
-    /// The outward unit normal, within 2⁻⁴⁵.
+    /// The outward unit normal, with an error of at most 2⁻⁴⁵.
     pub(super) normal: Vector<f64, 3>,
-    /// The offset of its plane along the normal.
+    /// The scalar product of the normal with the points of the facet's plane.
     offset: f64,
-    /// Twice the area; the height is the volume over it.
+    /// Twice the facet's area; six times a volume divided by it is a height.
     pub(super) doubled_area: f64,
-    /// The first of the points on its list.
+    /// The first point of the facet's list of outside points.
     waiting: u32,
-    /// The number of the last search that visited it.
+    /// The index of the last search that visited the facet, or [`GONE`].
     visited: u32,
 }
 
@@ -47,8 +48,9 @@ impl Facet {
         let [a, b, c] = corner_points;
         let (u, v) = (b - a, c - a);
         let mut across = u.cross(&v);
-        // The rounding error is 2⁻⁵⁰ of the product of the lengths: 2⁻⁴⁵ of an area that is 1/32 of
-        // it.
+        // The cross product has a rounding error of 2⁻⁵⁰ times the product of the two lengths. That
+        // is 2⁻⁴⁵ of its own length if this is 1/32 of the product; a shorter one is recomputed
+        // exactly.
         if across.norm_squared() * 1024.0 < u.norm_squared() * v.norm_squared() {
             across = area_vector(corner_points);
         }
@@ -58,12 +60,12 @@ impl Facet {
         Self { corners, neighbors, normal, offset, doubled_area, waiting: NONE, visited: 0 }
     }
 
-    /// The height of a point in front of it, within [`DOUBT`].
+    /// Returns the height of a point in front of the facet, within [`DOUBT`].
     fn rough_height(&self, point: &P3) -> f64 {
         self.normal.dot(&point.coords) - self.offset
     }
 
-    /// The height of a point in front of it; the sign is exact.
+    /// Returns the height of a point in front of the facet; the sign is exact.
     pub(super) fn height(&self, points: &[P3], point: u32) -> f64 {
         let point = &points[at(point)];
         let height = self.rough_height(point);
@@ -76,12 +78,12 @@ impl Facet {
     }
 }
 
-/// A point outside, on the list of one facet that it is in front of.
+/// A point outside the surface, in the list of one facet that it is in front of.
 #[derive(Clone, Copy)]
 struct WaitingPoint {
-    /// Its height over the facet.
+    /// The height of the point over that facet.
     height: f64,
-    /// The next on the list.
+    /// The next point in the list.
     next: u32,
 }
 
@@ -96,15 +98,15 @@ struct HorizonSide {
 /// The surface under construction.
 pub(super) struct HullSurface<'a> {
     points: &'a [P3],
-    /// Points no higher than this above every facet are left outside.
+    /// Points no higher than this over every facet are not added.
     tolerance: f64,
     facets: Vec<Facet>,
-    /// For each point, its entry in a list.
+    /// For each point, its entry in a facet's list.
     waiting: Vec<WaitingPoint>,
     searches: u32,
     /// The facets that the last search found visible.
     visible: Vec<u32>,
-    /// Their border, in order of the vertices where its sides start.
+    /// The border of the visible facets, in order of the vertices where its sides start.
     horizon: Vec<HorizonSide>,
     /// For each vertex of the last border, the new facet on the side that starts there.
     fan: Vec<u32>,
@@ -120,7 +122,8 @@ pub(super) fn index_of(position: usize) -> u32 {
 
 impl<'a> HullSurface<'a> {
     /// Returns the facets of the hull, grown from a tetrahedron of four of the points; `None` if
-    /// these are coplanar.
+    /// Returns the facets of the hull, grown from a tetrahedron of four of the points; `None` if
+    /// these four are coplanar.
     pub(super) fn grown(points: &'a [P3], first: [u32; 4], tolerance: f64) -> Option<Vec<Facet>> {
         let mut surface = Self {
             points,
@@ -136,8 +139,8 @@ impl<'a> HullSurface<'a> {
         for point in (0..).take(points.len()).filter(|point| !first.contains(point)) {
             surface.assign(point, 0);
         }
-        // Each call adds a vertex or finds that a facet has nothing to add. The last facet comes
-        // first: its data is in the cache.
+        // Each call of `raise` adds a vertex or finds that a facet has no point to add. The last
+        // facet is processed first: its data is in the cache.
         let mut pending: Vec<u32> = Vec::with_capacity(32);
         pending.extend([0, 1, 2, 3]);
         while !pending.is_empty() {
@@ -149,7 +152,7 @@ impl<'a> HullSurface<'a> {
         Some(surface.compacted())
     }
 
-    /// Makes the first tetrahedron; `None` if the four points are coplanar.
+    /// Builds the first tetrahedron; `None` if the four points are coplanar.
     fn start(&mut self, [a, b, c, d]: [u32; 4]) -> Option<()> {
         let [e, f, g] = [a, b, c].mapped(|corner| &self.points[at(corner)]);
         let height = volume([e, f, g], &self.points[at(d)]);
@@ -169,11 +172,11 @@ impl<'a> HullSurface<'a> {
         Some(())
     }
 
-    /// Puts a point on the list of the facet, among those from `first` on, over which it is
-    /// highest. Drops it if it is in front of none: then it is inside for good.
+    /// Puts a point into the list of the facet, among those from index `first` on, over which it is
+    /// highest. If it is in front of none of them, it is dropped: it is inside for good.
     ///
-    /// A point outside that was in front of a removed facet is in front of one of the facets that
-    /// replaced it.
+    /// A point that is outside, and was in front of a removed facet, is in front of one of the
+    /// facets that replaced it.
     #[inline]
     fn assign(&mut self, point: u32, first: u32) {
         let position = self.points[at(point)];
@@ -186,7 +189,8 @@ impl<'a> HullSurface<'a> {
         }
     }
 
-    /// The facet, among those from `first` on, with the largest height, and the height.
+    /// Returns the facet, among those from index `first` on, with the largest height, and that
+    /// height.
     #[inline]
     fn highest(&self, first: u32, height: impl Fn(&Facet) -> f64) -> (u32, f64) {
         let (mut best, mut top) = (NONE, f64::NEG_INFINITY);
@@ -202,7 +206,7 @@ impl<'a> HullSurface<'a> {
         self.waiting[at(point)] = WaitingPoint { height, next };
     }
 
-    /// The points on a list, with their heights.
+    /// Returns the points in a facet's list, with their heights.
     fn waiting_at(&self, facet: u32) -> impl Iterator<Item = (u32, f64)> {
         let listed = |point: u32| (point != NONE).then_some(point);
         let first = listed(self.facets[at(facet)].waiting);
@@ -210,8 +214,8 @@ impl<'a> HullSurface<'a> {
         core::iter::successors(first, next).map(|point| (point, self.waiting[at(point)].height))
     }
 
-    /// The point with the largest height over a facet, if that is above the tolerance; of
-    /// coinciding points the first.
+    /// Returns the point with the largest height over a facet, the first if there are coinciding
+    /// points; `None` if that height is within the tolerance.
     fn farthest(&self, facet: u32) -> Option<u32> {
         let top = self.waiting_at(facet).fold(0.0, |top, (_, height)| larger(top, height));
         if top <= self.tolerance {
@@ -249,8 +253,8 @@ impl<'a> HullSurface<'a> {
         pending.extend(first..index_of(self.facets.len()));
     }
 
-    /// Finds the facets visible from a point, starting from one of them (they are connected), and
-    /// their border.
+    /// Finds the facets visible from a point, starting from the visible facet `first` (they are
+    /// connected), and their border. Writes them to `visible` and `horizon`.
     fn look(&mut self, point: u32, first: u32) {
         self.searches += 1;
         self.visible.clear();
@@ -278,7 +282,7 @@ impl<'a> HullSurface<'a> {
         }
     }
 
-    /// Adds a fan of facets from the border to a point; returns the first of them.
+    /// Adds a fan of facets from the border to a point; returns the index of the first new facet.
     fn replace(&mut self, point: u32) -> u32 {
         sort_few(&mut self.horizon, |one, other| one.from < other.from);
         let first = index_of(self.facets.len());
@@ -299,9 +303,9 @@ impl<'a> HullSurface<'a> {
         first
     }
 
-    /// Moves each point left outside to the facet over which it is highest, and appends to
-    /// `pending` those facets for which it is farther outside than the tolerance. The others stay:
-    /// later facets may turn below them.
+    /// Moves each remaining outside point to the facet over which it is highest. Appends to
+    /// `pending` the facets for which it is farther outside than the tolerance. Other points stay
+    /// in their lists: later facets may be below them.
     fn promote(&mut self, pending: &mut Vec<u32>) {
         for facet in 0..index_of(self.facets.len()) {
             if self.facets[at(facet)].visited == GONE {
@@ -320,9 +324,9 @@ impl<'a> HullSurface<'a> {
         }
     }
 
-    /// The facet over which a point is highest, found from one that it is in front of, and its
-    /// distance outside: that height, or the distance from the surface. Beside the rim of a thin
-    /// solid no facet has a large height.
+    /// Returns the facet over which a point is highest, starting from the facet `first` that it is
+    /// in front of, and the point's distance outside: that height, or the distance from the
+    /// surface. Near the rim of a thin solid no facet has a large height.
     fn farthest_outside(&mut self, point: u32, first: u32) -> (u32, f64) {
         self.look(point, first);
         let mut best = (first, 0.0);
@@ -339,7 +343,7 @@ impl<'a> HullSurface<'a> {
         (best.0, larger(best.1, distances.fold(f64::INFINITY, f64::min)))
     }
 
-    /// The distance of a point in front of a facet from it.
+    /// Returns the distance from a facet to a point in front of it.
     fn distance(&self, facet: u32, point: u32) -> f64 {
         let facet = &self.facets[at(facet)];
         let [a, b, c] = facet.corners.mapped(|corner| &self.points[at(corner)]);
@@ -355,7 +359,7 @@ impl<'a> HullSurface<'a> {
         distances.into_iter().fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the facets that are left, renumbered.
+    /// Returns the remaining facets with new indices.
     fn compacted(mut self) -> Vec<Facet> {
         let mut new_indices = vec![NONE; self.facets.len()];
         let mut count = 0;

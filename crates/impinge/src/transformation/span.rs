@@ -1,13 +1,13 @@
-//! The span of points: coordinates checked and scaled, and a first simplex.
+//! The span of points: checks and scales their coordinates, and finds a first simplex.
 
 use super::lattice::rounded;
 use crate::math::{Point, Real, Vector, max};
 use crate::shape::ShapeError;
 
-/// Points as doubles between −2 and 2, with their rounding unit.
+/// Points as doubles between −2 and 2, with the rounding unit of their coordinates.
 pub(super) struct Scaled<const D: usize> {
-    /// The points divided by a power of two, which is exact, and rounded to multiples of 2⁻⁶⁰: at
-    /// most 1/512 of `unit`.
+    /// The points divided by a power of two, which is exact, and rounded to multiples of 2⁻⁶⁰,
+    /// which is at most 1/512 of `unit`.
     pub(super) points: Vec<Point<f64, D>>,
     /// One rounding unit of the original scalar at the largest coordinate.
     pub(super) unit: f64,
@@ -25,26 +25,28 @@ impl<const D: usize> Scaled<D> {
         }
         let largest = |size, p: &Point<N, D>| p.iter().fold(size, |size, x| max(size, x.abs()));
         let size = points.iter().fold(N::ZERO, largest);
-        // The inverse of a power of two is representable too, and as exact.
+        // The inverse of a power of two is representable, so the product is exact too.
         let scale = 1.0 / size.power_of_two_below().as_f64();
         let scaled = |p: &Point<N, D>| Point::from(p.coords.map(|x| rounded(x.as_f64() * scale)));
         let unit = N::EPSILON.as_f64() * (size.as_f64() * scale);
         Ok(Self { points: points.iter().map(scaled).collect(), unit })
     }
 
-    /// The tolerance: a point closer than this to the span of the others counts as part of it.
+    /// Returns the tolerance: a point closer than this to the span of the others is treated as part
+    /// of it.
     pub(super) fn flat(&self) -> f64 {
         4.0 * self.unit
     }
 }
 
-/// The larger of two numbers; `math::max` needs a scalar of the library, which `f64` is only with
-/// its feature.
+/// Returns the larger of two numbers. `math::max` needs a scalar of the library, which `f64` is
+/// only with its feature.
 pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The unit vector along a vector between scaled points, and its length; `None` if it is zero.
+/// Returns the unit vector along a vector between scaled points, and the length of the vector;
+/// `None` if it is zero.
 pub(super) fn direction<const D: usize>(v: &Vector<f64, D>) -> Option<(Vector<f64, D>, f64)> {
     let length = v.norm();
     (length > 0.0).then(|| (v / length, length))
@@ -57,7 +59,7 @@ pub(super) fn precedes<const D: usize>(a: &Point<f64, D>, b: &Point<f64, D>) -> 
     (0..D).find(|&axis| a[axis] != b[axis]).is_some_and(|axis| a[axis] < b[axis])
 }
 
-/// The last, in order of coordinates, of the points whose measure is at least `tied`.
+/// Returns the index of the last point, in order of coordinates, whose measure is at least `tied`.
 fn last<const D: usize>(points: &[Point<f64, D>], measures: &[f64], tied: f64) -> usize {
     let mut last = None;
     for (index, &measure) in measures.iter().enumerate() {
@@ -69,8 +71,8 @@ fn last<const D: usize>(points: &[Point<f64, D>], measures: &[f64], tied: f64) -
     last.unwrap_or(0)
 }
 
-/// Returns the two points that are farthest apart along the axis of the largest spread; of equal
-/// ones the last in order of coordinates.
+/// Returns the two points that are farthest apart along the axis of the largest spread; of several
+/// such points the last in order of coordinates.
 ///
 /// # Errors
 /// [`ShapeError::Degenerate`] with dimension 0 if the points coincide.
@@ -98,7 +100,7 @@ pub(super) fn first_two<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 2]
     }
 }
 
-/// The distance of a point from the segment between two others, in any dimension.
+/// Returns the distance of a point from the segment between `a` and `b`, in any dimension.
 pub(super) fn distance_from_segment<const D: usize>(
     point: &Point<f64, D>,
     a: &Point<f64, D>,
@@ -112,7 +114,7 @@ pub(super) fn distance_from_segment<const D: usize>(
 /// Returns three points that span a nearly widest triangle, found in one pass.
 ///
 /// # Errors
-/// [`ShapeError::Degenerate`] with dimension 0 or 1 if they coincide or lie on a line.
+/// [`ShapeError::Degenerate`] with the dimension 0 or 1 if the points coincide or lie on a line.
 pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 3], ShapeError> {
     let [first, second] = first_two(scaled)?;
     let line = ShapeError::Degenerate { dimension: 1 };
@@ -128,7 +130,7 @@ pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 
         return Err(line);
     }
     let tied = top.sqrt() - scaled.unit;
-    // Rounding may raise the square above the largest.
+    // Rounding may raise the square of `tied` above the largest square.
     let tied = -larger(-tied * tied, -top);
     Ok([first, second, last(&scaled.points, &squares, tied)])
 }
@@ -136,7 +138,7 @@ pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 
 /// Returns four points that span a nearly largest tetrahedron, found in one pass.
 ///
 /// # Errors
-/// [`ShapeError::Degenerate`] if they coincide or lie on a line or in a plane.
+/// [`ShapeError::Degenerate`] if the points coincide or lie on a line or in a plane.
 pub(super) fn first_four(scaled: &Scaled<3>) -> Result<[usize; 4], ShapeError> {
     let [first, second, third] = first_three(scaled)?;
     let plane = ShapeError::Degenerate { dimension: 2 };

@@ -1,4 +1,4 @@
-//! The convex hull of points as a shape of its own dimension: a solid, or a flat shape, a segment
+//! The convex hull of points as a shape of the points' dimension: a solid, a flat shape, a segment
 //! or a point.
 
 use super::convex_hull2;
@@ -8,12 +8,12 @@ use crate::shape::{
     ConvexHull, ConvexPolygon, Segment, ShapeError, ShapeHandle, TriMesh, Triangle,
 };
 
-/// Returns the convex hull of at least one point: a [`ConvexPolygon`]; a [`Segment`] if all points
-/// lie on a line, without length if they coincide. "On a line" is within rounding, as in
-/// [`convex_hull2`].
+/// Returns the convex hull of at least one point: a [`ConvexPolygon`], or a [`Segment`] if all
+/// points lie on a line within rounding, as in [`convex_hull2`]. If all points coincide, the
+/// segment has no length.
 ///
 /// # Errors
-/// If there is no point, or a coordinate is not finite.
+/// If there are no points, or a coordinate is not finite.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -34,13 +34,13 @@ pub fn convex_shape2<N: Real>(points: &[Point<N, 2>]) -> Result<ShapeHandle<N, 2
     }
 }
 
-/// Returns the convex hull of at least one point: a [`ConvexHull`]; in a plane a [`Triangle`] or,
-/// with more corners, the [`TriMesh`] of a flat polygon with two sides; on a line a [`Segment`],
-/// without length if all points coincide. "In a plane" is within rounding, as in
-/// [`convex_hull3`](super::convex_hull3).
+/// Returns the convex hull of at least one point: a [`ConvexHull`]. If all points lie in a plane
+/// within rounding, as in [`convex_hull3`](super::convex_hull3), returns a [`Triangle`] or, for
+/// more corners, the [`TriMesh`] of a flat polygon with two sides. If all lie on a line, returns a
+/// [`Segment`], without length if they coincide.
 ///
 /// # Errors
-/// If there is no point, or a coordinate is not finite.
+/// If there are no points, or a coordinate is not finite.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};
@@ -66,7 +66,8 @@ pub fn convex_shape3<N: Real>(points: &[Point<N, 3>]) -> Result<ShapeHandle<N, 3
     }
 }
 
-/// Checks that the error only says that the points span no solid, perhaps because they are few.
+/// Returns `Ok` if the error means only that the points span no solid, perhaps because they are
+/// few; else the error.
 fn without_volume(error: ShapeError) -> Result<(), ShapeError> {
     match error {
         ShapeError::Degenerate { .. } | ShapeError::TooFewPoints { given: 1.., .. } => Ok(()),
@@ -77,7 +78,8 @@ fn without_volume(error: ShapeError) -> Result<(), ShapeError> {
     }
 }
 
-/// The segment between the points that are farthest apart along the axis of the largest spread.
+/// Returns the segment between the points that are farthest apart along the axis of the largest
+/// spread.
 fn segment<N: Real, const D: usize>(
     scaled: &Scaled<D>,
     points: &[Point<N, D>],
@@ -86,8 +88,8 @@ fn segment<N: Real, const D: usize>(
     Ok(ShapeHandle::new(Segment::try_new(points[low], points[high])?))
 }
 
-/// The polygon of coplanar points; `None` if they lie on a line. Its corners are computed in the
-/// most nearly parallel coordinate plane, where no coordinate is rounded.
+/// Returns the polygon of coplanar points; `None` if they lie on a line. Its corners are computed
+/// in the most nearly parallel coordinate plane, where no coordinate is rounded.
 fn flat_polygon<N: Space<3>>(
     scaled: &Scaled<3>,
     points: &[Point<N, 3>],

@@ -1,4 +1,4 @@
-//! Distances of points from an obstacle, 8 points at a time.
+//! Distances of points from an obstacle, for 8 points at a time.
 
 use crate::math::lanes::{dot, lit, minus, norm, rotated_into, times};
 use crate::math::simd::Simd;
@@ -12,7 +12,7 @@ pub(super) enum Core<const D: usize> {
     Segment {
         start: [f32; D],
         axis: [f32; D],
-        /// One over its squared length; zero without length.
+        /// One over the squared length of `axis`; zero if it has no length.
         inverse_squared: f32,
     },
     Cuboid {
@@ -31,7 +31,7 @@ pub(super) enum Core<const D: usize> {
         normal: [f32; D],
         origin: [f32; D],
     },
-    /// No bound: every point counts as near.
+    /// A core without a bound: every point is treated as near.
     Unknown,
 }
 
@@ -40,12 +40,13 @@ pub(super) enum Core<const D: usize> {
 pub(super) struct RoundedCore<const D: usize> {
     pub(super) core: Core<D>,
     pub(super) radius: f32,
-    /// Whether the solid equals the rounded core; else it is only contained in it.
+    /// Whether the solid equals the rounded core; if false, the solid is only contained in it.
     pub(super) is_exact: bool,
 }
 
 impl<const D: usize> RoundedCore<D> {
-    /// The rounded core of a shape at a pose; the box of the shape if there is no closed form.
+    /// Returns the rounded core of a shape at a pose; the box of the shape if there is no closed
+    /// form.
     pub(super) fn new<N: Real>(shape: &dyn Shape<N, D>, pose: &Pose<N, D>) -> Self {
         let exact = |core, radius: N| Self { core, radius: radius.as_f32(), is_exact: true };
         match shape.geometry().0 {
@@ -75,13 +76,13 @@ impl<const D: usize> RoundedCore<D> {
         }
     }
 
-    /// A core without a bound.
+    /// Returns a core without a bound.
     pub(super) const fn unknown() -> Self {
         Self { core: Core::Unknown, radius: 0.0, is_exact: false }
     }
 }
 
-/// The box of a shape.
+/// Returns the box of a shape as a core.
 fn boxed<N: Real, const D: usize>(shape: &dyn Shape<N, D>, pose: &Pose<N, D>) -> Core<D> {
     let aabb = shape.local_aabb();
     if !aabb.holds_finite_point() || !aabb.is_bounded() {
@@ -98,7 +99,7 @@ fn cuboid_at<N: Real, const D: usize>(
     Core::Cuboid { axes: columns(&pose.rotation), center: numbers(center), half: numbers(half) }
 }
 
-/// A segment in the outer frame.
+/// Returns a segment in the outer frame as a core.
 fn between<N: Real, const D: usize>(pose: &Pose<N, D>, ends: [&Point<N, D>; 2]) -> Core<D> {
     let [start, end] = ends.mapped(|end| pose.point(end).coords);
     let axis = (end - start).map(N::as_f32);
@@ -116,8 +117,8 @@ fn columns<N: Real, const D: usize>(matrix: &Matrix<N, D>) -> [[f32; D]; D] {
 }
 
 impl<const D: usize> Core<D> {
-    /// The squared distances of 8 points from the core, zero inside; all numbers must be below
-    /// 10¹⁵.
+    /// Returns the squared distances of 8 points from the core, zero inside. All coordinates must
+    /// be below 10¹⁵.
     #[inline(always)]
     pub(super) fn squared<S: Simd, V: Wide<S, Scalar = f32>>(&self, simd: S, points: &[V; D]) -> V {
         let zero = V::all(simd, 0.0);
@@ -167,7 +168,7 @@ fn all<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, numbers: &[f3
     )
 }
 
-/// Converts points to a frame with these axes.
+/// Converts points to the frame with the given axes and centre.
 #[inline(always)]
 fn local<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
     simd: S,

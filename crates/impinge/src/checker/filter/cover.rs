@@ -1,4 +1,4 @@
-//! Covers of bodies by balls, and bounding balls of several balls.
+//! Covers of bodies by balls, and bounding balls of sets of balls.
 
 use crate::math::{Point, Pose, Real, Vector, max};
 use crate::shape::{Kind, Shape};
@@ -6,7 +6,7 @@ use crate::shape::{Kind, Shape};
 /// The maximum number of balls that cover a body.
 const MAX_BALLS: usize = 8;
 
-/// Steps towards the smallest ball: after k steps the error is about 1 / √k.
+/// The number of steps towards the smallest bounding ball: after k steps the error is about 1 / √k.
 const STEPS: usize = 256;
 
 /// A ball in the frame of a node.
@@ -16,10 +16,11 @@ pub(super) struct CoverBall<N: Real, const D: usize> {
     pub(super) radius: N,
 }
 
-/// Returns balls that cover a shape at a pose, and whether the shape is that one ball.
+/// Returns balls that cover a shape at a pose, and whether the shape equals the single ball
+/// returned.
 ///
-/// The box of the shape is covered by balls in a row along its longest side; an unbounded shape by
-/// an infinite ball.
+/// Balls in a row along the longest side cover the box of the shape; an infinite ball covers an
+/// unbounded shape.
 pub(super) fn cover<N: Real, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
@@ -48,15 +49,15 @@ pub(super) fn cover<N: Real, const D: usize>(
     ((0..count).map(ball).collect(), false)
 }
 
-/// Converts a small count.
+/// Converts a small count to `f64`.
 fn small(count: usize) -> f64 {
     f64::from(u32::try_from(count).expect("a small number"))
 }
 
-/// Returns a bounding ball of at least one ball, close to the smallest.
+/// Returns a bounding ball of at least one ball, close to the smallest bounding ball.
 ///
-/// M. Bădoiu and K. L. Clarkson, "Smaller core-sets for balls" (2003): each step goes towards the
-/// farthest.
+/// M. Bădoiu and K. L. Clarkson, "Smaller core-sets for balls" (2003): each step moves the centre
+/// towards the farthest ball.
 pub(super) fn around<N: Real, const D: usize>(balls: &[CoverBall<N, D>]) -> CoverBall<N, D> {
     let radius_around =
         |center: &Vector<N, D>, ball: &CoverBall<N, D>| (ball.center - center).norm() + ball.radius;
@@ -72,7 +73,7 @@ pub(super) fn around<N: Real, const D: usize>(balls: &[CoverBall<N, D>]) -> Cove
         });
         let away = farthest.center - center;
         let length = away.norm();
-        // Towards the farthest point of that ball.
+        // Moves towards the farthest point of that ball.
         let shift = if length > N::ZERO {
             away * (radius_around(&center, farthest) / length)
         } else {

@@ -15,9 +15,9 @@ use crate::shape::{Ball, Shape};
 #[derive(Clone, Debug)]
 pub(in crate::checker) struct Surroundings<const D: usize> {
     pub(super) obstacles: Vec<LaneObstacle<D>>,
-    /// For each group its obstacles, nearest first.
+    /// For each group, its obstacles in ascending order of their gap.
     pub(super) within: Vec<Vec<CloseObstacle>>,
-    /// Pairs of a body and an obstacle that may touch, ascending.
+    /// The pairs of a body and an obstacle that may touch, in ascending order.
     ignored: Vec<[u32; 2]>,
 }
 
@@ -28,17 +28,17 @@ pub(super) struct LaneObstacle<const D: usize> {
     pub(super) margin: f32,
 }
 
-/// An obstacle in the reach of a group.
+/// An obstacle near the region that a group can occupy.
 #[derive(Clone, Debug)]
 pub(super) struct CloseObstacle {
-    /// A lower bound of their distance, if nothing slides.
+    /// A lower bound of the distance between group and obstacle, if all slides are zero.
     pub(super) gap: f32,
     pub(super) obstacle: usize,
-    /// Its number in the user's order.
+    /// The index of the obstacle in the user's order.
     pub(super) number: u32,
-    /// The balls of the group whose bodies must not touch it, as bits.
+    /// The balls of the group whose bodies must not touch the obstacle, as a bit mask.
     pub(super) wanted: u8,
-    /// The sum of the radii of the group and of the obstacle, and of the margins.
+    /// The sum of the radii of the group and of the obstacle, and of their margins.
     pub(super) radius: f32,
 }
 
@@ -59,7 +59,8 @@ impl<const D: usize> Surroundings<D> {
         all
     }
 
-    /// The obstacles of a group, sorted by their distance from all points that it can reach.
+    /// Returns the obstacles of a group, sorted by their distance from the region that the group
+    /// can occupy.
     fn close_obstacles<N: Space<D>>(
         &self,
         tree: &FrameTree<N, D>,
@@ -82,7 +83,7 @@ impl<const D: usize> Surroundings<D> {
             let gap =
                 distance_from(&path.anchor, obstacle).as_f64() - path.length - f64::from(margin);
             let gap = N::lit(gap).as_f32_below();
-            // NaN, from unbounded obstacles, counts as near everything.
+            // A NaN gap, of an unbounded obstacle, is treated as near everything.
             let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
             all.push(CloseObstacle { gap, obstacle: index, number, wanted, radius });
         }
@@ -91,7 +92,7 @@ impl<const D: usize> Surroundings<D> {
         all
     }
 
-    /// The balls of a group whose bodies must not touch an obstacle, as bits.
+    /// Returns, as a bit mask, the balls of a group whose bodies must not touch an obstacle.
     fn wanted(&self, group: &BallGroup<D>, obstacle: u32) -> u8 {
         let may_touch = |body| self.ignored.binary_search(&[body, obstacle]).is_ok();
         let wanted = (0..group.count).filter(|&ball| !may_touch(group.bodies[ball]));
@@ -99,7 +100,7 @@ impl<const D: usize> Surroundings<D> {
     }
 }
 
-/// The distance of an obstacle from a point.
+/// Returns the distance of an obstacle from a point.
 fn distance_from<N: Space<D>, const D: usize>(
     point: &Vector<N, D>,
     obstacle: &Obstacle<N, D>,
@@ -131,7 +132,8 @@ fn in_f32<N: Space<D>, const D: usize>(
     }
 }
 
-/// The extent of the box of a shape from its origin; zero if unbounded, as for a half-space.
+/// Returns the largest distance of the shape's box from the shape's origin; zero if the box is
+/// unbounded, as for a half-space.
 fn size_of_box<N: Real, const D: usize>(obstacle: &Obstacle<N, D>) -> f64 {
     let aabb = obstacle.shape.local_aabb();
     if !aabb.is_bounded() {

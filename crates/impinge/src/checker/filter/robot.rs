@@ -11,7 +11,7 @@ use crate::math::order::{order_of, sort_few};
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Space, Vector};
 use crate::shape::Shape;
 
-/// A robot in the form of the scan.
+/// A robot in the form that the scan uses.
 #[derive(Clone, Debug)]
 pub(in crate::checker) struct RobotFilter<const D: usize> {
     pub(super) nodes: Vec<Node<f32, D>>,
@@ -21,39 +21,40 @@ pub(in crate::checker) struct RobotFilter<const D: usize> {
     slide_margin: f32,
 }
 
-/// Up to 8 neighbouring balls on one node: one body, or several.
+/// Up to 8 neighbouring balls on one node, which cover one or several bodies.
 #[derive(Clone, Debug)]
 pub(super) struct BallGroup<const D: usize> {
     pub(super) node: usize,
-    /// The ball around all its balls.
+    /// The bounding ball of all balls of the group, in the frame of the node.
     pub(super) center: [f32; D],
     pub(super) radius: f32,
     /// The balls in lanes; lanes without a ball are masked out.
     pub(super) centers: [LaneRow<f32>; D],
     pub(super) radii: LaneRow<f32>,
-    /// The numbers, in the user's order, of the bodies that the balls cover.
+    /// For each ball, the index, in the user's order, of the body that it covers.
     pub(super) bodies: [u32; LANES],
-    /// The number of balls, and a bit for each ball that equals its body.
+    /// The number of balls, and a bit mask of the balls that equal their body.
     pub(super) count: usize,
     pub(super) exact: u8,
     pub(super) margin: f32,
 }
 
-/// Two groups with bodies that must not touch.
+/// Two groups that contain bodies which must not touch each other.
 #[derive(Clone, Debug)]
 pub(super) struct GroupPair {
     pub(super) groups: [usize; 2],
-    /// A lower bound of the distance of all pairs at all times, if nothing slides.
+    /// A lower bound of the distance of the pairs in all configurations without slides.
     pub(super) gap: f32,
-    /// How many of the two groups may be moved by slides.
+    /// The number of groups of the two that slides may move.
     pub(super) sliding: f32,
-    /// The sum of the radii of their balls and of the margins.
+    /// The sum of the radii of the bounding balls and of the margins.
     pub(super) radius: f32,
-    /// For each ball of the first group the balls of the second that must not touch it, as bits.
+    /// For each ball of the first group, a bit mask of the balls of the second group that must not
+    /// touch it.
     pub(super) wanted: [u8; LANES],
 }
 
-/// A body with its cover, before it has a group.
+/// A body with the balls that cover it, before it is assigned to a group.
 struct Covered<N: Real, const D: usize> {
     number: usize,
     node: usize,
@@ -61,16 +62,16 @@ struct Covered<N: Real, const D: usize> {
     is_ball: bool,
 }
 
-/// The region that a group can reach.
+/// The region that a group can occupy in all configurations.
 pub(super) struct NodePath<N: Real, const D: usize> {
     /// The position of the first joint that rotates, or the center if none does, with all slides at
     /// zero.
     pub(super) anchor: Vector<N, D>,
-    /// An upper bound of the distance of the group's ball from there, without slides: to its center
-    /// plus its radius.
+    /// An upper bound of the distance from `anchor` to any point of the group's bounding ball,
+    /// without slides.
     pub(super) length: f64,
-    /// The position of the first joint, or the center if nothing moves, and the length from there:
-    /// both enter the margins.
+    /// The position of the first joint, or the centre if nothing moves, and the length of the chain
+    /// from there. Both determine the margins.
     first: Vector<N, D>,
     from_first: f64,
     joints: usize,
@@ -81,14 +82,14 @@ struct Builder<'a, N: Real, const D: usize> {
     tree: &'a FrameTree<N, D>,
     shift: Vector<N, D>,
     filter: RobotFilter<D>,
-    /// The reach of each group: all of it is within the length of the anchor.
+    /// For each group, the region that it can occupy: without slides, within `length` of `anchor`.
     paths: Vec<NodePath<N, D>>,
-    /// The group and the balls, as bits, of each body, in the user's order.
+    /// For each body, in the user's order, the index of its group and a bit mask of its balls.
     memberships: Vec<(usize, u8)>,
 }
 
 impl<const D: usize> RobotFilter<D> {
-    /// Builds the filter for bodies at places on their nodes, and the pairs that must not touch.
+    /// Builds the filter from bodies on their nodes, and the pairs that must not touch.
     pub(in crate::checker) fn new<'s, N: Space<D>>(
         tree: &FrameTree<N, D>,
         bodies: impl Iterator<Item = (&'s dyn Shape<N, D>, OnNode<N, D>)>,
@@ -116,13 +117,14 @@ impl<const D: usize> RobotFilter<D> {
     }
 }
 
-/// The origin of `f32` coordinates: the first joint on the world.
+/// Returns the origin of `f32` coordinates: the first joint on the world.
 pub(super) fn shift_of<N: Real, const D: usize>(tree: &FrameTree<N, D>) -> Vector<N, D> {
     let first = tree.nodes.iter().find(|node| node.parent == 0);
     first.map_or_else(Vector::<N, D>::zeros, |node| node.origin)
 }
 
-/// The chain of joints to a ball on a node; the center is relative to [`shift_of`] on the world.
+/// Returns the region of a ball on a node. If the node is the world, `center` is relative to
+/// [`shift_of`].
 pub(super) fn path_to<N: Real, const D: usize>(
     tree: &FrameTree<N, D>,
     node: usize,
@@ -140,7 +142,7 @@ pub(super) fn path_to<N: Real, const D: usize>(
     let own = f64::from(radius) + if node == 0 { 0.0 } else { center.norm().as_f64() };
     let lengths = chain.iter().rev().skip(1).map(|node| node.origin.norm().as_f64());
     let from_first = own + lengths.sum::<f64>();
-    // Up to the first joint that rotates, all rotations are constant.
+    // Up to the first revolute joint, all rotations are constant.
     let mut pose = Pose::identity();
     let mut turning = chain.iter().rev().skip_while(|node| {
         let rotation = node.constant_rotation();
@@ -172,7 +174,8 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         Self { tree, shift, filter, paths: Vec::new(), memberships: vec![(0, 0); bodies] }
     }
 
-    /// Groups the bodies of one node: one group, or those of the two halves along the longest axis.
+    /// Groups the bodies of one node: into one group if they fit, else separately for the two
+    /// halves along the longest axis.
     fn divide(&mut self, mut bodies: Vec<&Covered<N, D>>) {
         let count: usize = bodies.iter().map(|body| body.balls.len()).sum();
         if bodies.len() < 2 || count <= LANES {
@@ -181,7 +184,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         let axis = longest_axis(&bodies);
         let key = |body: &Covered<N, D>| (order_of(body.balls[0].center[axis]), body.number);
         sort_few(&mut bodies, |one, other| key(one) < key(other));
-        // Full groups make the number of groups smaller.
+        // Splits at a multiple of 8, so that fewer groups are needed.
         let half = bodies.len().div_ceil(2);
         let full = half.next_multiple_of(LANES);
         let back = bodies.split_off(if full < bodies.len() { full } else { half });
@@ -189,7 +192,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         self.divide(back);
     }
 
-    /// Appends a group of the balls of some bodies on one node, with its bounding ball, reach and
+    /// Appends a group of the balls of some bodies on one node, with its bounding ball, region and
     /// margin.
     fn add_group(&mut self, bodies: &[&Covered<N, D>]) {
         let node = bodies[0].node;
@@ -215,7 +218,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         self.paths.push(path);
     }
 
-    /// Collects the pairs of bodies by their groups.
+    /// Collects the pairs of bodies by the groups to which the bodies belong.
     fn cross(&mut self, pairs: &[[u32; 2]]) {
         let mut by_groups = BTreeMap::<[usize; 2], [u8; LANES]>::new();
         for pair in pairs {
@@ -240,7 +243,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         }
     }
 
-    /// A lower bound of the distance between the regions that two groups can reach.
+    /// Returns a lower bound of the distance between the regions that two groups can occupy.
     fn gap_between(&self, groups: [usize; 2]) -> f32 {
         let [one, other] = groups.mapped(|group| &self.paths[group]);
         let apart = (one.anchor - other.anchor).norm().as_f64();
@@ -248,7 +251,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
     }
 }
 
-/// A lower bound of the distance between the balls of two groups on one node.
+/// Returns a lower bound of the distance between the balls of two groups on one node.
 fn gap_on_node<const D: usize>([one, other]: [&BallGroup<D>; 2], wanted: &[u8; LANES]) -> f32 {
     let mut least = f32::INFINITY;
     for (ball1, others) in wanted.iter().enumerate() {
@@ -275,7 +278,7 @@ impl<const D: usize> BallGroup<D> {
         }
     }
 
-    /// Appends a ball of a body; the group must not be full.
+    /// Appends a ball of a body; the group must have fewer than 8 balls.
     fn push<N: Real>(&mut self, body: &Covered<N, D>, (center, radius): ([f32; D], f32)) {
         let lane = self.count;
         for (row, x) in self.centers.iter_mut().zip(center) {
@@ -287,7 +290,7 @@ impl<const D: usize> BallGroup<D> {
         self.count += 1;
     }
 
-    /// A bit for each ball.
+    /// Returns a bit mask of the lanes that have a ball.
     #[inline(always)]
     pub(super) const fn present(&self) -> u8 {
         u8::MAX >> (LANES - self.count)
@@ -298,7 +301,7 @@ impl<const D: usize> BallGroup<D> {
     }
 }
 
-/// The axis along which the centers are spread farthest.
+/// Returns the axis along which the centres are spread farthest.
 fn longest_axis<N: Real, const D: usize>(bodies: &[&Covered<N, D>]) -> usize {
     let spread = |axis: usize| {
         let coordinates = bodies.iter().map(|body| body.balls[0].center[axis].as_f64());
@@ -309,7 +312,7 @@ fn longest_axis<N: Real, const D: usize>(bodies: &[&Covered<N, D>]) -> usize {
     (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best })
 }
 
-/// The center and the radius in `f32`; an infinite radius if their squares may overflow.
+/// Returns the centre and the radius in `f32`; an infinite radius if their squares might overflow.
 fn in_f32<N: Real, const D: usize>(ball: &CoverBall<N, D>) -> ([f32; D], f32) {
     let (center, radius) = (numbers(&ball.center), ball.radius.as_f32_above());
     let is_usable = radius <= MAX_LENGTH && center.iter().all(|x: &f32| x.abs() <= MAX_LENGTH);

@@ -1,4 +1,4 @@
-//! The scan: 8 configurations against all pairs.
+//! The scan: tests 8 configurations against all pairs.
 //!
 //! ```text
 //! group     [ c0 c1 c2 c3 c4 c5 c6 c7 ]   lane = configuration; a bit for each where it is near
@@ -14,18 +14,18 @@ use crate::math::lanes::{dot, load, minus, with_lanes};
 use crate::math::simd::{Eight, Level, Simd};
 use crate::math::{Wide, filled};
 
-/// The positions of all groups in 8 configurations.
+/// The positions of all groups in 8 configurations; reused between scans.
 #[derive(Debug)]
 pub(in crate::checker) struct ScanScratch<const D: usize> {
-    /// The number of each node.
+    /// The joint values of each node.
     pub(in crate::checker) numbers: Vec<LaneRow<f32>>,
     rows: Vec<PoseRows<f32, D>>,
-    /// The center of each group; lane = configuration.
+    /// The centre of each group; the lane is the configuration.
     centers: Vec<[LaneRow<f32>; D]>,
-    /// For each group and configuration the centers of its balls, computed on first use; lane =
-    /// ball.
+    /// For each group and configuration the centres of its balls, computed on first use; the lane
+    /// is the ball.
     balls: Vec<[[LaneRow<f32>; D]; LANES]>,
-    /// The configurations, as bits, in which the balls of a group are computed.
+    /// For each group, a bit mask of the configurations in which its balls are computed.
     placed: Vec<u8>,
 }
 
@@ -49,7 +49,7 @@ struct Scan<'a, const D: usize> {
     around: &'a Surroundings<D>,
 }
 
-/// Finds the candidate pairs of 8 configurations from the numbers in `scratch`.
+/// Finds the candidate pairs of 8 configurations from the joint values in `scratch`.
 pub(in crate::checker) fn scan_at<const D: usize>(
     level: Level,
     robot: &RobotFilter<D>,
@@ -62,7 +62,7 @@ pub(in crate::checker) fn scan_at<const D: usize>(
     search.tidy();
 }
 
-/// Runs [`Scan::run`] with vectors of 8.
+/// Runs [`Scan::run`] with vectors of 8 lanes.
 #[inline(always)]
 fn run<S: Simd, const D: usize>(
     simd: S,
@@ -98,7 +98,7 @@ impl<const D: usize> Scan<'_, D> {
         self.meet_itself::<S, V>(simd, scratch, search);
     }
 
-    /// The centers of the balls of a group in a configuration.
+    /// Returns the centres of the balls of a group in a configuration; computes them on first use.
     #[inline(always)]
     fn balls<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -118,7 +118,8 @@ impl<const D: usize> Scan<'_, D> {
         centers
     }
 
-    /// Tests each group against its obstacles, nearest first, until their gap exceeds all limits.
+    /// Tests each group against its obstacles in ascending order of their gap, until the gap
+    /// exceeds all limits.
     #[inline(always)]
     fn meet_obstacles<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -172,7 +173,7 @@ impl<const D: usize> Scan<'_, D> {
         );
     }
 
-    /// Tests the pairs of groups against each other, by their bounding balls first.
+    /// Tests the pairs of groups against each other, first by their bounding balls.
     #[inline(always)]
     fn meet_itself<S: Simd, V: Wide<S, Scalar = f32>>(
         self,

@@ -6,14 +6,14 @@ use crate::math::order::sort_few;
 use crate::math::simd::Simd;
 use crate::math::{Wide, max, min};
 
-/// The query of 8 configurations.
+/// The kind of query for 8 configurations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::checker) enum SearchMode {
-    /// Whether there is any pair: a lane ends at its first certain pair.
+    /// Whether any pair is within the limit: a lane ends at its first certain pair.
     Any,
-    /// All pairs.
+    /// Every pair within the limit.
     All,
-    /// The pairs that may be the nearest.
+    /// The pairs that may be the nearest pair of a lane.
     Nearest,
 }
 
@@ -22,14 +22,14 @@ pub(in crate::checker) enum SearchMode {
 pub(in crate::checker) struct CandidatePair {
     pub(in crate::checker) lane: usize,
     pub(in crate::checker) pair: (u32, Other),
-    /// Whether it certainly is within the limit.
+    /// Whether the pair certainly is within the limit.
     pub(in crate::checker) is_certain: bool,
-    /// A lower bound of its distance, in the mode [`SearchMode::Nearest`].
+    /// A lower bound of the pair's distance, in the mode [`SearchMode::Nearest`].
     pub(in crate::checker) lower: f32,
 }
 
 impl CandidatePair {
-    /// The sort key: by lane, then by pair.
+    /// Returns the sort key: by lane, then by pair.
     #[inline]
     fn key(&self) -> u128 {
         let (body, other) = self.pair;
@@ -40,7 +40,7 @@ impl CandidatePair {
         (self.lane as u128) << 96 | u128::from(body) << 64 | is_obstacle << 32 | u128::from(number)
     }
 
-    /// Merges the result of other balls of the same pair.
+    /// Merges the result of other balls of the same pair into this candidate.
     #[inline]
     fn merge(&mut self, other: &Self) {
         self.is_certain |= other.is_certain;
@@ -48,7 +48,7 @@ impl CandidatePair {
     }
 }
 
-/// The second of a pair, whose first is a body of a lower number.
+/// The second of a pair; the first is a body, with a lower index if the second is a body too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::checker) enum Other {
     Body(u32),
@@ -59,34 +59,36 @@ pub(in crate::checker) enum Other {
 #[derive(Debug)]
 pub(in crate::checker) struct CollisionSearch {
     mode: SearchMode,
-    /// The lanes that are not decided yet, as bits.
+    /// A bit mask of the lanes that are not decided yet.
     live: u8,
-    /// The lanes in which numbers are too large for `f32`, as bits.
+    /// A bit mask of the lanes in which numbers are too large for `f32`.
     pub(in crate::checker) blind: u8,
-    /// The lanes in which a pair is certainly within the limit, in the mode [`SearchMode::Any`].
+    /// A bit mask of the lanes in which a pair is certainly within the limit, in the mode
+    /// [`SearchMode::Any`].
     pub(in crate::checker) hits: u8,
-    /// Beyond `outer`, with all margins, a pair is farther apart than the limit; below `inner` it
-    /// is within it.
+    /// A pair farther apart than `outer`, beyond all margins, exceeds the limit; a pair nearer than
+    /// `inner` is within it.
     outer: LaneRow<f32>,
     inner: LaneRow<f32>,
-    /// The margin for slides.
+    /// The margin for slides, in each lane.
     slack: LaneRow<f32>,
-    /// The maximum of `outer`, and the largest slide.
+    /// The largest value of `outer`, and the largest slide.
     pub(super) farthest: f32,
     pub(super) slide: f32,
-    /// Sorted by lane and pair after [`Self::tidy`].
+    /// The candidate pairs, sorted by lane and pair after [`Self::tidy`].
     pub(in crate::checker) candidates: Vec<CandidatePair>,
 }
 
 /// The distances of up to 8 balls of a group from one ball or obstacle.
 #[derive(Clone, Copy)]
 pub(super) struct Distances<V> {
-    /// The squared distances of the centers from its center, or from its core.
+    /// The squared distances of the balls' centres from the centre of the ball, or from the
+    /// obstacle's core.
     pub(super) squared: V,
     /// The sums of the radii, and the margin.
     pub(super) radius: V,
     pub(super) margin: f32,
-    /// The balls to be tested, and those whose distance is exact, as bits.
+    /// Bit masks of the balls to be tested, and of those whose distance is exact.
     pub(super) wanted: u8,
     pub(super) exact: u8,
 }
@@ -108,8 +110,8 @@ impl CollisionSearch {
         }
     }
 
-    /// Starts on new configurations: `lanes` as bits, and the total slide of each lane, with the
-    /// margin per unit of slide.
+    /// Starts a search in new configurations. `lanes` is their bit mask; `slides` is the total
+    /// slide of each lane, and `margin` the margin per unit of slide.
     pub(in crate::checker) fn begin(
         &mut self,
         lanes: u8,
@@ -118,7 +120,8 @@ impl CollisionSearch {
     ) {
         (self.live, self.blind, self.hits) = (lanes, 0, 0);
         self.slide = 0.0;
-        // The limit itself was rounded. If it is infinite, `outer` is infinite and `inner` NaN.
+        // The rounding error of the limit itself. If the limit is infinite, `outer` is infinite and
+        // `inner` NaN.
         let rounding = limit * (2.0 * f32::EPSILON);
         for (lane, &slide) in slides.iter().enumerate() {
             self.slack[lane] = slide * margin;
@@ -129,7 +132,7 @@ impl CollisionSearch {
         self.candidates.clear();
     }
 
-    /// Excludes lanes whose numbers are too large, together with their limits.
+    /// Excludes the lanes outside `usable`, whose numbers are too large, and resets their limits.
     pub(super) fn leave_out(&mut self, usable: u8) {
         self.blind = self.live & !usable;
         self.live &= usable;
@@ -152,8 +155,8 @@ impl CollisionSearch {
         self.live == 0
     }
 
-    /// The live lanes in which two balls or cores with these radii and distances are not certainly
-    /// farther apart than the limit, as for NaN.
+    /// Returns the live lanes in which two balls or cores are not certainly farther apart than the
+    /// limit. NaN distances are included.
     #[inline(always)]
     pub(super) fn candidate_lanes<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
@@ -165,8 +168,8 @@ impl CollisionSearch {
         !bits(squared.simd_gt(max_distance * max_distance)) & self.live
     }
 
-    /// The balls that are near a ball of this radius in a configuration; the radius includes the
-    /// margin.
+    /// Returns a bit mask of the balls that are not certainly beyond the limit in a configuration;
+    /// `radius` includes the margin.
     #[inline(always)]
     pub(super) fn candidate_balls<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
@@ -179,7 +182,7 @@ impl CollisionSearch {
         !bits(squared.simd_gt(max_distance * max_distance))
     }
 
-    /// Records the balls that are near in a configuration; `pair_of` returns the pair of a ball.
+    /// Records the candidate balls of a configuration; `pair_of(ball)` returns the pair of a ball.
     #[inline(always)]
     pub(super) fn record<S: Simd, V: Wide<S, Scalar = f32>>(
         &mut self,
@@ -208,7 +211,8 @@ impl CollisionSearch {
             balls &= balls - 1;
             let (is_certain, lower) = (certain >> ball & 1 == 1, lower[ball]);
             let found = CandidatePair { lane, pair: pair_of(ball), is_certain, lower };
-            // Balls of one body mostly follow each other.
+            // Balls of one body mostly follow each other, so it suffices to compare with the last
+            // candidate.
             match self.candidates.last_mut() {
                 Some(last) if last.key() == found.key() => last.merge(&found),
                 _ => self.candidates.push(found),
@@ -216,7 +220,7 @@ impl CollisionSearch {
         }
     }
 
-    /// Returns lower bounds of the distances, and lowers `outer` to the smallest upper bound: no
+    /// Returns lower bounds of the distances. Also lowers `outer` to the smallest upper bound: no
     /// pair beyond it can be the nearest.
     #[inline(always)]
     fn bounds<S: Simd, V: Wide<S, Scalar = f32>>(

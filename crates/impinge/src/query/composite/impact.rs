@@ -1,4 +1,4 @@
-//! The first touch of a moving composite: the first touch of its parts.
+//! The time of impact of a moving composite: the first impact of its parts.
 
 use core::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -14,26 +14,26 @@ use crate::math::{Real, Space, Vector};
 use crate::query::impact::{Arrival, Beginning, Path, begin, size};
 use crate::shape::{CompositeShape, FeatureId};
 
-/// The arrival of one part at another, with their numbers.
+/// The impact of two parts, with their indices.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartArrival<N: Real, const D: usize> {
-    /// Its separation is in the frame of the first part, or of the first shape if it is a contact
-    /// of the whole.
+    /// The impact; its separation is in the frame of the first part, or of the first shape if
+    /// `is_of_whole`.
     pub(crate) arrival: Arrival<N, D>,
     pub(crate) parts: [u32; 2],
     pub(crate) is_of_whole: bool,
 }
 
-/// Returns the first arrival of two parts; of several at one time that with the lowest part
-/// numbers.
+/// Returns the first impact of two parts; of several at the same time, the one with the lowest part
+/// indices. `None` if there is none up to the end of the path.
 ///
-/// The contacts of the whole shape decide whether a contact at the start counts. If one does not,
-/// they also decide about each later arrival: a solid below a surface of many parts hits their
-/// inner edges.
+/// The contacts of the whole shapes decide whether a contact at the start is an impact. If it is
+/// not, they also decide about each later impact of parts: parts of a surface alone would stop a
+/// solid below it at their inner edges.
 ///
-/// Cost: each part of the first shape, or of the second if that has fewer, searches the other on
-/// its path; paths end at the first arrival found so far. After a start in contact each part that
-/// is hit costs the contacts of the whole there.
+/// Each part of the first shape, or of the second if that has fewer, searches the other shape along
+/// its path; paths end at the first impact found so far. After a start in contact, each part that
+/// is hit also costs the contacts of the whole shapes at that time.
 pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     path: &Path<N, D>,
@@ -42,14 +42,15 @@ pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     let mut search = PartImpactSearch { between, path, first: None, start, is_early: false };
     search.run();
     if search.is_early && search.start == WholeContact::Free {
-        // Earlier hits were not checked against the contacts of the whole.
+        // The impact found so far was not checked against the contacts of the whole shapes: search
+        // again.
         search.first = None;
         search.run();
     }
     search.first
 }
 
-/// Two parts that certainly do not touch before the time `earliest`, zero or more.
+/// Two parts that certainly do not touch before the time `earliest` (zero or more).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LaterPair<N> {
     earliest: N,
@@ -60,29 +61,30 @@ struct PartImpactSearch<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     path: &'a Path<N, D>,
     first: Option<PartArrival<N, D>>,
-    /// The result of the contacts of the whole at the start.
+    /// The result of the contacts of the whole shapes at the start.
     start: WholeContact,
-    /// Whether an arrival was found before `start` was known.
+    /// Whether an impact was found before `start` was known.
     is_early: bool,
 }
 
-/// The result of the contacts of the whole at a time.
+/// The result of the contacts of the whole shapes at some time.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum WholeContact {
-    /// Not computed.
+    /// The contacts are not computed yet.
     Unknown,
-    /// One counts.
+    /// At least one contact is an impact.
     Hit,
-    /// There are some, none of which counts.
+    /// There are contacts, but none is an impact.
     Free,
-    /// There is none, though parts are in contact: each two parts count on their own.
+    /// There are no contacts of the whole shapes, although parts are in contact: each pair of parts
+    /// decides on its own.
     Nothing,
 }
 
-/// The tolerance of the depth of a contact of the whole, in rounding units.
+/// The tolerance of the depth of a contact of the whole shapes, in epsilon times the sizes.
 const ROUNDING: f64 = 64.0;
 
-/// Normals whose difference has at most this length count as equal.
+/// Two normals are treated as equal if their difference has at most this length.
 const SAME: f64 = 1.0 / 1024.0;
 
 impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
@@ -100,7 +102,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Casts the parts of the composite with fewer of them against the other.
+    /// Casts the parts of the composite with fewer parts against the other composite.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let aabb = self.grown(&self.between.whole_in_other(1 - which));
@@ -111,8 +113,9 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         });
     }
 
-    /// A half-space approaches all parts alike, so the nearest is hit first, unless it touches some
-    /// from the start: then each of those counts on its own.
+    /// Searches the parts of a composite against a half-space. The half-space approaches all parts
+    /// at the same speed, so the nearest part is hit first. If some parts touch it at the start,
+    /// each of these is tested on its own.
     fn of_half_space(&mut self, others: &dyn CompositeShape<N, D>) {
         let nearest = nearest_between(self.between, N::INFINITY, Wanted::Deepest, None);
         let Some(nearest) = nearest else { return };
@@ -123,7 +126,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 
     /// Tests one part of one shape against the parts of the other whose boxes it hits, in the order
-    /// of their earliest possible times, as far as the search's times exclude others.
+    /// of their earliest possible times. Parts that the search's times exclude are skipped.
     fn each_on_path(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let aabb = self.grown(&self.between.aabb_in_other(which, part));
         let (velocity, end) = (self.velocity(which), self.end());
@@ -146,7 +149,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         self.hold_until(N::INFINITY, &mut waiting);
     }
 
-    /// Tests the waiting pairs that can touch by a time.
+    /// Tests the waiting pairs that may touch up to `time`.
     fn hold_until(&mut self, time: N, waiting: &mut BinaryHeap<Reverse<LaterPair<N>>>) {
         while let Some(Reverse(next)) = waiting.peek().copied()
             && next.earliest <= time
@@ -158,8 +161,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Runs the convex algorithm for two parts, which do not touch before `earliest`. Parts of
-    /// indistinguishable shapes are indistinguishable if their numbers are equal.
+    /// Runs the convex algorithm for two parts that do not touch before `earliest`. If both shapes
+    /// are indistinguishable, parts with equal indices are too.
     fn hold(&mut self, parts: [u32; 2], earliest: N) {
         if self.start == WholeContact::Hit {
             return;
@@ -185,7 +188,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         self.first = found.or(self.first);
     }
 
-    /// A solid inside a body at the start touches no part, but is in contact.
+    /// Adds the contact of a solid that is inside a body at the start, although it touches no part.
     fn begin_inside(&mut self) {
         if self.start == WholeContact::Unknown && self.between.has_bodies() {
             let mut inside = held_pieces(self.between);
@@ -196,7 +199,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Computes, once, whether the contacts of the whole count at the start.
+    /// Computes, once, the result of the contacts of the whole shapes at the start.
     fn begin_in_contact(&mut self, tolerance: N) {
         if self.start == WholeContact::Unknown {
             let whole = WholeQuestion { between: *self.between, path: self.path, along: N::ZERO };
@@ -206,9 +209,10 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Checks an arrival of two parts after a start in contact that does not count. `None` if the
-    /// whole shape has contacts there, none of which counts; the arrival of the whole if one counts,
-    /// but none with the normal of the parts.
+    /// Checks an impact of two parts after a start in contact that is not an impact. Returns `None`
+    /// if the whole shapes have contacts at that time, but none is an impact. Returns the impact of
+    /// the whole shapes if one of their contacts is an impact, but none with the normal of the
+    /// parts.
     fn confirmed(
         &self,
         found: PartArrival<N, D>,
@@ -231,21 +235,20 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// The velocity of a shape in the frame of the other.
+    /// Returns the velocity of shape `which` in the frame of the other shape.
     fn velocity(&self, which: usize) -> Vector<N, D> {
         let velocity = &self.path.velocity;
         if which == 1 { *velocity } else { -self.between.pose21.vector(velocity) }
     }
 
-    /// A box loosened by the target distance, so that it overlaps whatever comes within that
-    /// distance.
+    /// Returns a box loosened by the target distance, so that it overlaps everything within that
+    /// distance of `aabb`.
     fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
         let grown = aabb.loosened(self.path.target);
         Aabb::try_new(*grown.mins(), *grown.maxs()).unwrap_or_else(|_| Aabb::unbounded())
     }
 
-    /// The latest time that still matters; negative once a contact of the whole is a hit at the
-    /// start.
+    /// Returns the latest time still to be searched; negative once the start is an impact.
     fn end(&self) -> N {
         if self.start == WholeContact::Hit {
             return -N::ONE;
@@ -255,7 +258,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 }
 
-/// The contacts of the whole shapes at a time, in their configuration then.
+/// The contacts of the whole shapes in their configuration at the time `along`.
 struct WholeQuestion<'p, 'a, N: Real, const D: usize> {
     between: Between<'a, N, D>,
     path: &'p Path<N, D>,
@@ -264,7 +267,8 @@ struct WholeQuestion<'p, 'a, N: Real, const D: usize> {
 
 impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
     /// Returns the result of the contacts within the target distance plus `tolerance`, and the
-    /// deepest that counts. Calls `visit` with the normals of those that count.
+    /// deepest contact that is an impact. Calls `visit` with the normal of each contact that is an
+    /// impact.
     fn contacts_within(
         &self,
         tolerance: N,
@@ -300,7 +304,7 @@ impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
     }
 }
 
-/// The largest gap of two parts that counts as contact.
+/// Returns the largest gap of two parts that is treated as contact.
 fn rounding<N: Real, const D: usize>(placed: &PartPair<'_, N, D>) -> N {
     N::lit(ROUNDING) * N::EPSILON * size(&placed.pair())
 }
@@ -314,8 +318,8 @@ fn path_in_first_part<N: Real, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> PartArrival<N, D> {
-    /// The separation of the parts when they touch, in the frame of the first shape, and the
-    /// features.
+    /// Returns the separation of the parts when they touch, in the frame of the first shape, and
+    /// the features.
     pub(crate) fn separation_with_features(
         &self,
         between: &Between<'_, N, D>,
@@ -332,7 +336,7 @@ impl<N: Space<D>, const D: usize> PartArrival<N, D> {
 }
 
 impl<N: Real, const D: usize> PartArrival<N, D> {
-    /// Whether it is earlier, or at the same time with lower part numbers.
+    /// Whether this impact is earlier than `other`, or at the same time with lower part indices.
     fn is_before(&self, other: &Self) -> bool {
         let (along, others) = (self.arrival.along, other.arrival.along);
         along < others || (along == others && self.parts < other.parts)

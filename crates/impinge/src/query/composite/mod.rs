@@ -1,7 +1,7 @@
-//! Queries of composites: each is a query of the parts, which are found by their boxes.
+//! Queries of composites: each queries the parts, which are found by their boxes.
 //!
-//! The result never depends on the order in which a search proposes the parts: of equal answers the
-//! one with the lowest part numbers wins.
+//! The result never depends on the order in which a search reports the parts: of equal results the
+//! one with the lowest part indices wins.
 
 mod impact;
 mod mover;

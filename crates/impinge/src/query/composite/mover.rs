@@ -1,4 +1,4 @@
-//! Lower bounds of the time at which a convex solid on a straight path reaches parts.
+//! Lower bounds of the time at which a convex solid on a straight path touches a part.
 
 use crate::bounding_volume::Aabb;
 use crate::collide::parts::between::Between;
@@ -7,32 +7,33 @@ use crate::collide::parts::slabs::{across, corners, range};
 use crate::math::{Mapped, Pose, Real, Space, Vector, max, max_component, min};
 use crate::shape::{Geometry, Part, SupportMap};
 
-/// Gaps are loosened by this many rounding units of all lengths.
+/// Gaps are loosened by this many epsilon times the sum of all lengths.
 const ROUNDING: f64 = 128.0;
 
-/// A convex solid that moves in the frame of a composite. While an axis separates it from a part,
-/// they do not touch. The axes are those of both frames, and those across the sides and the plane
-/// of the part.
+/// A convex solid that moves in the frame of a composite. While some axis separates the solid from
+/// a part, the two do not touch. The tested axes are those of both frames, the normals of the
+/// part's sides within its plane, and the normal of that plane.
 pub(super) struct Mover<'a, N: Real, const D: usize> {
     map: &'a dyn SupportMap<N, D>,
-    /// Boxes around it in its own frame and in the composite's.
+    /// The AABB of the solid in its own frame, then in the composite's frame.
     boxes: [Aabb<N, D>; 2],
     pose: Pose<N, D>,
     velocity: Vector<N, D>,
-    /// The distance that counts as touching.
+    /// The distance at which the solid and a part are treated as touching.
     target: N,
 }
 
-/// The times at which none of the axes tested so far separates the two.
+/// The times at which none of the axes tested so far separates the solid from the part.
 struct ContactSpan<N> {
     enter: N,
     leave: N,
-    /// The largest distance along an axis that does not count as separated.
+    /// The largest gap along an axis that is not treated as separation.
     slack: N,
 }
 
 impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
-    /// The first shape, if it is convex, with its velocity in the frame of the second.
+    /// Returns the first shape, with its velocity in the frame of the second shape; `None` if the
+    /// first shape is not convex.
     pub(super) fn of_first(
         between: &Between<'a, N, D>,
         velocity: Vector<N, D>,
@@ -44,9 +45,9 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
         Some(Self { map, boxes, pose, velocity, target })
     }
 
-    /// Returns a time, zero or more, before which the solid certainly does not touch a part; `None`
-    /// if it does not up to `end`. It depends only on the solid and the part, so that no result
-    /// depends on the search.
+    /// Returns a time, zero or more, before which the solid certainly does not touch the part.
+    /// `None` if they do not touch up to `end`. The time depends only on the solid and the part, so
+    /// that no result depends on the order of a search.
     pub(super) fn earliest(&self, part: &Part<'_, N, D>, end: N) -> Option<N> {
         let Some(corners) = corners(&part.solid, &part.pose) else { return Some(N::ZERO) };
         let relative = corners.mapped(|corner| corner - self.pose.translation);
@@ -81,16 +82,16 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
 
 impl<N: Real> ContactSpan<N> {
     /// Intersects the span with the times at which two intervals `[low, high]` along an axis
-    /// overlap; `speed` is that of the first. NaN has no effect.
+    /// overlap, where `own` moves with `speed` and `other` is fixed. NaN has no effect.
     fn cut(&mut self, own: [N; 2], other: [N; 2], speed: N) {
         let ([low, high], [bottom, top]) = (own, other);
         let (down, up) = (bottom - high - self.slack, top - low + self.slack);
         if speed == N::ZERO {
-            // Separated for good: the span becomes empty.
+            // The intervals never overlap: the span becomes empty.
             self.leave = if down > N::ZERO || up < N::ZERO { -N::ONE } else { self.leave };
             return;
         }
-        // The rounding error of the quotients is below this.
+        // The relative rounding error of the quotients is below this.
         let rounding_error = N::lit(4.0) * N::EPSILON;
         let (one, other) = (down / speed, up / speed);
         let (enter, leave) = (min(one, other), max(one, other));

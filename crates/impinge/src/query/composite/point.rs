@@ -1,4 +1,4 @@
-//! The nearest point of a composite: that of its nearest part.
+//! The nearest point of a composite: the nearest point of its nearest part.
 
 use crate::collide::parts::between::recentred;
 use crate::collide::parts::bounds::{around_point, loosened};
@@ -10,23 +10,24 @@ use crate::tables::ByDimension;
 /// The result of a point query on the nearest part of a composite.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartPoint<N: Real, const D: usize> {
-    /// Signed: zero or negative inside and on the boundary. More accurate than the distance of the
-    /// two points, whose coordinates may be large.
+    /// The signed distance of the query point: zero or negative inside and on the boundary. It is
+    /// more accurate than the distance computed from the two points, whose coordinates may be
+    /// large.
     pub(crate) distance: N,
     /// The nearest point of the part's boundary, in the frame of the composite.
     pub(crate) point: Point<N, D>,
     pub(crate) feature: FeatureId,
     pub(crate) part: u32,
-    /// The nearest point, in the frame of [`PartQuery`].
+    /// The nearest point in the frame of [`PartQuery`], near the query point.
     pub(crate) local: Point<N, D>,
 }
 
-/// A part in a frame near the query point: a part in the composite's frame is translated so that
-/// the query point is the origin.
+/// A part in a frame near the query point. A triangle or segment without a pose of its own is
+/// translated so that the query point is the origin.
 pub(crate) struct PartQuery<'a, N: Real, const D: usize> {
     part: Part<'a, N, D>,
     moved: Vector<N, D>,
-    /// The query point in that frame.
+    /// The query point in the frame of the moved part.
     pub(crate) query: Point<N, D>,
 }
 
@@ -46,7 +47,7 @@ impl<'a, N: Real, const D: usize> PartQuery<'a, N, D> {
         &self.part.solid
     }
 
-    /// Converts a point of that frame to the composite's.
+    /// Converts a point from the frame of the moved part to the composite's frame.
     fn outer(&self, local: &Point<N, D>) -> Point<N, D> {
         self.part.pose.point(&(local + self.moved))
     }
@@ -54,8 +55,9 @@ impl<'a, N: Real, const D: usize> PartQuery<'a, N, D> {
 
 impl<N: Real, const D: usize> PartQuery<'_, N, D> {
     /// Whether the part is certainly farther than `distance`, by a plane perpendicular to the
-    /// direction of its centre. Tests triangles and segments without a pose only. With m the sum of
-    /// the corners c relative to the query point, the plane is at the distance min(m · c) / |m|.
+    /// direction of its centre. Only triangles and segments without a pose are tested. If m is the
+    /// sum of the corners c relative to the query point, the plane is at the distance min(m · c) /
+    /// |m|.
     fn is_beyond(&self, distance: N) -> bool {
         let corners: [Vector<N, D>; 3] = match self.solid() {
             _ if self.query != Point::origin() => return false,
@@ -71,8 +73,9 @@ impl<N: Real, const D: usize> PartQuery<'_, N, D> {
         let (heights, squares) =
             (corners.mapped(|corner| sum.dot(&corner)), corners.mapped(|v| v.norm_squared()));
         let square = sum.norm_squared();
-        // The rounding error of the products, 16 units of the sum of all squares, and a thousandth
-        // of the distance: parts that are equally near up to rounding are still tested.
+        // The margins are the rounding error of the products, 16 epsilon times the sum of all
+        // squares, and a thousandth of the distance. Parts that are equally near up to rounding are
+        // thus still tested.
         let rounding_error =
             N::lit(16.0) * N::EPSILON * (square + squares[0] + squares[1] + squares[2]);
         let lowest = min(min(heights[0], heights[1]), heights[2]) - rounding_error;
@@ -82,7 +85,8 @@ impl<N: Real, const D: usize> PartQuery<'_, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> PartQuery<'_, N, D> {
-    /// The nearest point of the part; `None` if there is none, or on overflow.
+    /// Returns the nearest point of the part with the index `number`; `None` if there is none, or
+    /// on overflow.
     fn nearest(&self, number: u32, point: &Point<N, D>) -> Option<PartPoint<N, D>> {
         let Geometry(kind) = self.part.solid.geometry();
         let found = <N::Algorithms>::surface_point(kind, &self.query);
@@ -97,10 +101,11 @@ impl<N: Space<D>, const D: usize> PartQuery<'_, N, D> {
     }
 }
 
-/// Returns the nearest point of the boundary of the part that is nearest, or in which the point is
-/// deepest; of several parts the first. With `touching`, any part that contains the point will do.
+/// Returns the nearest boundary point on the nearest part, or on the part in which `point` is
+/// deepest; of several such parts on the first. If `touching` is true, any part that contains the
+/// point may be returned.
 ///
-/// `None` if there are no parts, or if the point is not finite.
+/// Returns `None` if there are no parts, or if the point is not finite.
 pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
@@ -127,8 +132,8 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
     if parts.has_bodies() { deepest_within(parts, point, best) } else { best }
 }
 
-/// The result for a composite with bodies: the deepest of the nearest part and, for each body that
-/// contains the point, the nearest part of its boundary.
+/// Returns the result for a composite with bodies: the deepest of `best` and, for each body that
+/// contains the point, the nearest part of the body's boundary.
 fn deepest_within<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
@@ -159,14 +164,14 @@ fn deepest_within<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PartPoint<N, D> {
-    /// Whether it is nearer or deeper, or equal with a lower part number.
+    /// Whether this point is nearer or deeper than `other`, or equal with a lower part index.
     fn is_before(&self, other: &Self) -> bool {
         self.distance < other.distance
             || (self.distance == other.distance && self.part < other.part)
     }
 }
 
-/// The composite's entry in the table of shapes.
+/// The entry of composites in the table of shapes.
 pub(crate) fn surface_point<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
@@ -186,8 +191,8 @@ mod tests {
     use crate::math::xorshift::Xorshift;
     use crate::shape::{Segment, Triangle};
 
-    /// Parts reported as beyond a distance are, whatever their size and position; most that are,
-    /// are reported.
+    /// Checks that every part reported as beyond a distance is beyond it, at any size and position,
+    /// and that most such parts are reported.
     fn parts_beyond<N: Space<3>>() {
         let random = &mut Xorshift(7);
         let (mut beyond, mut decided) = (0, 0);

@@ -1,8 +1,8 @@
-//! Hits of a ray on a composite: the hits on its parts.
+//! Intersections of a ray with a composite: the intersections with its parts.
 //!
-//! Parts with common corners leave no gap: the triangle algorithms decide by signs that are exact
-//! except for zero, which counts for both sides (see `triangle3`), and the search uses a box around
-//! the ray's origin that contains the rounding errors of times and boxes.
+//! Parts with common corners leave no gap. The triangle algorithms decide by signs that are exact
+//! except for zero, and a zero belongs to both sides (see `triangle3`). The search uses a box
+//! around the ray's origin that contains the rounding errors of times and boxes.
 
 use super::point::nearest_part;
 use crate::bounding_volume::Ray;
@@ -16,13 +16,14 @@ use crate::shape::CompositeShape;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayQuestion<N: Real, const D: usize> {
     pub(crate) ray: Ray<N, D>,
-    /// Hits after this time do not count.
+    /// The latest time of a hit, inclusive.
     pub(crate) max_time: N,
     pub(crate) solid: bool,
 }
 
-/// Calls `visit` with the first hit on each part that is hit up to `max_time`. It returns the new
-/// limit, which never grows; a negative one ends the search. No order is promised.
+/// Calls `visit` with the first hit on each part that is hit up to `max_time`. `visit` returns the
+/// new limit of time, which never grows; a negative limit ends the search. The order of the hits is
+/// unspecified.
 pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     question: &RayQuestion<N, D>,
@@ -31,7 +32,7 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     let RayQuestion { ray, max_time, solid } = question;
     let mut latest = *max_time;
     let Some(start) = around_point(&ray.origin, &parts.search().bounds()) else { return };
-    // Written so that NaN counts as before the start.
+    // False for NaN, so that a NaN limit finds nothing.
     let is_valid = latest >= N::ZERO && ray.dir.iter().all(|x| x.is_finite_number());
     if !is_valid {
         return;
@@ -59,7 +60,8 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     });
 }
 
-/// The hit of a ray that starts in a body: at time zero, on the nearest part of the boundary.
+/// Returns the hit of a ray that starts in a body: at time zero, on the nearest part of the
+/// boundary. `None` if the ray does not start in a body.
 fn start_inside<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     ray: &Ray<N, D>,

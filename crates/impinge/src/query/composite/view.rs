@@ -1,4 +1,4 @@
-//! The contacts of composites in the public interface.
+//! Conversion of the contacts of composites to the public interface.
 
 use crate::collide::mesh::{Patch, PatchPoint};
 use crate::collide::pair::pose_between;
@@ -10,11 +10,11 @@ use crate::query::{ContactId, ContactManifold, ManifoldView, PairRef, Placement}
 use crate::shape::{Geometry, Kind, Part, PartSolid};
 use crate::tables::ByDimension;
 
-/// Normals that differ by at most this many rounding units are equal.
+/// Normals that differ by at most this many epsilon are treated as equal.
 const ROUNDING: f64 = 64.0;
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// One of the manifolds, read in place; `None` beyond the last.
+    /// Returns a view of manifold `patch` without copying it; `None` beyond the last manifold.
     #[inline]
     pub(crate) fn view<'a>(
         &'a self,
@@ -25,8 +25,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         Some(ManifoldView::of_patch(self.patches().get(patch)?, placement, pair))
     }
 
-    /// Returns one manifold for each patch; `pair` is that of the last update. Reuses the memory of
-    /// old ones.
+    /// Returns one manifold for each patch; `pair` must be the pair of the last update. Reuses the
+    /// memory of `old`.
     pub(crate) fn manifolds(
         &self,
         pair: &Pair<'_, N, D>,
@@ -41,8 +41,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         old
     }
 
-    /// [`Self::manifolds`] for shapes at given poses; `next` returns the solids of each contact, in
-    /// order.
+    /// Implements [`Self::manifolds`] for shapes at given poses; `next` returns the touching solids
+    /// of each contact, in order.
     pub(crate) fn manifolds_on<'a>(
         &self,
         poses: [&Pose<N, D>; 2],
@@ -62,7 +62,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     }
 }
 
-/// Converts one contact to the world.
+/// Converts one contact to the world frame.
 pub(in crate::query) fn tracked<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     patch: &Patch<N, D>,
@@ -72,20 +72,20 @@ pub(in crate::query) fn tracked<N: Space<D>, const D: usize>(
     touched(pair, patch, point, |touched| touched.tracked(&pair.pose12, patch, point, placement))
 }
 
-/// The solids of a contact: the data of the shapes that its kinematic needs.
+/// The touching solids of a contact: the data of the shapes that its kinematic needs.
 pub(crate) struct Touched<'a, N: Real, const D: usize> {
-    /// A part of each shape, or all of it.
+    /// For each shape, the touching part, or the whole shape if it is not a composite.
     pub(crate) solids: [Kind<'a, N, D>; 2],
-    /// Their poses in the frames of the shapes.
+    /// The poses of `solids` in the frames of the shapes.
     pub(crate) poses: [Pose<N, D>; 2],
-    /// [`Geometry::turns`] of the shapes.
+    /// [`Geometry::turns`] of each shape.
     pub(crate) turns: [bool; 2],
-    /// Whether the normal rotates with the second shape, whose face has it, or with the first;
-    /// `None` if no face has it.
+    /// True if the normal is a face normal of the second shape and rotates with it, false for the
+    /// first shape. `None` if the normal belongs to no face.
     pub(crate) turns_with_second: Option<bool>,
 }
 
-/// Calls `read` with the solids of a contact.
+/// Calls `read` with the touching solids of a contact.
 pub(crate) fn touched<N: Space<D>, R, const D: usize>(
     pair: &Pair<'_, N, D>,
     patch: &Patch<N, D>,
@@ -106,7 +106,8 @@ pub(crate) fn touched<N: Space<D>, R, const D: usize>(
 }
 
 impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
-    /// Converts the contact to the world; `pose12` is that of the shapes.
+    /// Converts the contact to the world frame; `pose12` is the pose of the second shape in the
+    /// frame of the first.
     pub(crate) fn tracked(
         &self,
         pose12: &Pose<N, D>,
@@ -123,7 +124,7 @@ impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
         if placement.is_swapped { tracked.flipped() } else { tracked }
     }
 
-    /// The kinematic of the contact: that of its two solids, in the frames of the shapes.
+    /// Returns the kinematic of the contact's two solids, in the frames of the shapes.
     fn kinematic(
         &self,
         pose12: &Pose<N, D>,
@@ -144,8 +145,8 @@ impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
     }
 }
 
-/// Whether the normal belongs to a face of the second surface, or of the first; `None` if to
-/// neither.
+/// Returns true if the normal belongs to a face of the second surface, false if to a face of the
+/// first, `None` if to neither.
 fn turning<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     patch: &Patch<N, D>,
@@ -160,7 +161,8 @@ fn turning<N: Space<D>, const D: usize>(
     is_face_normal(pair.first, part1, &outward1).then_some(false)
 }
 
-/// Whether the normal is that of the surface on a face, up to rounding. A line in 3D has no face.
+/// Whether the normal is a face normal of the surface at the part, up to rounding. A line in 3D has
+/// no face.
 fn is_face_normal<N: Space<D>, const D: usize>(
     kind: Kind<'_, N, D>,
     part: u32,
@@ -174,7 +176,7 @@ fn is_face_normal<N: Space<D>, const D: usize>(
     face.is_some_and(|face| !is_line && (face - outward).norm() <= tolerance)
 }
 
-/// The part of a composite with this number; `None` for a shape that is its own part.
+/// Returns part `part` of a composite; `None` for a shape that is not a composite.
 fn part_of<N: Space<D>, const D: usize>(kind: Kind<'_, N, D>, part: u32) -> Option<Part<'_, N, D>> {
     Geometry(kind).as_composite().map(|composite| composite.part(part))
 }

@@ -1,9 +1,8 @@
-//! Lower bounds of the time for which two bodies that move and rotate stay apart.
+//! Lower bounds of the time during which two moving and rotating bodies stay apart.
 //!
-//! All bounds are along one direction, the normal. It separates the bodies by some gap, and
-//! continues to separate them until their points have approached along it by that gap. The
-//! direction is fixed in the world, or, if one of the bodies is a half-space that rotates, in that
-//! body.
+//! All bounds are along one direction, the normal, which separates the bodies by some gap. It keeps
+//! separating them until their points have approached along it by that gap. The direction is fixed
+//! in the world, or, if one of the bodies is a rotating half-space, in the frame of that body.
 
 use super::{ConstantVelocities, RigidMotion};
 use crate::bounding_volume::Aabb;
@@ -11,7 +10,7 @@ use crate::collide::parts::{PartPair, PartSweep};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, min, unit};
 use crate::shape::{Geometry, Shape};
 
-/// The maximum number of spans tried to find how long a bound holds.
+/// The maximum number of time spans tried to find how long a bound holds.
 const MAX_SPANS: usize = 64;
 
 /// A body and its extents about the centre of its motion.
@@ -20,13 +19,13 @@ pub(super) struct MovingBody<'a, N: Space<D>, const D: usize> {
     pub(super) motion: &'a dyn RigidMotion<N, D>,
     pub(super) shape: Geometry<'a, N, D>,
     center: Point<N, D>,
-    /// Upper bound of the distance of the core's points from the centre; infinite for half-spaces
-    /// and composites that contain one.
+    /// An upper bound of the distance of the core's points from the centre; infinite for
+    /// half-spaces and composites that contain one.
     reach: N,
-    /// Upper bound of the distance of the core's points from the axis of rotation, for constant
-    /// velocities.
+    /// For constant velocities, an upper bound of the distance of the core's points from the axis
+    /// of rotation.
     arm: N,
-    /// Upper bound of the distance of the body's points from the centre.
+    /// An upper bound of the distance of the body's points from the centre.
     radius: N,
 }
 
@@ -49,8 +48,8 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
         Self { motion, shape: geometry, center, reach: reach * slack, arm: arm * slack, radius }
     }
 
-    /// A solid of the body as a body of its own: `pose` is the pose of the solid, `center` the
-    /// centre of the motion, which stays that of the body.
+    /// Returns a solid of the body as a separate body: `pose` is the pose of the solid, and
+    /// `center` is the centre of the whole body's motion.
     fn part<'p>(
         &self,
         solid: Geometry<'p, N, D>,
@@ -71,12 +70,12 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
         MovingBody { motion: self.motion, shape: solid, center: local, reach, arm, radius }
     }
 
-    /// A length of the body for tolerances; zero for an unbounded body.
+    /// Returns a length of the body for tolerances; zero for an unbounded body.
     pub(super) fn size(&self) -> N {
         if self.radius.is_finite_number() { self.radius } else { N::ZERO }
     }
 
-    /// Upper bound of the distance of the body's points from the centre of its motion.
+    /// Returns an upper bound of the distance of the body's points from the centre of its motion.
     pub(super) fn radius(&self) -> N {
         self.radius
     }
@@ -102,16 +101,16 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
     }
 }
 
-/// Two bodies at one time.
+/// The poses of two bodies at one time.
 pub(super) struct Moment<'b, 'a, N: Space<D>, const D: usize> {
     pub(super) bodies: [&'b MovingBody<'a, N, D>; 2],
-    /// The point of the world that all positions are relative to.
+    /// The world point to which all positions are relative.
     pub(super) origin: Vector<N, D>,
     pub(super) poses: [Pose<N, D>; 2],
-    /// The centres of their motions.
+    /// The centres of motion of the two bodies.
     pub(super) centers: [Vector<N, D>; 2],
     pub(super) time: N,
-    /// From the first to the second, in the world.
+    /// The unit vector from the first body to the second, in the world's axes.
     pub(super) normal: Vector<N, D>,
 }
 
@@ -121,30 +120,32 @@ pub(super) struct ImpactParts<'p, N: Space<D>, const D: usize> {
     poses: [Pose<N, D>; 2],
 }
 
-/// An upper bound of the distance moved in a time `h`: `speed · h + bend · h²`.
+/// An upper bound of the distance moved in a time `h`: `speed · h + bend · h²`. The speed may be
+/// negative.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rate<N> {
     speed: N,
-    /// Not negative.
+    /// The quadratic coefficient; not negative.
     bend: N,
 }
 
 impl<N: Real> Rate<N> {
-    /// The distance moved in a time, at most.
+    /// Returns an upper bound of the distance moved in a time.
     pub(super) fn travel(&self, time: N) -> N {
         product(max(self.speed, N::ZERO), time) + product(product(self.bend, time), time)
     }
 
-    /// The time in which a gap is used up; infinite if that never happens.
+    /// Returns the time in which a gap is used up; infinite if it never is.
     pub(super) fn time_for(&self, gap: N) -> N {
         if !(self.speed <= N::INFINITY && self.bend <= N::INFINITY) {
             return N::ZERO;
         }
-        // The product may overflow where its factors do not.
+        // The product of the factors under one root could overflow; the product of their roots does
+        // not.
         let gained_speed = N::TWO * self.bend.sqrt() * gap.sqrt();
         let root = length(&Vector::<N, 2>::new(self.speed, gained_speed));
         if self.speed > N::ZERO {
-            // The usual formula would cancel.
+            // The usual formula would cancel digits.
             N::TWO * gap / (self.speed + root)
         } else if self.bend > N::ZERO {
             (root - self.speed) / (N::TWO * self.bend)
@@ -155,10 +156,10 @@ impl<N: Real> Rate<N> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
-    /// Returns a time in which the bodies certainly do not approach by more than `gap`, at most
-    /// `remaining`, or longer if they never approach. `apart` is the distance between the spheres
-    /// around the bodies less the distance that counts as touching; negative if the spheres give no
-    /// bound.
+    /// Returns a time during which the bodies certainly do not approach by more than `gap`. The
+    /// time is at most `remaining`, or longer if they never approach by `gap`. `apart` is the
+    /// distance between the bounding spheres minus the target distance; if negative, the spheres
+    /// give no bound.
     pub(super) fn safe_time(&self, gap: N, apart: N, remaining: N) -> N {
         let safe = |span: N| self.safe_within(gap, apart, self.time + span);
         let all = safe(remaining);
@@ -178,8 +179,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         span
     }
 
-    /// One part of each body as bodies of their own. `frame` is the frame in which the parts are
-    /// placed.
+    /// Returns one part of each body as separate bodies. `frame` is the world pose of the frame in
+    /// which the parts are placed.
     pub(super) fn parts<'p>(
         &self,
         parts: &'p PartPair<'_, N, D>,
@@ -195,8 +196,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         ImpactParts { bodies: [part1, part2], poses }
     }
 
-    /// [`Self::safe_time`] for parts of bodies that both have constant velocities. `normal` is from
-    /// part to part in the frame of the first.
+    /// Implements [`Self::safe_time`] for parts of bodies that both have constant velocities.
+    /// `normal` points from the first part to the second, in the frame of the first.
     pub(super) fn safe_time_of(
         &self,
         parts: &ImpactParts<'_, N, D>,
@@ -211,7 +212,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Moment { bodies, origin, poses, centers, time, normal }.safe_within(gap, -N::ONE, to)
     }
 
-    /// The largest speed at which parts of the bodies approach in any direction.
+    /// Returns the largest speed at which points of the two parts approach in any direction.
     pub(super) fn rate_of(&self, parts: &ImpactParts<'_, N, D>, to: N) -> Rate<N> {
         let swings = [0, 1].mapped(|index| {
             product(self.bodies[index].turn_bound(self.time, to), parts.bodies[index].arm)
@@ -219,12 +220,12 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed: self.drift(None, to) + swings[0] + swings[1], bend: N::ZERO }
     }
 
-    /// The motion of a body's points during `span`, in the frame of the other, for constant
-    /// velocities. `rate` bounds the approach of any two points.
+    /// Returns the motion of a body's points during `span`, in the frame of the other body, for
+    /// constant velocities. `rate` bounds the approach of any two points.
     ///
     /// A point at `u` from the other body's centre has the velocity `u' - S u` in the frame of that
-    /// body, which rotates by `S`: a linear function of its position. Its derivative,
-    /// `u'' - 2 S u' + S² u`, bends the path.
+    /// body, which rotates with the generator `S`. The velocity is a linear function of the
+    /// position. Its derivative, `u'' - 2 S u' + S² u`, bends the path.
     pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> PartSweep<N, D> {
         let travel = rate.travel(span);
         let [body, other] = [which, 1 - which].mapped(|index| self.bodies[index]);
@@ -255,18 +256,19 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         PartSweep::anywhere(travel)
     }
 
-    /// Whether the parts of the bodies can be advanced separately: one is a composite, and both
-    /// have constant velocities.
+    /// Whether the parts of the bodies can be advanced separately: at least one body is a
+    /// composite, and both have constant velocities.
     pub(super) fn has_parts_on_known_paths(&self) -> bool {
         let is_known = self.bodies.iter().all(|body| body.constant().is_some());
         is_known && self.bodies.iter().any(|body| body.shape.as_composite().is_some())
     }
 
-    /// A span that a bound over it covers, of any order of magnitude, for bounds that are infinite
-    /// over all the remaining time; zero if there is none.
+    /// Returns a time span over which the bound `safe` covers the whole span, of any order of
+    /// magnitude; zero if there is none. Used where the bound over all the remaining time is
+    /// infinite.
     fn first_span(&self, remaining: N, safe: &dyn Fn(N) -> N) -> N {
         let (mut low, mut high) = (N::MIN_POSITIVE, min(remaining, N::MAX));
-        // The exponents of numbers are an interval of at most 2^11.
+        // The exponents of floating-point numbers span at most 2^11 values.
         for _ in 0..12 {
             let middle = low.sqrt() * high.sqrt();
             if safe(middle) >= middle { low = middle } else { high = middle }
@@ -274,7 +276,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         if safe(low) >= low { low } else { N::ZERO }
     }
 
-    /// [`Self::safe_time`] by the bounds from now to the time `to`, valid up to then.
+    /// Implements [`Self::safe_time`] with the bounds that hold from now to the time `to`; the
+    /// result is valid up to `to`.
     fn safe_within(&self, gap: N, apart: N, to: N) -> N {
         let first = self.first_order(to).time_for(gap);
         let second = self.second_order(to).map_or(N::ZERO, |rate| rate.time_for(gap));
@@ -283,7 +286,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         if longest >= N::ZERO { longest } else { N::ZERO }
     }
 
-    /// The time in which the spheres around the bodies use up the distance `apart`.
+    /// Returns the time in which the bounding spheres of the bodies use up the distance `apart`.
     fn spheres(&self, apart: N, to: N) -> N {
         let is_apart = apart > N::ZERO;
         if !is_apart {
@@ -294,7 +297,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         })
     }
 
-    /// The rate from the largest speed that a point of either body can have at any time.
+    /// Returns the rate given by the largest speed that a point of either body can have up to the
+    /// time `to`.
     pub(super) fn first_order(&self, to: N) -> Rate<N> {
         for (index, body) in self.bodies.iter().enumerate() {
             if !body.reach.is_finite_number() && self.swing(index, N::ONE, to) > N::ZERO {
@@ -306,18 +310,18 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed, bend: N::ZERO }
     }
 
-    /// The direction that separates the bodies; `None` if other parts of them are separated by
-    /// another one.
+    /// Returns the direction that separates the bodies. `None` if one is a composite and neither a
+    /// half-space, since other parts may be separated by another direction.
     fn direction(&self) -> Option<&Vector<N, D>> {
         let flat = self.bodies.iter().any(|body| body.is_half_space());
         let whole = self.bodies.iter().all(|body| body.shape.as_composite().is_none());
         (flat || whole).then_some(&self.normal)
     }
 
-    /// The rate from the present speeds of points and their largest change; for constant
-    /// velocities.
+    /// Returns the rate given by the present speeds of points and their largest change. `None`
+    /// unless both bodies have constant velocities and one direction separates them.
     ///
-    /// A point farther from the centre moves faster and its path bends more: of all points of a
+    /// A point farther from the centre moves faster, and its path bends more. Of all points of a
     /// convex core, the fastest along the normal is a support point.
     fn second_order(&self, to: N) -> Option<Rate<N>> {
         let (mut speed, mut bend) = (self.drift(Some(self.direction()?), to), N::ZERO);
@@ -335,9 +339,10 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Some(Rate { speed, bend })
     }
 
-    /// The rate from the rotation of an unbounded body, in whose frame the normal is fixed.
+    /// Returns the rate due to the rotation of an unbounded body, in whose frame the normal is
+    /// fixed.
     ///
-    /// The speed of approach grows with the other body's distance from the centre of rotation; that
+    /// The speed of approach grows with the other body's distance from the centre of rotation. That
     /// distance may grow on the way, and the normal may rotate towards the other body's motion.
     fn about_unbounded(&self, index: usize, to: N) -> Rate<N> {
         let other = self.bodies[1 - index];
@@ -348,8 +353,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Rate { speed: along + swing + product(turn, distance), bend: product(turn, all) }
     }
 
-    /// An upper bound of the speed at which the centres approach along a unit vector from the first
-    /// to the second, or in any direction if `None`. Speeds within rounding error count as zero.
+    /// Returns an upper bound of the speed at which the centres approach along `direction`, a unit
+    /// vector from the first to the second; in any direction if `None`. Speeds within rounding
+    /// error are treated as zero.
     fn drift(&self, direction: Option<&Vector<N, D>>, to: N) -> N {
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let relative = motion1.linear - motion2.linear;
@@ -367,8 +373,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         speed(0, N::ONE) + speed(1, -N::ONE)
     }
 
-    /// An upper bound of the speed along the normal that rotation gives a point at a distance from
-    /// the centre.
+    /// Returns an upper bound of the speed along the normal that rotation gives a point at
+    /// `distance` from the centre.
     fn swing(&self, index: usize, distance: N, to: N) -> N {
         let turn = match (self.slope(index), self.direction()) {
             (Some(slope), Some(_)) => length(&slope),
@@ -377,9 +383,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         product(turn, distance)
     }
 
-    /// The gradient, by position, of the speed of a body's points towards the other. For constant
-    /// velocities; rounding error counts as zero, so that a body spinning about the normal does not
-    /// approach.
+    /// Returns the gradient, with respect to position, of the speed of a body's points towards the
+    /// other body. `None` unless the velocities are constant. A gradient within rounding error is
+    /// treated as zero, so that a body spinning about the normal does not approach.
     fn slope(&self, index: usize) -> Option<Vector<N, D>> {
         let motion = self.bodies[index].constant()?;
         let toward = if index == 0 { self.normal } else { -self.normal };
@@ -389,8 +395,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         Some(if max_component(&slope) <= rounding_error { Vector::<N, D>::zeros() } else { slope })
     }
 
-    /// The speed at which a point of the first body and one of the second approach along the
-    /// normal, and a bound of its rounding error.
+    /// Returns the speed at which a point of the first body and a point of the second approach
+    /// along the normal, and a bound of the rounding error of that speed.
     pub(super) fn closing(&self, points: &[Vector<N, D>; 2], size: N) -> (N, N) {
         let arms = [0, 1].mapped(|index| points[index] - self.centers[index]);
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
@@ -403,7 +409,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         self.closing_observed(points, &arms, size)
     }
 
-    /// [`Self::closing`] from the positions of the points a short time later.
+    /// Computes [`Self::closing`] by differences, from the positions of the points a short time
+    /// later.
     fn closing_observed(
         &self,
         points: &[Vector<N, D>; 2],
@@ -424,7 +431,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         (self.normal.dot(&(moved[0] - moved[1])) / span, N::lit(8.0) * root * speed)
     }
 
-    /// The displacement of a point of a body in a time.
+    /// Returns the displacement of a point of a body during `span`.
     fn moved(&self, index: usize, point: &Vector<N, D>, span: N) -> Vector<N, D> {
         let (body, pose) = (self.bodies[index], &self.poses[index]);
         let local = pose.inverse_point(&Point::from(*point));
@@ -433,7 +440,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     }
 }
 
-/// The largest distance of the corners of a body's box from its axis of rotation.
+/// Returns the largest distance of the corners of a body's box from its axis of rotation.
 fn arm_of_box<N: Space<D>, const D: usize>(
     aabb: &Aabb<N, D>,
     center: &Point<N, D>,
@@ -448,17 +455,17 @@ fn arm_of_box<N: Space<D>, const D: usize>(
     })
 }
 
-/// A product in which zero times infinity is zero.
+/// Returns the product, where zero times infinity is zero.
 fn product<N: Real>(a: N, b: N) -> N {
     if a == N::ZERO || b == N::ZERO { N::ZERO } else { a * b }
 }
 
-/// A bound; infinite if it is negative or NaN.
+/// Returns the bound; infinity if it is negative or NaN.
 fn usable<N: Real>(bound: N) -> N {
     if bound >= N::ZERO { bound } else { N::INFINITY }
 }
 
-/// The length of a vector, without overflow in between.
+/// Returns the length of a vector, without intermediate overflow.
 pub(super) fn length<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     unit(v).map_or_else(|| max_component(v), |(_, length)| length)
 }

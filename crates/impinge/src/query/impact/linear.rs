@@ -1,9 +1,9 @@
-//! The first touch of two solids that do not rotate: the kernel, on one pair.
+//! The time of impact of two solids that do not rotate: the kernel for one pair.
 //!
-//! Two separated balls meet at the root of a quadratic equation, which their separation then
-//! proves. A half-space is hit after one step. All other pairs advance by the gap that certainly
-//! separates them. The last step may be proved by a touching point instead of a separation, if the
-//! normal has not changed on the way.
+//! Two separated balls touch at the root of a quadratic equation, which is verified by their
+//! separation at that time. A half-space is hit after one step. All other pairs advance by steps in
+//! which the gap certainly separates them. The last step may be verified by a touching point
+//! instead of a separation, if the normal has not changed during the step.
 
 use super::ImpactStatus;
 use crate::collide::Pair;
@@ -21,41 +21,43 @@ const MAX_STEPS: usize = 128;
 pub(crate) struct Path<N: Real, const D: usize> {
     /// The displacement per unit of time; no component exceeds two.
     pub(crate) velocity: Vector<N, D>,
-    /// The latest time that counts, inclusive.
+    /// The latest time of an impact, inclusive.
     pub(crate) end: N,
-    /// The distance at which the solids touch; zero or more.
+    /// The distance at which the solids are treated as touching; zero or more.
     pub(crate) target: N,
-    /// A contact at the start counts, whatever the velocity.
+    /// Whether a contact at the start is an impact for all velocities.
     pub(crate) contact_at_start: bool,
-    /// The solids are the same at the same pose: every normal is as good as its opposite.
+    /// Whether both solids are equal and at the same pose, so that every normal is equivalent to
+    /// its opposite.
     pub(crate) mirrored: bool,
 }
 
-/// The end of the path of a pair.
+/// The impact of a pair at the end of its path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival<N: Real, const D: usize> {
-    /// The time, in the unit of the path.
+    /// The time of impact, in the unit of the path.
     pub(crate) along: N,
-    /// The separation at that time, in the frame of the first.
+    /// The separation at that time, in the frame of the first solid.
     pub(crate) separation: Separation<N, D>,
     pub(crate) status: ImpactStatus,
 }
 
 impl<N: Real, const D: usize> Path<N, D> {
-    /// The position of the second solid at a later time, for a pair that starts at `start`.
+    /// Returns the position of the second solid at the time `along`, for a pair that is at `start`
+    /// at time zero.
     #[inline]
     fn position_at(&self, start: &Pair<'_, N, D>, along: N) -> Vector<N, D> {
         start.pose12.translation + self.velocity * along
     }
 
-    /// The pair `start` at a later time.
+    /// Returns the pair `start` at the time `along`.
     pub(crate) fn moved<'a>(&self, start: &Pair<'a, N, D>, along: N) -> Pair<'a, N, D> {
         let pose12 = Pose { translation: self.position_at(start, along), ..start.pose12 };
         Pair { pose12, ..*start }
     }
 
-    /// The largest distance, at the time `along`, from which the solids may still come within the
-    /// target.
+    /// Returns the largest distance, at the time `along`, from which the solids may still come
+    /// within the target distance before the end.
     fn limit(&self, along: N, tolerance: N) -> N {
         if !self.end.is_finite_number() {
             return N::INFINITY;
@@ -63,18 +65,18 @@ impl<N: Real, const D: usize> Path<N, D> {
         self.target + self.velocity.norm() * (self.end - along) + tolerance
     }
 
-    /// The speed at which the solids approach along a normal.
+    /// Returns the speed at which the solids approach along a normal; negative if they separate.
     fn closing(&self, normal: &Vector<N, D>) -> N {
         let closing = -normal.dot(&self.velocity);
         if self.mirrored { -closing.abs() } else { closing }
     }
 
-    /// The largest speed along a normal that counts as rounding error.
+    /// Returns the largest speed along a normal that is treated as rounding error.
     fn rounding_error(&self) -> N {
         N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
     }
 
-    /// Whether a contact at the start counts.
+    /// Whether a contact at the start is an impact.
     pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
         self.contact_at_start
             || is_hit_at_start(gap, self.closing(normal), tolerance, self.rounding_error())
@@ -86,8 +88,8 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
         Self { along, separation, status: ImpactStatus::Reached }
     }
 
-    /// The arrival of solids in contact at a time; a `gap` within the tolerance of zero counts as
-    /// touching.
+    /// Returns the impact of solids in contact at the time `along`; a `gap` within the tolerance of
+    /// zero is treated as touching.
     pub(crate) fn in_contact(along: N, separation: Separation<N, D>, gap: N, tolerance: N) -> Self {
         let is_start = along <= N::ZERO;
         let at_start = ImpactStatus::at_start(gap, tolerance);
@@ -95,17 +97,17 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
         Self { along, separation, status }
     }
 
-    /// The features on which the points of the pair lie at its arrival.
+    /// Returns the features on which the points of the pair lie at its impact.
     pub(crate) fn features(&self, start: &Pair<'_, N, D>, path: &Path<N, D>) -> [FeatureId; 2] {
         <N::Algorithms>::witness_features(&path.moved(start, self.along), &self.separation)
     }
 }
 
-/// Whether a contact at the start is a hit without
-/// [`ImpactOptions::contact_at_start`](super::ImpactOptions): one that gets deeper is, a deep one
-/// that does not separate is, any other is not. An unbounded overlap always is.
+/// Whether a contact at the start is an impact without
+/// [`ImpactOptions::contact_at_start`](super::ImpactOptions): a contact that gets deeper is, and so
+/// is an overlap that does not separate. Any other contact is not. An unbounded overlap always is.
 ///
-/// A gap within the tolerance and a closing speed within the noise count as zero.
+/// A gap within `tolerance` and a closing speed within `rounding_error` are treated as zero.
 pub(super) fn is_hit_at_start<N: Real>(
     gap: N,
     closing: N,
@@ -118,19 +120,20 @@ pub(super) fn is_hit_at_start<N: Real>(
 
 /// The start of the path of two solids.
 pub(crate) enum Beginning<N: Real, const D: usize> {
-    /// They are in contact at the start; `counts` is whether their normal makes that a hit.
+    /// The solids are in contact at the start; `counts` is whether the contact is an impact.
     InContact { arrival: Arrival<N, D>, counts: bool },
-    /// They are apart; the arrival, if there is one.
+    /// The solids are apart at the start; `None` if there is no impact.
     Apart(Option<Arrival<N, D>>),
 }
 
-/// Returns the first time on a path at which two solids are at the target distance.
+/// Returns the impact at the first time on a path at which two solids are at the target distance;
+/// `None` if there is none up to the end of the path.
 ///
-/// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996): the solids stay
-/// apart at least until the gap along the normal between the nearest points is used up at the speed
-/// of approach along that normal. If they do not approach along it, they stay apart for ever. The
-/// signed distance of convex solids is a convex function of time, and this is Newton's method on
-/// it, from the left: it never passes the first touch.
+/// Conservative advancement (Mirtich, "Impulse-based dynamic simulation", 1996). The solids stay
+/// apart at least until the gap along the normal of the nearest points is used up at the closing
+/// speed along that normal. If that speed is not positive, they stay apart for ever. The signed
+/// distance of convex solids is a convex function of time, and this is Newton's method on it, from
+/// the left: it never passes the first touch.
 pub(crate) fn advance<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
@@ -141,15 +144,15 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     }
 }
 
-/// [`advance`] for solids that certainly do not meet before the time `earliest`; reports a contact
-/// at the start without deciding whether it counts.
+/// Runs [`advance`] for solids that certainly do not touch before the time `earliest`. A contact at
+/// the start is returned even if it is not an impact.
 pub(crate) fn begin<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
     earliest: N,
 ) -> Beginning<N, D> {
     let tolerance = N::lit(8.0) * N::EPSILON * size(start);
-    // A bound within rounding error does not exclude a contact at the start.
+    // A lower bound within rounding error does not exclude a contact at the start.
     let is_apart = earliest * max_component(&path.velocity) > tolerance;
     let from = if is_apart { earliest - earliest * N::lit(8.0) * N::EPSILON } else { N::ZERO };
     let limit = path.limit(from, tolerance);
@@ -202,12 +205,12 @@ fn by_steps<N: Space<D>, const D: usize>(
     Some(Arrival { along, separation: found, status: ImpactStatus::StepsSpent })
 }
 
-/// The time at which two separated balls meet, from a quadratic equation and proved by their
-/// separation then. `None` leaves the decision to the steps.
+/// Returns the impact of two separated balls, from a quadratic equation and verified by their
+/// separation at that time. `None` leaves the decision to the iteration.
 ///
-/// The foot is the point of the second centre's path nearest to the first centre: a right triangle
-/// leads from it back to the point of contact. Lengths are divided by a power of two, so that
-/// squares neither overflow nor underflow.
+/// The foot is the point of the second centre's path nearest to the first centre. A right triangle
+/// leads from the foot back to the position of contact. Lengths are divided by a power of two, so
+/// that squares neither overflow nor underflow.
 fn arrival_of_balls<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
@@ -224,7 +227,7 @@ fn arrival_of_balls<N: Space<D>, const D: usize>(
     let across = middle + velocity * foot;
     let leg = ((contact_distance * contact_distance - across.norm_squared()) / squared).sqrt();
     let along = (foot - leg) * scale;
-    // Written so that NaN, from balls that pass each other, is left to the steps too.
+    // False for NaN, so that balls that pass each other are also left to the iteration.
     let is_in_time = along > N::ZERO && along <= path.end;
     if !is_in_time {
         return None;
@@ -234,14 +237,14 @@ fn arrival_of_balls<N: Space<D>, const D: usize>(
     is_there.then(|| Arrival::reached(along, found))
 }
 
-/// The separation at the end of a step that used up the gap along the normal at its beginning, if
-/// that still is the normal and one of the nearest points from then proves it; else `None`.
+/// Returns the separation at the end of a step that used up the gap along the normal `before`.
+/// `None` unless that normal is still valid and one of the earlier nearest points proves it.
 ///
-/// Planes across that normal still separate the solids by the target distance. So this is their
-/// distance if the point of one, on its plane, has that distance from the other solid; and the
-/// normal is unchanged if the other solid has the same normal towards that point. For curved solids
-/// it has rotated on the way, by about the square root of the error that the step removed. The
-/// plane of a half-space needs no proof.
+/// Planes across that normal still separate the solids by the target distance. So the target is
+/// their distance if the nearest point of one solid, on its plane, has that distance from the other
+/// solid. The normal is unchanged if the other solid has the same normal towards that point. For
+/// curved solids the normal has rotated on the way, by about the square root of the error that the
+/// step removed. The plane of a half-space needs no proof.
 fn touching<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     before: &Separation<N, D>,
@@ -259,7 +262,8 @@ fn touching<N: Space<D>, const D: usize>(
         let point1 = point2 - normal * target;
         return Some(Separation { distance: target, normal, point1, point2 });
     }
-    // For balls the separation costs no more, and the nearest points of support maps rarely stay.
+    // For balls a full separation costs no more, and the nearest points of support maps rarely
+    // stay.
     if let Kind::Ball(_) | Kind::SupportMap(_) = first {
         return None;
     }
@@ -282,7 +286,8 @@ fn touching<N: Space<D>, const D: usize>(
     is_proved.then_some(Separation { distance: projected.distance, normal, point1, point2 })
 }
 
-/// The length that tolerances are proportional to: the sizes of the solids plus their distance.
+/// Returns the length to which tolerances are proportional: the sizes of the solids plus their
+/// distance.
 pub(crate) fn size<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let bounding_radius = |geometry: Geometry<'_, N, D>| {
         geometry.as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
@@ -297,8 +302,8 @@ mod tests {
     use crate::collide::separation::hulls::tests::Random;
     use crate::shape::{Ball, Shape};
 
-    /// Balls that fly past each other at all distances: the equation finds a hit exactly when steps
-    /// do.
+    /// Checks, for balls that fly past each other at all distances, that the equation finds an
+    /// impact exactly when the iteration does.
     fn fly<N: Space<3>>(size: f64) {
         let random = &mut Random(3);
         let (mut met, mut count) = (0, 0);
@@ -331,7 +336,7 @@ mod tests {
             let Some(arrival) = arrival_of_balls(&start, &path, tolerance) else { continue };
             met += 1;
             let expected = expected.expect("they touch by steps too");
-            // If they graze each other, they are within the tolerance for a longer time.
+            // Balls that graze each other are within the tolerance for a longer time.
             let closing = path.closing(&arrival.separation.normal);
             let late = (arrival.along - expected.along) * closing;
             assert!(late.abs() <= N::lit(4.0) * tolerance, "{late} late in round {round}");

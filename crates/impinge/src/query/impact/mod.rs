@@ -1,12 +1,13 @@
-//! The first touch of two moving shapes.
+//! The time of impact of two moving shapes.
 //!
 //! [`linear`] is for solids that do not rotate: this file brings the pair into its canonical order
-//! and maps the result back to the world; the kernel there handles one pair of solids on a straight
-//! path. [`nonlinear`] is for bodies that rotate: of a pair it uses only the separation, of a
-//! motion only poses and bounds of the speed ([`motion`], [`velocities`], [`bounds`]).
+//! and maps the result back to the world, and the kernel in `linear` handles one pair of solids on
+//! a straight path. [`nonlinear`] is for bodies that rotate. It uses only the separation of the
+//! pair, and only the poses and speed bounds of the motions ([`motion`], [`velocities`],
+//! [`bounds`]).
 //!
-//! An impact is never late: each step is no longer than the solids certainly stay apart. Every loop
-//! has a cap, and the status reports when it was reached.
+//! An impact is never reported late: no step is longer than the time during which the solids
+//! certainly stay apart. The number of steps is limited; the status reports a reached limit.
 
 mod bounds;
 mod linear;
@@ -51,8 +52,8 @@ pub struct Moving<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
-    /// The shape that is at `position` at time zero and moves by `velocity`, in the world frame,
-    /// per unit of time.
+    /// Returns the shape that is at `position` at time zero and moves by `velocity`, in the world
+    /// frame, per unit of time.
     #[must_use]
     pub fn new<R: AbstractRotation<N, D>>(
         position: &Isometry<N, R, D>,
@@ -62,7 +63,7 @@ impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
         entries::moving(R::view(position), velocity, shape)
     }
 
-    /// See [`Self::new`].
+    /// Implements [`Self::new`] with the position by reference.
     #[inline]
     pub(crate) fn at(
         position: IsometryRef<'_, N, D>,
@@ -72,7 +73,7 @@ impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
         Self { placed: Placed::new(position, shape.geometry()), velocity: *velocity }
     }
 
-    /// The shape at rest at `position`.
+    /// Returns the shape at rest at `position`.
     #[must_use]
     pub fn still<R: AbstractRotation<N, D>>(
         position: &Isometry<N, R, D>,
@@ -94,28 +95,28 @@ impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ImpactOptions<N: Real> {
-    /// The latest time of an impact that is reported, inclusive. No impact is reported if it is
-    /// negative or NaN. Infinite by default.
+    /// The latest time of an impact that is reported, inclusive. If negative or NaN, no impact is
+    /// reported. Infinite by default.
     pub max_time: N,
-    /// The distance at which the solids count as touching. Zero by default; negative and NaN count
-    /// as zero. At an infinite distance everything touches at time zero.
+    /// The distance at which the solids are treated as touching. Zero by default; negative and NaN
+    /// are treated as zero. With an infinite distance every pair touches at time zero.
     pub target_distance: N,
-    /// The largest difference from the target distance, a length, at which solids that rotate count
-    /// as touching. The search ends there, which saves steps; the time found is then earlier, and
-    /// never late. Negative and NaN count as zero; values below the rounding error, 8 epsilon times
-    /// the sizes and the distance of the bodies, are raised to it.
+    /// The largest difference from the target distance, a length, at which rotating solids are
+    /// treated as touching. The search ends there, which saves steps; the time found is then
+    /// earlier, and never late. Negative and NaN are treated as zero. Values below the rounding
+    /// error, 8 epsilon times the sizes and the distance of the bodies, are raised to it.
     ///
-    /// `None` by default: up to rounding, or, if 256 more steps do not reach that, as for surfaces
-    /// that slide on each other, within a millionth of the sizes and the distance: 2⁻²⁰, in `f32`
-    /// 2⁻¹⁷. Straight paths are always followed up to rounding.
+    /// With `None` (the default) the search continues up to rounding. If 256 more steps do not
+    /// suffice for that, as for surfaces that slide on each other, it accepts a millionth of the
+    /// sizes and the distance: 2⁻²⁰, in `f32` 2⁻¹⁷. Straight paths always go up to rounding.
     pub tolerance: Option<N>,
-    /// Solids that touch or overlap at time zero are an impact then, whatever their velocities.
-    /// False by default: solids that separate, and those that touch and slide, are none.
+    /// Whether solids that touch or overlap at time zero are an impact at time zero, whatever their
+    /// velocities. False by default: solids that separate or just slide are not.
     pub contact_at_start: bool,
 }
 
 impl<N: Real> ImpactOptions<N> {
-    /// Impacts at any time, at a distance of zero.
+    /// Returns options for impacts at any time, with a target distance of zero.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -126,25 +127,25 @@ impl<N: Real> ImpactOptions<N> {
         }
     }
 
-    /// Returns the options with another [`Self::max_time`].
+    /// Returns these options with [`Self::max_time`] replaced.
     #[must_use]
     pub const fn with_max_time(self, max_time: N) -> Self {
         Self { max_time, ..self }
     }
 
-    /// Returns the options with another [`Self::target_distance`].
+    /// Returns these options with [`Self::target_distance`] replaced.
     #[must_use]
     pub const fn with_target_distance(self, target_distance: N) -> Self {
         Self { target_distance, ..self }
     }
 
-    /// Returns the options with another [`Self::tolerance`].
+    /// Returns these options with [`Self::tolerance`] replaced.
     #[must_use]
     pub const fn with_tolerance(self, tolerance: N) -> Self {
         Self { tolerance: Some(tolerance), ..self }
     }
 
-    /// Returns the options with another [`Self::contact_at_start`].
+    /// Returns these options with [`Self::contact_at_start`] replaced.
     #[must_use]
     pub const fn with_contact_at_start(self, contact_at_start: bool) -> Self {
         Self { contact_at_start, ..self }
@@ -159,8 +160,8 @@ impl<N: Real> Default for ImpactOptions<N> {
 
 /// The kind of an impact, and its certainty.
 ///
-/// "At the start" is at time zero, for the two parts of the impact. If a start in contact does not
-/// count (see [`impact()`]), the status is that of the later touch.
+/// "At the start" means at time zero, for the two parts of the impact. If a start in contact is not
+/// an impact (see [`impact()`]), the status is that of the later impact.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -179,14 +180,15 @@ impl<N: Real> Default for ImpactOptions<N> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ImpactStatus {
-    /// The solids were apart and touch at that time, up to the tolerance.
+    /// The solids were apart before and touch at the returned time, up to the tolerance.
     Reached,
-    /// The time is zero: the solids touch at the start, or are at the target distance, up to rounding.
+    /// The time is zero: the solids touch, or are at the target distance, up to rounding.
     TouchingAtStart,
-    /// The time is zero: the solids overlap at the start, or are nearer than the target distance.
-    /// Their nearest points then differ by the depth.
+    /// The time is zero: the solids overlap, or are nearer than the target distance. The distance
+    /// of their two points is then the depth.
     PenetratingAtStart,
-    /// All steps were spent: the solids certainly do not touch before that time; later is unknown.
+    /// The maximum number of steps was reached: the solids certainly do not touch before the
+    /// returned time; whether they touch later is unknown.
     StepsSpent,
 }
 
@@ -197,7 +199,7 @@ impl ImpactStatus {
         matches!(self, Self::TouchingAtStart | Self::PenetratingAtStart)
     }
 
-    /// The status of an impact at the start; a gap within the tolerance counts as zero.
+    /// Returns the status of an impact at time zero; a gap within the tolerance is treated as zero.
     fn at_start<N: Real>(gap: N, tolerance: N) -> Self {
         if gap < -tolerance { Self::PenetratingAtStart } else { Self::TouchingAtStart }
     }
@@ -205,8 +207,7 @@ impl ImpactStatus {
 
 /// The first touch of two moving solids: its time and geometry.
 ///
-/// The points and the normal are in the world frame, at the time of impact: for the solids at their
-/// positions then.
+/// The points and the normal are in the world frame, for the solids at the time of impact.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -225,19 +226,19 @@ pub struct Impact<N: Real, const D: usize> {
     pub toi: N,
     /// The point on the surface of the first solid.
     pub world1: Point<N, D>,
-    /// The point on the surface of the second solid: equal to the first, up to the target distance
+    /// The point on the surface of the second solid: equal to `world1`, up to the target distance
     /// and rounding, unless the solids overlap from the start.
     pub world2: Point<N, D>,
     /// The unit vector from the first solid to the second.
     pub normal: Unit<Vector<N, D>>,
-    /// The number of the part of the first shape that touches; zero for a shape of one part.
+    /// The index of the touching part of the first shape; zero for a shape of one part.
     pub part1: u32,
-    /// The number of the part of the second shape that touches; zero for a shape of one part.
+    /// The index of the touching part of the second shape; zero for a shape of one part.
     pub part2: u32,
-    /// The feature of that part of the first shape that touches, with the id as in a
-    /// [`Witness`](super::Witness): on the core of a rounded solid.
+    /// The feature of the first shape's part that touches, with the id as in a
+    /// [`Witness`](super::Witness): for a rounded solid a feature of its core.
     pub feature1: FeatureId,
-    /// The feature of that part of the second shape that touches.
+    /// The feature of the second shape's part that touches.
     pub feature2: FeatureId,
     /// Whether the touch is certain, and whether it was at the start.
     pub status: ImpactStatus,
@@ -262,51 +263,52 @@ impl<N: Real, const D: usize> Impact<N, D> {
 
 /// Returns the first impact of two solids that move with constant velocities and do not rotate.
 ///
-/// `None` if they never come within the target distance up to the latest time, and if a pose, a
-/// velocity or the difference of the velocities is not finite. Swapping the solids gives the same
-/// bits. The unit of time is that of the velocities.
+/// Returns `None` if the solids never come within the target distance up to the latest time, and if
+/// a pose, a velocity or the difference of the velocities is not finite. Swapping the solids gives
+/// a bitwise equal result. The unit of time is that of the velocities.
 ///
 /// At the returned time the solids are at the target distance, up to the rounding error of their
-/// sizes and of their initial distance, and before that time they were not nearer by more: the time
-/// is never late, and solids that pass each other that closely may count as touching.
+/// sizes and of their initial distance. Before that time they were not nearer by more than that
+/// error. So the time is never late, but solids that pass each other within that error may be
+/// reported as touching.
 ///
-/// The impact of composites is the first impact of two of their parts; of several at one time that
-/// with the lowest part numbers. So a shape that slides along some parts still hits others, and a
-/// surface is hit from both sides.
+/// The impact of composites is the first impact of two of their parts; of several at the same time,
+/// the one with the lowest part indices. So a shape that slides along some parts still hits others,
+/// and a surface is hit from both sides.
 ///
 /// # Starts in contact
 ///
-/// A contact at time zero counts according to the velocities along its normal:
+/// Whether a contact at time zero is an impact depends on the velocities along its normal:
 ///
 /// | at time zero the solids | approaching | sliding or at rest | separating |
 /// |---|---|---|---|
 /// | overlap, or are nearer than the target distance | impact at zero | impact at zero | `None` |
 /// | just touch, or are at the target distance, up to rounding | impact at zero | `None` | `None` |
 ///
-/// For composites the contacts of the whole shape count, as in [`contact`](super::contact()) and in
-/// worlds: one along each normal of a surface, none with the inner edges of a floor, and for shapes
-/// without a surface that of each two parts. The impact at zero is the deepest contact that counts.
-/// If none counts, parts in contact at the start are not hit later; other parts are if the whole
-/// shape then has a contact that counts. So a box that has sunk into a floor of many parts can be
-/// moved out of it. Parts that overlap without a contact of the whole shape, as behind a surface
-/// with one side, count by their own normal.
+/// For composites the contacts of the whole shapes decide, as in [`contact`](super::contact()) and
+/// in worlds: one along each normal of a surface, none with the inner edges of a floor, and for
+/// shapes without a surface one for each pair of parts. The impact at zero is the deepest contact
+/// that is an impact. If none is, parts in contact at the start are not hit later; other parts are
+/// if the whole shapes then have a contact that is an impact. So a box that has sunk into a floor
+/// of many parts can be moved out of it. Parts that overlap without a contact of the whole shapes,
+/// as behind a one-sided surface, decide by their own normal.
 ///
 /// With [`ImpactOptions::contact_at_start`] every entry of the table is an impact at zero, as in
 /// ncollide and, by default, parry. [`Impact::status`] distinguishes the rows of the table.
 ///
 /// Convex solids that do not approach each other never will, so `None` is final for them. A box
-/// that slides along the floor under it does not hit the floor; one that has sunk into it does,
-/// until it is moved out. A speed of approach below 8 epsilon times the relative speed counts as
-/// zero. Half-spaces that overlap without bound never separate: an impact at zero, whose points are
-/// their origins.
+/// that slides along the floor under it does not hit the floor; a box that has sunk into the floor
+/// does, until it is moved out. A closing speed below 8 epsilon times the relative speed is treated
+/// as zero. Half-spaces that overlap without bound never separate: the impact is at zero, and its
+/// points are their origins.
 ///
 /// # Cost
 ///
-/// A few distance computations, at most 128. Each step is as long as the solids certainly stay
-/// apart (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996): Newton's
-/// method on a convex function, which squares the error at a head-on hit and halves it at a grazing
-/// one. A composite is searched for the parts on the way; of two composites each part of the one
-/// with fewer searches the other.
+/// The query takes a few distance computations, at most 128. Each step is as long as the solids
+/// certainly stay apart (conservative advancement: Mirtich, "Impulse-based dynamic simulation",
+/// 1996). This is Newton's method on a convex function, which squares the error at a head-on impact
+/// and halves it at a grazing one. A composite is searched for the parts on the path; of two
+/// composites, each part of the one with fewer parts searches the other.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -334,10 +336,10 @@ pub fn impact<N: Space<D>, const D: usize>(
 }
 
 /// Returns the first time, zero or more, at which two solids touch that move with constant
-/// velocities and do not rotate; `None` if they never do.
+/// velocities and do not rotate; `None` if they never touch.
 ///
-/// It is the time of [`impact`] with default options; see there for starts in contact, the accuracy
-/// and the cost.
+/// The result is the time of [`impact`] with default options; see [`impact`] for starts in contact,
+/// the accuracy and the cost.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -363,7 +365,7 @@ pub fn time_of_impact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     entries::time_of_impact(&moving1, &moving2, &ImpactOptions::new())
 }
 
-/// [`impact`] of solids that the pair table knows.
+/// Implements [`impact`] for solids that the pair table supports.
 pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,
@@ -375,7 +377,7 @@ pub(crate) fn impact_of_pair<N: Space<D>, const D: usize>(
     Some(if course.ordered.swapped { found.flipped() } else { found })
 }
 
-/// The time in [`impact_of_pair`], without computing the parts and features.
+/// Returns the time of [`impact_of_pair`], without computing the parts and features.
 pub(crate) fn time_of_pair<N: Space<D>, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,
@@ -386,26 +388,27 @@ pub(crate) fn time_of_pair<N: Space<D>, const D: usize>(
 
 /// Two solids in canonical order, with the motion of the second in the frame of the first.
 ///
-/// The relative velocity is divided by a power of two, which brings its largest component between
-/// one and two: then nothing overflows, and the result is exactly independent of the unit of time.
+/// The relative velocity is divided by a power of two, which brings its largest component between 1
+/// and 2. So nothing overflows, and the result does not depend on the unit of time.
 struct Course<'m, 'a, N: Real, const D: usize> {
     first: &'m Moving<'a, N, D>,
     ordered: Ordered<'m, 'a, N, D>,
     pair: Pair<'a, N, D>,
     path: Path<N, D>,
-    /// The power of two.
+    /// The power of two by which the relative velocity was divided.
     scale: N,
 }
 
 impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
-    /// `None` if the latest time is negative, the solids stay apart, or something is not finite.
+    /// Returns `None` if the latest time is negative or NaN, if bounding balls prove that the
+    /// solids stay apart, or if a pose or velocity is not finite.
     #[inline(always)]
     fn new(
         moving1: &'m Moving<'a, N, D>,
         moving2: &'m Moving<'a, N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Self> {
-        // Tested here, since the product of a time and a speed may be zero.
+        // Tested before the product of time and speed, which may be zero.
         let has_time = options.max_time >= N::ZERO;
         if !has_time || are_parted(moving1, moving2, options) {
             return None;
@@ -430,7 +433,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         Some(Self { first, ordered, pair, path, scale })
     }
 
-    /// The first touch, in the frame of the first part, and its time.
+    /// Returns the first impact, in the frame of the first part, and its time.
     #[inline(always)]
     fn touch(&self) -> Option<(PartArrival<N, D>, N)> {
         let found = if self.ordered.has_composite() {
@@ -446,7 +449,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         toi.is_finite_number().then_some((found, toi))
     }
 
-    /// Converts a touch to the world, for the solids in canonical order.
+    /// Converts an impact, given in canonical order, to the world frame and the arguments' order.
     #[inline(always)]
     fn impact(&self, touch: &PartArrival<N, D>, toi: N) -> Impact<N, D> {
         let (found, features) = if self.ordered.has_composite() {
@@ -469,7 +472,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
     }
 }
 
-/// Whether bounding balls prove that the solids stay beyond the target distance.
+/// Whether bounding balls prove that the solids stay farther apart than the target distance.
 fn are_parted<N: Real, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,
@@ -485,7 +488,8 @@ fn are_parted<N: Real, const D: usize>(
     apart.stays_beyond(options.target_distance, &velocity, options.max_time)
 }
 
-/// Whether the first of two otherwise equal solids comes after the second, by its velocity.
+/// Whether the first of two otherwise equal solids comes second in canonical order, by the
+/// components of its velocity.
 fn is_later<N: Real, const D: usize>(
     moving1: &Moving<'_, N, D>,
     moving2: &Moving<'_, N, D>,

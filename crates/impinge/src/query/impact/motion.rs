@@ -5,11 +5,12 @@ use crate::math::{Point, Pose, Space, Vector};
 
 /// The motion of a rigid body.
 ///
-/// Times count from zero, in any unit; the frame is the world's. Speeds are bounded, not given: a
-/// bound that is too high costs steps, one that is too low may miss an impact. The bounds are for
-/// one point of the body, [`Self::local_center`], and for the angular speed, whatever the shape.
+/// Times start at zero, in any unit; positions are in the world frame. Speeds are bounded, not
+/// given: too high a bound costs steps, too low a bound may miss an impact. One bound is for the
+/// speed of one point of the body, [`Self::local_center`], the other for the angular speed; both
+/// are independent of the shape.
 ///
-/// A pendulum of length 2 that swings about the origin with the angle `cos t`:
+/// Example: a pendulum of length 2 that swings about the origin with the angle `cos t`:
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -45,30 +46,33 @@ pub trait RigidMotion<N: Space<D>, const D: usize> {
     /// Returns the position of the body at a time, zero or more.
     fn position_at(&self, time: N) -> N::Isometry;
 
-    /// An upper bound of the speed of the point [`Self::local_center`] at all times between `from`
-    /// and `to`, the latter of which may be infinite. Infinite if there is no bound; then shorter
-    /// spans are queried. A negative number or NaN counts as infinite.
+    /// Returns an upper bound of the speed of the point [`Self::local_center`] at all times between
+    /// `from` and `to`; `to` may be infinite. Infinite if there is no bound; the library then
+    /// queries shorter spans. A negative result or NaN is treated as infinite.
     fn speed_bound(&self, from: N, to: N) -> N;
 
-    /// An upper bound of the angular speed, in radians per unit of time, at all times between
-    /// `from` and `to`; with the conventions of [`Self::speed_bound`].
+    /// Returns an upper bound of the angular speed, in radians per unit of time, at all times
+    /// between `from` and `to`; `to` may be infinite. A negative result or NaN is treated as
+    /// infinite.
     fn turn_bound(&self, from: N, to: N) -> N;
 
-    /// The point of the body, in its local frame, whose speed is bounded. The origin by default;
-    /// the centre of the shape, or the fixed point of the rotation, saves steps.
+    /// Returns the point of the body, in its local frame, whose speed [`Self::speed_bound`] bounds.
+    /// The default is the origin; the centre of the shape, or the fixed point of the rotation,
+    /// saves steps.
     fn local_center(&self) -> Point<N, D> {
         Point::origin()
     }
 
-    /// [`Self::position_at`] as a pose in the world frame moved to `origin`. Overriding it keeps
-    /// digits far from the world's origin: the algorithms use differences of positions only.
+    /// Returns [`Self::position_at`] as a pose in the world frame translated so that `origin` is
+    /// its origin. An override can keep digits far from the world's origin: the algorithms use only
+    /// differences of positions.
     fn pose_about(&self, origin: &Vector<N, D>, time: N) -> Pose<N, D> {
         let pose = N::pose(&self.position_at(time));
         Pose { rotation: pose.rotation, translation: pose.translation - origin }
     }
 
-    /// The motion, if it has constant velocities: then the body's speed is known in each direction,
-    /// which saves steps. For wrappers; `None` (the default) is always right.
+    /// Returns the motion if it has constant velocities: the body's speed is then known in each
+    /// direction, which saves steps. Override it in wrappers; `None` (the default) is always valid.
     fn constant_velocities(&self) -> Option<&ConstantVelocities<N, D>> {
         None
     }

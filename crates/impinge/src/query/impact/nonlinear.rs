@@ -1,4 +1,4 @@
-//! The first touch of two bodies that move and rotate.
+//! The time of impact of two bodies that move and rotate.
 
 use super::bounds::{Moment, MovingBody, Rate, length};
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion, is_hit_at_start};
@@ -19,59 +19,59 @@ use crate::shape::Shape;
 /// The maximum number of steps.
 const MAX_STEPS: usize = 1024;
 
-/// The maximum number of steps of two parts on their own, before all parts are tested again.
+/// The maximum number of separate steps of two parts before all parts are tested again.
 const MAX_PART_STEPS: usize = 64;
 
-/// The maximum number of consecutive steps within the `NEAR` distance, without a tolerance.
+/// The maximum number of consecutive steps within the `NEAR` distance, if no tolerance is given.
 const MAX_NEAR_STEPS: usize = 256;
 
-/// Near: the gap is at most this fraction of the sizes and the distance, 2^-20, or this many
-/// epsilon of them.
+/// The bodies are near if the gap is at most this fraction of their sizes and distance, 2^-20, or
+/// this many epsilon of them.
 const NEAR: [f64; 2] = [1.0 / 1_048_576.0, 64.0];
 
-/// Parts of composites are advanced one by one if they are at most this fraction of the sizes
-/// apart.
+/// Parts of composites are advanced one by one if the bodies are at most this fraction of their
+/// sizes apart.
 const PARTS_WITHIN: f64 = 1.0 / 128.0;
 
-/// They are advanced on their own while no point moves by more than this fraction of the sizes.
+/// Parts are advanced separately while no point moves by more than this fraction of the sizes.
 const PARTS_WAY: f64 = 1.0 / 32.0;
 
 /// Returns the first impact of two bodies that move and rotate.
 ///
-/// `None` if they never come within the target distance up to the latest time, and if a pose at
-/// time zero is not finite. Swapping the bodies gives the same bits.
+/// Returns `None` if the bodies never come within the target distance up to the latest time, and if
+/// a pose at time zero is not finite. Swapping the bodies gives a bitwise equal result.
 ///
 /// *Never late.* The time is at most that of the first touch, up to the rounding error of the
 /// bodies' positions and sizes: fast rotation and thin bodies are not missed. *Hardly early.* With
 /// [`ImpactStatus::Reached`] the bodies are then within [`ImpactOptions::tolerance`] of the target
-/// distance, or so near that their motion in the smallest step of the time covers the rest. With
-/// [`ImpactStatus::StepsSpent`] 1024 steps gave no decision: nothing touches before that time, and
-/// later is unknown. That happens to bodies that stay in contact while they rotate, to motions that
-/// repeat for ever without a hit and without a latest time, and to bounds far above the true
-/// speeds; query again from there, or for less time.
+/// distance, or so near that they close the rest within the resolution of the time. With
+/// [`ImpactStatus::StepsSpent`] 1024 steps did not decide: the bodies do not touch before the
+/// returned time, and whether they touch later is unknown. This happens for bodies that stay in
+/// contact while they rotate, for motions that repeat for ever without an impact and without a
+/// latest time, and for bounds far above the true speeds. Query again from that time, or with a
+/// smaller latest time.
 ///
 /// # Starts in contact
 ///
-/// The table of [`impact`](super::impact) holds, for the velocities of the nearest points. But a
-/// rotating body may come back, so a start that does not count is not final: the bodies hit where
-/// they touch again after they have separated, or where they get deeper than they were, by more
-/// than 1024 epsilon times their sizes. For composites the parts that are deepest in each other
-/// count.
+/// The table of [`impact`](super::impact) applies, with the velocities of the nearest points. But a
+/// rotating body may come back, so a start that is not an impact is not final. The bodies hit where
+/// they touch again after they have separated, or where they get deeper than at the start, by more
+/// than 1024 epsilon times their sizes. For composites the deepest pair of parts decides.
 ///
 /// # Cost
 ///
-/// One distance computation per step: for convex solids typically 15 for motions with constant
-/// velocities, 40 for others, several times as many if the bodies graze each other or rotate fast.
-/// Each step is as long as no point of the bodies can have used up the gap (conservative
-/// advancement: Mirtich, "Impulse-based dynamic simulation", 1996). The bound is the speed along
-/// the normal (Zhang, Lee and Kim, "Interactive continuous collision detection for non-convex
-/// polyhedra", 2006) of the fastest point of the shape plus the largest bend of its path, or
-/// spheres around the bodies while these are apart. A rotating half-space is fastest far out: its
-/// speed counts where the other body can be. Composites are bounded as a whole, by their largest
-/// speed, until they are within 1/128 of their sizes; then, for constant velocities, each two of
-/// their parts whose paths can cross are advanced separately, by a normal and a speed of their own,
-/// until the first two touch. So all parts are searched twice for each 1/32 of the sizes that the
-/// fastest point moves by, however many steps sliding parts take.
+/// Each step costs one distance computation. Convex solids typically take 15 steps for motions with
+/// constant velocities and 40 for others, several times as many if the bodies graze each other or
+/// rotate fast. No step is longer than the time in which some point of the bodies might use up the
+/// gap (conservative advancement: Mirtich, "Impulse-based dynamic simulation", 1996). The bound is
+/// the speed along the normal (Zhang, Lee and Kim, "Interactive continuous collision detection for
+/// non-convex polyhedra", 2006) of the fastest point of the shape plus the largest bend of its
+/// path, or spheres around the bodies while these are apart. A rotating half-space is fastest far
+/// out: its speed is taken where the other body can be. Composites are bounded as a whole, by their
+/// largest speed, until they are within 1/128 of their sizes. Then, for constant velocities, each
+/// two parts whose paths can cross are advanced separately, with their own normal and speed, until
+/// the first two touch. So all parts are searched twice for each 1/32 of the sizes that the fastest
+/// point moves by, however many steps sliding parts take.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -136,9 +136,9 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     Some(if swapped { found.flipped() } else { found })
 }
 
-/// Whether the second of two bodies that are equal at time zero comes first, by their positions
-/// when they differ: at the latest time or, if these are equal too, at one of the times 1, 2¹⁶,
-/// 2³², ….
+/// Whether the second of two bodies that are equal at time zero comes first in canonical order.
+/// They are compared by their positions at the latest time or, if these are equal too, at one of
+/// the times 1, 2¹⁶, 2³², ….
 fn two_leads<N: Space<D>, const D: usize>(
     one: &MovingBody<'_, N, D>,
     two: &MovingBody<'_, N, D>,
@@ -146,7 +146,7 @@ fn two_leads<N: Space<D>, const D: usize>(
 ) -> bool {
     let world = Vector::<N, D>::zeros();
     let later = |time| [one, two].mapped(|body| body.placed(&world, time));
-    // At most 64 times, up to the largest number.
+    // At most 64 times, the largest of them finite.
     let times = iter::successors(Some(N::ONE), |time| Some(*time * N::lit(65536.0)));
     let times = times.take_while(|time| time.is_finite_number());
     let longest = Some(options.max_time).filter(|time| time.is_finite_number());
@@ -156,7 +156,7 @@ fn two_leads<N: Space<D>, const D: usize>(
 }
 
 impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
-    /// The body at a time, relative to a point of the world.
+    /// Returns the body at a time, with positions relative to the world point `origin`.
     fn placed(&self, origin: &Vector<N, D>, time: N) -> Placed<'a, N, D> {
         Placed::of_pose(&self.motion.pose_about(origin, time), self.shape)
     }
@@ -165,13 +165,14 @@ impl<'a, N: Space<D>, const D: usize> MovingBody<'a, N, D> {
 /// The search for an impact of two bodies in canonical order.
 struct ImpactSearch<'a, N: Space<D>, const D: usize> {
     bodies: [MovingBody<'a, N, D>; 2],
-    /// The point of the world that all positions are relative to: near the bodies, to keep digits.
+    /// The world point to which all positions are relative: near the bodies, to keep digits.
     origin: Vector<N, D>,
     end: N,
     target: N,
-    /// The largest difference from the target distance; zero or more.
+    /// The largest difference from the target distance, zero or more; `None` for the default of
+    /// [`ImpactOptions::tolerance`].
     tolerance: Option<N>,
-    /// Whether a contact at time zero counts, whatever the velocities.
+    /// Whether a contact at time zero is an impact, whatever the velocities.
     contact_at_start: bool,
     /// Whether the bodies are equal at time zero.
     mirrored: bool,
@@ -179,9 +180,9 @@ struct ImpactSearch<'a, N: Space<D>, const D: usize> {
 
 /// The poses of the bodies at a time.
 struct BodyPoses<'b, 'a, N: Space<D>, const D: usize> {
-    /// Its normal is zero as long as none is known.
+    /// The poses, centres and time; the normal is zero until it is known.
     moment: Moment<'b, 'a, N, D>,
-    /// The pose of the first body in canonical order; without its rotation for a ball.
+    /// The pose of the body that is first in canonical order; without its rotation for a ball.
     pose1: Pose<N, D>,
     between: Between<'a, N, D>,
 }
@@ -194,19 +195,19 @@ struct Configuration<'b, 'a, N: Space<D>, const D: usize> {
     points: [Vector<N, D>; 2],
     /// The distance minus the target distance.
     gap: N,
-    /// A length proportional to the bodies and their distance.
+    /// The sizes of the bodies plus their distance, for tolerances.
     size: N,
-    /// A gap up to this counts as zero.
+    /// A gap up to this length is treated as zero.
     tolerance: N,
 }
 
-/// The reference of the gap.
+/// The reference against which the gap is measured.
 #[derive(Clone, Copy, Debug)]
 enum Mode<N> {
     /// The bodies have been apart: they touch when the gap is used up.
     Apart,
-    /// They have been in contact since the start, when the gap was this: it counts if it gets
-    /// deeper.
+    /// The bodies have been in contact since the start; the value is the gap at the start. An
+    /// impact is reported if the contact gets deeper.
     Contact(N),
 }
 
@@ -241,8 +242,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             }
             let later = time + step.time;
             if later <= time {
-                // An unbounded speed allows no step; any other step is smaller than the resolution
-                // of the time.
+                // An unbounded speed gives a step of zero. Any other step that does not advance the
+                // time is below the resolution of the time.
                 let is_small = step.time > N::ZERO;
                 let status =
                     if is_small { ImpactStatus::Reached } else { ImpactStatus::StepsSpent };
@@ -257,7 +258,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         Some(self.impact(&configuration, ImpactStatus::StepsSpent))
     }
 
-    /// Returns a step in which nothing can happen.
+    /// Returns a step during which the bodies certainly do not hit.
     fn step(&self, configuration: &Configuration<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
         let moment = &configuration.poses.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
@@ -280,13 +281,13 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             rate,
             step: Step { time: longest, near_steps: 0 },
         };
-        // The nearest parts are likely to end the step, which shortens the search of the others.
+        // The nearest parts probably limit the step, which shortens the search of the others.
         parts.visit(configuration.found.parts);
         visit_near_pairs(&configuration.poses.between, &mut parts);
         if parts.step.time > whole.time { parts.step } else { whole }
     }
 
-    /// The bodies at a time; `None` if a pose is not finite.
+    /// Returns the poses of the bodies at a time; `None` if a pose is not finite.
     fn poses_at(&self, time: N) -> Option<BodyPoses<'_, 'a, N, D>> {
         let poses =
             self.bodies.each_ref().mapped(|body| body.motion.pose_about(&self.origin, time));
@@ -308,9 +309,9 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         })
     }
 
-    /// The configuration of the bodies at a time; `None` if a pose is not finite, and for
-    /// composites without parts. The parts that were nearest before are tested first, to bound the
-    /// search.
+    /// Returns the configuration of the bodies at a time; `None` if a pose is not finite, and for
+    /// composites without parts. The parts that were nearest in `before` are tested first, to bound
+    /// the search.
     fn look(
         &self,
         time: N,
@@ -334,7 +335,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         })
     }
 
-    /// Whether a contact at the start counts, as for [`impact`](super::impact).
+    /// Whether a contact at the start is an impact, by the rule of [`impact`](super::impact).
     fn counts_at_start(&self, configuration: &Configuration<'_, '_, N, D>) -> bool {
         let (closing, rounding_error) =
             configuration.poses.moment.closing(&configuration.points, configuration.size);
@@ -343,7 +344,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             || is_hit_at_start(configuration.gap, closing, configuration.tolerance, rounding_error)
     }
 
-    /// Converts the configuration to an impact in the world.
+    /// Converts the configuration to an impact in the world frame.
     fn impact(
         &self,
         configuration: &Configuration<'_, '_, N, D>,
@@ -367,18 +368,18 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
-    /// The amount by which a contact may get deeper, or bodies separate, and still count as
-    /// resting.
+    /// Returns the length by which a contact may get deeper, or bodies may separate, and still be
+    /// treated as resting.
     fn slack(&self) -> N {
         N::lit(1024.0) * N::EPSILON * self.size
     }
 
-    /// The mode after a step: `Apart` once the bodies have separated.
+    /// Returns the mode after a step: `Apart` once the bodies have separated.
     fn mode_after(&self, mode: Mode<N>) -> Mode<N> {
         if self.gap > self.tolerance + self.slack() { Mode::Apart } else { mode }
     }
 
-    /// The gap that is accepted if more steps bring the bodies no nearer.
+    /// Returns the gap that is accepted as an impact if further steps bring the bodies no nearer.
     fn near(&self) -> N {
         max(N::lit(NEAR[0]), N::lit(NEAR[1]) * N::EPSILON) * self.size
     }
@@ -388,7 +389,8 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         matches!(mode, Mode::Apart) && self.gap <= self.near()
     }
 
-    /// The distance by which the bodies may approach before it counts.
+    /// Returns the distance by which the bodies may still approach before an impact is reported:
+    /// the gap, or in `Contact` the gap above its start value plus `slack`.
     fn excess(&self, mode: Mode<N>) -> N {
         match mode {
             Mode::Apart => self.gap,
@@ -396,7 +398,8 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
         }
     }
 
-    /// Whether the excess is used up.
+    /// Whether the bodies have an impact: the gap, or in `Contact` the excess, is used up within
+    /// its tolerance.
     fn is_hit(&self, mode: Mode<N>) -> bool {
         match mode {
             Mode::Apart => self.gap <= self.tolerance,
@@ -405,31 +408,31 @@ impl<N: Space<D>, const D: usize> Configuration<'_, '_, N, D> {
     }
 }
 
-/// The largest step in which no two parts use up the excess: each two are advanced separately,
-/// until they use it up or the step has ended earlier.
+/// The search for the largest step in which no two parts use up the excess. Each two parts are
+/// advanced separately, until they use it up or the step has ended earlier.
 struct PartSteps<'s, 'b, 'a, N: Space<D>, const D: usize> {
     search: &'s ImpactSearch<'a, N, D>,
     configuration: &'s Configuration<'b, 'a, N, D>,
     mode: Mode<N>,
-    /// The distance of parts at which the excess is used up.
+    /// The distance of two parts at which the excess is used up.
     spent: N,
-    /// Bounds the approach of any two parts.
+    /// An upper bound of the approach of any two parts.
     rate: Rate<N>,
     step: Step<N>,
 }
 
-/// A step in which nothing can happen.
+/// A step during which the bodies certainly do not hit.
 #[derive(Clone, Copy, Debug)]
 struct Step<N> {
     time: N,
-    /// The number of consecutive near steps of the parts that end it.
+    /// The number of consecutive near steps of the two parts that end the step.
     near_steps: usize,
 }
 
 impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
-    /// The distance by which two parts may approach at some poses, and a time in which they
-    /// certainly do not; `None` if they cannot in the time `left`, by their largest speed in any
-    /// direction.
+    /// Returns the distance by which two parts may still approach at the given poses, and a time
+    /// during which they certainly do not use it up. `None` if they cannot use it up in the time
+    /// `left`, by their largest speed in any direction.
     fn alone(&self, poses: &BodyPoses<'_, 'a, N, D>, parts: [u32; 2], left: N) -> Option<(N, N)> {
         let (moment, end) = (&poses.moment, self.search.end);
         let placed = poses.between.parts(parts);
@@ -456,8 +459,8 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for PartSteps<'_, '_, '_, N,
             return;
         };
         let mut near_steps = 0;
-        // Parts in contact may separate and come back: all parts are tested after each of their
-        // steps.
+        // Parts in contact may separate and come back, so all parts are tested after each step of
+        // two such parts.
         let tries = if matches!(self.mode, Mode::Apart) { MAX_PART_STEPS } else { 0 };
         for _ in 0..tries {
             if time >= longest {

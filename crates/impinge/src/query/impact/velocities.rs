@@ -8,13 +8,12 @@ use crate::math::{
     Isometry2, Isometry3, Matrix, Point, Pose, Real, Space, Vector, max_component, na, unit,
 };
 
-/// A body that moves with constant velocities: one point of it along a straight line, with the body
-/// rotating about that point.
+/// The motion of a body with constant velocities: one point of the body moves along a straight
+/// line, and the body rotates about that point.
 ///
-/// At its start time, zero by default, it is at the given position; before that time it moves with
-/// the same velocities. Angles are exact up to the rounding of the angular velocity times the time
-/// since the start: about that many radians times epsilon. If the start time is not finite, no
-/// position is.
+/// At its start time, zero by default, the body is at the given position; before that time it moves
+/// with the same velocities. The rotation angle has a rounding error of about epsilon times the
+/// angle since the start. If the start time is not finite, no position is finite.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -32,11 +31,11 @@ pub struct ConstantVelocities<N: Space<D>, const D: usize> {
     start_time: N,
     local_center: Point<N, D>,
     pub(super) linear: Vector<N, D>,
-    /// Maps the position of a point of the body, relative to the centre, to its velocity.
+    /// Maps the position of a body point, relative to the centre, to the velocity due to rotation.
     pub(super) spin: Matrix<N, D>,
-    /// [`Self::spin`] for a rotation by one radian per unit of time.
+    /// The value of [`Self::spin`] for a rotation by one radian per unit of time.
     unit_spin: Matrix<N, D>,
-    /// Radians per unit of time; not negative.
+    /// The angular speed in radians per unit of time; not negative.
     turn: N,
 }
 
@@ -53,28 +52,28 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ConstantVelocities<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
-    /// A body at rest.
+    /// Returns the motion of a body at rest.
     #[must_use]
     pub fn still(position: N::Isometry) -> Self {
         Self::straight(position, Vector::<N, D>::zeros())
     }
 
-    /// A body that moves without rotating.
+    /// Returns the motion of a body that moves without rotating.
     #[must_use]
     pub fn straight(position: N::Isometry, linear: Vector<N, D>) -> Self {
         let none = Matrix::<N, D>::zeros();
         Self::spinning(position, linear, none, N::ZERO)
     }
 
-    /// Returns the velocities for a body that rotates about another point of its own:
-    /// `local_center`, in the local frame, moves along a straight line.
+    /// Returns this motion with another centre: the point `local_center` of the body, in its local
+    /// frame, moves along a straight line.
     #[must_use]
     pub const fn with_local_center(self, local_center: Point<N, D>) -> Self {
         Self { local_center, ..self }
     }
 
-    /// Returns the velocities for a body that is at its position at the time `start_time` instead
-    /// of zero.
+    /// Returns this motion with another start time: the body is at its start position at
+    /// `start_time`.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -90,26 +89,27 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Self { start_time, ..self }
     }
 
-    /// The position of the body at its start time.
+    /// Returns the position of the body at its start time.
     #[must_use]
     pub const fn start(&self) -> &N::Isometry {
         &self.start
     }
 
-    /// The time at which the body is at [`Self::start`].
+    /// Returns the time at which the body is at [`Self::start`].
     #[must_use]
     pub const fn start_time(&self) -> N {
         self.start_time
     }
 
-    /// The velocity of the point [`RigidMotion::local_center`] of the body, in the world frame.
+    /// Returns the velocity of the point [`RigidMotion::local_center`] of the body, in the world
+    /// frame.
     #[must_use]
     pub const fn linear_velocity(&self) -> &Vector<N, D> {
         &self.linear
     }
 
-    /// A motion with the generator `unit_spin` and `turn` radians per unit of time, starting at
-    /// time zero.
+    /// Returns a motion with the generator `unit_spin` and `turn` radians per unit of time,
+    /// starting at time zero.
     fn spinning(
         start: N::Isometry,
         linear: Vector<N, D>,
@@ -121,14 +121,16 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Self { start, start_time, local_center, linear, spin, unit_spin, turn }
     }
 
-    /// The rotation in the time since the start, by Rodrigues' formula, which also holds in 2D.
+    /// Returns the rotation during the time `since` after the start, by Rodrigues' formula, which
+    /// also holds in 2D.
     fn rotation_after(&self, since: N) -> Matrix<N, D> {
         let (sine, cosine) = (self.turn * since).sine_cosine();
         let squared = self.unit_spin * self.unit_spin;
         Matrix::<N, D>::identity() + self.unit_spin * sine + squared * (N::ONE - cosine)
     }
 
-    /// The position of the local origin relative to `origin`, once the body has the given rotation.
+    /// Returns the position of the body's local origin relative to `origin`, once the body has the
+    /// rotation `rotation`.
     fn translation(
         &self,
         origin: &Vector<N, D>,
@@ -146,13 +148,14 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Pose { rotation, translation: self.translation(origin, since, &rotation) }
     }
 
-    /// The distance of a point of the body from the axis of rotation; `offset` is its position
-    /// relative to the centre, in the world's axes.
+    /// Returns the distance of a body point from the axis of rotation; `offset` is the point's
+    /// position relative to the centre, in the world's axes.
     pub(super) fn across(&self, offset: &Vector<N, D>) -> N {
         length(&(self.unit_spin * offset))
     }
 
-    /// [`Self::across`] for a position in the local axes.
+    /// Returns the distance of a body point from the axis of rotation; `offset` is the point's
+    /// position relative to the centre, in the local axes at the start.
     pub(super) fn across_local(&self, offset: &Vector<N, D>) -> N {
         self.across(&(N::pose(&self.start).rotation * offset))
     }
@@ -165,8 +168,9 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
 }
 
 impl<N: Real> ConstantVelocities<N, 2> {
-    /// A body that is at `position` at time zero, whose local origin moves by `linear` per unit of
-    /// time, and that rotates by `angular` radians, counter-clockwise, per unit of time.
+    /// Returns the motion of a body that is at `position` at time zero. Its local origin moves by
+    /// `linear` per unit of time, and it rotates by `angular` radians per unit of time, positive
+    /// counter-clockwise.
     #[must_use]
     pub fn new(position: Isometry2<N>, linear: Vector<N, 2>, angular: N) -> Self {
         let side = if angular < N::ZERO { -N::ONE } else { N::ONE };
@@ -174,14 +178,14 @@ impl<N: Real> ConstantVelocities<N, 2> {
         Self::spinning(position, linear, unit_spin, angular.abs())
     }
 
-    /// The angular velocity in radians per unit of time, positive counter-clockwise.
+    /// Returns the angular velocity in radians per unit of time, positive counter-clockwise.
     #[must_use]
     pub fn angular_velocity(&self) -> N {
         self.spin[(1, 0)]
     }
 
-    /// The motion in an outer frame, in which the present frame is at `isometry`: at each time
-    /// `isometry * position_at(time)`.
+    /// Returns the motion in an outer frame, in which the present frame has the pose `isometry`: at
+    /// each time `isometry * position_at(time)`.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Vector};
@@ -201,9 +205,9 @@ impl<N: Real> ConstantVelocities<N, 2> {
         Self { start: isometry * self.start, linear, ..*self }
     }
 
-    /// The motion of a body fixed to this one at `isometry` in its frame: at each time
-    /// `position_at(time) * isometry`. The velocities, and the point that moves along a straight
-    /// line, are those of this body.
+    /// Returns the motion of a body fixed to this body at `isometry` in this body's frame: at each
+    /// time `position_at(time) * isometry`. The velocities, and the point that moves along a
+    /// straight line, stay the same.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -224,33 +228,33 @@ impl<N: Real> ConstantVelocities<N, 2> {
 }
 
 impl<N: Real> ConstantVelocities<N, 3> {
-    /// A body that is at `position` at time zero, whose local origin moves by `linear` per unit of
-    /// time, and that rotates about the world direction of `angular`, by its length in radians per
-    /// unit of time.
+    /// Returns the motion of a body that is at `position` at time zero. Its local origin moves by
+    /// `linear` per unit of time. It rotates about the world direction of `angular`, by the length
+    /// of `angular` in radians per unit of time.
     #[must_use]
     pub fn new(position: Isometry3<N>, linear: Vector<N, 3>, angular: Vector<N, 3>) -> Self {
         let usable = angular.iter().all(|x| x.is_finite_number());
-        // Angular velocities that are not finite give poses that are not.
+        // An angular velocity that is not finite gives poses that are not finite.
         let none = if usable { N::ZERO } else { N::INFINITY };
         let (axis, turn) = unit(&angular).unwrap_or((Vector::<N, 3>::zeros(), none));
         Self::spinning(position, linear, axis.cross_matrix(), turn)
     }
 
-    /// The angular velocity in the world frame: the unit vector of the axis times the radians per unit of
-    /// time.
+    /// Returns the angular velocity in the world frame: the unit vector of the axis times the
+    /// radians per unit of time.
     #[must_use]
     pub fn angular_velocity(&self) -> Vector<N, 3> {
         self.axis() * self.turn
     }
 
-    /// The unit vector along the axis; zero if the body does not rotate.
+    /// Returns the unit vector along the axis of rotation; zero if the body does not rotate.
     fn axis(&self) -> Vector<N, 3> {
         let spin = &self.unit_spin;
         Vector::<N, 3>::new(spin[(2, 1)], spin[(0, 2)], spin[(1, 0)])
     }
 
-    /// The motion in an outer frame, in which the present frame is at `isometry`: at each time
-    /// `isometry * position_at(time)`.
+    /// Returns the motion in an outer frame, in which the present frame has the pose `isometry`: at
+    /// each time `isometry * position_at(time)`.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -268,16 +272,17 @@ impl<N: Real> ConstantVelocities<N, 3> {
     #[must_use]
     pub fn append_transformation(&self, isometry: &Isometry3<N>) -> Self {
         let linear = isometry.rotation * self.linear;
-        // Rotated and normalised: rounding must not lengthen the axis with each frame.
+        // The rotated axis is normalised, so that rounding does not lengthen it with repeated
+        // calls.
         let axis = isometry.rotation * self.axis();
         let axis = unit(&axis).map_or(axis, |(axis, _)| axis);
         let rotated = Self::spinning(isometry * self.start, linear, axis.cross_matrix(), self.turn);
         rotated.with_start_time(self.start_time).with_local_center(self.local_center)
     }
 
-    /// The motion of a body fixed to this one at `isometry` in its frame: at each time
-    /// `position_at(time) * isometry`. The velocities, and the point that moves along a straight
-    /// line, are those of this body.
+    /// Returns the motion of a body fixed to this body at `isometry` in this body's frame: at each
+    /// time `position_at(time) * isometry`. The velocities, and the point that moves along a
+    /// straight line, stay the same.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};

@@ -1,11 +1,11 @@
-//! Kinematics of contacts that a user's algorithm has found.
+//! Kinematics of contacts found by a user's algorithm.
 
 use super::{ContactKinematic, NeighborhoodGeometry, NormalRule};
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Vector};
 use crate::query::Contact;
 use crate::shape::FeatureId;
 
-/// One solid's part in a contact that a user's algorithm has found.
+/// The data of one solid in a contact found by a user's algorithm.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point, Unit, Vector};
@@ -23,16 +23,17 @@ use crate::shape::FeatureId;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSide<N: Real, const D: usize> {
-    /// The feature that touches.
+    /// The feature of the solid that touches.
     pub feature: FeatureId,
-    /// The local geometry of the solid's core there, in its local frame.
+    /// The local geometry of the solid's core at the contact, in the solid's local frame.
     pub geometry: NeighborhoodGeometry<N, D>,
-    /// The radius by which the core is inflated; for a ball, whose core is a point, its radius.
+    /// The radius by which the core is inflated; for a ball, whose core is a point, the ball's
+    /// radius.
     pub rounding: N,
 }
 
 impl<N: Real, const D: usize> ContactSide<N, D> {
-    /// A corner, or a small piece of a curved surface: the point moves with its solid.
+    /// Returns a corner, or a small piece of a curved surface: a point that is fixed to the solid.
     #[must_use]
     pub fn point(feature: FeatureId) -> Self {
         Self { feature, geometry: NeighborhoodGeometry::Point, rounding: N::ZERO }
@@ -41,12 +42,13 @@ impl<N: Real, const D: usize> ContactSide<N, D> {
 
 impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// Builds the kinematic of a user's contact, given in the world frame; `m1` and `m2` are the
-    /// poses of the solids for which it was found.
+    /// poses at which it was found.
     ///
-    /// For these poses [`Self::contact`] returns the contact, up to rounding. For others its normal
-    /// rotates with the solid whose side is flat (of two, the one whose normal is nearer to the
-    /// contact's). If no side is flat, the normal is that of the shortest connection of the cores,
-    /// provided that this is the contact's normal now; else it rotates with the first solid.
+    /// For these poses [`Self::contact`] returns the contact, up to rounding. For other poses its
+    /// normal rotates with the solid whose side is flat; of two flat sides, with the one whose
+    /// normal is nearer to the contact's. If no side is flat, the normal is that of the shortest
+    /// connection of the cores, provided that this equals the contact's normal at `m1` and `m2`;
+    /// else it rotates with the first solid.
     #[must_use]
     pub fn from_contact<R: AbstractRotation<N, D>>(
         contact: &Contact<N, D>,
@@ -79,7 +81,8 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 }
 
-/// The outward direction and the core point below a surface point, in the solid's frame.
+/// Returns the outward direction and the core point below a surface point, both in the solid's
+/// frame.
 fn core<N: Real, const D: usize>(
     pose: &Pose<N, D>,
     surface: &Point<N, D>,
@@ -90,8 +93,8 @@ fn core<N: Real, const D: usize>(
     (outward, pose.inverse_point(surface) - outward * rounding)
 }
 
-/// The tilt of a flat side: the length of the difference of its normal and `outward`; 4, above
-/// every tilt, for a side that is not flat.
+/// Returns the tilt of a flat side: the length of the difference of its normal and `outward`. For a
+/// side that is not flat returns 4, which exceeds every tilt.
 fn tilt<N: Real, const D: usize>(
     geometry: &NeighborhoodGeometry<N, D>,
     outward: &Vector<N, D>,

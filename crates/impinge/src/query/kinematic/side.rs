@@ -1,38 +1,38 @@
-//! One solid's part in the kinematics of a manifold.
+//! The data of one solid in the kinematics of a manifold.
 
 use super::NeighborhoodGeometry;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::{Cylinder, Feature, FeatureId, Geometry, Kind, SupportMap, SupportPart};
 
-/// A cylinder whose axis has at most this sine with the contact plane touches along its side: its
-/// axis is the core.
+/// A cylinder whose axis has at most this sine with the contact plane touches along its side; the
+/// axis then represents the core.
 const LYING_SINE: f64 = 0.05;
 
-/// One solid's part in all contacts of a manifold, in its local frame.
+/// The data of one solid for all contacts of a manifold, in the solid's local frame.
 pub(super) struct KinematicSide<N: Real, const D: usize> {
     pub(super) rounding: N,
-    /// The manifold's normal away from the solid.
+    /// The manifold's normal, pointing away from the solid.
     outward: Vector<N, D>,
     support: SideSupport<N, D>,
 }
 
 /// The supporting feature of a solid towards the other one.
 enum SideSupport<N: Real, const D: usize> {
-    /// A half-space, with its outward normal.
+    /// The plane of a half-space, by its outward normal.
     Boundary(Vector<N, D>),
-    /// A ball.
+    /// The centre of a ball.
     Center,
-    /// A cylinder that lies on its side.
+    /// The axis of a cylinder that lies on its side.
     Axis,
-    /// A part of a box.
+    /// A feature of a box.
     Part(SupportPart<N, D>),
-    /// The generic case: the supporting feature, in which the feature of a contact is looked up by
+    /// The supporting feature of any other solid, in which the feature of a contact is looked up by
     /// its id. A curved face is represented by its tangent plane.
     Feature(Feature<N, D>),
 }
 
 impl<N: Real, const D: usize> KinematicSide<N, D> {
-    /// The side of a solid; `outward` is the manifold's normal away from it.
+    /// Returns the data of a solid; `outward` is the manifold's normal away from the solid.
     pub(super) fn new(kind: Kind<'_, N, D>, outward: Vector<N, D>) -> Self {
         let (support, rounding) = match kind {
             Kind::Plane(plane) => (SideSupport::Boundary(plane.normal().into_inner()), N::ZERO),
@@ -61,12 +61,12 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
         Self { rounding: map.rounding(), outward, support: SideSupport::Feature(feature) }
     }
 
-    /// The point of the core below a point of the surface.
+    /// Returns the core point below a point of the surface.
     pub(super) fn core(&self, surface: &Point<N, D>) -> Point<N, D> {
         surface - self.outward * self.rounding
     }
 
-    /// The local geometry of the core at the feature `id`.
+    /// Returns the local geometry of the core at the feature `id`.
     pub(super) fn geometry(&self, id: FeatureId) -> NeighborhoodGeometry<N, D> {
         match (&self.support, id) {
             (SideSupport::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),
@@ -81,7 +81,7 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
             (SideSupport::Feature(feature), FeatureId::Face(_)) => {
                 NeighborhoodGeometry::Plane(feature.normal.unwrap_or(self.outward))
             }
-            // The ends of a lying cylinder are on the rims.
+            // The ends of a lying cylinder's contact are on the rims.
             (
                 SideSupport::Center
                 | SideSupport::Axis
@@ -92,8 +92,8 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
         }
     }
 
-    /// The tilt of the supporting face: the length of the difference of its normal and the
-    /// contact's; 2, the maximum, without such a face.
+    /// Returns the tilt of the supporting face: the length of the difference of its normal and the
+    /// contact's normal. Without such a face returns 2, the maximum.
     pub(super) fn tilt(&self) -> N {
         let normal = match &self.support {
             SideSupport::Boundary(normal) => Some(*normal),
@@ -104,7 +104,8 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
         normal.map_or(N::TWO, |normal| (normal - self.outward).norm())
     }
 
-    /// An edge of the supporting feature that is perpendicular to the contact's normal.
+    /// Returns the direction of an edge of the supporting feature that is perpendicular to the
+    /// contact's normal; `None` if there is none.
     pub(super) fn perpendicular_edge(&self) -> Option<Vector<N, D>> {
         match &self.support {
             SideSupport::Part(part) => part
@@ -116,8 +117,8 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
     }
 }
 
-/// The side of a feature that is most nearly perpendicular to a direction; `None` if it is not so
-/// up to rounding.
+/// Returns the side of a feature that is most nearly perpendicular to `outward`; `None` if it is
+/// not perpendicular up to rounding.
 fn perpendicular_edge<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     outward: &Vector<N, D>,
@@ -134,31 +135,33 @@ fn is_perpendicular<N: Real, const D: usize>(side: &Vector<N, D>, outward: &Vect
     side.dot(outward).abs() <= super::least_angle()
 }
 
-/// The direction of a side of a feature, along its outline; `None` for a side of no length.
+/// Returns the unit direction of a side of a feature, along its outline; `None` for a side without
+/// length.
 fn along<N: Real, const D: usize>(feature: &Feature<N, D>, index: usize) -> Option<Vector<N, D>> {
     let next = if index + 1 < feature.vertices.len() { index + 1 } else { 0 };
     unit(&(feature.vertices[next] - feature.vertices[index])).map(|(along, _)| along)
 }
 
-/// Whether a cylinder with a radius is touched from the side.
+/// Whether the contact is on the round side of the cylinder, and the radius is positive.
 fn is_lying<N: Real, const D: usize>(cylinder: &Cylinder<N>, outward: &Vector<N, D>) -> bool {
     outward[1].abs() <= N::lit(LYING_SINE) && cylinder.radius() > N::ZERO
 }
 
-/// The axis of a cylinder.
+/// Returns the axis of a cylinder.
 fn upward<N: Real, const D: usize>() -> Vector<N, D> {
     let mut axis = Vector::<N, D>::zeros();
     axis[1] = N::ONE;
     axis
 }
 
-/// The line of a side of a feature; a point for a rim, which is no straight edge.
+/// Returns the line of a side of a feature; a point for a rim, which is not a straight edge.
 fn line<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     id: FeatureId,
 ) -> NeighborhoodGeometry<N, D> {
     let mut matching = feature.side_ids.iter().enumerate().filter(|&(_, &side)| side == id);
-    // A round cap is represented by a polygon whose sides all have the id of the rim.
+    // A round cap is represented by a polygon whose sides all have the id of the rim, so the id is
+    // not unique.
     let (Some((index, _)), None) = (matching.next(), matching.next()) else {
         return NeighborhoodGeometry::Point;
     };

@@ -1,4 +1,4 @@
-//! Predicted contacts compared with the contacts of a new query.
+//! Tests that compare predicted contacts with the contacts of a new query.
 
 use super::ContactKinematic;
 use crate::collide::manifold::tests::scene::{
@@ -43,12 +43,13 @@ fn unmoved_solids_give_the_contact_itself() {
     reproduces::<f64, 3>(1e-12);
 }
 
-/// Two solids, the pose of the second, and the features whose contact is followed.
+/// Two solids, the pose of the second in the frame of the first, and the features whose contact is
+/// followed.
 struct Case<'a, const D: usize> {
     solids: [&'a dyn Shape<f64, D>; 2],
     pose12: Pose<f64, D>,
     followed: [FeatureId; 2],
-    /// The weight of errors of the position, besides those of distance and normal.
+    /// The weight of position errors, relative to errors of distance and normal.
     position_weight: f64,
 }
 
@@ -69,7 +70,7 @@ where
             .unwrap_or_else(|| panic!("{:?} in {raw:?}", self.followed))
     }
 
-    /// The error of the prediction after a motion of size `step`.
+    /// Returns the error of the prediction after a motion of size `step`.
     fn error(&self, kinematic: &ContactKinematic<f64, D>, motion: &Motion<D>, step: f64) -> f64 {
         let turn = motion.turn.map(|angle| angle * step);
         let moved = f64::pose(motion.shift * step, turn).compose(&self.pose12);
@@ -80,7 +81,8 @@ where
             + (predicted.normal - raw.normal).norm()
     }
 
-    /// Halving small motions divides the error by at least three, until only rounding is left.
+    /// Checks that halving small motions divides the error by at least three, until only rounding
+    /// is left.
     fn check(&self) {
         let pair = self.pair(self.pose12);
         let (_, raw) = manifold(&pair, &request(0.1, 0.0));
@@ -106,7 +108,7 @@ fn at(x: f64, y: f64, z: f64, turn: [f64; 3]) -> Pose<f64, 3> {
     f64::pose(Vector::<f64, 3>::new(x, y, z), turn)
 }
 
-/// The features of the first contact that a query finds.
+/// Returns the features of the first contact for which `is_it` is true.
 fn first_features<const D: usize>(
     solids: [&dyn Shape<f64, D>; 2],
     pose12: Pose<f64, D>,
@@ -121,7 +123,7 @@ where
     found.map_or_else(|| panic!("no such contact: {raw:?}"), |p| [p.feature1, p.feature2])
 }
 
-/// Follows the first contact between features of the given sorts.
+/// Checks the prediction of the first contact whose features satisfy `is_it`.
 fn follow<const D: usize>(
     solids: [&dyn Shape<f64, D>; 2],
     pose12: Pose<f64, D>,
@@ -196,7 +198,7 @@ fn capsules_segments_and_cylinders() {
         matches!((a, b), (Edge(_), Edge(_)))
     });
     follow([&segment, &capsule], crossing, |a, b| matches!((a, b), (Edge(_), Edge(_))));
-    // The edge of the box along y, in front of the capsule, which leans across it.
+    // The box edge along y is in front of the capsule, which is tilted across it.
     let corner = at(0.9, 0.0, 0.0, [0.0, std::f64::consts::FRAC_PI_4, 0.0]);
     let tilted = at(0.0, 0.0, 0.0, [0.7, 0.0, 0.0]);
     follow([&capsule, &cuboid], Pose::relative(&tilted, &corner), |a, b| {
@@ -207,7 +209,7 @@ fn capsules_segments_and_cylinders() {
     let below = Pose::relative(&lying, &at(0.2, 0.0, 0.2, [0.0; 3]));
     follow([&capsule, &floor], below, |a, b| matches!((a, b), (Vertex(_), Face(_))));
     let cylinder = Cylinder::new(0.3_f64, 0.25);
-    // The rim is round: the place on it is of first order only.
+    // The rim is round, so the position on it is of first order only.
     let (solids, pose12) = ([&floor as &dyn Shape<f64, 3>, &cylinder], below.inverse());
     let followed = first_features(solids, pose12, |a, _| matches!(a, Face(_)));
     assert!(matches!(followed[1], Edge(_)), "a rim: {followed:?}");
@@ -248,7 +250,7 @@ fn common_motion_carries_the_contact_along() {
     assert_eq!(straight.contacts()[straight.deepest_contact_id()].contact.depth, deepest, "same");
 }
 
-/// If two points meet, their connection has no direction: the old normal moves along.
+/// If two points coincide, their connection has no direction: the old normal moves with the solids.
 #[test]
 fn a_vanishing_connection_keeps_the_normal() {
     let ball = Ball::new(0.0_f64);

@@ -10,22 +10,22 @@ use crate::math::{Point, Real, Vector};
 use crate::shape::{MassError, Moments, Polytope, Shape, SupportMap};
 use crate::tables::Here;
 
-/// Integrals that differ by dimension, at density one.
+/// Mass integrals that differ by dimension, at density one.
 #[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
 pub trait MassByDimension<N: Real, const D: usize> {
-    /// The set of points within a radius of a polytope.
+    /// Returns the moments of the set of points within a radius of a polytope.
     fn round_polytope(polytope: &Polytope<N, D>, radius: N) -> Moments<D>;
 
-    /// The set of points within a radius of a triangle.
+    /// Returns the moments of the set of points within a radius of a triangle.
     fn round_triangle(corners: &[Point<N, D>; 3], radius: N) -> Moments<D>;
 
-    /// The set of points within a positive radius of an ellipsoid.
+    /// Returns the moments of the set of points within a positive radius of an ellipsoid.
     fn round_ellipsoid(half_axes: &Vector<N, D>, radius: N) -> Moments<D>;
 
-    /// A convex solid from its support points.
+    /// Returns the moments of a convex solid, integrated from its support points.
     fn by_support(solid: &dyn SupportMap<N, D>) -> Result<Moments<D>, MassError>;
 
-    /// The interior of a composite of the library that is no compound.
+    /// Returns the moments of the interior of a built-in composite other than a compound.
     fn enclosed(shape: &dyn Shape<N, D>) -> Result<Moments<D>, MassError>;
 }
 

@@ -1,4 +1,4 @@
-//! Mass of closed meshes and lines, and of filled meshes in 2D.
+//! Mass of the areas and volumes that closed meshes and lines enclose, and of filled meshes in 2D.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::outline::crossed;
@@ -7,10 +7,11 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{EdgeNeighbor, MassError, Moments, Polyline, Shape, TriMesh};
 
-/// A volume at most this fraction of the sum of its terms' magnitudes counts as zero.
+/// A volume is treated as zero if it is at most this fraction of the sum of its terms' magnitudes.
 const NONE: f64 = 1024.0 * f64::EPSILON;
 
-/// A sum of signed cones with their tips at the origin, positive if it lies behind their base.
+/// A sum of signed cones with their apex at the origin; a cone is positive if the origin lies
+/// behind its base.
 struct Cones<const D: usize> {
     sum: Integrals<D>,
     /// The sum of the magnitudes of all cones.
@@ -22,14 +23,15 @@ impl<const D: usize> Cones<D> {
         Self { sum: Integrals::none(), total: 0.0 }
     }
 
-    /// Runs `add` on the sum, and adds the magnitude of the change to the total.
+    /// Runs `add` on `sum`, and adds the magnitude of the change to `total`.
     fn add(&mut self, add: impl FnOnce(&mut Integrals<D>)) {
         let before = self.sum.mass;
         add(&mut self.sum);
         self.total += (self.sum.mass - before).abs();
     }
 
-    /// The body, whatever the orientation of its surface.
+    /// Returns the moments of the body, whatever the orientation of its surface; no mass if the sum
+    /// is treated as zero.
     fn moments(&self) -> Moments<D> {
         if self.sum.mass.abs() <= NONE * self.total {
             return Integrals::none().moments();
@@ -38,7 +40,7 @@ impl<const D: usize> Cones<D> {
     }
 }
 
-/// The area of a composite of the library in 2D that is no compound.
+/// Returns the moments of the area of a built-in 2D composite other than a compound.
 pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, MassError> {
     let mut cones = Cones::none();
     let units = if let Some(mesh) = shape.as_shape::<TriMesh<N, 2>>() {
@@ -67,7 +69,7 @@ pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// The volume that a composite of the library encloses, if it is no compound.
+/// Returns the moments of the volume that a built-in 3D composite other than a compound encloses.
 pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, MassError> {
     let Some(mesh) = shape.as_shape::<TriMesh<N, 3>>() else {
         return Err(MassError::NotClosed { part: 0 });
@@ -83,15 +85,15 @@ pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, 
     Ok(units.grown(&cones.moments()))
 }
 
-/// The units for a shape with these bounds.
+/// Returns the units for a shape with these bounds.
 fn units<N: Real, const D: usize>(bounds: Option<&Aabb<N, D>>) -> LocalUnits<D> {
     let origin = Point::<N, D>::origin();
     let [low, high] = bounds.map_or([&origin; 2], |bounds| [bounds.mins(), bounds.maxs()]);
     LocalUnits::around([low, high], N::ZERO)
 }
 
-/// The first triangle with a side that has no neighbour, several, or one in the same direction; 0
-/// if there is none.
+/// Returns the first triangle with a side that has no neighbour, several neighbours, or one that
+/// traverses it in the same direction; 0 if there is none.
 fn opening<N: Real>(mesh: &TriMesh<N, 3>) -> u32 {
     let is_open = |triangle: u32| {
         let corners = *mesh.triangle(triangle).corners();

@@ -1,13 +1,13 @@
-//! Integrals over a body as sums over its pieces.
+//! Integrals over a body, as sums over its pieces.
 
 use crate::math::{Matrix, Point, Real, Vector, f64_power_of_two_below};
 use crate::shape::Moments;
 
-/// The frame in which a shape is integrated: in doubles, about its centre, in units of about its
-/// size.
+/// The frame in which a shape is integrated: in doubles, about the shape's centre, in units of
+/// about its size.
 ///
-/// A large distance from the origin costs no digits, and no power of a length overflows or
-/// underflows. The unit is a power of two, so that scaling the shape by one scales the answer
+/// So a large distance from the origin costs no digits, and no power of a length overflows or
+/// underflows. The unit is a power of two: scaling the shape by a power of two scales the result
 /// exactly.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LocalUnits<const D: usize> {
@@ -16,7 +16,7 @@ pub(super) struct LocalUnits<const D: usize> {
 }
 
 impl<const D: usize> LocalUnits<D> {
-    /// Units around some points inflated by `radius`.
+    /// Returns the units around some points inflated by `radius`.
     pub(super) fn around<'p, N: Real>(
         points: impl IntoIterator<Item = &'p Point<N, D>>,
         radius: N,
@@ -33,7 +33,7 @@ impl<const D: usize> LocalUnits<D> {
         Self { origin: mins * 0.5 + maxs * 0.5, scale: f64_power_of_two_below(size) }
     }
 
-    /// Units about the origin of the shape's frame, for a shape of the given size.
+    /// Returns units about the origin of the shape's frame, for a shape of the given size.
     pub(super) fn about_origin(size: f64) -> Self {
         Self { origin: Vector::<f64, D>::zeros(), scale: f64_power_of_two_below(size) }
     }
@@ -50,7 +50,7 @@ impl<const D: usize> LocalUnits<D> {
         (point.coords.map(N::as_f64) - self.origin) / self.scale
     }
 
-    /// Converts the body to the frame of the shape.
+    /// Converts the body from the units to the frame of the shape.
     pub(super) fn grown(&self, moments: &Moments<D>) -> Moments<D> {
         moments.grown(self.scale, &self.origin)
     }
@@ -70,10 +70,12 @@ impl<const D: usize> Integrals<D> {
         Self { mass: 0.0, first, second }
     }
 
-    /// Adds a simplex of this measure with one corner at the origin; `corners` are the others.
+    /// Adds a simplex with the given measure and one corner at the origin; `corners` are its other
+    /// corners.
     ///
-    /// The matrix of second moments of a simplex in D dimensions, about any point, is its measure over
-    /// (D + 1)(D + 2) times the sum of the products of its corners and of the product of their sum.
+    /// The matrix of second moments of a simplex in D dimensions, about any point, is `measure /
+    /// ((D + 1)(D + 2))` times (the sum over its corners of `c cᵀ`, plus `s sᵀ` for the sum `s` of
+    /// its corners).
     pub(super) fn add_cone(&mut self, measure: f64, corners: &[&Vector<f64, D>; D]) {
         let (share, mut sum) = (measure / (D as f64 + 1.0), Vector::<f64, D>::zeros());
         let mut products = Matrix::<f64, D>::zeros();
@@ -93,7 +95,7 @@ impl<const D: usize> Integrals<D> {
         self.second += second + center * center.transpose() * mass;
     }
 
-    /// Adds a piece with known integrals about a point.
+    /// Adds a piece with known integrals about `point`.
     pub(super) fn add_about(&mut self, point: &Vector<f64, D>, piece: &Self) {
         let moved = point * piece.first.transpose();
         self.mass += piece.mass;
@@ -102,12 +104,13 @@ impl<const D: usize> Integrals<D> {
             piece.second + moved + moved.transpose() + point * point.transpose() * piece.mass;
     }
 
-    /// The body with reversed orientation: all signs change.
+    /// Returns the integrals of the body with reversed orientation: all signs change.
     pub(super) fn negated(&self) -> Self {
         Self { mass: -self.mass, first: -self.first, second: -self.second }
     }
 
-    /// The body in its units; at the origin if it has no mass.
+    /// Returns the moments of the body, in the units; without mass at the origin if the mass is not
+    /// positive.
     pub(super) fn moments(&self) -> Moments<D> {
         let is_body = self.mass > 0.0;
         if !is_body {

@@ -1,8 +1,8 @@
 //! Mass, centre of mass and inertia of shapes.
 //!
 //! Shapes are integrated in doubles, about their centre and in units of their size ([`integrals`]),
-//! whatever the scalar. Closed forms are used where they exist; the rest is [`round_ellipsoid`],
-//! [`support2`] and [`support3`].
+//! whatever the scalar. Closed forms are used where they exist; [`round_ellipsoid`], [`support2`]
+//! and [`support3`] integrate the other shapes numerically.
 
 mod by_dimension;
 mod enclosed;
@@ -38,27 +38,28 @@ use crate::shape::{
 /// | half-space; open mesh, other polylines, height field | an error |
 /// | user's convex shape | [`Shape::unit_mass_properties`], else by its support points |
 ///
-/// Overlaps of children, parts or triangles count twice. The region inside a mesh or polyline
-/// counts as often as the mesh winds around it: inner surfaces with reversed orientation are
+/// Overlaps of children, parts or triangles count twice. A region inside a mesh or polyline counts
+/// once per turn that the mesh winds around it: inner surfaces with reversed orientation are
 /// cavities. The orientation of the whole mesh does not matter. A shape of size zero has no mass;
 /// neither has a rounded segment or flat triangle with a radius of zero.
 ///
 /// # Accuracy
 ///
-/// Closed forms are right to the last digits of the scalar: in `f32` usually the nearest number.
-/// Distances from the origin cost no digits. Quadrature is used for rounded ellipsoids and
-/// ellipses, accurate to about 1e-8; for a user's convex shape to about 1e-8 in 2D and 1e-4 in 3D,
-/// as for a rounded flat tetrahedron. Volumes of closed meshes lose as many digits as the gap
-/// between their surfaces is thinner than the whole. Scaling a shape by a power of two scales the
-/// answer exactly.
+/// Closed forms are accurate to the last digits of the scalar, in `f32` usually to the nearest
+/// number. Distances from the origin cost no digits. Quadrature is used for rounded ellipsoids and
+/// ellipses, accurate to about 1e-8, and for a user's convex shape, accurate to about 1e-8 in 2D
+/// and 1e-4 in 3D. A rounded flat tetrahedron is also accurate to about 1e-4. A closed mesh whose
+/// surfaces are close together loses digits in proportion to its size over their gap. Scaling a
+/// shape by a power of two scales the result exactly.
 ///
 /// # Errors
 /// If the density is negative or not finite; if the shape, or a part of a compound, is a half-space
-/// or a surface that is not closed; if the mass or a moment is beyond the range of the scalar.
+/// or a surface that is not closed; or if the mass or a moment exceeds the range of the scalar.
 ///
 /// # Cost
-/// O(1), and O(n) for n vertices, triangles or children. In 3D a user's convex shape takes some
-/// milliseconds, a rounded ellipsoid one. So compute them once for each shape.
+/// O(1) for simple shapes, O(n) for n vertices, triangles or children. In 3D a user's convex shape
+/// takes some milliseconds, a rounded ellipsoid about one millisecond. So compute the properties
+/// once for each shape.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -90,15 +91,16 @@ pub fn mass_properties<N: Space<D>, const D: usize>(
     mass_properties_with(shape, &mut |_| density)
 }
 
-/// [`mass_properties`] of a compound whose children have different densities.
+/// Runs [`mass_properties`] for a compound whose children have different densities.
 ///
-/// `density` is called once for each child, in order, with its path: the index of the child, of its
-/// child in a nested compound, and so on, as in [`PartPath`]. A mesh is one child, as is any other
-/// shape but a compound; for a user's composite it is called for each part. A shape that is no
-/// compound has the empty path.
+/// `density` is called once for each child, in order, with the child's path: the index of the
+/// child, then of its child in a nested compound, and so on, as in [`PartPath`]. A mesh is one
+/// child, as is any shape other than a compound; for a user's composite `density` is called for
+/// each part. A shape that is not a compound has the empty path.
 ///
 /// # Errors
-/// As for [`mass_properties`].
+/// If a density is negative or not finite; if the shape, or a part of a compound, is a half-space
+/// or a surface that is not closed; or if the mass or a moment exceeds the range of the scalar.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -128,12 +130,12 @@ pub fn mass_properties_with<N: Space<D>, const D: usize>(
 struct Weighing<'d, N> {
     density: &'d mut dyn FnMut(&[u32]) -> N,
     path: PartPath,
-    /// The number of the first part of the present child.
+    /// The index, in the whole shape, of the first part of the current child.
     first: u32,
 }
 
 impl<N: Real> Weighing<'_, N> {
-    /// The moments of a shape, with the density of its path.
+    /// Returns the moments of a shape, with the density that belongs to its path.
     fn of_shape<const D: usize>(&mut self, shape: &dyn Shape<N, D>) -> Result<Moments<D>, MassError>
     where
         N: Space<D>,
@@ -164,7 +166,7 @@ impl<N: Real> Weighing<'_, N> {
         Ok(found.of_density(self.density()?))
     }
 
-    /// The sum of the children of a compound, in its frame.
+    /// Returns the sum of the children of a compound, in the compound's frame.
     fn of_children<const D: usize>(
         &mut self,
         compound: &Compound<N, D>,
@@ -184,7 +186,10 @@ impl<N: Real> Weighing<'_, N> {
         Ok(all.unwrap_or_else(|| Moments::massless(Vector::<f64, D>::zeros())))
     }
 
-    /// The sum of the parts of a user's composite, if they are solids side by side.
+    /// Returns the sum of the parts of a user's composite.
+    ///
+    /// # Errors
+    /// If the composite is a surface.
     fn of_parts<const D: usize>(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
@@ -208,12 +213,15 @@ impl<N: Real> Weighing<'_, N> {
         Ok(all.unwrap_or_else(|| Moments::massless(Vector::<f64, D>::zeros())))
     }
 
-    /// The density of the present child.
+    /// Calls the user's function for the density of the current child.
+    ///
+    /// # Errors
+    /// If the density is negative or not finite.
     fn density(&mut self) -> Result<f64, MassError> {
         amount("the density", (self.density)(&self.path).as_f64())
     }
 
-    /// Converts part numbers of an error about a child to those of the whole shape.
+    /// Converts the part index in an error about a child to the index in the whole shape.
     fn placed(&self, error: MassError) -> MassError {
         match error {
             MassError::Unbounded { part } => MassError::Unbounded { part: self.first + part },
@@ -233,7 +241,8 @@ fn add_placed<N: Real, const D: usize>(
     *all = Some(all.map_or(placed, |all| all.plus(&placed)));
 }
 
-/// A solid of density one: a volume, or a segment or flat triangle with its own measure.
+/// Returns the moments of a solid at density 1: per volume, or per length or area for a segment or
+/// flat triangle.
 fn of_solid<N: Space<D>, const D: usize>(
     solid: Geometry<'_, N, D>,
 ) -> Result<Moments<D>, MassError> {
@@ -253,7 +262,7 @@ fn of_solid<N: Space<D>, const D: usize>(
     }
 }
 
-/// The volume of all points within `radius` of a solid with a closed form.
+/// Returns the moments of the set of points within `radius` of a solid with a closed form.
 fn rounded<N: Space<D>, const D: usize>(core: Geometry<'_, N, D>, radius: N) -> Moments<D> {
     match core.0 {
         Kind::Ball(ball) => solids::round_box(&Vector::<N, D>::zeros(), ball.radius() + radius),

@@ -6,8 +6,8 @@ use crate::shape::{Moments, Polytope};
 
 type V2 = Vector<f64, 2>;
 
-/// A sector of a disk: its area, the first moment along the bisector about its corner, and the
-/// second moments along and across the bisector.
+/// The integrals over a sector of a disk: its area, its first moment along the bisector about its
+/// corner, and its second moments along and across the bisector.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wedge {
     pub(super) area: f64,
@@ -29,25 +29,28 @@ impl Wedge {
     }
 }
 
-/// The set of points within `radius` of a convex polygon.
+/// Returns the moments of the set of points within `radius` of a convex polygon.
 pub(super) fn round_polygon<N: Real>(polygon: &Polytope<N, 2>, radius: N) -> Moments<2> {
     round_points(polygon.vertices(), radius)
 }
 
-/// The set of points within `radius` of a triangle, which may be clockwise and without area.
+/// Returns the moments of the set of points within `radius` of a triangle, which may be clockwise
+/// or without area.
 pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 2>; 3], radius: N) -> Moments<2> {
     round_points(corners, radius)
 }
 
-/// The set of points within `radius` of the polygon with convex corners in either order.
+/// Returns the moments of the set of points within `radius` of a polygon with convex corners in
+/// either order.
 fn round_points<N: Real>(corners: &[Point<N, 2>], radius: N) -> Moments<2> {
     let units = LocalUnits::around(corners, radius);
     let ring: Vec<V2> = corners.iter().map(|corner| units.point(corner)).collect();
     units.grown(&round_ring(ring, units.length(radius)).moments())
 }
 
-/// The integrals over a ring's polygon inflated by `radius`: the polygon, a rectangle along each
-/// side, and at each corner a sector with the angle by which the outline turns there.
+/// Returns the integrals over the polygon of a ring inflated by `radius`. Its pieces are the
+/// polygon, a rectangle along each side, and at each corner a sector with the angle by which the
+/// outline turns there.
 fn round_ring(mut ring: Vec<V2>, radius: f64) -> Integrals<2> {
     let mut sum = Integrals::none();
     for (a, b) in sides(&ring) {
@@ -67,7 +70,7 @@ fn round_ring(mut ring: Vec<V2>, radius: f64) -> Integrals<2> {
     sum
 }
 
-/// The sides of a ring of points.
+/// Returns the sides of a closed ring of points, each as two points.
 pub(super) fn sides<P: Copy>(ring: &[P]) -> impl Iterator<Item = (P, P)> {
     ring.iter().copied().zip(ring.iter().copied().cycle().skip(1))
 }
@@ -92,10 +95,10 @@ fn add_border(ring: &[V2], radius: f64, sum: &mut Integrals<2>) {
     }
 }
 
-/// Adds the sector at a corner where the outward normal rotates counter-clockwise from one to
-/// another.
+/// Adds the sector at a corner where the outward normal rotates counter-clockwise from `from` to
+/// `to`.
 fn add_corner(corner: &V2, [from, to]: [&V2; 2], radius: f64, sum: &mut Integrals<2>) {
-    // The turn is at most 180°; for exactly 180°, rounding must not decide its direction.
+    // The angle is at most 180°; for exactly 180°, rounding must not decide its direction.
     let angle = libm::atan2(crossed(from, to), from.dot(to)).abs();
     let (sine, cosine) = libm::sincos(angle * 0.5);
     let along = from * cosine + quarter_turn(from) * sine;
@@ -106,19 +109,20 @@ fn add_corner(corner: &V2, [from, to]: [&V2; 2], radius: f64, sum: &mut Integral
     sum.add_about(corner, &piece);
 }
 
-/// The outward unit normal of a side with a length.
+/// Returns the outward unit normal of a side, which must have a length.
 fn outward(a: &V2, b: &V2) -> V2 {
     let side = b - a;
     V2::new(side.y, -side.x) / side.norm()
 }
 
-/// The signed area of the parallelogram, positive if `b` lies counter-clockwise of `a`.
-/// `math::cross2` needs a [`Real`], which `f64` is only with the feature `f64`.
+/// Returns the signed area of the parallelogram of `a` and `b`, positive if `b` is
+/// counter-clockwise of `a`. `math::cross2` needs a [`Real`], which `f64` is only with the feature
+/// `f64`.
 pub(super) fn crossed(a: &V2, b: &V2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// The vector rotated by 90° counter-clockwise.
+/// Returns the vector rotated by 90° counter-clockwise.
 fn quarter_turn(v: &V2) -> V2 {
     V2::new(-v.y, v.x)
 }

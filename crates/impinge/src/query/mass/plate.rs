@@ -13,7 +13,7 @@ type M3 = Matrix<f64, 3>;
 pub(super) struct Plate {
     pub(super) area: f64,
     pub(super) center: V3,
-    /// The second moments about the centre.
+    /// The matrix of second moments about the centre.
     second: M3,
     /// The unit normal on the side from which the corners run counter-clockwise; `None` without
     /// area.
@@ -21,7 +21,7 @@ pub(super) struct Plate {
 }
 
 impl Plate {
-    /// The polygon with these corners, which may be empty.
+    /// Returns the integrals over the polygon with the given corners; empty if there are none.
     pub(super) fn new(corners: &[V3]) -> Self {
         let start = corners.first().copied().unwrap_or_else(V3::zeros);
         let (mut area_vector, mut first, mut second) = (V3::zeros(), V3::zeros(), M3::zeros());
@@ -43,10 +43,10 @@ impl Plate {
         Self { area, center: start + center, second, normal: Some(area_vector / area) }
     }
 
-    /// Adds the prism on the front of the plate, or a part of it.
+    /// Adds the prism on the front of the plate, or a share of it.
     ///
-    /// The prism has the height `height`; `share` of its mass is added, with its centre at `altitude`
-    /// above the plate.
+    /// The prism has the height `height`. `share` is the fraction of its mass that is added, with
+    /// the centre at the height `altitude` above the plate.
     pub(super) fn add_prism(
         &self,
         [height, share, altitude]: [f64; 3],
@@ -63,17 +63,17 @@ impl Plate {
     }
 }
 
-/// A sector of a cylinder along an edge, between two normals with the given angle.
+/// A sector of a cylinder along an edge, between two normals at the angle `angle`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EdgeWedge {
     pub(super) ends: [V3; 2],
-    /// The bisector of the two normals.
+    /// The unit vector of the bisector of the two normals.
     pub(super) middle: V3,
     pub(super) angle: f64,
 }
 
 impl EdgeWedge {
-    /// Adds the sector with the given radius; nothing for an edge without length.
+    /// Adds the sector with the given radius; adds nothing for an edge without length.
     pub(super) fn add(&self, radius: f64, sum: &mut Integrals<3>) {
         let [a, b] = &self.ends;
         let (edge, wedge) = (b - a, Wedge::new(radius, self.angle));
@@ -92,7 +92,8 @@ impl EdgeWedge {
     }
 }
 
-/// The set of points within `radius` of a flat triangle, which may be without area or extent.
+/// Returns the moments of the set of points within `radius` of a flat triangle, which may have no
+/// area or extent.
 pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 3>; 3], radius: N) -> Moments<3> {
     let units = LocalUnits::around(corners, radius);
     let mut ring = corners.each_ref().map(|corner| units.point(corner)).to_vec();
@@ -108,7 +109,7 @@ pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 3>; 3], radius: N) -> 
     units.grown(&sum.moments())
 }
 
-/// A unit vector perpendicular to collinear points.
+/// Returns a unit vector perpendicular to the line through collinear points.
 fn across_all(ring: &[V3]) -> V3 {
     let mut longest = V3::zeros();
     for (a, b) in sides(ring) {
@@ -118,7 +119,7 @@ fn across_all(ring: &[V3]) -> V3 {
     across(&longest)
 }
 
-/// A unit vector perpendicular to a vector of any length.
+/// Returns a unit vector perpendicular to a vector of any length.
 fn across(v: &V3) -> V3 {
     let mut least = V3::zeros();
     least[v.iamin()] = 1.0;
@@ -144,13 +145,14 @@ fn add_rim(ring: &[V3], normal: &V3, radius: f64, sum: &mut Integrals<3>) {
 }
 
 /// Adds a lune of a ball: the region swept by a half-disk that rotates by `angle` about `axis`,
-/// counter-clockwise from the unit vector `from`.
+/// counter-clockwise, starting at the unit vector `from`.
 fn add_lune(corner: &V3, [axis, from]: [&V3; 2], angle: f64, radius: f64, sum: &mut Integrals<3>) {
     let (sine, cosine) = libm::sincos(angle * 0.5);
     let middle = from * cosine + axis.cross(from) * sine;
     let across = axis.cross(&middle);
     let whole = libm::sin(angle);
-    // Over the directions: ∫ u = π sin(angle / 2) along the middle, and ∫ u uᵀ by its three axes.
+    // Integrals over the directions u: ∫ u = π sin(angle / 2) along the middle, and ∫ u uᵀ in its
+    // three axes.
     let second = middle * middle.transpose() * ((angle + whole) * (2.0 / 3.0))
         + across * across.transpose() * ((angle - whole) * (2.0 / 3.0))
         + axis * axis.transpose() * (angle * (2.0 / 3.0));
@@ -165,7 +167,7 @@ fn add_lune(corner: &V3, [axis, from]: [&V3; 2], angle: f64, radius: f64, sum: &
     );
 }
 
-/// The integrals of r², r³ and r⁴ from zero to the radius.
+/// Returns the integrals of r², r³ and r⁴ from zero to the radius.
 pub(super) fn radial(radius: f64) -> [f64; 3] {
     let cubed = radius * radius * radius;
     [cubed / 3.0, cubed * radius / 4.0, cubed * radius * radius / 5.0]

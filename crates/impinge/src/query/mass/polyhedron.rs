@@ -1,8 +1,8 @@
 //! Convex polyhedra, and the sets of points within a radius of them.
 //!
-//! By Steiner's decomposition a rounded polyhedron is the polyhedron, a prism on each face, a
-//! sector of a cylinder along each edge between the normals of its two faces, and at each vertex a
-//! sector of a ball: the directions for which that vertex is the support point. The integrals of
+//! Steiner's decomposition cuts a rounded polyhedron into the polyhedron, a prism on each face, a
+//! sector of a cylinder along each edge between the normals of its two faces, and a sector of a
+//! ball at each vertex: the directions for which that vertex is the support point. The integrals of
 //! the ball sectors follow from their sides by Stokes' theorem.
 
 use super::integrals::{Integrals, LocalUnits};
@@ -12,7 +12,7 @@ use crate::shape::{Moments, Polytope};
 
 type V3 = Vector<f64, 3>;
 
-/// The set of points within `radius` of a convex polyhedron.
+/// Returns the moments of the set of points within `radius` of a convex polyhedron.
 pub(super) fn round_polyhedron<N: Real>(solid: &Polytope<N, 3>, radius: N) -> Moments<3> {
     let units = LocalUnits::around(solid.vertices(), radius);
     let vertices: Vec<V3> = solid.vertices().iter().map(|vertex| units.point(vertex)).collect();
@@ -47,7 +47,7 @@ pub(super) fn add_cones(corners: &[V3], sum: &mut Integrals<3>) {
     }
 }
 
-/// An edge between two faces.
+/// An edge between two faces, with their outward unit normals.
 #[derive(Clone, Copy, Debug)]
 struct Ridge {
     vertices: [usize; 2],
@@ -67,7 +67,7 @@ impl Ridge {
 /// Adds the cylinder sectors of all edges and the ball sectors of all vertices.
 fn add_ridges(ridges: &[Ridge], vertices: usize, radius: f64, sum: &mut Integrals<3>) {
     let wedges: Vec<EdgeWedge> = ridges.iter().map(Ridge::wedge).collect();
-    // A direction within the normal cone of each vertex.
+    // For each vertex, a direction within its normal cone.
     let mut inner = vec![V3::zeros(); vertices];
     for (ridge, wedge) in ridges.iter().zip(&wedges) {
         for vertex in ridge.vertices {
@@ -86,21 +86,22 @@ fn add_ridges(ridges: &[Ridge], vertices: usize, radius: f64, sum: &mut Integral
     }
 }
 
-/// The contribution of one edge to the ball sector at one of its ends: the arc between the normals
-/// of the two faces, and the triangle from that arc to a direction within the sector.
+/// The contribution of one edge to the ball sector at one end of the edge: the arc between the
+/// normals of the two faces, and the triangle from that arc to a direction within the sector.
 struct SectorSide<'a> {
     ridge: &'a Ridge,
     wedge: &'a EdgeWedge,
     /// A direction within the sector, of any length.
     inner: V3,
-    /// The unit normal of the arc, out of the sector: along the edge, away from the vertex.
+    /// The unit normal of the arc's plane, out of the sector: along the edge, away from the vertex.
     outward: V3,
 }
 
 impl SectorSide<'_> {
-    /// The integrals of u and u uᵀ over directions are those of an arc: by Stokes' theorem half of the sum of the
-    /// angles of the arcs times their inward normals, and a third of the solid angle less a sixth of the flux of the
-    /// gradient of u uᵀ through the arcs.
+    /// Returns the contribution of the arc to the sector's integrals. By Stokes' theorem the
+    /// integral of u over directions is half of the sum of the angles of the arcs times their
+    /// inward normals. The integral of u uᵀ is a third of the solid angle minus a sixth of the flux
+    /// of the gradient of u uᵀ through the arcs.
     fn integrals(&self, radius: f64) -> Integrals<3> {
         let (middle, angle) = (&self.wedge.middle, self.wedge.angle);
         let solid_angle = self.solid_angle();
@@ -115,12 +116,12 @@ impl SectorSide<'_> {
         }
     }
 
-    /// The solid angle between the arc and the inner direction, in two halves: neither has a side
-    /// of 180°.
+    /// Returns the solid angle between the arc and the inner direction, computed in two halves, so
+    /// that no triangle has a side of 180°.
     fn solid_angle(&self) -> f64 {
         let middle = &self.wedge.middle;
         let [one, other] = &self.ridge.normals;
-        // Counter-clockwise around the sector, seen from outside.
+        // The direction of the arc that is counter-clockwise around the sector, seen from outside.
         let forward = middle.cross(&self.outward);
         let ends = if (other - one).dot(&forward) >= 0.0 { [one, other] } else { [other, one] };
         let Some(inner) = self.inner.try_normalize(0.0) else { return 0.0 };
@@ -128,8 +129,8 @@ impl SectorSide<'_> {
     }
 }
 
-/// The solid angle of a triangle of unit vectors, positive if they run counter-clockwise seen from outside (van
-/// Oosterom and Strackee, "The solid angle of a plane triangle", 1983).
+/// Returns the solid angle of a triangle of unit vectors, positive if they run counter-clockwise
+/// seen from outside (van Oosterom and Strackee, "The solid angle of a plane triangle", 1983).
 fn solid_angle(a: &V3, b: &V3, c: &V3) -> f64 {
     2.0 * libm::atan2(a.cross(b).dot(c), 1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }

@@ -1,8 +1,9 @@
-//! Bodies of revolution: integrals of their slices across the axis.
+//! Bodies of revolution, integrated in slices across the axis.
 //!
-//! A slice at z is a ball of D − 1 dimensions with the radius of the profile: a disk in 3D, in 2D a
-//! segment. The profile consists of lines and arcs. Their integrals are polynomials and
-//! trigonometric functions; sixteen nodes of Gauss and Legendre give both to the last digits.
+//! A slice at z is a ball of D − 1 dimensions with the radius of the profile: a disk in 3D, a
+//! segment in 2D. The profile consists of lines and arcs. Their integrals are polynomials and
+//! trigonometric functions; Gauss-Legendre quadrature with 16 nodes integrates both to the last
+//! digits.
 
 use super::integrals::LocalUnits;
 use super::solids::{UNIT_BALL, round_box};
@@ -11,7 +12,7 @@ use crate::shape::Moments;
 
 const QUARTER: f64 = core::f64::consts::FRAC_PI_2;
 
-/// The positive nodes between −1 and 1, and their weights.
+/// The positive nodes of the 16-point Gauss-Legendre rule on [−1, 1], each with its weight.
 pub(super) const NODES: [[f64; 2]; 8] = [
     [0.989_400_934_991_649_9, 0.027_152_459_411_754_096],
     [0.944_575_023_073_232_6, 0.062_253_523_938_647_894],
@@ -23,8 +24,8 @@ pub(super) const NODES: [[f64; 2]; 8] = [
     [0.095_012_509_837_637_44, 0.189_450_610_455_068_5],
 ];
 
-/// The integrals of slices along z: of their measure times 1, z and z², and of their second moment
-/// along one transverse axis.
+/// Sums over slices along z: the integrals of their measure times 1, z and z², and of their second
+/// moment along one transverse axis.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slices<const D: usize> {
     mass: f64,
@@ -34,8 +35,8 @@ struct Slices<const D: usize> {
 }
 
 impl<const D: usize> Slices<D> {
-    /// Adds the slices on a piece of the profile. `at` returns the position z, the radius, and the
-    /// derivative of z for a parameter from `from` to `to`.
+    /// Adds the slices on a piece of the profile. `at(t)` returns the position z, the radius, and
+    /// the derivative of z, for a parameter t from `from` to `to`.
     fn add(&mut self, [from, to]: [f64; 2], at: impl Fn(f64) -> [f64; 3]) {
         let (middle, half) = (from * 0.5 + to * 0.5, to * 0.5 - from * 0.5);
         for [node, weight] in NODES {
@@ -51,14 +52,14 @@ impl<const D: usize> Slices<D> {
         }
     }
 
-    /// Adds the slices between two points of the profile, each a position along the axis and a
-    /// radius.
+    /// Adds the slices between two points of the profile, each given as a position along the axis
+    /// and a radius.
     fn add_line(&mut self, [z0, r0]: [f64; 2], [z1, r1]: [f64; 2]) {
         self.add([0.0, 1.0], |t| [z0 + (z1 - z0) * t, r0 + (r1 - r0) * t, z1 - z0]);
     }
 
-    /// Adds the slices under an arc about a point of the profile, between two angles from the
-    /// transverse direction.
+    /// Adds the slices under an arc of the profile with the centre `[z, aside]`, between two angles
+    /// measured from the transverse direction.
     fn add_arc(&mut self, [z, aside]: [f64; 2], radius: f64, angles: [f64; 2]) {
         self.add(angles, |angle| {
             let (sine, cosine) = libm::sincos(angle);
@@ -66,7 +67,7 @@ impl<const D: usize> Slices<D> {
         });
     }
 
-    /// The body about an axis through the origin.
+    /// Returns the moments of the body about the line along `axis` through the origin.
     fn moments(&self, axis: &Vector<f64, D>) -> Moments<D> {
         if self.mass <= 0.0 {
             return Moments::massless(Vector::<f64, D>::zeros());
@@ -78,7 +79,7 @@ impl<const D: usize> Slices<D> {
     }
 }
 
-/// The rotation that maps the y axis to a unit vector or its opposite, whichever is nearer.
+/// Returns the rotation that maps the y axis to a unit vector or its opposite, whichever is nearer.
 fn rotation_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
     let mut y = Vector::<f64, D>::zeros();
     y[1] = 1.0;
@@ -88,7 +89,7 @@ fn rotation_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
     Matrix::<f64, D>::identity() - mirrored + axis * y.transpose() * 2.0
 }
 
-/// The convex hull of two balls; a capsule if their radii are equal.
+/// Returns the moments of the convex hull of two balls; a capsule if their radii are equal.
 pub(super) fn two_balls<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     radii: [N; 2],
@@ -102,7 +103,7 @@ pub(super) fn two_balls<N: Real, const D: usize>(
         let ball = round_box(&Vector::<N, D>::zeros(), radii[larger]);
         return Moments { center: ends[larger].coords.map(N::as_f64), ..ball };
     }
-    // The sine of the side's normal along the axis.
+    // The component along the axis of the side's unit normal.
     let sine = (r1 - r2) / length;
     let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
     let (half, tilt) = (length * 0.5, libm::atan2(sine, cosine));
@@ -114,7 +115,7 @@ pub(super) fn two_balls<N: Real, const D: usize>(
     units.grown(&Moments { center: body.center + (a + b) * 0.5, ..body })
 }
 
-/// The set of points within `rounding` of a cylinder about the y axis.
+/// Returns the moments of the set of points within `rounding` of a cylinder about the y axis.
 pub(super) fn round_cylinder<N: Real, const D: usize>(
     [half_height, radius]: [N; 2],
     rounding: N,
@@ -128,15 +129,16 @@ pub(super) fn round_cylinder<N: Real, const D: usize>(
     units.grown(&slices.moments(&y_axis()))
 }
 
-/// The set of points within `rounding` of a cone about the y axis, with its apex on the positive
-/// side.
+/// Returns the moments of the set of points within `rounding` of a cone about the y axis, with its
+/// apex at positive y.
 pub(super) fn round_cone<N: Real, const D: usize>(
     [half_height, radius]: [N; 2],
     rounding: N,
 ) -> Moments<D> {
     let units = LocalUnits::about_origin(max(max(half_height, radius), rounding).as_f64());
     let [h, aside, r] = [half_height, radius, rounding].map(|length| units.length(length));
-    // The normal of the side, across and along the axis; arbitrary for a point.
+    // The components of the side's unit normal across and along the axis; arbitrary if the cone is
+    // a point.
     let side = [2.0 * h, aside];
     let length = (side[0] * side[0] + side[1] * side[1]).sqrt();
     let [cosine, sine] = if length > 0.0 { side.map(|x| x / length) } else { [1.0, 0.0] };

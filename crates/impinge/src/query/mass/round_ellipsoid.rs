@@ -1,32 +1,34 @@
-//! The set of points within a radius of an ellipsoid, which has no closed form: a quadrature over
-//! directions.
+//! Moments of the set of points within a radius of an ellipsoid. They have no closed form, so the
+//! module integrates numerically over directions.
 //!
-//! The support point of the direction u is `y = A² u / h + r u` with `h = |A u|`. A surface element
-//! has the area of its directions times the product of the principal radii there, each larger by r
-//! than that of the ellipsoid. Mass and moments follow from the surface by the divergence theorem.
-//! Directions are sampled as `A^(−1/2) v`, between those of the normals and of the points, and v by
-//! angles from the axes with evenly spaced logarithms: the curvature of needles and plates is
+//! The support point in the direction u is `y = A² u / h + r u` with `h = |A u|`, where A is the
+//! diagonal matrix of the half axes and r the radius. A surface element has the area of its solid
+//! angle times the product of the principal radii of curvature there, each larger by r than that of
+//! the ellipsoid. Mass and moments follow from the surface by the divergence theorem. Directions
+//! are sampled as `A^(−1/2) v`, between the directions of the normals and of the points. The angles
+//! of v from the axes have evenly spaced logarithms: the curvature of needles and plates is
 //! concentrated near the axes.
 
 use super::integrals::LocalUnits;
 use crate::math::{Mapped, Matrix, Real, Vector, max, max_component};
 use crate::shape::Moments;
 
-/// The step of the logarithms of angles, and the number of steps to both sides.
+/// The step of the logarithms of the angles, and the number of steps on each side of the middle.
 const STEP: f64 = 0.4;
 const STEPS: i32 = 80;
 
-/// Half axes are raised to this fraction of the radius.
+/// Half axes shorter than this fraction of the radius are raised to it.
 const THIN: f64 = 1e-9;
 
-/// The sine and the cosine of an angle up to 90°, and its weight.
+/// The sine and the cosine of an angle up to 90°, and its quadrature weight.
 type AngleNode = [f64; 3];
 
-/// The angles and weights of the quadrature, from near zero to near 90°.
+/// Returns the angles and weights of the quadrature, from near 0 to near 90°.
 fn nodes() -> Vec<AngleNode> {
     let node = |step: i32| {
         let growth = libm::exp(STEP * f64::from(step));
-        // Each is exact near its own end, where the other is 90° up to rounding.
+        // The angles measured from 0 and from 90°. Each is accurate near its own zero, where the
+        // other is 90° up to rounding.
         let [from_zero, from_quarter] =
             [growth, 1.0 / growth].mapped(|x| core::f64::consts::FRAC_PI_2 * x / (1.0 + x));
         let weight = STEP * from_zero * from_quarter * core::f64::consts::FRAC_2_PI;
@@ -52,8 +54,9 @@ impl<const D: usize> Shell<D> {
         (Self { half_axes, radius, mass: 0.0, seconds: Vector::<f64, D>::zeros() }, units)
     }
 
-    /// Adds the directions about the unit vector v. `radii` returns the product of the principal
-    /// radii from the length h, the inner support point, and the product of the half axes.
+    /// Adds the solid angle around the unit vector v. `radii(h, p, a)` returns the product of the
+    /// principal radii from the length h, the ellipsoid's support point p, and the product a of the
+    /// half axes.
     fn add(
         &mut self,
         v: &Vector<f64, D>,
@@ -74,7 +77,7 @@ impl<const D: usize> Shell<D> {
         self.seconds += outer.component_mul(&outer) * measure;
     }
 
-    /// The body, after the directions between the positive axes were added.
+    /// Returns the moments of the body, after the directions between the positive axes were added.
     fn moments(&self) -> Moments<D> {
         let parts = f64::from(1_u8 << D);
         let (mass, seconds) =
@@ -84,7 +87,7 @@ impl<const D: usize> Shell<D> {
     }
 }
 
-/// The set of points within a positive `radius` of an ellipse.
+/// Returns the moments of the set of points within a positive `radius` of an ellipse.
 pub(super) fn round_ellipse<N: Real>(half_axes: &Vector<N, 2>, radius: N) -> Moments<2> {
     let (mut shell, units) = Shell::new(half_axes, radius);
     let radius = shell.radius;
@@ -96,7 +99,7 @@ pub(super) fn round_ellipse<N: Real>(half_axes: &Vector<N, 2>, radius: N) -> Mom
     units.grown(&shell.moments())
 }
 
-/// The set of points within a positive `radius` of an ellipsoid.
+/// Returns the moments of the set of points within a positive `radius` of an ellipsoid.
 pub(super) fn round_ellipsoid<N: Real>(half_axes: &Vector<N, 3>, radius: N) -> Moments<3> {
     let (mut shell, units) = Shell::new(half_axes, radius);
     let (radius, squared, nodes) = (shell.radius, shell.half_axes.norm_squared(), nodes());

@@ -1,5 +1,5 @@
-//! Mass and moments in closed form: boxes, balls, ellipsoids, simplices; one formula each for 2D
-//! and 3D.
+//! Mass and moments in closed form for boxes, balls, ellipsoids and simplices; each formula covers
+//! 2D and 3D.
 
 use super::integrals::LocalUnits;
 use crate::math::{Matrix, Point, Real, Vector, max, max_component};
@@ -13,15 +13,16 @@ pub(super) const UNIT_BALL: [f64; 4] = [1.0, 2.0, PI, 4.0 / 3.0 * PI];
 /// The mean of |x| over the unit ball in 0, 1, 2 and 3 dimensions.
 const MEAN_ASIDE: [f64; 4] = [0.0, 0.5, 4.0 / 3.0 / PI, 0.375];
 
-/// The measure of a ball in `dimensions` dimensions.
+/// Returns the measure of a ball in `dimensions` dimensions.
 fn ball_measure(dimensions: usize, radius: f64) -> f64 {
     (0..dimensions).fold(UNIT_BALL[dimensions], |measure, _| measure * radius)
 }
 
-/// The set of points within `radius` of a box about the origin: a ball for a box without extent.
+/// Returns the moments of the set of points within `radius` of a box about the origin; a ball if
+/// the box has no extent.
 ///
-/// It decomposes into products: the box along some axes, and along the others the parts of a ball
-/// of that dimension, moved to the corners of the box.
+/// The set is decomposed into products: the box along some axes, and along the other axes the parts
+/// of a ball of that dimension, moved to the corners of the box.
 pub(super) fn round_box<N: Real, const D: usize>(
     half_extents: &Vector<N, D>,
     radius: N,
@@ -52,7 +53,7 @@ pub(super) fn round_box<N: Real, const D: usize>(
     units.grown(&Moments::along_axes(mass, center, axes, &seconds))
 }
 
-/// An ellipsoid about the origin, in 2D an ellipse.
+/// Returns the moments of an ellipsoid (in 2D an ellipse) about the origin.
 pub(super) fn ellipsoid<N: Real, const D: usize>(half_axes: &Vector<N, D>) -> Moments<D> {
     let units = LocalUnits::about_origin(max_component(half_axes).as_f64());
     let half = units.vector(half_axes);
@@ -62,7 +63,7 @@ pub(super) fn ellipsoid<N: Real, const D: usize>(half_axes: &Vector<N, D>) -> Mo
     units.grown(&Moments::along_axes(mass, center, axes, &seconds))
 }
 
-/// A segment or a triangle with the density 1 per unit of length or area.
+/// Returns the moments of a segment or a triangle with density 1 per unit of length or area.
 pub(super) fn simplex<N: Real, const D: usize, const CORNERS: usize>(
     corners: &[Point<N, D>; CORNERS],
 ) -> Moments<D> {
@@ -71,7 +72,7 @@ pub(super) fn simplex<N: Real, const D: usize, const CORNERS: usize>(
     let count = CORNERS as f64;
     let center = corners.iter().sum::<Vector<f64, D>>() / count;
     let measure = measure_of(&corners);
-    // A point has no scale. Written so that NaN has no mass.
+    // A point has no scale. False for NaN, which then has no mass.
     let has_measure = measure > 0.0;
     if !has_measure {
         return units.grown(&Moments::massless(Vector::<f64, D>::zeros()));
@@ -84,7 +85,7 @@ pub(super) fn simplex<N: Real, const D: usize, const CORNERS: usize>(
     units.grown(&body).of_density(spare)
 }
 
-/// The length of a segment, or the area of a triangle.
+/// Returns the length of a segment, or the area of a triangle.
 pub(super) fn measure_of<const D: usize>(corners: &[Vector<f64, D>]) -> f64 {
     let side = corners[1] - corners[0];
     let Some(third) = corners.get(2) else { return side.norm() };

@@ -1,4 +1,4 @@
-//! Mass of convex solids in 2D, from support points alone.
+//! Mass of convex solids in 2D, computed from support points alone.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::outline::crossed;
@@ -7,13 +7,17 @@ use crate::shape::{MassError, Moments, SupportMap, finite};
 
 type V2 = Vector<f64, 2>;
 
-/// The maximum number of times that an arc is halved, from the quarters between the axes.
+/// The maximum number of times that an arc is halved, starting from the quarters between the axes.
 const DEPTH: u32 = 9;
 
-/// An arc with a height of at most this many epsilon of the solid's size is a segment.
+/// An arc whose height is at most this many epsilon of the solid's size is treated as a segment.
 const FLAT: f64 = 64.0;
 
-/// The mass and moments of a convex solid by its support points, up to about 1e-9; polygons are exact.
+/// Returns the moments of a convex solid from its support points, accurate to about 1e-9; polygons
+/// are exact.
+///
+/// # Errors
+/// If a support point is not finite.
 pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 2>) -> Result<Moments<2>, MassError> {
     let axes = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].mapped(V2::from);
     let mut extremes = [Point::<N, 2>::origin(); 4];
@@ -30,25 +34,26 @@ pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 2>) -> Result<Moments<
     Ok(units.grown(&tracing.sum.moments()))
 }
 
-/// A trace of an outline by its support points.
+/// Traces the outline of a convex solid by its support points.
 ///
-/// Each arc between two support points is split at the support point across its chord, until it is
-/// flat or short; the rest between the chord and the arc is approximated by a parabola.
+/// Each arc between two support points is split at the support point across its chord, until the
+/// arc is flat or the depth is reached. The remaining region between chord and arc is approximated
+/// by a parabola.
 pub(super) struct Tracing<'s> {
     support: &'s dyn Fn(&V2) -> V2,
-    /// The height up to which an arc is flat.
+    /// The height over its chord up to which an arc is flat.
     flat: f64,
     pub(super) sum: Integrals<2>,
 }
 
 impl<'s> Tracing<'s> {
-    /// `support` returns a support point for a unit vector; an arc of a height of at most `flat` is
-    /// a segment.
+    /// `support` returns a support point for a unit vector; an arc with a height of at most `flat`
+    /// is treated as a segment.
     pub(super) fn new(support: &'s dyn Fn(&V2) -> V2, flat: f64) -> Self {
         Self { support, flat, sum: Integrals::none() }
     }
 
-    /// Adds the solid; quarters of its outline are halved at most `depth` times.
+    /// Adds the solid; the quarters of its outline are halved at most `depth` times.
     pub(super) fn trace(&mut self, depth: u32) {
         let axes = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].mapped(V2::from);
         let ends = axes.mapped(|axis| (self.support)(&axis));
@@ -57,8 +62,8 @@ impl<'s> Tracing<'s> {
         }
     }
 
-    /// Adds the region between the origin and the arc from one support point to another,
-    /// counter-clockwise.
+    /// Adds the region between the origin and the arc from the support point `a` counter-clockwise
+    /// to `b`.
     fn follow(&mut self, a: &V2, b: &V2, depth: u32) {
         let chord = b - a;
         let length = chord.norm();
@@ -76,8 +81,8 @@ impl<'s> Tracing<'s> {
         }
         self.sum.add_cone(crossed(a, b) * 0.5, &[a, b]);
         if is_curved {
-            // A parabola over the chord: two thirds of the rectangle, its centre at two fifths of
-            // the height.
+            // A parabola over the chord has two thirds of the rectangle's area, and its centre at
+            // two fifths of the height.
             let center = (a + b) * 0.5 + outward * (height * 0.4);
             let area = length * height * (2.0 / 3.0);
             self.sum.add(area, &center, &(chord * chord.transpose() * (area / 20.0)));

@@ -1,9 +1,9 @@
-//! Mass of convex solids in 3D, from support points alone.
+//! Mass of convex solids in 3D, computed from support points alone.
 //!
-//! A linear map gives the solid the proportions of a ball; then it is cut into slices across its z
-//! axis. A slice is a convex solid in 2D. Its support point in a direction follows from those of
-//! the solid: on the outline of the solid, projected along the normal of the direction and the z
-//! axis, an interval is narrowed to the height of the slice.
+//! A linear map gives the solid the proportions of a ball; the solid is then cut into slices across
+//! its z axis. Each slice is a convex solid in 2D. Its support point in a direction follows from
+//! support points of the solid: the solid is projected to the plane of that direction and the z
+//! axis, and an interval of the outline there is narrowed to the height of the slice.
 
 use super::integrals::{Integrals, LocalUnits};
 use super::revolution::NODES;
@@ -16,36 +16,40 @@ type V2 = Vector<f64, 2>;
 type V3 = Vector<f64, 3>;
 type M3 = Matrix<f64, 3>;
 
-/// The number of times that the proportions are estimated: each estimate improves the directions of
+/// The number of times that the proportions are estimated; each estimate improves the directions of
 /// the next.
 const ROUNDS: usize = 3;
 
-/// Axes shorter than this fraction of the longest one, or than `THIN_EPSILON` epsilon of it, are
-/// raised to it.
+/// Axes shorter than this fraction of the longest axis, or than `THIN_EPSILON` epsilon of it, are
+/// raised to that length.
 const THIN: f64 = 1e-8;
 const THIN_EPSILON: f64 = 64.0;
 
 /// The maximum number of times that a group of slices is halved.
 const HALVINGS: u32 = 6;
 
-/// A group is not halved if the sum of its halves differs by less than this; mass and moments are
-/// about 1.
+/// A group is not halved further if the sum of its halves differs by less than this; mass and
+/// moments are about 1.
 const ENOUGH: f64 = 1e-5;
 
-/// Each quarter of a slice's outline has up to two to this power of arcs.
+/// Each quarter of a slice's outline has at most two to this power of arcs.
 const DEPTH: u32 = 3;
 
-/// The height above its chord up to which an arc is flat; points of the solid are about 1 from its
+/// The height over its chord up to which an arc is flat; points of the solid are about 1 from its
 /// centre.
 const FLAT: f64 = 1e-5;
 
-/// The maximum number of steps that narrow an outline; ten are usual.
+/// The maximum number of steps that narrow an interval of the outline; ten are usual.
 const MAX_STEPS: usize = 40;
 
-/// A solid with the proportions of a ball counts as without volume up to this.
+/// A solid scaled to the proportions of a ball is treated as without volume if its volume is at
+/// most this.
 const NOTHING: f64 = 1e-6;
 
-/// The mass and moments of a convex solid by its support points, up to about 1e-4.
+/// Returns the moments of a convex solid from its support points, accurate to about 1e-4.
+///
+/// # Errors
+/// If a support point is not finite.
 pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 3>) -> Result<Moments<3>, MassError> {
     let mut points = Vec::new();
     let mut round = RoundFrame::at_origin(LocalUnits::about_origin(1.0));
@@ -57,8 +61,11 @@ pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 3>) -> Result<Moments<
     Ok(solid.round.grown(&solid.integrals()))
 }
 
-/// Adds the support points in 98 directions, spread evenly in the frame in which the solid is
+/// Appends the support points in 98 directions, spread evenly in the frame in which the solid is
 /// round.
+///
+/// # Errors
+/// If a support point is not finite.
 fn sow<N: Real>(
     map: &dyn SupportMap<N, 3>,
     round: &RoundFrame,
@@ -77,8 +84,8 @@ fn sow<N: Real>(
     Ok(())
 }
 
-/// The frame in which a solid has the proportions of a ball: `x = center + axes · (widths × y)`
-/// maps a point y of this frame to a point in units.
+/// The frame in which a solid has the proportions of a ball. `x = center + axes · (widths × y)`
+/// maps a point y of this frame to a point x in the units.
 #[derive(Clone, Copy, Debug)]
 struct RoundFrame {
     units: LocalUnits<3>,
@@ -92,7 +99,7 @@ impl RoundFrame {
         Self { units, center: V3::zeros(), axes: M3::identity(), widths: V3::repeat(1.0) }
     }
 
-    /// The frame of a solid with these points on its surface.
+    /// Returns the frame of a solid with these points on its surface.
     fn of_points<N: Real>(points: &[Point<N, 3>]) -> Self {
         let units = LocalUnits::around(points, N::ZERO);
         let mut sum = Integrals::none();
@@ -106,13 +113,13 @@ impl RoundFrame {
         let longest = values.amax().sqrt();
         let least = longest * thin;
         let width = |value: f64| if value > least * least { value.sqrt() } else { least };
-        // A single point has no proportions.
+        // Coinciding points have no proportions: the widths are 1.
         let widths = if longest > 0.0 { values.map(width) } else { V3::repeat(1.0) };
         Self { units, center, axes, widths }
     }
 
-    /// The unit direction of the solid whose support point corresponds to a direction of the round
-    /// frame.
+    /// Returns the unit direction of the solid whose support point corresponds to a direction of
+    /// the round frame.
     fn direction(&self, round: &V3) -> V3 {
         let direction = self.axes * round.component_div(&self.widths);
         direction.try_normalize(0.0).unwrap_or_else(V3::y)
@@ -123,7 +130,7 @@ impl RoundFrame {
         self.axes.tr_mul(&(self.units.point(point) - self.center)).component_div(&self.widths)
     }
 
-    /// Converts the integrals to the solid's own frame.
+    /// Converts the integrals to the moments in the solid's own frame.
     fn grown(&self, round: &Integrals<3>) -> Moments<3> {
         let has_volume = round.mass > NOTHING;
         let map = self.axes * M3::from_diagonal(&self.widths);
@@ -140,7 +147,7 @@ impl RoundFrame {
     }
 }
 
-/// A solid to be cut into slices in its round frame.
+/// A solid that is cut into slices in its round frame.
 struct Sliced<'m, N: Real> {
     map: &'m dyn SupportMap<N, 3>,
     round: RoundFrame,
@@ -152,7 +159,7 @@ impl<N: Real> Sliced<'_, N> {
         self.round.point(&self.map.support_point(&toward.map(N::lit)))
     }
 
-    /// The integrals over the solid in its round frame.
+    /// Returns the integrals over the solid in its round frame.
     fn integrals(&self) -> Integrals<3> {
         let [bottom, top] = [-V3::z(), V3::z()].map(|direction| self.support(&direction));
         let quarter = core::f64::consts::FRAC_PI_2;
@@ -185,9 +192,9 @@ impl<N: Real> Sliced<'_, N> {
         }
     }
 
-    /// Sums slices at the nodes of Gauss and Legendre between two angles. The angles are those of a
-    /// ball's slices, so that the area of a slice is smooth up to the ends of a solid that is round
-    /// there.
+    /// Sums slices at Gauss-Legendre nodes between two angles. The angle of a slice is that of a
+    /// ball's slice, so that the area of a slice is a smooth function of the angle even at the ends
+    /// of a solid that is round there.
     fn group(&self, ends: [V3; 2], [from, to]: [f64; 2]) -> Integrals<3> {
         let (center, half) = ((ends[0].z + ends[1].z) * 0.5, (ends[1].z - ends[0].z) * 0.5);
         let (middle, step, mut sum) = ((from + to) * 0.5, (to - from) * 0.5, Integrals::none());
@@ -199,7 +206,7 @@ impl<N: Real> Sliced<'_, N> {
         sum
     }
 
-    /// Adds the slice at a height, with a weight.
+    /// Adds the slice at the height `z`, with a weight.
     fn add_slice(&self, ends: [V3; 2], z: f64, weight: f64, sum: &mut Integrals<3>) {
         let support = |direction: &V2| self.slice_support(ends, z, direction);
         let mut tracing = Tracing::new(&support, FLAT);
@@ -221,21 +228,21 @@ impl<N: Real> Sliced<'_, N> {
         ) * weight;
     }
 
-    /// The support point of the slice at a height: on the outline of the solid in the plane of the
-    /// direction and the axis, between two of its points below and above. The final rest between
-    /// their chord and the outline is approximated by a parabola.
+    /// Returns the support point of the slice at the height `z`. It is on the outline of the solid
+    /// in the plane of the direction and the z axis, between `below` and `above`. The remaining
+    /// region between their chord and the outline is approximated by a parabola.
     fn slice_support(&self, [mut below, mut above]: [V3; 2], z: f64, direction: &V2) -> V2 {
         let outward = V3::new(direction.x, direction.y, 0.0);
         for _ in 0..MAX_STEPS {
             let chord = above - below;
-            // The normal of the chord, out of the solid.
+            // The normal of the chord, pointing out of the solid.
             let across = outward * chord.z - V3::z() * chord.dot(&outward);
             let length = across.norm();
             if chord.z <= 0.0 || length <= 0.0 {
                 break;
             }
             let top = self.support(&across);
-            // The height of the outline over the chord, within the slice.
+            // The height of the outline over the chord, measured within the slice.
             let height = (top - below).dot(&across) / chord.z;
             if height <= FLAT {
                 let share = (z - below.z) / chord.z;

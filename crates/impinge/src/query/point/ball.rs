@@ -4,7 +4,8 @@ use super::SurfacePoint;
 use crate::math::{Point, Real, Vector, unit};
 use crate::shape::FeatureId;
 
-/// On the ray from the centre through the point; for the centre itself along the first axis.
+/// Returns the point on the ray from the centre through `point`; for the centre itself, the point
+/// on the first axis.
 pub(super) fn surface_point<N: Real, const D: usize>(
     radius: N,
     point: &Point<N, D>,

@@ -5,8 +5,8 @@ use super::{SurfacePoint, length};
 use crate::math::{Point, Real, Vector, unit_or};
 use crate::shape::{Capsule, FeatureId};
 
-/// At the distance of the radius from the nearest point of the core segment. A capsule without
-/// radius is that segment.
+/// Returns the point at the distance `radius` from the nearest point of the core segment, towards
+/// `point`. A capsule without radius is that segment.
 pub(super) fn surface_point<N: Real, const D: usize>(
     capsule: &Capsule<N, D>,
     point: &Point<N, D>,
@@ -25,8 +25,9 @@ pub(super) fn surface_point<N: Real, const D: usize>(
     }
 }
 
-/// A unit vector perpendicular to `axis`: the projection of the coordinate axis that is least
-/// aligned with it, the first of equals. The first coordinate axis for zero.
+/// Returns a unit vector perpendicular to `axis`: the projection of the coordinate axis that is
+/// least aligned with it, the first if there are several. For a zero `axis` returns the first
+/// coordinate axis.
 fn aside<N: Real, const D: usize>(axis: &Vector<N, D>) -> Vector<N, D> {
     let mut least = 0;
     for index in 1..D {

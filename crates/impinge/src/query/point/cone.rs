@@ -1,4 +1,5 @@
-//! The nearest point of the surface of a cone, in the half-plane of the point through the axis.
+//! The nearest point of the surface of a cone, computed in the half-plane through the y axis and
+//! the query point.
 
 use super::SurfacePoint;
 use super::cylinder::Meridian;
@@ -6,7 +7,8 @@ use super::segment::nearest;
 use crate::math::{Point, Real};
 use crate::shape::{Cone, FeatureId};
 
-/// The base and the slanted side are two segments of the half-plane; the nearer one wins.
+/// In the half-plane, the base and the slanted side are two segments; returns the nearest point of
+/// both.
 pub(super) fn surface_point<N: Real>(cone: &Cone<N>, point: &Point<N, 3>) -> SurfacePoint<N, 3> {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     let meridian = Meridian::of(point);

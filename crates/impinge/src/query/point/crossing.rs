@@ -1,29 +1,30 @@
 //! Exact crossings of an axis-parallel ray with a closed line or surface.
 //!
 //! The winding number of a closed line or surface around a point is the number of times that a ray
-//! from the point leaves it minus the number of times that it enters. Exact signs decide whether
-//! the ray crosses a segment or triangle. Ties, where the ray meets corners or sides, are resolved
-//! as if the point were moved by an infinitesimal step across the ray, the same for all parts
-//! (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990; in 2D this is the half-open rule). So
-//! a crossing that one part misses its neighbour counts, and no direction of the ray is degenerate.
+//! from the point leaves it, minus the number of times that the ray enters it. Exact signs decide
+//! whether the ray crosses a segment or triangle. Ties, where the ray meets corners or sides, are
+//! resolved as if the point were moved by an infinitesimal step across the ray, which is equal for
+//! all parts (Edelsbrunner and Mücke, "Simulation of Simplicity", 1990; in 2D this is the half-open
+//! rule). So exactly one of two neighbours counts a crossing of their common corner or side, and no
+//! direction of the ray is degenerate.
 
 use core::cmp::Ordering;
 
 use crate::math::exact::{area, volume};
 use crate::math::{Mapped, Point};
 
-/// The direction of a ray from a point to infinity, along an axis.
+/// The direction of a ray from a point to infinity along a coordinate axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayDirection {
     pub(super) axis: usize,
-    /// Towards larger coordinates.
+    /// Whether the ray leads towards larger coordinates.
     pub(super) is_ascending: bool,
 }
 
 /// The contribution of one part to the winding number; `None` if the point lies on it.
 type Added = Option<i64>;
 
-/// The sign of a determinant as a count.
+/// Returns the sign of a determinant: 1, −1, or 0 (also for NaN).
 fn sign(determinant: f64) -> i64 {
     match determinant.partial_cmp(&0.0) {
         Some(Ordering::Greater) => 1,
@@ -32,8 +33,8 @@ fn sign(determinant: f64) -> i64 {
     }
 }
 
-/// The contribution of a segment in 2D, whose left is inside. A point on a segment across the ray
-/// may go undetected; then its winding number is that of a point beside it.
+/// Returns the contribution of a segment in 2D, whose left is inside. A point on a segment across
+/// the ray may go undetected; the winding number is then that of a point beside the segment.
 pub(super) fn of_segment(
     ends: [Point<f64, 2>; 2],
     point: &Point<f64, 2>,
@@ -47,7 +48,7 @@ pub(super) fn of_segment(
         return Some(0);
     }
     let side = sign(area(&ends[0], &ends[1], point));
-    // If the segment rises on the side of larger x, the point is on its left; exchanging x and y
+    // If the segment rises on the side of larger x, the point is on its left. Exchanging x and y
     // exchanges left and right.
     let is_above = (rises == (side > 0)) == (direction.axis == 0);
     match side {
@@ -57,8 +58,9 @@ pub(super) fn of_segment(
     }
 }
 
-/// The contribution of a triangle in 3D, whose front is outside. A point on a triangle parallel to
-/// the ray may go undetected; then its winding number is that of a point beside it.
+/// Returns the contribution of a triangle in 3D, whose front is outside. A point on a triangle
+/// parallel to the ray may go undetected; the winding number is then that of a point beside the
+/// triangle.
 pub(super) fn of_triangle(
     corners: [Point<f64, 3>; 3],
     point: &Point<f64, 3>,
@@ -72,7 +74,8 @@ pub(super) fn of_triangle(
         return Some(0);
     }
     let side = sign(volume(&corners[0], &corners[1], &corners[2], point));
-    // A triangle that appears counter-clockwise against the axis has its back towards points below.
+    // A triangle that appears counter-clockwise seen against the axis has its back towards points
+    // below it.
     let is_above = side * around < 0;
     match side {
         0 => None,
@@ -83,8 +86,8 @@ pub(super) fn of_triangle(
     }
 }
 
-/// The winding of three sides around a point in 2D: 0, or the sign of their turn. A point on a side
-/// counts as moved by (ε, ε²).
+/// Returns the winding number of three sides around a point in 2D: 0, or the sign of their turn. A
+/// point on a side is treated as moved by (ε, ε²).
 fn winding_around(corners: &[Point<f64, 2>; 3], point: &Point<f64, 2>) -> i64 {
     let one = |at: usize| {
         let (a, b) = (&corners[at], &corners[(at + 1) % 3]);
@@ -109,7 +112,7 @@ mod tests {
         })
     }
 
-    /// All 8 points of a grid of three by three around the middle one, as an outline.
+    /// Tests an outline of the 8 outer points of a grid of three by three.
     #[test]
     fn an_outline_along_the_ray() {
         let ring = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
@@ -131,7 +134,7 @@ mod tests {
         }
     }
 
-    /// The 8 corners, the edge midpoints and the face centres of a cube, as a surface.
+    /// Tests a surface of the 8 corners, the edge midpoints and the face centres of a cube.
     #[test]
     fn a_surface_along_the_ray() {
         let mut triangles = Vec::new();

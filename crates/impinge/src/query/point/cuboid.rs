@@ -4,7 +4,7 @@ use super::SurfacePoint;
 use crate::math::{Point, Real, max, min};
 use crate::shape::FeatureId;
 
-/// Outside, every coordinate is clamped; inside, the nearest face is used.
+/// For a point outside, every coordinate is clamped; for a point inside, the nearest face is used.
 ///
 /// Corners may be at infinity.
 pub(super) fn surface_point<N: Real, const D: usize>(
@@ -23,7 +23,8 @@ pub(super) fn surface_point<N: Real, const D: usize>(
     SurfacePoint::on(nearest, feature_beyond(corners, point))
 }
 
-/// The nearest face, of equals the lowest number.
+/// Returns the nearest point on the nearest face; of several such faces on the one with the lowest
+/// index.
 fn on_nearest_face<N: Real, const D: usize>(
     corners: [&Point<N, D>; 2],
     point: &Point<N, D>,
@@ -48,8 +49,8 @@ fn on_nearest_face<N: Real, const D: usize>(
     SurfacePoint { point: nearest, feature: FeatureId::Face(number), is_inside: true }
 }
 
-/// The feature that is nearest to a point outside: a face if one coordinate lies beyond the box, a
-/// vertex if all do, else an edge.
+/// Returns the feature that is nearest to a point outside: a face if one coordinate lies beyond the
+/// box, a vertex if all do, else an edge.
 fn feature_beyond<N: Real, const D: usize>(
     corners: [&Point<N, D>; 2],
     point: &Point<N, D>,

@@ -1,11 +1,12 @@
-//! The nearest point of the surface of a cylinder, in the half-plane of the point through the axis.
+//! The nearest point of the surface of a cylinder, computed in the half-plane through the y axis
+//! and the query point.
 
 use super::SurfacePoint;
 use crate::math::{Point, Real, Vector, max, min, unit};
 use crate::shape::{Cylinder, FeatureId};
 
-/// A 3D point as a distance from the y axis, a height, and the direction away from the axis (the x
-/// axis for a point on the axis). It reduces solids of revolution to 2D.
+/// A 3D point as its distance from the y axis, its height, and the direction away from the axis
+/// (the x axis for a point on the y axis). It reduces queries of solids of revolution to 2D.
 pub(super) struct Meridian<N: Real> {
     pub(super) flat: Point<N, 2>,
     away: Vector<N, 2>,
@@ -37,7 +38,7 @@ pub(super) fn surface_point<N: Real>(
     let (beyond_side, beyond_cap) = (away > radius, y.abs() > half_height);
     let is_inside = !beyond_side && !beyond_cap;
     if is_inside {
-        // The caps have the lower numbers and win a tie.
+        // The caps have the lower indices and win a tie.
         let on_side = radius - away < half_height - y.abs();
         let (feature, x, y) = if on_side { (2, radius, y) } else { (cap, away, cap_y) };
         let nearest = meridian.lift(&Point::<N, 2>::new(x, y));

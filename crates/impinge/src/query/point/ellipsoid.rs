@@ -5,8 +5,8 @@ use crate::collide::separation::balls::ball_ellipsoid::project;
 use crate::math::{Point, Real};
 use crate::shape::{Ellipsoid, FeatureId, SupportMap};
 
-/// The point from the separation of a ball of radius zero. An ellipsoid without thickness is a flat
-/// set.
+/// Returns the point found by the separation from a ball of radius zero. An ellipsoid with a zero
+/// half axis is treated as a set without interior.
 pub(super) fn surface_point<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,

@@ -1,9 +1,9 @@
 //! Signed distance and containment of closed meshes and polylines.
 //!
-//! The sign of a distance is that of the winding number, which [`crossing`](super::crossing) counts
-//! exactly. Signs from the normal at the nearest feature (Bærentzen and Aanæs, "Signed distance
-//! computation using the angle weighted pseudonormal", 2005) need a manifold, and in floating point
-//! fail at needles; the tests compare the two.
+//! The sign of a distance follows from the winding number, which [`crossing`](super::crossing)
+//! computes exactly. Signs from the normal at the nearest feature (Bærentzen and Aanæs, "Signed
+//! distance computation using the angle weighted pseudonormal", 2005) need a manifold, and in
+//! floating point fail at needles; the tests compare both methods.
 
 use super::crossing::{RayDirection, of_segment, of_triangle};
 use crate::bounding_volume::Aabb;
@@ -14,10 +14,11 @@ use crate::tables::entries;
 
 impl<N: Real> TriMesh<N, 3> {
     /// Whether the point, in the frame of the mesh, lies in the volume that the mesh bounds, or on
-    /// the mesh; `None` if the mesh [bounds none](Self::is_volume).
+    /// the mesh; `None` if the mesh [does not bound a volume](Self::is_volume).
     ///
-    /// [`Self::signed_distance`] is then zero or negative, and defines the inside. A point that is
-    /// not finite is never inside. Cost: O(log n) and the triangles over the point along one axis.
+    /// True exactly if [`Self::signed_distance`], which defines the inside, is zero or negative. A
+    /// point that is not finite is never inside. The cost is O(log n) plus the triangles over the
+    /// point along one axis.
     #[must_use]
     pub fn encloses(&self, point: &Point<N, 3>) -> Option<bool> {
         self.is_volume().then(|| {
@@ -27,19 +28,20 @@ impl<N: Real> TriMesh<N, 3> {
     }
 
     /// Returns the distance from the point, in the frame of the mesh, to the nearest triangle:
-    /// negative in the volume that the mesh bounds, zero on the mesh; `None` if the mesh [bounds
-    /// none](Self::is_volume).
+    /// negative in the volume that the mesh bounds, zero on the mesh; `None` if the mesh [does not
+    /// bound a volume](Self::is_volume).
     ///
     /// The inside is the set of points around which the mesh winds, in either direction: an overlap
     /// of bodies is inside both, the cavity within a reversed inner surface is outside. The winding
     /// number decides the sign and is exact for the given coordinates: no crack, needle or corner
-    /// in line with the point makes it wrong. (It assumes that the coordinates are within a factor
-    /// of 1e90 of each other.) As for all sets without thickness, a point within rounding of a
-    /// triangle lies on it.
+    /// in line with the point makes it wrong. (This assumes that the magnitudes of the coordinates
+    /// are within a factor of 1e90 of each other.) As for all sets without thickness, a point
+    /// within rounding of a triangle lies on it.
     ///
     /// All other queries, also those of [`PointQuery`](crate::query::PointQuery), treat the mesh as
     /// a surface, unless it is [solid](Self::solid). A point that is not finite is infinitely far
-    /// away. Cost: a search of the nearest triangle, and of those over the point along one axis.
+    /// away. The cost is a search for the nearest triangle, and one for the triangles over the
+    /// point along one axis.
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -57,12 +59,13 @@ impl<N: Real> TriMesh<N, 3> {
         self.is_volume().then(|| signed(self, point, || self.winding(point)))
     }
 
-    /// The winding number of the mesh around the point; `None` if the point lies on it.
+    /// Returns the winding number of the mesh around the point; `None` if the point lies on the
+    /// mesh.
     fn winding(&self, point: &Point<N, 3>) -> Option<i64> {
         self.winding_of(point, |_| true)
     }
 
-    /// [`Self::winding`] of the triangles for which `counts` is true.
+    /// Returns the winding number of the triangles for which `counts` is true.
     pub(crate) fn winding_of(
         &self,
         point: &Point<N, 3>,
@@ -81,10 +84,11 @@ impl<N: Real> TriMesh<N, 3> {
 
 impl<N: Real> Polyline<N, 2> {
     /// Whether the point, in the frame of the line, lies in the area that the line bounds, or on
-    /// the line; `None` if the line [bounds none](Self::is_outline).
+    /// the line; `None` if the line [does not bound an area](Self::is_outline).
     ///
-    /// [`Self::signed_distance`] is then zero or negative, and defines the inside. A point that is
-    /// not finite is never inside. Cost: O(log n) and the segments beside the point along one axis.
+    /// True exactly if [`Self::signed_distance`], which defines the inside, is zero or negative. A
+    /// point that is not finite is never inside. The cost is O(log n) plus the segments beside the
+    /// point along one axis.
     #[must_use]
     pub fn encloses(&self, point: &Point<N, 2>) -> Option<bool> {
         self.is_outline().then(|| {
@@ -94,8 +98,8 @@ impl<N: Real> Polyline<N, 2> {
     }
 
     /// Returns the distance from the point, in the frame of the line, to the nearest segment:
-    /// negative in the area that the line bounds, zero on the line; `None` if the line [bounds
-    /// none](Self::is_outline).
+    /// negative in the area that the line bounds, zero on the line; `None` if the line [does not
+    /// bound an area](Self::is_outline).
     ///
     /// As for closed meshes in 3D ([`TriMesh::signed_distance`]), the inside is the set of points
     /// around which the line winds, in either direction, and is decided exactly.
@@ -114,12 +118,13 @@ impl<N: Real> Polyline<N, 2> {
         self.is_outline().then(|| signed(self, point, || self.winding(point)))
     }
 
-    /// The winding number of the line around the point; `None` if the point lies on it.
+    /// Returns the winding number of the line around the point; `None` if the point lies on the
+    /// line.
     fn winding(&self, point: &Point<N, 2>) -> Option<i64> {
         self.winding_of(point, |_| true)
     }
 
-    /// [`Self::winding`] of the segments for which `counts` is true.
+    /// Returns the winding number of the segments for which `counts` is true.
     pub(crate) fn winding_of(
         &self,
         point: &Point<N, 2>,
@@ -144,7 +149,7 @@ fn touches<N: Space<D>, const D: usize>(
     entries::nearest_part(parts, point, true).is_some()
 }
 
-/// The distance to the nearest part, with the sign from the winding number.
+/// Returns the distance to the nearest part, with the sign given by the winding number.
 fn signed<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
@@ -153,7 +158,7 @@ fn signed<N: Space<D>, const D: usize>(
     let Some(nearest) = entries::nearest_part(parts, point, false) else {
         return N::INFINITY;
     };
-    // Parts are thin; the distance is negative inside a body.
+    // The parts are thin, but the distance is negative inside a body.
     let distance = nearest.distance.abs();
     match winding() {
         Some(0) => distance,
@@ -162,8 +167,8 @@ fn signed<N: Space<D>, const D: usize>(
     }
 }
 
-/// Sums the contributions of the parts between a point and the nearest face of the overall box;
-/// `None` if the point lies on one.
+/// Sums the contributions of the parts between a point and the nearest face of the overall box.
+/// `None` if the point lies on a part.
 fn winding<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,
@@ -181,8 +186,8 @@ fn winding<N: Space<D>, const D: usize>(
     sum
 }
 
-/// The shortest way out of a box along an axis, as a thin box; `None` for a point outside the box
-/// or not finite.
+/// Returns the shortest way out of a box along an axis: its direction, and a box without width
+/// along it. `None` for a point outside the box, and for a point that is not finite.
 fn shortest_exit<N: Real, const D: usize>(
     bounds: &Aabb<N, D>,
     point: &Point<N, D>,
@@ -209,8 +214,8 @@ fn shortest_exit<N: Real, const D: usize>(
     Some((direction, Aabb::try_new(low, high).ok()?))
 }
 
-/// The power of two by which coordinates are divided, so that products of three neither overflow
-/// nor underflow, and the point divided by it.
+/// Returns the power of two by which coordinates are divided, so that products of three neither
+/// overflow nor underflow, and the point divided by that power.
 fn scaled<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,
@@ -221,7 +226,7 @@ fn scaled<N: Space<D>, const D: usize>(
     (scale, lifted(point, scale))
 }
 
-/// A point in doubles, divided by a power of two: exact unless a coordinate underflows.
+/// Returns a point in doubles, divided by a power of two; exact unless a coordinate underflows.
 fn lifted<N: Real, const D: usize>(point: &Point<N, D>, scale: f64) -> Point<f64, D> {
     Point::from(point.coords.map(|x| x.as_f64() / scale))
 }

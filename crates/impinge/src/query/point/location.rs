@@ -18,20 +18,20 @@ use crate::shape::{FeatureId, Geometry, Kind, Segment, Triangle};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLocation<N: Real> {
-    /// The part of a composite; 0 for a convex solid.
+    /// The index of the part of a composite; 0 for a convex solid.
     pub part: u32,
-    /// The feature of that part that contains the nearest point of its boundary.
+    /// The feature of that part that contains the nearest point of the part's boundary.
     pub feature: FeatureId,
     /// The barycentric coordinates of the projected point in the part.
     pub barycentric: Barycentric<N>,
 }
 
-/// A point as the weighted mean of corners: no weight is negative, and they sum to one up to
-/// rounding. On a side or at a corner the other weights are exactly zero.
+/// A point as the weighted mean of corners. No weight is negative, and the weights sum to one up to
+/// rounding. For a point on a side or at a corner the other weights are exactly zero.
 ///
 /// A point that lies beside a triangle by rounding is replaced by the nearest point of the
 /// triangle. The weights reproduce the point up to rounding of the part's size, however thin the
-/// triangle.
+/// triangle is.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -47,17 +47,17 @@ pub struct PointLocation<N: Real> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Barycentric<N: Real> {
-    /// The weights of the ends of a segment.
+    /// The weights of the two ends of a segment.
     Segment([N; 2]),
-    /// The weights of the corners of a triangle.
+    /// The weights of the three corners of a triangle.
     Triangle([N; 3]),
     /// The part is neither a segment nor a triangle.
     Undefined,
 }
 
 impl<N: Real> Barycentric<N> {
-    /// The weights of a point of a solid. `feature` is the boundary feature that the point lies on;
-    /// `None` if it may lie inside.
+    /// Returns the weights of a point of a solid. `feature` is the boundary feature that contains
+    /// the point; `None` if the point may lie inside.
     pub(crate) fn of<const D: usize>(
         solid: Geometry<'_, N, D>,
         point: &Point<N, D>,
@@ -76,7 +76,7 @@ fn of_segment<N: Real, const D: usize>(segment: &Segment<N, D>, point: &Point<N,
     [N::ONE - fraction, fraction]
 }
 
-/// The weights of a point of a triangle; exactly zero for corners outside of `feature`.
+/// Returns the weights of a point of a triangle; exactly zero for corners outside `feature`.
 fn of_triangle<N: Real, const D: usize>(
     triangle: &Triangle<N, D>,
     point: &Point<N, D>,

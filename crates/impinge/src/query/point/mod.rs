@@ -1,7 +1,8 @@
 //! Point queries: containment, distance, and the nearest point of the surface.
 //!
-//! Every answer derives from the nearest point of the boundary in the local frame, found by closed
-//! forms: one file per shape, and one table per dimension (`point2`, `point3`).
+//! Every result is derived from the nearest point of the boundary in the local frame, which has a
+//! closed form for most shapes. There is one file per shape, and one table per dimension (`point2`,
+//! `point3`).
 
 mod ball;
 mod capsule;
@@ -53,34 +54,36 @@ use crate::tables::entries;
 pub struct PointProjection<N: Real, const D: usize> {
     /// Whether the given point lies in the solid or on its surface.
     pub is_inside: bool,
-    /// The nearest point, in the frame of the query.
+    /// The nearest point, in the frame in which the query was made.
     pub point: Point<N, D>,
 }
 
 /// Queries of a point and a solid; implemented for every [`Shape`].
 ///
-/// A `solid` is the set with its interior; without `solid` only its boundary counts. A point on the
-/// boundary is inside. Sets without thickness (segments; triangles in 3D) contain the points that
-/// lie on them within rounding, which is a few units in the last place of the largest coordinate.
+/// With `solid`, a shape is the set with its interior; without `solid` it is the boundary alone. A
+/// point on the boundary is inside. Sets without thickness (segments; triangles in 3D) contain the
+/// points that lie on them within rounding, which is a few units in the last place of the largest
+/// coordinate.
 ///
-/// If several points are equally near, the answer is deterministic: among faces the lowest number
-/// wins, and an undefined direction (from the centre of a ball, from the axis of a capsule,
-/// cylinder or cone) is the first coordinate axis that is valid.
+/// If several points are equally near, the result is deterministic: the face with the lowest index
+/// wins. An undefined direction (from the centre of a ball, from the axis of a capsule, cylinder or
+/// cone) is the first coordinate axis that is valid.
 ///
 /// `contains_point`, `project_point(…, true).is_inside` and `distance_to_point(…, true) == 0`
 /// always agree. A point that is not finite is never inside; its projection and distance are
 /// meaningless.
 ///
-/// A composite is the union of its parts: a point is inside if it is inside a part. Outside, the
-/// nearest part counts; inside, the part in which the point is deepest, with the nearest point of
-/// that part's own boundary, which may lie inside another part. So the depth is at most the depth
-/// in the union, and equal to it where parts do not overlap. Of several parts the lowest number
-/// wins. Triangles in 3D and segments are surfaces, which contain the points on them and enclose
-/// nothing (but closed meshes have [`signed_distance`](crate::shape::TriMesh::signed_distance));
-/// distances from them are as accurate far from the mesh's origin as near it. A composite without
-/// parts is infinitely far from every point.
+/// A composite is the union of its parts: a point is inside if it is inside a part. For a point
+/// outside, the nearest part decides. For a point inside, the part in which it is deepest decides,
+/// with the nearest point of that part's own boundary, which may lie inside another part. So the
+/// depth is at most the depth in the union, and equal to it where parts do not overlap. Of several
+/// equal parts the one with the lowest index wins. Triangles in 3D and segments are surfaces, which
+/// contain the points on them and enclose nothing (but closed meshes have
+/// [`signed_distance`](crate::shape::TriMesh::signed_distance)). Distances from them are as
+/// accurate far from the mesh's origin as near it. A composite without parts is infinitely far from
+/// every point.
 ///
-/// Cost on a composite: a search of the parts near the point.
+/// For a composite, the cost is a search for the parts near the point.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -94,17 +97,18 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// assert_eq!(cube.distance_to_point(&place, &Point::new(10.5, 0.0, 0.0), false), -0.5, "inside");
 /// ```
 pub trait PointQuery<N: Space<D>, const D: usize> {
-    /// Returns the nearest point of the boundary, and the feature that it lies on, in the local
+    /// Returns the nearest point of the boundary, and the feature that contains it, in the local
     /// frame.
     ///
-    /// The other methods derive from it. [`PointProjection::point`] is on the boundary even if the
-    /// given point is inside.
+    /// The other methods are derived from this one. [`PointProjection::point`] is on the boundary
+    /// even if the given point is inside.
     fn project_local_point(&self, point: &Point<N, D>) -> (PointProjection<N, D>, FeatureId);
 
-    /// [`Self::project_local_point`] with the part of a composite and the weights of its corners.
+    /// Returns [`Self::project_local_point`] with the part of a composite and the barycentric
+    /// weights of its corners.
     ///
-    /// With `solid`, the projection of a point inside is the point itself, with its own weights;
-    /// the feature still is that of the nearest point of the boundary.
+    /// With `solid`, the projection of a point inside is the point itself, with the weights of that
+    /// point. The feature is still that of the nearest point of the boundary.
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -123,17 +127,18 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
         solid: bool,
     ) -> (PointProjection<N, D>, PointLocation<N>);
 
-    /// The signed distance to the boundary in the local frame: negative inside.
+    /// Returns the signed distance to the boundary in the local frame: negative inside.
     fn signed_distance_to_local_point(&self, point: &Point<N, D>) -> N;
 
-    /// Whether the point of the local frame lies in the solid or on its boundary.
+    /// Whether the point, given in the local frame, lies in the solid or on its boundary.
     fn contains_local_point(&self, point: &Point<N, D>) -> bool {
         self.project_local_point(point).0.is_inside
     }
 
-    /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame.
+    /// Returns the nearest point of the solid, or without `solid` of its boundary, placed at `m`,
+    /// in the world frame.
     ///
-    /// For a solid, a point inside is its own projection, to the bit.
+    /// With `solid`, a point inside is its own projection, bitwise equal.
     fn project_point<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -145,10 +150,10 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
         entries::placed_projection(&local, &pose, point, solid)
     }
 
-    /// The distance from the solid placed at `m` to the point.
+    /// Returns the distance from the shape placed at `m` to the point.
     ///
-    /// For a solid it is zero inside; for a boundary it is negative inside: minus the distance to
-    /// the nearest point of the boundary.
+    /// With `solid` the distance is zero inside; without it the distance is negative inside: minus
+    /// the distance to the nearest point of the boundary.
     fn distance_to_point<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -157,7 +162,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     ) -> N {
         let local = entries::point_within(&R::view(m).pose(), point);
         let distance = self.signed_distance_to_local_point(&local);
-        // By comparison, so that NaN is kept.
+        // The comparison keeps NaN.
         if solid && distance < N::ZERO { N::ZERO } else { distance }
     }
 
@@ -170,8 +175,8 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
         self.contains_local_point(&entries::point_within(&R::view(m).pose(), point))
     }
 
-    /// The nearest point of the boundary of the solid placed at `m`, in the world frame, and the
-    /// feature that it lies on.
+    /// Returns the nearest point of the boundary of the solid placed at `m`, in the world frame,
+    /// and the feature that contains it.
     fn project_point_with_feature<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -182,8 +187,9 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
         (entries::placed_projection(&local, &pose, point, false), feature)
     }
 
-    /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame, and
-    /// its location on the solid: [`Self::project_local_point_with_location`].
+    /// Returns the nearest point of the solid, or without `solid` of its boundary, placed at `m`,
+    /// in the world frame, and its location on the solid: see
+    /// [`Self::project_local_point_with_location`].
     fn project_point_with_location<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -194,7 +200,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     }
 }
 
-/// [`PointQuery::project_point_with_location`] at a pose.
+/// Implements [`PointQuery::project_point_with_location`] for a pose.
 #[inline]
 pub(crate) fn located_at<N: Space<D>, const D: usize>(
     shape: &(impl PointQuery<N, D> + ?Sized),
@@ -207,7 +213,7 @@ pub(crate) fn located_at<N: Space<D>, const D: usize>(
     (placed(&local, pose, point, solid), location)
 }
 
-/// Converts a projection to the world frame.
+/// Converts a projection from the local frame to the world frame.
 pub(crate) fn placed<N: Real, const D: usize>(
     local: &PointProjection<N, D>,
     pose: &Pose<N, D>,
@@ -217,9 +223,9 @@ pub(crate) fn placed<N: Real, const D: usize>(
     PointProjection { point: pose.point(&local.point), ..*local }.of_solid(point, solid)
 }
 
-/// The nearest point of a solid (or of its boundary) placed at `pose`, in the outer frame, and its
-/// distance: the magnitude of [`PointQuery::distance_to_point`]. `None` for a composite without
-/// parts.
+/// Returns the nearest point of a solid, or without `solid` of its boundary, placed at `pose`, in
+/// the outer frame, and its distance: the magnitude of [`PointQuery::distance_to_point`]. `None`
+/// for a composite without parts.
 #[inline]
 pub(crate) fn project<N: Space<D>, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -240,7 +246,7 @@ pub(crate) fn project<N: Space<D>, const D: usize>(
 }
 
 /// Whether a ball or a box does not contain the point and is farther from it than `farthest` by
-/// more than rounding; false for other shapes. The point is in the local frame.
+/// more than rounding. False for other shapes. The point is in the local frame.
 #[inline(always)]
 pub(crate) fn is_surely_beyond<N: Real, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -264,8 +270,8 @@ pub(crate) fn is_surely_beyond<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PointProjection<N, D> {
-    /// Converts a projection on the boundary to one on the solid: a point inside is its own
-    /// projection.
+    /// Converts a projection onto the boundary to a projection onto the solid: with `solid`, a
+    /// point inside is its own projection.
     fn of_solid(self, point: &Point<N, D>, solid: bool) -> Self {
         if solid && self.is_inside { Self { point: *point, ..self } } else { self }
     }
@@ -293,7 +299,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> PointQuery<N, D> for 
     }
 }
 
-/// See [`PointQuery::project_local_point`].
+/// Implements [`PointQuery::project_local_point`].
 #[inline]
 pub(crate) fn project_on<N: Space<D>, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -308,7 +314,7 @@ pub(crate) fn project_on<N: Space<D>, const D: usize>(
     }
 }
 
-/// See [`PointQuery::project_local_point_with_location`].
+/// Implements [`PointQuery::project_local_point_with_location`].
 #[inline]
 pub(crate) fn locate_on<N: Space<D>, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -330,7 +336,7 @@ pub(crate) fn locate_on<N: Space<D>, const D: usize>(
     })
 }
 
-/// See [`PointQuery::signed_distance_to_local_point`].
+/// Implements [`PointQuery::signed_distance_to_local_point`].
 #[inline]
 pub(crate) fn signed_distance_on<N: Space<D>, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -342,11 +348,11 @@ pub(crate) fn signed_distance_on<N: Space<D>, const D: usize>(
     }
     let (nearest, _) = project_on(shape, point);
     let distance = length(&(point - nearest.point));
-    // Subtracting from zero, so that the distance on the boundary is not −0.
+    // Subtracts from zero, so that the distance on the boundary is not −0.
     if nearest.is_inside { N::ZERO - distance } else { distance }
 }
 
-/// See [`PointQuery::contains_local_point`].
+/// Implements [`PointQuery::contains_local_point`].
 #[inline]
 pub(crate) fn holds<N: Space<D>, const D: usize>(
     shape: Geometry<'_, N, D>,
@@ -358,7 +364,7 @@ pub(crate) fn holds<N: Space<D>, const D: usize>(
     }
 }
 
-/// The projection on a shape without points.
+/// Returns the projection onto a shape without points: the point itself, not inside.
 fn nowhere<N: Real, const D: usize>(point: &Point<N, D>) -> PointProjection<N, D> {
     PointProjection { is_inside: false, point: *point }
 }
@@ -368,7 +374,7 @@ impl<N: Real, const D: usize> PartPoint<N, D> {
         PointProjection { is_inside: self.distance <= N::ZERO, point: self.point }
     }
 
-    /// The location on the part of the projection of `point`.
+    /// Returns the location on the part of the projection of `point`.
     fn location(
         &self,
         parts: &dyn CompositeShape<N, D>,

@@ -1,4 +1,4 @@
-//! Nearest points in 2D: the algorithm of each kind of solid.
+//! The table of nearest-point algorithms in 2D, by kind of solid.
 
 use super::{
     SurfacePoint, ball, capsule, cuboid, ellipsoid, plane, polytope, rounded, segment, support_map,
@@ -8,7 +8,7 @@ use crate::math::{Point, Real};
 use crate::query::composite;
 use crate::shape::Kind;
 
-/// The nearest point of the solid's boundary, in its local frame.
+/// Returns the nearest point of the solid's boundary, in its local frame.
 pub(crate) fn surface_point<N: Real>(
     kind: Kind<'_, N, 2>,
     point: &Point<N, 2>,

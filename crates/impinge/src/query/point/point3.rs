@@ -1,4 +1,4 @@
-//! Nearest points in 3D: the algorithm of each kind of solid.
+//! The table of nearest-point algorithms in 3D, by kind of solid.
 
 use super::{
     SurfacePoint, ball, capsule, cone, cuboid, cylinder, ellipsoid, plane, polytope, rounded,
@@ -8,7 +8,7 @@ use crate::math::{Point, Real};
 use crate::query::composite;
 use crate::shape::Kind;
 
-/// The nearest point of the solid's boundary, in its local frame.
+/// Returns the nearest point of the solid's boundary, in its local frame.
 pub(crate) fn surface_point<N: Real>(
     kind: Kind<'_, N, 3>,
     point: &Point<N, 3>,

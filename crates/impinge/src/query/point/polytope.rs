@@ -5,8 +5,8 @@ use super::segment::{feature_at, nearest};
 use crate::math::{Mapped, Point, Real, cross};
 use crate::shape::{FeatureId, Polytope, PolytopeFace};
 
-/// For a point inside: its foot on the plane of the nearest face, which is the nearest point of the
-/// boundary because the solid is convex. `None` for a point outside.
+/// For a point inside, returns its projection onto the plane of the nearest face, which is the
+/// nearest point of the boundary because the solid is convex. `None` for a point outside.
 fn from_inside<N: Real, const D: usize>(
     solid: &Polytope<N, D>,
     point: &Point<N, D>,
@@ -20,7 +20,7 @@ fn from_inside<N: Real, const D: usize>(
     })
 }
 
-/// In 2D, outside: the nearest point of all sides.
+/// For a point outside, returns the nearest point of all sides.
 pub(super) fn surface_point2<N: Real>(
     solid: &Polytope<N, 2>,
     point: &Point<N, 2>,
@@ -37,8 +37,8 @@ pub(super) fn surface_point2<N: Real>(
     best
 }
 
-/// In 3D, outside: the nearest foot on a face that contains it, else the nearest point of all
-/// edges.
+/// For a point outside, returns its nearest projection onto a face that contains the projection, or
+/// else the nearest point of all edges.
 pub(super) fn surface_point3<N: Real>(
     solid: &Polytope<N, 3>,
     point: &Point<N, 3>,
@@ -71,7 +71,7 @@ fn on_line<N: Real, const D: usize>(
     SurfacePoint::on(found, feature_at(fraction, ends, between))
 }
 
-/// Whether the foot of the perpendicular from `point` to the face's plane lies in the face.
+/// Whether the projection of `point` onto the face's plane lies in the face.
 fn falls_into<N: Real>(
     solid: &Polytope<N, 3>,
     face: &PolytopeFace<N, 3>,

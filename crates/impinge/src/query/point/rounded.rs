@@ -7,8 +7,8 @@ use crate::math::{Point, Pose, Space};
 use crate::shape::{Ball, FeatureId, Geometry, Kind, Rounded, SupportMap};
 use crate::tables::ByDimension;
 
-/// At the distance of the radius from the nearest point of the inner shape. A radius of zero
-/// changes nothing.
+/// Returns the point at the distance `radius` from the nearest point of the inner shape, towards
+/// `point`. A radius of zero gives the result of the inner shape.
 pub(super) fn surface_point<N: Space<D>, const D: usize>(
     solid: &Rounded<N, D>,
     point: &Point<N, D>,
@@ -17,8 +17,8 @@ pub(super) fn surface_point<N: Space<D>, const D: usize>(
     if radius == N::ZERO {
         return <N::Algorithms>::surface_point(inner.0, point);
     }
-    // By the separation from a ball of radius zero: near the surface and inside, its normal is more
-    // accurate than the difference of two points.
+    // Uses the separation from a ball of radius zero: near the surface and inside, its normal is
+    // more accurate than the difference of two points.
     let ball = Ball::new(N::ZERO);
     let pose12 = Pose::from_translation(-point.coords);
     let pair = Pair { first: Kind::Ball(&ball), second: inner.0, pose12 };
@@ -34,7 +34,7 @@ pub(super) fn surface_point<N: Space<D>, const D: usize>(
     }
 }
 
-/// The feature of the inner shape below a point of the surface.
+/// Returns the feature of the inner shape nearest to a point of the rounded surface.
 fn feature_below<N: Space<D>, const D: usize>(
     inner: Geometry<'_, N, D>,
     point: &Point<N, D>,

@@ -5,9 +5,9 @@ use crate::math::{Mapped, Point, Real, Vector, max, max_component};
 use crate::shape::{FeatureId, Segment, SupportMap};
 
 /// Returns the nearest point of the segment between `ends`, and its parameter: 0 at the first end,
-/// 1 at the second. Equal ends are a point.
+/// 1 at the second. If the ends coincide, the segment is a point.
 ///
-/// Measured from the nearer end, so that long segments lose no digits there.
+/// The position is measured from the nearer end, so that long segments lose no digits there.
 pub(crate) fn nearest<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     point: &Point<N, D>,
@@ -15,7 +15,7 @@ pub(crate) fn nearest<N: Real, const D: usize>(
     let [a, b] = ends;
     let along = b - a;
     let (from_a, to_b) = shares(&along, [&(point - a), &(b - point)]);
-    // Written so that NaN gives an end.
+    // False for NaN, for which an end is returned.
     if from_a > N::ZERO && to_b > N::ZERO {
         let whole = from_a + to_b;
         return if from_a < to_b {
@@ -29,14 +29,14 @@ pub(crate) fn nearest<N: Real, const D: usize>(
     if from_a > N::ZERO { (*b, N::ONE) } else { (*a, N::ZERO) }
 }
 
-/// The components along `along` of two vectors whose sum is `along`, both in the same unit.
+/// Returns the components along `along` of two vectors whose sum is `along`, both in the same unit.
 fn shares<N: Real, const D: usize>(along: &Vector<N, D>, parts: [&Vector<N, D>; 2]) -> (N, N) {
     let [from_a, to_b] = parts.mapped(|part| part.dot(along));
     let whole = from_a + to_b;
     if whole * N::EPSILON > N::MIN_POSITIVE && from_a.abs() + to_b.abs() < N::INFINITY {
         return (from_a, to_b);
     }
-    // The squares overflow or underflow, or lose digits.
+    // The squares would overflow, underflow or lose digits.
     let largest = parts.mapped(max_component);
     let scale = max(largest[0], largest[1]).power_of_two_below();
     let along = along / scale;
@@ -44,7 +44,7 @@ fn shares<N: Real, const D: usize>(along: &Vector<N, D>, parts: [&Vector<N, D>; 
     (from_a, to_b)
 }
 
-/// The feature at a parameter of a segment: an end, or `between`.
+/// Returns the feature at a parameter of a segment: a vertex at or beyond an end, else `between`.
 pub(crate) fn feature_at<N: Real>(fraction: N, ends: [u32; 2], between: FeatureId) -> FeatureId {
     if fraction <= N::ZERO {
         FeatureId::Vertex(ends[0])

@@ -5,9 +5,10 @@ use crate::convex::{Simplicial, separation};
 use crate::math::{Point, Pose};
 use crate::shape::{Ball, Feature, FeatureId, SupportMap};
 
-/// From the separation of the solid and a ball of radius zero.
+/// Returns the nearest point from the separation of the solid and a ball of radius zero.
 ///
-/// As accurate as [`separation`]; the feature is the supporting feature for the normal.
+/// The result is as accurate as [`separation`]; the feature is the supporting feature for the
+/// normal.
 pub(super) fn surface_point<N: Simplicial<D>, const D: usize>(
     map: &dyn SupportMap<N, D>,
     point: &Point<N, D>,
@@ -19,8 +20,8 @@ pub(super) fn surface_point<N: Simplicial<D>, const D: usize>(
     };
     let mut feature = Feature::default();
     map.core_feature(&found.normal, &mut feature);
-    // From the point itself along the normal: on a round surface this is off by the square of the
-    // normal's error, a combination of support points by the error itself.
+    // The point is computed from `point` along the normal. On a round surface its error is the
+    // square of the normal's error; a combination of support points would have the error itself.
     let nearest = point - found.normal * found.distance;
     let is_inside = found.distance <= N::ZERO;
     SurfacePoint { point: nearest, feature: feature.id, is_inside }

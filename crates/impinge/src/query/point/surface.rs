@@ -1,4 +1,4 @@
-//! The nearest point of a boundary, and the rules by which a query point counts as inside.
+//! The nearest point of a boundary, and the rules by which a query point is treated as inside.
 
 use super::PointProjection;
 use crate::math::{Point, Real, Vector, max, max_component, unit};
@@ -14,21 +14,22 @@ pub(crate) struct SurfacePoint<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> SurfacePoint<N, D> {
-    /// The nearest point of a set without interior.
+    /// Returns the nearest point of a set without interior.
     pub(super) const fn on(point: Point<N, D>, feature: FeatureId) -> Self {
         Self { point, feature, is_inside: false }
     }
 
-    /// The one of two nearest points of parts that is nearer to `query`; the first if equal.
+    /// Returns whichever of two nearest points of parts is nearer to `query`; `self` if they are
+    /// equally near.
     pub(super) fn nearer(self, other: Self, query: &Point<N, D>) -> Self {
         if self.is_beaten_by(&other, query) { other } else { self }
     }
 
-    /// Whether the other of two nearest points of parts is nearer to `query`.
+    /// Whether `other` is nearer to `query` than `self`.
     pub(super) fn is_beaten_by(&self, other: &Self, query: &Point<N, D>) -> bool {
         let (first, second) = (query - self.point, query - other.point);
         let (square1, square2) = (first.norm_squared(), second.norm_squared());
-        // Squares of large and of small lengths overflow and underflow.
+        // The squares of very large and very small lengths overflow and underflow.
         let usable = |square: N| square > N::MIN_POSITIVE && square < N::INFINITY;
         match usable(square1) && usable(square2) {
             true => square2 < square1,
@@ -36,19 +37,19 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
         }
     }
 
-    /// For a set without thickness: makes a query point that lies on it within rounding its own
+    /// For a set without thickness: if `query` lies on it within rounding, makes `query` its own
     /// projection.
     ///
-    /// `reach` is the largest distance of the set from the local origin: the rounding error of
-    /// coordinates is proportional to it and to those of the query point.
+    /// `reach` is the largest distance of the set from the local origin. The rounding error of
+    /// coordinates is proportional to it and to the coordinates of the query point.
     pub(super) fn snapped(self, query: &Point<N, D>, reach: N) -> Self {
         let scale = max(max_component(&query.coords), reach);
         let near = length(&(query - self.point)) <= N::lit(8.0) * N::EPSILON * scale;
         if near { Self { point: *query, ..self } } else { self }
     }
 
-    /// Converts to the public form. A point that is its own projection is inside, whatever the
-    /// arithmetic of the shape says: distance zero and being inside are equivalent.
+    /// Converts to the public form. A point that is its own projection is inside, whatever
+    /// `is_inside` says, so that distance zero and being inside are equivalent.
     pub(crate) fn projection(self, query: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
         let finite = query.iter().all(|x| x.is_finite_number());
         let touches = self.is_inside || length(&(query - self.point)) == N::ZERO;
@@ -57,7 +58,7 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
     }
 }
 
-/// The length of a vector, right also if its square overflows or underflows; NaN for NaN.
+/// Returns the length of a vector, correct also if its square overflows or underflows; NaN for NaN.
 pub(crate) fn length<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
     unit(v).map_or_else(|| v.norm(), |(_, length)| length)
 }

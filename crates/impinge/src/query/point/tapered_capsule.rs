@@ -6,7 +6,8 @@ use crate::collide::separation::balls::ball_tapered::project;
 use crate::math::{Point, Real};
 use crate::shape::TaperedCapsule;
 
-/// The point from the separation of a ball of radius zero. Without any radius it is a segment.
+/// Returns the point found by the separation from a ball of radius zero. If both radii are zero,
+/// the shape is a segment.
 pub(super) fn surface_point<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     point: &Point<N, D>,

@@ -5,17 +5,17 @@ use super::segment::{self, feature_at};
 use crate::math::{Mapped, Point, Real, max, max_component};
 use crate::shape::FeatureId;
 
-/// A point of a triangle that is near to a query point.
+/// A point of a triangle near a query point.
 #[derive(Clone, Copy)]
 pub(super) struct OnTriangle<N: Real, const D: usize> {
     pub(super) found: SurfacePoint<N, D>,
-    /// The weights of the corners: none is negative, and the sum is one up to rounding. Exactly
-    /// zero for the corners outside of the point's feature.
+    /// The weights of the corners. None is negative, and the sum is one up to rounding. The weights
+    /// of corners outside the point's feature are exactly zero.
     pub(super) weights: [N; 3],
 }
 
 impl<N: Real, const D: usize> OnTriangle<N, D> {
-    /// The one nearer to `query`, the first if equal.
+    /// Returns whichever of two points is nearer to `query`; `self` if they are equally near.
     fn nearer(self, other: Self, query: &Point<N, D>) -> Self {
         if self.found.is_beaten_by(&other.found, query) { other } else { self }
     }
@@ -23,11 +23,11 @@ impl<N: Real, const D: usize> OnTriangle<N, D> {
 
 /// Returns the nearest point of the filled triangle, with `Face(0)` for its interior.
 ///
-/// It is the nearest of four: one on each side and one on the [chord](on_chord) below `point`. Each
-/// is a weighted mean of corners, so that it lies on the triangle up to rounding. One of them is
-/// the nearest up to rounding: a few units of epsilon times the largest coordinate or distance,
-/// without a factor for the shape. Neither a normal nor barycentric coordinates by areas are used,
-/// which are off by l/h units on a triangle of length l and height h.
+/// The result is the nearest of four candidates: one on each side and one on the [chord](on_chord)
+/// below `point`. Each is a weighted mean of corners, so that it lies on the triangle up to
+/// rounding. One of them is the nearest point up to a few epsilon times the largest coordinate or
+/// distance, whatever the shape of the triangle. A normal, or barycentric coordinates from areas,
+/// would have an error of l/h units on a triangle of length l and height h.
 pub(super) fn nearest<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
     point: &Point<N, D>,
@@ -41,7 +41,7 @@ pub(super) fn nearest<N: Real, const D: usize>(
     }
 }
 
-/// The nearest point of the side that leads from a corner to the next.
+/// Returns the nearest point of the side that leads from corner `side` to the next.
 pub(super) fn on_side<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
     side: u32,
@@ -56,14 +56,15 @@ pub(super) fn on_side<N: Real, const D: usize>(
     OnTriangle { found: SurfacePoint::on(nearest, feature), weights }
 }
 
-/// The nearest point of the chord across the longest side at the projection of `point` on that
-/// side; `None` if it is an end of the chord, which lies on a side.
+/// Returns the nearest point of the chord that crosses the triangle perpendicular to its longest
+/// side, at the projection of `point` on that side. `None` if the nearest point is an end of the
+/// chord, which lies on a side.
 ///
 /// If the perpendicular from `point` falls into the triangle, its foot lies on that chord. The
-/// position along the side is off by rounding, d. The angles at the longest side are acute: the
-/// other two sides rise to the opposite corner and fall again, so that the height of the foot is
-/// met within d of it, on the chord or, where the chord ends too low, on the side that it ends on,
-/// however steep that is.
+/// position of the chord along the longest side has a rounding error d. The angles at the longest
+/// side are acute, so the other two sides rise to the opposite corner and fall again. The height of
+/// the foot is therefore found within d of it: on the chord or, where the chord ends too low, on
+/// the side at its end, however steep that side is.
 fn on_chord<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
     sides: &[OnTriangle<N, D>; 3],
@@ -74,8 +75,8 @@ fn on_chord<N: Real, const D: usize>(
     let base = &sides[from];
     let base_share = base.weights[to];
     let (_, peak) = segment::nearest([&corners[from], &corners[to]], &corners[top]);
-    // On the side where the chord ends: the index of its base corner, and the fraction of it below
-    // the end.
+    // For the side at which the chord ends: the index of its base corner, and the fraction of the
+    // side below the chord's end.
     let (start, share) = if base_share <= peak {
         (from, base_share / peak)
     } else {
@@ -92,10 +93,10 @@ fn on_chord<N: Real, const D: usize>(
     })
 }
 
-/// The index of the longest side, the first of equals.
+/// Returns the index of the longest side, the first if there are several.
 fn longest_side<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> usize {
     let sides = [0, 1, 2].mapped(|side| corners[(side + 1) % 3] - corners[side]);
-    // Squares of large and of small lengths overflow and underflow.
+    // The squares of very large and very small lengths overflow and underflow.
     let scale = sides.iter().map(max_component).fold(N::ZERO, max).power_of_two_below();
     let squares = sides.mapped(|side| (side / scale).norm_squared());
     let longer = |a: usize, b: usize| if squares[b] > squares[a] { b } else { a };

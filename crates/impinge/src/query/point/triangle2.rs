@@ -18,9 +18,9 @@ pub(super) fn surface_point<N: Real>(
 
 /// Whether the point lies on the same side of all three lines, or on them.
 ///
-/// The areas are relative to the point: swapping the ends of a side negates its area to the bit, so
-/// two triangles that share a side leave no gap. The box decides for collinear corners, whose areas
-/// are all zero or rounding error.
+/// The areas are computed relative to the point. Swapping the ends of a side negates its area
+/// exactly, so two triangles that share a side leave no gap. For collinear corners, whose areas are
+/// all zero or rounding error, the box decides.
 fn contains<N: Real>(triangle: &Triangle<N, 2>, point: &Point<N, 2>) -> bool {
     let [a, b, c] = triangle.corners().map(|corner| corner - point);
     let areas = [cross2(&a, &b), cross2(&b, &c), cross2(&c, &a)];

@@ -16,11 +16,11 @@ pub(super) fn surface_point<N: Real>(
     SurfacePoint { feature, ..found }.snapped(point, triangle.reach())
 }
 
-/// The face of the triangle on the side of the point.
+/// Returns the face of the triangle on the side of the point.
 fn facing<N: Real>(triangle: &Triangle<N, 3>, point: &Point<N, 3>) -> FeatureId {
     let [a, b, c] = triangle.corners();
     let (to_b, to_c, to_point) = (b - a, c - a, point - a);
-    // In units of a power of two near the size, so that products of lengths stay in range.
+    // Scaled by a power of two near the size, so that products of lengths stay in range.
     let scale = max(max_component(&to_b), max_component(&to_c)).power_of_two_below();
     let normal = cross(&(to_b / scale), &(to_c / scale));
     let height = normal.dot(&(to_point / max_component(&to_point).power_of_two_below()));

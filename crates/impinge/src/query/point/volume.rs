@@ -6,8 +6,9 @@ use crate::math::{Point, Real};
 use crate::shape::FeatureId;
 
 impl<N: Real, const D: usize> Aabb<N, D> {
-    /// The nearest point of the box's boundary, and the feature that it lies on, numbered like those
-    /// of a cuboid; at infinity for a point inside an unbounded box that has no face.
+    /// Returns the nearest point of the box's boundary, and the feature that contains it, with the
+    /// ids of a cuboid's features. The point is at infinity for a point inside an unbounded box
+    /// without faces.
     pub fn project_point_with_feature(
         &self,
         point: &Point<N, D>,
@@ -15,14 +16,15 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         cuboid::surface_point([self.mins(), self.maxs()], point).projection(point)
     }
 
-    /// The nearest point of the box (or of its boundary).
+    /// Returns the nearest point of the box, or without `solid` of its boundary.
     pub fn project_point(&self, point: &Point<N, D>, solid: bool) -> PointProjection<N, D> {
         self.project_point_with_feature(point).0.of_solid(point, solid)
     }
 }
 
 impl<N: Real, const D: usize> BoundingSphere<N, D> {
-    /// The nearest point of the sphere's boundary, and `Face(0)`; NaN if the radius is infinite.
+    /// Returns the nearest point of the sphere's boundary, and `Face(0)`; NaN if the radius is
+    /// infinite.
     pub fn project_point_with_feature(
         &self,
         point: &Point<N, D>,
@@ -32,7 +34,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         SurfacePoint { point: found.point + self.center().coords, ..found }.projection(point)
     }
 
-    /// The nearest point of the sphere (or of its boundary).
+    /// Returns the nearest point of the sphere, or without `solid` of its boundary.
     pub fn project_point(&self, point: &Point<N, D>, solid: bool) -> PointProjection<N, D> {
         self.project_point_with_feature(point).0.of_solid(point, solid)
     }

@@ -1,4 +1,4 @@
-//! A line and a ball: the quadratic that the round parts of all solids share.
+//! A line and a ball: the quadratic equation that the round parts of all solids share.
 
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
@@ -12,29 +12,29 @@ pub(super) struct Roots<N: Real, const D: usize> {
     pub(super) leave: N,
     /// The point of the line that is nearest to the origin.
     middle: Vector<N, D>,
-    /// From the middle to the point of leaving.
+    /// The vector from `middle` to the point where the line leaves.
     half_chord: Vector<N, D>,
 }
 
 impl<N: Real, const D: usize> Roots<N, D> {
-    /// The points of entering and leaving, computed from the middle: accurate however far the
-    /// line's origin is.
+    /// Returns the points of entering and leaving. They are computed from `middle`, and so are
+    /// accurate however far away the line's origin is.
     pub(super) fn points(&self) -> [Vector<N, D>; 2] {
         [self.middle - self.half_chord, self.middle + self.half_chord]
     }
 
-    /// Whether the line stays at one distance, which is `radius`.
+    /// Whether the line stays at the constant distance `radius` from the origin.
     pub(super) fn runs_at(&self, radius: N) -> bool {
         self.leave == N::INFINITY && self.middle.norm() == radius
     }
 }
 
-/// The times at which `origin + t · dir` is at the distance `radius` from zero; `None` if it never
-/// comes within. If `dir` is zero, it is within always or never.
+/// Returns the times at which `origin + t · dir` is at the distance `radius` from zero; `None` if
+/// the line never comes that near. A line with zero `dir` is within that distance always or never.
 ///
-/// After Haines, Günther and Akenine-Möller, "Precision improvements for ray/sphere intersection",
-/// 2019: the discriminant from the point of the line nearest to the centre, the roots without
-/// cancellation.
+/// The method follows Haines, Günther and Akenine-Möller, "Precision improvements for ray/sphere
+/// intersection", 2019: the discriminant is computed from the line's point nearest to the centre,
+/// and the roots without cancellation.
 pub(super) fn roots<N: Real, const D: usize>(
     origin: &Vector<N, D>,
     dir: &Vector<N, D>,
@@ -61,7 +61,8 @@ pub(super) fn roots<N: Real, const D: usize>(
     Some(Roots { enter, leave, middle, half_chord: dir * half })
 }
 
-/// The roots of `squared · t² − 2 · toward · t + product`, given the root of the discriminant.
+/// Returns the roots of `squared · t² − 2 · toward · t + product` in ascending order; `root` is the
+/// square root of the discriminant.
 fn ordered_roots<N: Real>(toward: N, root: N, squared: N, product: N) -> (N, N) {
     let larger = if toward < N::ZERO { toward - root } else { toward + root };
     if larger == N::ZERO {
@@ -71,12 +72,13 @@ fn ordered_roots<N: Real>(toward: N, root: N, squared: N, product: N) -> (N, N) 
     (min(first, second), max(first, second))
 }
 
-/// The span of the line in the ball of `radius` around the local origin.
+/// Returns the span of the line in the ball of `radius` around the local origin.
 pub(super) fn span<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> Option<Span<N, D>> {
     around(&Point::origin(), radius, FeatureId::Face(0), ray)
 }
 
-/// The span of the line in a ball around any center. An infinite ball contains all of it.
+/// Returns the span of the line in a ball around any centre. An infinite ball contains the whole
+/// line.
 pub(super) fn around<N: Real, const D: usize>(
     center: &Point<N, D>,
     radius: N,
@@ -88,7 +90,7 @@ pub(super) fn around<N: Real, const D: usize>(
     }
     let found = roots(&(ray.origin - center), &ray.dir, radius)?;
     let [entry, exit] = found.points();
-    // A ball of radius zero has no normal of its own: it faces the ray.
+    // A ball of radius zero has no normal of its own: the normal faces the ray.
     let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());
     let enter = Crossing::new(found.enter, unit_or(&entry, against), feature);
     let leave = Crossing::new(found.leave, unit_or(&exit, -against), feature);

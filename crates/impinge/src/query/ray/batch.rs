@@ -7,7 +7,7 @@ use crate::bounding_volume::Ray;
 use crate::chunks::each_chunk;
 use crate::math::Real;
 
-/// Rays that are cast together, with their common options.
+/// Rays that are cast together, with the options that they share.
 ///
 /// See [`RayCast::cast_local_rays`](super::RayCast::cast_local_rays).
 ///
@@ -25,33 +25,36 @@ use crate::math::Real;
 pub struct RayBatch<'a, N: Real, const D: usize> {
     /// The rays.
     pub rays: &'a [Ray<N, D>],
-    /// Hits after this time do not count; in units of the direction of each ray.
+    /// The latest time of a hit, inclusive, in units of the direction of each ray.
     pub max_time: N,
-    /// A ray that starts inside hits at time zero; see [`RayCast`](super::RayCast).
+    /// Whether a ray that starts inside hits at time zero; see [`RayCast`](super::RayCast).
     pub solid: bool,
 }
 
 impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
-    /// Rays of unlimited length, against solids.
+    /// Returns a batch of rays of unlimited length, against solids.
     #[must_use]
     pub const fn new(rays: &'a [Ray<N, D>]) -> Self {
         Self { rays, max_time: N::INFINITY, solid: true }
     }
 
-    /// Returns the rays with another [`Self::max_time`].
+    /// Returns the batch with [`Self::max_time`] replaced.
     #[must_use]
     pub const fn until(self, max_time: N) -> Self {
         Self { max_time, ..self }
     }
 
-    /// Returns the rays against boundaries: those that start inside a shape hit where they leave
-    /// it.
+    /// Returns the batch with [`Self::solid`] set to false: rays that start inside a shape hit
+    /// where they leave it.
     #[must_use]
     pub const fn hollow(self) -> Self {
         Self { solid: false, ..self }
     }
 
-    /// Writes the answer of each ray to the entry with its index.
+    /// Writes the result of each ray to the entry with the ray's index.
+    ///
+    /// # Panics
+    /// If `answers` does not have as many entries as there are rays.
     #[track_caller]
     pub(crate) fn each<A>(&self, answers: &mut [A], mut answer: impl FnMut(&Ray<N, D>) -> A) {
         self.check(answers.len());
@@ -60,7 +63,7 @@ impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
         }
     }
 
-    /// Computes the answers chunk by chunk; with the feature `parallel` on several threads.
+    /// Computes the results chunk by chunk; with the feature `parallel` on several threads.
     #[track_caller]
     pub(super) fn each_chunk(
         &self,

@@ -8,10 +8,10 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, max, min, unit, unit_or};
 use crate::shape::{Capsule, FeatureId};
 
-/// The union of two balls and of the round side between them, which is convex: the first entry and
-/// the last exit.
+/// Returns the span of the union of two balls and of the round side between them. The union is
+/// convex, so the span runs from the first entry to the last exit.
 ///
-/// A capsule without radius is a segment.
+/// A capsule without radius is treated as a segment.
 pub(super) fn span<N: Real, const D: usize>(
     capsule: &Capsule<N, D>,
     ray: &Ray<N, D>,
@@ -25,10 +25,10 @@ pub(super) fn span<N: Real, const D: usize>(
     Span::union_of(side(capsule, ray), Span::union_of(at_a, at_b))
 }
 
-/// The span in the cylinder around the segment, cut off flat at its ends.
+/// Returns the span in the cylinder around the segment, cut off flat at its ends.
 ///
-/// The normal is radial at both ends of the span, even if the line passes through a flat end: that
-/// lies inside the balls, and only its rim may come first, by rounding.
+/// The normal is radial at both ends of the span, even if the line passes through a flat end. A
+/// flat end lies inside the balls; only its rim may come first, by rounding.
 fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>> {
     let (a, b) = (capsule.segment().a(), capsule.segment().b());
     let (along, length) = unit(&(b - a))?;
@@ -58,7 +58,7 @@ fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Op
     in_order(&span).then_some(span)
 }
 
-/// Replaces the normals by accurate ones where the line passes through the round side itself.
+/// Replaces the normals by more accurate ones where the line passes through the round side itself.
 fn refined<N: Real, const D: usize>(
     points: &[Vector<N, D>; 2],
     normals: [Vector<N, D>; 2],

@@ -1,4 +1,5 @@
-//! The span in an intersection of half-spaces, by clipping the line with one after the other.
+//! The span of a line in an intersection of half-spaces, found by clipping the line with each
+//! half-space.
 
 use super::span::{Crossing, Span};
 use crate::math::{Real, Vector, max};
@@ -7,20 +8,20 @@ use crate::shape::FeatureId;
 /// A half-space in the local frame: the points where `normal · x ≤ offset`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfSpace<N: Real, const D: usize> {
-    /// Unit.
+    /// The outward unit normal.
     pub(super) normal: Vector<N, D>,
     /// The depth of the line's origin below the boundary: `offset − normal · origin`.
     pub(super) below: N,
-    /// The rate at which the line rises: `normal · dir`.
+    /// The rate at which the line rises along the normal: `normal · dir`.
     pub(super) rise: N,
     pub(super) feature: FeatureId,
 }
 
-/// Clips the line with all half-spaces (Cyrus and Beck 1978); `None` if nothing is left.
+/// Clips `span` with all half-spaces (Cyrus and Beck 1978); `None` if nothing is left.
 ///
-/// A line that only touches the intersection may lose it to the rounding of two divisions. So a
-/// crossing order that is wrong by a few units in the last place counts as touching (Ize, "Robust
-/// BVH Ray Traversal", 2013, has the same bound).
+/// A line that only touches the intersection may be lost to the rounding of two divisions. So two
+/// crossings in the wrong order by a few units in the last place are treated as touching (Ize,
+/// "Robust BVH Ray Traversal", 2013, has the same bound).
 pub(super) fn clipped<N: Real, const D: usize>(
     mut span: Span<N, D>,
     half_spaces: impl IntoIterator<Item = HalfSpace<N, D>>,

@@ -8,8 +8,8 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Point, Real, Vector, cross2, max, min, unit_or};
 use crate::shape::{Cone, Cylinder, FeatureId};
 
-/// The infinite double cone of the slanted side, one nappe of it, clipped by the base and at the
-/// apex. A cone without height is a disk, one without radius a segment.
+/// Clips the lower nappe of the infinite double cone at the base and at the apex. A cone without
+/// height is a disk, a cone without radius a segment.
 pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let (radius, half_height) = (cone.radius(), cone.half_height());
     if half_height == N::ZERO {
@@ -24,17 +24,17 @@ pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3
     clipped(side, caps.mapped(|(sign, feature)| cap(half_height, sign, feature, ray)))
 }
 
-/// The infinite cone below its apex, and a line through it.
+/// The infinite cone below the apex, and a line through it.
 ///
-/// With `(cosine, sine)` of half the opening angle, a point at distance `x` from the axis and
-/// height `y ≤ 0` over the apex is inside where `cosine · x ≤ -sine · y`.
+/// `(cosine, sine)` belong to half the opening angle. A point at the distance `x` from the axis and
+/// the height `y ≤ 0` over the apex is inside where `cosine · x ≤ -sine · y`.
 struct Nappe<N: Real> {
     cosine: N,
     sine: N,
-    /// The origin, in the horizontal plane and in height over the apex.
+    /// The line's origin: its horizontal components, and its height over the apex.
     flat: Vector<N, 2>,
     height: N,
-    /// The direction, split in the same components.
+    /// The line's direction: its horizontal components, and its vertical component.
     flat_dir: Vector<N, 2>,
     climb: N,
 }
@@ -53,19 +53,20 @@ impl<N: Real> Nappe<N> {
         }
     }
 
-    /// `cosine² a² − sine² b²`, without the cancellation of the squares; negative inside.
+    /// Returns `cosine² a² − sine² b²`, without the cancellation of the squares; negative inside.
     fn form(&self, a: N, b: N) -> N {
         (self.cosine * a - self.sine * b) * (self.cosine * a + self.sine * b)
     }
 
-    /// The span in this nappe; of the other nappe at most the apex. It may extend beyond the apex
-    /// by rounding, which clipping there repairs.
+    /// Returns the span in this nappe, and at most the apex of the opposite nappe. By rounding the
+    /// span may extend beyond the apex, which later clipping at the apex repairs.
     fn span(&self) -> Option<Span<N, 3>> {
         let quadratic = self.form(self.flat_dir.norm(), self.climb.abs());
         let constant = self.form(self.flat.norm(), self.height.abs());
         let linear = self.cosine * self.cosine * self.flat.dot(&self.flat_dir)
             - self.sine * self.sine * self.height * self.climb;
-        // The discriminant from the line's moment about the apex: a difference of two squares.
+        // The discriminant is computed from the line's moment about the apex, as a difference of
+        // two squares.
         let moment = (self.flat * self.climb - self.flat_dir * self.height).norm();
         let twist = cross2(&self.flat, &self.flat_dir).abs();
         let discriminant = -self.form(twist, moment);
@@ -78,10 +79,10 @@ impl<N: Real> Nappe<N> {
         Some(Span { enter: self.crossing(enter), leave: self.crossing(leave), thin: false })
     }
 
-    /// The interval where `quadratic · t² + 2 · linear · t + constant ≤ 0` below the apex, given
-    /// `larger = −linear ∓ root`, the numerator of the root without cancellation.
+    /// Returns the interval below the apex where `quadratic · t² + 2 · linear · t + constant ≤ 0`;
+    /// `larger = −linear ∓ root` is the numerator of the root without cancellation.
     ///
-    /// A line steeper than the side (`quadratic < 0`) passes through both nappes; the part below
+    /// A line steeper than the side (`quadratic < 0`) passes through both nappes. Its part below
     /// the apex is unbounded in the direction in which the line descends.
     fn piece(&self, quadratic: N, larger: N, constant: N) -> Option<(N, N)> {
         let (never_in, never_out) = (-N::INFINITY, N::INFINITY);
@@ -105,14 +106,14 @@ impl<N: Real> Nappe<N> {
         })
     }
 
-    /// The crossing with the side at the time `t`.
+    /// Returns the crossing with the side at the time `t`.
     fn crossing(&self, t: N) -> Crossing<N, 3> {
         if !t.is_finite_number() {
             return Crossing::never(t);
         }
         let radial = unit_or(&(self.flat + self.flat_dir * t), Vector::<N, 2>::zeros());
         let normal = Vector::<N, 3>::new(self.cosine * radial.x, self.sine, self.cosine * radial.y);
-        // At the apex itself there is no radial component: straight up.
+        // At the apex there is no radial component; the normal points straight up.
         let normal = unit_or(&normal, Vector::<N, 3>::y());
         Crossing::new(t, normal, FeatureId::Face(1))
     }

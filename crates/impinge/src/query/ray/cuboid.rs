@@ -6,9 +6,10 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector};
 use crate::shape::FeatureId;
 
-/// The slab test (Kay and Kajiya 1986), with the faces that are crossed; corners may be infinite.
+/// Returns the span by the slab test (Kay and Kajiya 1986), with the crossed faces; corners may be
+/// infinite.
 ///
-/// If faces are crossed at the same time, the lowest number wins.
+/// If several faces are crossed at the same time, the lowest index wins.
 pub(super) fn span<N: Real, const D: usize>(
     corners: [&Point<N, D>; 2],
     ray: &Ray<N, D>,
@@ -16,7 +17,8 @@ pub(super) fn span<N: Real, const D: usize>(
     clipped(Span::everything(), (0..2 * D).map(|number| face(corners, number, ray)))
 }
 
-/// The half-space of face number `2 · axis` on the positive side of an axis, one more on the other.
+/// Returns the half-space of face `number`: `2 · axis` on the positive side of an axis, `2 · axis +
+/// 1` on the negative side.
 fn face<N: Real, const D: usize>(
     corners: [&Point<N, D>; 2],
     number: usize,

@@ -7,7 +7,7 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, unit_or};
 use crate::shape::{Cylinder, FeatureId};
 
-/// The infinite round side, clipped by the two caps.
+/// Clips the span in the infinite round side with the two caps.
 pub(super) fn span<N: Real>(cylinder: &Cylinder<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let side = round_side(cylinder.radius(), ray)?;
     let half_height = cylinder.half_height();
@@ -15,7 +15,7 @@ pub(super) fn span<N: Real>(cylinder: &Cylinder<N>, ray: &Ray<N, 3>) -> Option<S
     clipped(side, caps.mapped(|(sign, feature)| cap(half_height, sign, feature, ray)))
 }
 
-/// The span of the line in the infinite cylinder around the y axis.
+/// Returns the span of the line in the infinite cylinder around the y axis.
 fn round_side<N: Real>(radius: N, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let flat = |v: &Vector<N, 3>| Vector::<N, 2>::new(v.x, v.z);
     let (origin, dir) = (flat(&ray.origin.coords), flat(&ray.dir));
@@ -33,7 +33,7 @@ fn round_side<N: Real>(radius: N, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     Some(Span { enter, leave, thin: found.runs_at(radius) })
 }
 
-/// The half-space under a flat cap: `sign · y ≤ half_height`.
+/// Returns the half-space under a flat cap: `sign · y ≤ half_height`.
 pub(super) fn cap<N: Real>(
     half_height: N,
     sign: N,

@@ -7,8 +7,8 @@ use crate::collide::separation::balls::ball_ellipsoid::project;
 use crate::math::{Real, Vector, max, max_component, min, unit_or};
 use crate::shape::{Ellipsoid, FeatureId};
 
-/// In units of the half axes it is a ball. An ellipsoid without thickness is hit in one point,
-/// unless the line lies in it.
+/// In units of the half axes the ellipsoid is a ball. An ellipsoid with a zero half axis is hit in
+/// one point, unless the line lies in its plane.
 pub(super) fn span<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -26,9 +26,10 @@ pub(super) fn span<N: Real, const D: usize>(
     }
 }
 
-/// The origin and direction of the line in units of the half axes; zero on axes that are zero.
+/// Returns the origin and direction of the line in units of the half axes; zero on axes whose half
+/// axis is zero.
 ///
-/// The direction is divided by a power of two near its length, which is returned as well.
+/// The direction is divided by a power of two near its length, which is also returned.
 fn squeezed<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -41,7 +42,7 @@ fn squeezed<N: Real, const D: usize>(
     (in_units(&ray.origin.coords), dir / speed, speed)
 }
 
-/// The span inside, according to the axes that are not zero.
+/// Returns the span inside, along the axes whose half axis is not zero.
 fn inside<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -63,7 +64,7 @@ fn inside<N: Real, const D: usize>(
     Some(Span { enter, leave, thin: false })
 }
 
-/// The crossing of a line with the flat set across the zero axis `axis`.
+/// Returns the crossing of a line with a flat ellipsoid, whose half axis `axis` is zero.
 fn through<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -84,7 +85,7 @@ fn through<N: Real, const D: usize>(
     Some(Span::thin(crossing, crossing))
 }
 
-/// The span of a line that lies in the flat set.
+/// Returns the span of a line that lies in the plane of a flat ellipsoid.
 fn lengthwise<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     ray: &Ray<N, D>,
@@ -98,7 +99,7 @@ fn lengthwise<N: Real, const D: usize>(
     Some(Span { thin: true, ..span })
 }
 
-/// The rounding error of positions at this distance from the origin.
+/// Returns the rounding error of positions at the distance `size` from the origin.
 fn rounding<N: Real>(size: N) -> N {
     N::lit(8.0) * N::EPSILON * size
 }

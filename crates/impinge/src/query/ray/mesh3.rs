@@ -1,7 +1,7 @@
-//! First hits of rays on a mesh in 3D, with a fast path for hits on the interior of a triangle.
+//! First hits of rays on a mesh in 3D, with a fast path for hits in the interior of a triangle.
 //!
-//! The answers equal those of [`each_hit`](crate::query::composite::each_hit), to the bit. The
-//! differences: the normal is computed once, at the end; all is compiled in one piece; and rays are
+//! The results are bitwise equal to those of [`each_hit`](crate::query::composite::each_hit). For
+//! speed, the normal is computed once, at the end, the code is compiled in one piece, and rays are
 //! traced in groups.
 
 use super::triangle3::{InnerHit, TriangleRay};
@@ -13,13 +13,13 @@ use crate::math::{Point, Pose, Real, Space, Vector, filled, max, min};
 use crate::query::composite::RayQuestion;
 use crate::shape::{CompositeShape, TriMesh, Triangle, box_of_corners};
 
-/// Returns the first hit of one ray.
+/// Returns the first hit of one ray; `None` if it hits nothing.
 pub(crate) fn first_on_mesh<N: Space<3>>(
     mesh: &TriMesh<N, 3>,
     question: &RayQuestion<N, 3>,
 ) -> Option<RayIntersection<N, 3>> {
     let RayQuestion { ray, max_time, solid } = question;
-    // In place: moving the cast would read it before it is written completely.
+    // Constructed in place: a move would read the struct before it is written completely.
     let mut cast = MeshCast::new(mesh, ray, *max_time, *solid);
     let Some(cast) = &mut cast else {
         return first_that(mesh, question, |_| true);
@@ -32,7 +32,7 @@ pub(crate) fn first_on_mesh<N: Space<3>>(
     cast.first()
 }
 
-/// Calls `answer` with the first hit of each ray, in no particular order.
+/// Calls `answer` with the index and the first hit of each ray, in no particular order.
 pub(crate) fn first_hits_on_mesh<N: Space<3>>(
     mesh: &TriMesh<N, 3>,
     batch: &RayBatch<'_, N, 3>,
@@ -61,7 +61,7 @@ pub(crate) fn first_hits_on_mesh<N: Space<3>>(
     }
 }
 
-/// Rays that are traced together.
+/// Rays that are traced through a mesh together.
 struct Casts<'a, 'b, N: Real> {
     mesh: &'b TriMesh<N, 3>,
     casts: &'b mut [MeshCast<'a, N>],
@@ -86,26 +86,26 @@ struct MeshCast<'a, N: Real> {
     ray: &'a Ray<N, 3>,
     solid: bool,
     own: TriangleRay<N>,
-    /// A box around its origin with the rounding error, and half of that error.
+    /// A box around the ray's origin that contains its rounding error, and half of that error.
     around: Aabb<N, 3>,
     blur: N,
-    /// The time of the first hit so far, or the latest time that counts.
+    /// The time of the first hit so far, or the latest time of a hit.
     latest: N,
     first: Option<Met<N>>,
 }
 
-/// A triangle that is hit.
+/// A triangle that is hit by the ray.
 #[derive(Clone, Copy)]
 struct Met<N: Real> {
     corners: [Point<N, 3>; 3],
     part: u32,
-    /// `None` if the cast of a single triangle has to decide.
+    /// The hit in the interior; `None` if the cast of the single triangle decides.
     inner: Option<InnerHit<N>>,
 }
 
 impl<'a, N: Space<3>> MeshCast<'a, N> {
-    /// A ray that has not started; `None` if the mesh is a body for the query, and for a ray
-    /// without direction or that is not finite.
+    /// Returns a ray before its first triangle. `None` if the mesh is a body for the query, if the
+    /// ray has no direction or is not finite, and if `max_time` is negative or NaN.
     #[inline(always)]
     fn new(mesh: &TriMesh<N, 3>, ray: &'a Ray<N, 3>, max_time: N, solid: bool) -> Option<Self> {
         let is_finite = filled(|axis| ray.dir[axis].is_finite_number()) == [true; 3];
@@ -123,13 +123,13 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         Some(cast)
     }
 
-    /// The latest time at which boxes are searched: loosened by rounding.
+    /// Returns the latest time at which boxes are searched: `latest`, loosened by rounding.
     #[inline(always)]
     fn limit(&self) -> N {
         loosened(self.latest)
     }
 
-    /// Tests a triangle.
+    /// Tests a triangle, and keeps it if it is hit first.
     #[inline(always)]
     fn propose(&mut self, part: u32, corners: &[Point<N, 3>; 3]) {
         let Some(inner) = self.own.inner_hit(corners) else {
@@ -159,17 +159,17 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         }
     }
 
-    /// Whether the box of the triangle is entered in time. Tested last: where areas underflow,
-    /// their signs are meaningless.
+    /// Whether the ray enters the box of the triangle in time. This is tested last: where areas
+    /// underflow, their signs are meaningless.
     fn enters_box(&self, corners: &[Point<N, 3>; 3]) -> bool {
         let enter = box_of_corners(corners).sweep_interval(&self.around, &self.ray.dir);
         enter.is_some_and(|(enter, _)| enter <= self.limit())
     }
 
     /// A sufficient test for [`Self::enters_box`] without a division: at the time of the hit the
-    /// ray is inside the box, or beside it by less than half of the margin in `around`. That is
-    /// 8 rounding units of the coordinates; the position is off by at most three, and the times
-    /// in [`Self::enters_box`] by two.
+    /// ray is inside the box, or outside by less than half of the margin in `around`. Half of the
+    /// margin is 8 epsilon of the coordinates; the position has an error of at most 3 epsilon, and
+    /// the times in [`Self::enters_box`] of 2 epsilon.
     #[inline(always)]
     fn is_surely_within(&self, corners: &[Point<N, 3>; 3], toi: N) -> bool {
         let (ray, [a, b, c]) = (self.ray, corners);
@@ -184,7 +184,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         is_within
     }
 
-    /// The result, after all triangles that may be hit.
+    /// Returns the first hit, after all triangles that may be hit were tested.
     fn first(&self) -> Option<RayIntersection<N, 3>> {
         let Met { corners, part, inner } = self.first?;
         let Some(inner) = inner else {
@@ -195,7 +195,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         Some(RayIntersection { toi: inner.toi, normal, feature, part })
     }
 
-    /// The cast of a single triangle.
+    /// Casts the ray against a single triangle.
     fn cast_alone(&self, corners: &[Point<N, 3>; 3]) -> Option<RayIntersection<N, 3>> {
         let ray = self.ray.inverse_transformed_by(&Pose::identity());
         let hit = Triangle::of_finite(*corners).cast_local_ray(&ray, self.solid)?;
@@ -203,8 +203,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
     }
 }
 
-/// Rotates a normal like that of any part, into the frame of its composite: the sums determine the
-/// sign of zeros.
+/// Rotates a normal by the identity, as for any part of a composite. The sums in this rotation
+/// determine the sign of zeros, which must be bitwise equal.
 fn as_part<N: Real>(normal: &Vector<N, 3>) -> Vector<N, 3> {
     Pose::<N, 3>::identity().vector(normal)
 }
@@ -216,7 +216,7 @@ mod tests {
     fn number(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963);
         let any = (*state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0;
-        // Every second number is a multiple of a quarter, so that rays meet corners, sides and
+        // Half of the numbers are multiples of a quarter, so that rays meet corners, sides and
         // faces edge-on.
         if *state >> 20 & 1 == 0 { (any * 4.0).round() / 4.0 } else { any }
     }
@@ -225,7 +225,7 @@ mod tests {
         [(); 3].map(|()| N::lit(number(state) * scale))
     }
 
-    /// Random triangles, and pieces of a grid that share corners.
+    /// Returns a mesh of random triangles in a strip: each shares two corners with the next.
     fn soup<N: Space<3>>(state: &mut u64, count: u32, scale: f64) -> TriMesh<N, 3> {
         let vertices = (0..count + 2).map(|_| Point::from(numbers(state, scale))).collect();
         TriMesh::new(vertices, (0..count).map(|index| [index, index + 1, index + 2]).collect())
@@ -238,7 +238,7 @@ mod tests {
         })
     }
 
-    /// The answers for single rays and for many equal those of the parts one by one.
+    /// Checks that the results for single rays and for batches equal those of the parts one by one.
     fn agrees<N: Space<3>>(scale: f64, speed: f64) {
         let (state, mut hits) = (&mut 5, 0);
         for count in [1, 12, 300, 5000] {

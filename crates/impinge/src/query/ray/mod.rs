@@ -1,8 +1,8 @@
 //! Ray queries.
 //!
-//! The solids are convex, so the line of a ray is inside during one span of time. Each shape's file
-//! computes that span in closed form; [`span`] converts it to the answer for a solid or a hollow
-//! shape. One table per dimension (`ray2`, `ray3`) has the algorithm of each shape.
+//! The solids are convex, so the line of a ray is inside during a single span of time. Each shape's
+//! file computes that span, most in closed form; [`span`] converts it to the result for a solid or
+//! a hollow shape. One table per dimension (`ray2`, `ray3`) has the algorithm of each shape.
 
 mod ball;
 mod batch;
@@ -56,41 +56,42 @@ use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayIntersection<N: Real, const D: usize> {
-    /// The time of impact, zero or more, in units of the length of the ray's direction: the point
-    /// hit is `ray.point_at(toi)`.
+    /// The time of impact, zero or more, in units of the length of the ray's direction: the hit
+    /// point is `ray.point_at(toi)`.
     pub toi: N,
-    /// The unit vector out of the solid at the point hit, in the frame of the query. It points out
-    /// also where a ray leaves a hollow shape. On a set without thickness it points against the
-    /// ray.
+    /// The outward unit normal of the solid at the hit point, in the frame of the query. It also
+    /// points out where a ray leaves a hollow shape. On a set without thickness it points against
+    /// the ray.
     ///
     /// It is the zero vector if the hit is not on a surface: the ray of a solid query starts
-    /// inside, or on the boundary and leads out; or the direction of the ray is zero.
+    /// inside, or it starts on the boundary and leads out; or the direction of the ray is zero.
     pub normal: Vector<N, D>,
     /// The feature that was hit. A hit on a vertex or an edge may have the id of one of the faces
-    /// there; a ray that starts inside a solid, the nearer of the two features ahead and behind.
+    /// there. A ray that starts inside a solid has the nearer of the two features ahead and behind.
     pub feature: FeatureId,
-    /// The part of a composite that was hit, which has the feature; 0 for a convex solid.
+    /// The index of the composite's part that was hit, which has the feature; 0 for a convex solid.
     pub part: u32,
 }
 
 /// Queries of a ray and a solid; implemented for every [`Shape`].
 ///
-/// A `solid` is the set with its interior: a ray that starts inside or on the boundary hits at time
-/// zero. Without `solid` only the boundary counts, and a ray that starts inside hits where it
-/// leaves. A ray that only touches the boundary hits. A ray whose direction is zero is a point: it
-/// hits at time zero if that point is in the set. A ray that is not finite hits nothing.
+/// With `solid`, a shape is the set with its interior: a ray that starts inside or on the boundary
+/// hits at time zero. Without `solid` a shape is its boundary alone, and a ray that starts inside
+/// hits where it leaves. A ray that only touches the boundary hits. A ray whose direction is zero
+/// is a point: it hits at time zero if that point is in the set. A ray that is not finite hits
+/// nothing.
 ///
 /// Sets without thickness (segments; triangles in 3D) are hit where the ray meets them within
 /// rounding: a few units in the last place of the distances involved.
 ///
-/// A composite is the union of its parts, and each part is cast on its own. So a ray that starts in
-/// any part hits at time zero if `solid`; without it, the boundaries of the parts count, also where
-/// they lie inside other parts. Of parts that are hit at one time the lowest number wins. Parts
-/// that share corners to the bit, as those of a mesh or a height field do, leave no gap: a ray
-/// through a common side or corner hits at least one of them, however far from the origin (Woop,
-/// Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013).
+/// A composite is the union of its parts, and the ray is cast against each part separately. So with
+/// `solid`, a ray that starts in any part hits at time zero. Without `solid`, the boundaries of all
+/// parts are hit, also where they lie inside other parts. Of parts that are hit at the same time
+/// the lowest index wins. Parts whose common corners are bitwise equal, as in a mesh or a height
+/// field, leave no gap: a ray through a common side or corner hits at least one of them, however
+/// far from the origin (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", 2013).
 ///
-/// Cost on a composite: a search of the parts along the ray, up to the hit.
+/// For a composite, the cost is a search for the parts along the ray, up to the hit.
 /// [`Self::intersects_ray`] ends at any part that is hit.
 ///
 /// ```
@@ -107,15 +108,15 @@ pub struct RayIntersection<N: Real, const D: usize> {
 /// assert_eq!(cube.toi_with_ray(&place, &inner, false), Some(1.0), "where it leaves");
 /// ```
 pub trait RayCast<N: Space<D>, const D: usize> {
-    /// [`Self::cast_local_ray_until`] without a latest time.
+    /// Returns [`Self::cast_local_ray_until`] without a latest time.
     fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>> {
         self.cast_local_ray_until(ray, N::INFINITY, solid)
     }
 
-    /// Returns the first hit in the local frame, if it is at `max_time` or before; `None` if
-    /// `max_time` is negative or NaN. The time is in units of the ray's direction.
+    /// Returns the first hit in the local frame, if it is at `max_time` or before. `None` if there
+    /// is none, and if `max_time` is negative or NaN. The time is in units of the ray's direction.
     ///
-    /// The other methods agree with it.
+    /// The results of the other methods agree with this one.
     #[doc(alias = "cast_local_ray")]
     fn cast_local_ray_until(
         &self,
@@ -124,8 +125,8 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         solid: bool,
     ) -> Option<RayIntersection<N, D>>;
 
-    /// [`Self::cast_local_ray_until`] for many rays: `hits[i]` becomes the answer for
-    /// `batch.rays[i]`, to the bit, also on several threads with the feature `parallel`.
+    /// Runs [`Self::cast_local_ray_until`] for many rays. `hits[i]` becomes the result for
+    /// `batch.rays[i]`, bitwise equal, also on several threads with the feature `parallel`.
     ///
     /// ```
     /// use impinge::dim3::math::{Point, Vector};
@@ -153,7 +154,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         batch.each(hits, |ray| self.cast_local_ray_until(ray, max_time, solid));
     }
 
-    /// [`Self::first_hit_with_ray`] for many rays; see [`Self::cast_local_rays`].
+    /// Runs [`Self::first_hit_with_ray`] for many rays; see [`Self::cast_local_rays`].
     ///
     /// # Panics
     /// If `hits` does not have as many entries as there are rays.
@@ -173,10 +174,10 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     }
 
     /// Returns the first hit on each part of a composite up to `max_time`, sorted by time and then
-    /// by part, in the local frame. For a convex solid that is its first hit.
+    /// by part index, in the local frame. For a convex solid the result is its first hit.
     ///
-    /// One hit for each part: where the ray enters it, or at time zero if it starts there; without
-    /// `solid`, where it leaves a part that it starts in.
+    /// Each part has one hit: where the ray enters it, or at time zero if the ray starts in it.
+    /// Without `solid`, a part in which the ray starts is hit where the ray leaves it.
     fn local_ray_hits(
         &self,
         ray: &Ray<N, D>,
@@ -186,12 +187,12 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.cast_local_ray_until(ray, max_time, solid).into_iter().collect()
     }
 
-    /// Whether the ray of the local frame hits the solid up to `max_time`.
+    /// Whether the ray, given in the local frame, hits the solid up to `max_time`.
     fn intersects_local_ray(&self, ray: &Ray<N, D>, max_time: N) -> bool {
         self.cast_local_ray_until(ray, max_time, true).is_some()
     }
 
-    /// [`Self::first_hit_with_ray`] without a latest time.
+    /// Returns [`Self::first_hit_with_ray`] without a latest time.
     fn toi_and_normal_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -202,8 +203,8 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     }
 
     /// Returns the first hit up to `max_time` on the solid placed at `m`, with its normal in the
-    /// world frame; `None` if `max_time` is negative or NaN. The time is in units of the ray's
-    /// direction.
+    /// world frame. `None` if there is none, and if `max_time` is negative or NaN. The time is in
+    /// units of the ray's direction.
     #[doc(alias = "toi_and_normal_with_ray")]
     fn first_hit_with_ray<R: AbstractRotation<N, D>>(
         &self,
@@ -216,12 +217,12 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     }
 
     /// Returns the first hit up to `max_time` on the shape placed at `m` for which `counts` is
-    /// true. For a composite `counts` is called with the first hits on its parts, each at most once
-    /// and in no particular order; for a convex solid with its first hit. The normals are in the
-    /// world frame.
+    /// true. For a composite, `counts` is called with the first hits on its parts, each at most
+    /// once and in no particular order; for a convex solid with its first hit. The normals are in
+    /// the world frame.
     ///
-    /// Use it to cull back faces: a triangle in 3D is hit on its `Face(0)` from the front, where
-    /// its corners appear counter-clockwise, and on its `Face(1)` from behind.
+    /// Use it to cull back faces: a ray hits a triangle in 3D on `Face(0)` from the front, where
+    /// its corners appear counter-clockwise, and on `Face(1)` from behind.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -251,7 +252,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         self.all_hits_with_ray(m, ray, max_time, solid).into_iter().find(|hit| counts(hit))
     }
 
-    /// [`Self::local_ray_hits`] on the shape placed at `m`, with normals in the world frame.
+    /// Returns [`Self::local_ray_hits`] of the shape placed at `m`, with normals in the world.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -279,7 +280,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         hits
     }
 
-    /// The time of [`Self::first_hit_with_ray`] without a latest time.
+    /// Returns the time of [`Self::first_hit_with_ray`] without a latest time.
     fn toi_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
@@ -378,7 +379,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
     }
 }
 
-/// [`RayCast::first_hit_with_ray`] at a pose.
+/// Implements [`RayCast::first_hit_with_ray`] for a pose.
 #[inline]
 pub(crate) fn cast_at<N: Space<D>, const D: usize>(
     shape: &(impl RayCast<N, D> + ?Sized),
@@ -392,7 +393,7 @@ pub(crate) fn cast_at<N: Space<D>, const D: usize>(
     Some(RayIntersection { normal: entries::rotated_vector(pose, &hit.normal), ..hit })
 }
 
-/// See [`RayCast::cast_local_ray_until`].
+/// Implements [`RayCast::cast_local_ray_until`].
 #[inline]
 pub(crate) fn cast_on<N: Space<D>, const D: usize>(
     geometry: Geometry<'_, N, D>,
@@ -414,11 +415,11 @@ pub(crate) fn cast_on<N: Space<D>, const D: usize>(
     hit.filter(|hit| hit.toi <= max_time)
 }
 
-/// The callback for the answer of a ray, given its index.
+/// The callback for the result of a ray, given the ray's index.
 pub(crate) type Answers<'a, N, const D: usize> =
     &'a mut dyn FnMut(usize, Option<RayIntersection<N, D>>);
 
-/// [`cast_on`] for each ray of a batch, in no particular order.
+/// Runs [`cast_on`] for each ray of a batch, in no particular order.
 pub(crate) fn cast_many_on<N: Space<D>, const D: usize>(
     geometry: Geometry<'_, N, D>,
     batch: &RayBatch<'_, N, D>,
@@ -434,7 +435,7 @@ pub(crate) fn cast_many_on<N: Space<D>, const D: usize>(
     }
 }
 
-/// The first hit on a part for which `counts` is true.
+/// Returns the first hit on a part for which `counts` is true.
 #[inline]
 pub(crate) fn first_that<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
@@ -450,8 +451,8 @@ pub(crate) fn first_that<N: Space<D>, const D: usize>(
     first
 }
 
-/// Whether a hit is earlier, or at the same time on a part of lower number. No two hits are on one
-/// part, and no time is NaN.
+/// Whether hit `a` is earlier than `b`, or at the same time on a part with a lower index. The hits
+/// must be on different parts, and no time may be NaN.
 fn is_before<N: Real, const D: usize>(
     a: &RayIntersection<N, D>,
     b: &RayIntersection<N, D>,
@@ -459,16 +460,15 @@ fn is_before<N: Real, const D: usize>(
     a.toi < b.toi || (a.toi == b.toi && a.part < b.part)
 }
 
-/// The hit of a ray that starts in the set.
+/// Returns the hit of a ray that starts in the set.
 pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayIntersection<N, D> {
     RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature, part: 0 }
 }
 
-/// The common part of all casts: rays that are not finite or have no direction, and the length of
-/// the direction.
+/// The common part of all casts: handles non-finite and zero directions, and scales the others.
 ///
-/// `project` is called if a ray may start inside; it returns `None` if that is excluded. `span` is
-/// called for finite rays whose direction was divided by a power of two, so that its largest
+/// `project` is called if a ray may start inside; it returns `None` if it can exclude that. `span`
+/// is called for finite rays whose direction was divided by a power of two, so that its largest
 /// component is between 1 and 2 and its powers stay in range.
 fn cast<N: Real, const D: usize>(
     ray: &Ray<N, D>,
@@ -489,7 +489,7 @@ fn cast<N: Real, const D: usize>(
     let unit = speed.power_of_two_below();
     let hit = span(&Ray::new(ray.origin, ray.dir / unit)).and_then(|span| span.first_hit(solid));
     let Some(hit) = hit else {
-        // By rounding, a crossing at the start may seem to lie before it.
+        // By rounding, a crossing at the start may seem to be before it.
         let start = if solid { project(&ray.origin) } else { None };
         return start
             .filter(|(nearest, _)| nearest.is_inside)

@@ -1,12 +1,12 @@
-//! Fast rejection: rays that certainly miss a ball or a box, as do most of those that hit its
+//! Fast rejection. Finds rays that certainly miss a ball or a box, as most rays do that hit its
 //! bounding box, and points that a solid certainly does not contain.
 
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, max, max_component, min};
 use crate::shape::{Geometry, Kind, Triangle};
 
-/// Rounding units, of products of coordinates and directions, by which a ray must miss a solid:
-/// several times the margin of the exact test.
+/// The margin by which a ray must miss a solid, in epsilon of products of coordinates and
+/// directions: several times the margin of the exact test.
 const SLACK: f64 = 64.0;
 
 /// Whether the cast of a ray against a ball or a box certainly finds nothing, whatever its options.
@@ -23,7 +23,7 @@ pub(crate) fn surely_misses<N: Real, const D: usize>(
     }
 }
 
-/// Values below this, added to zero, are lost in squares.
+/// Returns the magnitude below which values may be lost in squares.
 fn lost<N: Real>() -> N {
     N::MIN_POSITIVE / N::EPSILON
 }
@@ -34,7 +34,8 @@ fn exceeds<N: Real>(first: N, second: N, slack: N) -> bool {
     first > second + slack && first < N::INFINITY
 }
 
-/// Whether the ball is behind the ray, or off its line by the distance of the line from the centre.
+/// Whether the ball is behind the ray, or the line of the ray passes the centre at more than the
+/// radius.
 #[inline(always)]
 fn passes_ball<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> bool {
     let unit = N::lit(SLACK) * N::EPSILON;
@@ -52,8 +53,8 @@ fn passes_ball<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> bool {
     exceeds(apart - away * away, radius_squared * squared, unit * apart + lost())
 }
 
-/// The separating axes of a line and a box, and those of a box behind the ray (Gottschalk, Lin and
-/// Manocha, "`OBBTree`", 1996).
+/// Whether a separating axis shows that the line misses the box, or that the box is behind the ray
+/// (Gottschalk, Lin and Manocha, "`OBBTree`", 1996).
 #[inline(always)]
 fn passes_box<N: Real, const D: usize>(half: &Vector<N, D>, ray: &Ray<N, D>) -> bool {
     let unit = N::lit(SLACK) * N::EPSILON;
@@ -69,8 +70,8 @@ fn passes_box<N: Real, const D: usize>(half: &Vector<N, D>, ray: &Ray<N, D>) -> 
     })
 }
 
-/// The sum of the magnitudes of the two products in one component of the cross product of origin
-/// and direction.
+/// Returns the sum of the magnitudes of the two products in one component of the cross product of
+/// origin and direction.
 #[inline(always)]
 fn product_magnitudes<N: Real, const D: usize>(
     origin: &Point<N, D>,
@@ -81,7 +82,7 @@ fn product_magnitudes<N: Real, const D: usize>(
     (origin[axis] * dir[next]).abs() + (origin[next] * dir[axis]).abs()
 }
 
-/// Whether the ray starts beside the box on an axis and does not come back.
+/// Whether the ray starts outside the box on an axis and does not approach it along that axis.
 #[inline(always)]
 fn is_behind<N: Real, const D: usize>(
     half: &Vector<N, D>,
@@ -95,8 +96,8 @@ fn is_behind<N: Real, const D: usize>(
     goes_away && exceeds(distance, half[axis], unit * distance + lost())
 }
 
-/// False if a solid is certainly too far from a point to contain it: a fast test for the most
-/// frequent kinds, since most rays that come near miss.
+/// Returns false if a solid is certainly too far from a point to contain it. A fast test for the
+/// most frequent kinds, since most rays that come near a solid miss it.
 pub(super) fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Point<N, D>) -> bool {
     match kind {
         Kind::Triangle(triangle) => may_lie_on(triangle, point),
@@ -119,7 +120,7 @@ fn may_lie_on<N: Real, const D: usize>(triangle: &Triangle<N, D>, point: &Point<
     let [a, b, c] = triangle.corners();
     let largest = |corner: &Point<N, D>| max_component(&corner.coords);
     let scale = max(max(largest(a), largest(b)), max(largest(c), largest(point)));
-    // Twice the distance within which a point counts as on a thin set.
+    // Twice the distance within which a point is treated as on a thin set.
     let slack = N::lit(16.0) * N::EPSILON * scale * N::TWO;
     (0..D).all(|axis| {
         let low = min(min(a[axis], b[axis]), c[axis]);
@@ -141,7 +142,7 @@ mod tests {
         *state >> 33
     }
 
-    /// Small integers, so that rays touch faces and edges, and arbitrary numbers.
+    /// Returns a small integer, so that rays touch faces and edges, or an arbitrary number.
     fn number<N: Real>(state: &mut u64) -> N {
         let small = bits(state) as f64 % 9.0 - 4.0;
         let any = bits(state) as f64 / f64::from(1_u32 << 30) - 1.0;
@@ -156,7 +157,7 @@ mod tests {
         Vector::<N, D>::from_fn(|_, _| number::<N>(state) * N::lit(scale))
     }
 
-    /// A reported miss is a miss; and most misses are reported, at ordinary sizes.
+    /// Checks that a reported miss is a miss, and that most misses are reported at ordinary sizes.
     fn agrees_with_the_cast<N: Space<D>, const D: usize>(scale: f64, speed: f64) {
         let (mut state, mut missed, mut known) = (11, 0, 0);
         for _ in 0..20_000 {

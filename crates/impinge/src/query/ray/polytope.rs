@@ -6,7 +6,7 @@ use crate::bounding_volume::Ray;
 use crate::math::{Real, Vector, max, max_component};
 use crate::shape::{FeatureId, Polytope, PolytopeFace, SupportMap};
 
-/// The span of the line clipped by the planes of all faces.
+/// Returns the span of the line clipped by the planes of all faces.
 pub(super) fn span<N: Real, const D: usize>(
     solid: &Polytope<N, D>,
     ray: &Ray<N, D>,
@@ -16,11 +16,11 @@ pub(super) fn span<N: Real, const D: usize>(
     clipped(Span::everything(), faces.map(|(number, face)| below(face, number, ray, scale)))
 }
 
-/// A face as a half-space.
+/// Returns a face as a half-space.
 ///
-/// A line that is parallel to a face within rounding counts as parallel, and one that also is
-/// within rounding of its plane as inside: else the quotient of two rounding errors would be the
-/// time. `scale` is the largest length that enters the height.
+/// A line that is parallel to a face within rounding is treated as parallel, and as inside if it
+/// also is within rounding of the face's plane. Otherwise the time would be the quotient of two
+/// rounding errors. `scale` is the largest length that enters the height.
 fn below<N: Real, const D: usize>(
     face: &PolytopeFace<N, D>,
     number: u32,

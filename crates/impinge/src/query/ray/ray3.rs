@@ -1,4 +1,4 @@
-//! Ray casts in 3D: the algorithm of each kind of solid.
+//! The table of ray casts in 3D, by kind of solid.
 
 use super::span::Span;
 use super::{
@@ -30,7 +30,7 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Spa
         Kind::TaperedCapsule(solid) => tapered_capsule::span(solid, ray),
         Kind::Rounded(solid) => rounded::span(solid, ray),
         Kind::Plane(solid) => plane::span(solid, ray),
-        // Its parts are cast instead.
+        // Callers cast the parts of a composite instead.
         Kind::Composite(_) => None,
     }
 }

@@ -9,7 +9,8 @@ use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{Ball, Geometry, Kind, Rounded, ShapeKind, SupportMap};
 use crate::tables::ByDimension;
 
-/// A search by distances from the inner shape; without a radius the cast of the inner shape.
+/// Returns the span by a search with distances from the inner shape; without a radius the span of
+/// the inner shape.
 pub(super) fn span<N: Space<D>, const D: usize>(
     solid: &Rounded<N, D>,
     ray: &Ray<N, D>,
@@ -33,7 +34,7 @@ pub(super) fn span<N: Space<D>, const D: usize>(
         .span(ray)
 }
 
-/// The accuracy of point distances, as a fraction of the size: closed forms are exact up to
+/// Returns the accuracy of point distances, as a fraction of the size. Closed forms are exact up to
 /// rounding.
 fn precision<N: Real, const D: usize>(inner: Geometry<'_, N, D>) -> N {
     let rounding = N::lit(16.0) * N::EPSILON;

@@ -6,7 +6,7 @@ use crate::math::{Mapped, Point, Real, Vector, max, unit_or};
 use crate::query::point::{feature_at, nearest_on_segment};
 use crate::shape::FeatureId;
 
-/// The ids of a segment and of its ends.
+/// The ids of a segment and of its two ends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayFeatures {
     pub(super) ends: [u32; 2],
@@ -14,13 +14,13 @@ pub(super) struct RayFeatures {
 }
 
 impl RayFeatures {
-    /// The ids of a segment that is a shape.
+    /// The ids of a segment that is a shape of its own.
     pub(super) const SEGMENT: Self = Self { ends: [0, 1], between: FeatureId::Edge(0) };
 }
 
-/// Projected along the ray, the segment is a segment in one dimension less, and the ray a point: it
-/// hits if that point is on it within rounding. A segment along the ray projects to a point, and is
-/// entered at one end and left at the other.
+/// The projection along the ray maps the segment to a segment in one dimension less, and the ray to
+/// a point. The ray hits if that point is on the projected segment within rounding. A segment along
+/// the ray projects to a point; the ray enters it at one end and leaves it at the other.
 pub(super) fn span<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
     features: RayFeatures,
@@ -49,7 +49,7 @@ pub(super) fn span<N: Real, const D: usize>(
     Some(Span::thin(crossing, crossing))
 }
 
-/// The span from the end that the line meets first to the other.
+/// Returns the span from the end that the line meets first to the other end.
 fn lengthwise<N: Real, const D: usize>(ends: [(N, u32); 2], against: Vector<N, D>) -> Span<N, D> {
     let [first, second] = if ends[1].0 < ends[0].0 { [ends[1], ends[0]] } else { ends };
     Span::thin(

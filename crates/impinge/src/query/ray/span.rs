@@ -7,9 +7,9 @@ use crate::shape::FeatureId;
 /// A crossing of a line with a boundary: time, outward normal and feature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crossing<N: Real, const D: usize> {
-    /// May be negative (behind the origin) or infinite (never).
+    /// The time; it may be negative (behind the origin) or infinite (never).
     pub(super) t: N,
-    /// Unit, out of the solid.
+    /// The outward unit normal.
     pub(super) normal: Vector<N, D>,
     pub(super) feature: FeatureId,
 }
@@ -19,7 +19,7 @@ pub(crate) struct Crossing<N: Real, const D: usize> {
 pub(crate) struct Span<N: Real, const D: usize> {
     pub(super) enter: Crossing<N, D>,
     pub(super) leave: Crossing<N, D>,
-    /// Whether the line stays on the boundary: then a hollow query equals a solid one.
+    /// Whether the line stays on the boundary; a hollow query then has the result of a solid query.
     pub(super) thin: bool,
 }
 
@@ -28,7 +28,7 @@ impl<N: Real, const D: usize> Crossing<N, D> {
         Self { t, normal, feature }
     }
 
-    /// A crossing that never happens, at either end of time.
+    /// Returns a crossing that never happens, at the time `t` of plus or minus infinity.
     pub(super) fn never(t: N) -> Self {
         Self::new(t, Vector::<N, D>::zeros(), FeatureId::Face(0))
     }
@@ -42,7 +42,7 @@ impl<N: Real, const D: usize> Crossing<N, D> {
 }
 
 impl<N: Real, const D: usize> Span<N, D> {
-    /// All of time.
+    /// Returns the span of all time.
     pub(super) fn everything() -> Self {
         Self {
             enter: Crossing::never(-N::INFINITY),
@@ -51,12 +51,12 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
     }
 
-    /// One time, or two, on a set without thickness.
+    /// Returns a span of one or two times on a set without thickness.
     pub(super) fn thin(enter: Crossing<N, D>, leave: Crossing<N, D>) -> Self {
         Self { enter, leave, thin: true }
     }
 
-    /// The span of the union of two convex sets whose union is convex.
+    /// Returns the span of the union of two convex sets, which must itself be convex.
     pub(super) fn union(self, other: Self) -> Self {
         Self {
             enter: if other.enter.t < self.enter.t { other.enter } else { self.enter },
@@ -65,7 +65,7 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
     }
 
-    /// The union of two spans, either of which may be missing.
+    /// Returns the union of two spans, either of which may be missing.
     pub(super) fn union_of(first: Option<Self>, second: Option<Self>) -> Option<Self> {
         match (first, second) {
             (Some(first), Some(second)) => Some(first.union(second)),
@@ -73,7 +73,7 @@ impl<N: Real, const D: usize> Span<N, D> {
         }
     }
 
-    /// The first hit at a time of zero or more.
+    /// Returns the first hit at a time of zero or more; `None` if the line leaves before.
     pub(super) fn first_hit(self, solid: bool) -> Option<RayIntersection<N, D>> {
         if self.enter.t >= N::ZERO {
             return self.enter.hit();

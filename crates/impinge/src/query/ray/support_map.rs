@@ -1,6 +1,6 @@
-//! Ray casts against a convex solid given by support points alone.
+//! Ray casts against a convex solid known by support points alone.
 //!
-//! The number of steps is capped; a time is never later than the hit.
+//! The number of steps is limited; a time is never later than the hit.
 
 use super::ball::roots;
 use super::span::{Crossing, Span};
@@ -9,14 +9,14 @@ use crate::convex::{Simplicial, separation};
 use crate::math::{Pose, Real, Vector, max};
 use crate::shape::{Ball, Feature, FeatureId, SupportMap};
 
-/// The maximum number of distance computations. Flat faces take two or three, round ones about six;
-/// for a line that grazes a round one the gap shrinks by a constant factor each time.
+/// The maximum number of distance computations. Flat faces take 2 or 3, round ones about 6. For a
+/// line that grazes a round face the gap shrinks by a constant factor in each step.
 const ROUNDS: usize = 64;
 
-/// The span of the line in the solid, searched within a ball around it: so the origin of the ray
-/// may be at any distance.
+/// Returns the span of the line in the solid, searched within a ball around the solid, so that the
+/// origin of the ray may be at any distance.
 ///
-/// If the ray hits from outside, the end of the span is left infinite: it is not used.
+/// If the ray hits from outside, the end of the span is infinite, as it is not used.
 pub(super) fn span<N: Simplicial<D>, const D: usize>(
     map: &dyn SupportMap<N, D>,
     ray: &Ray<N, D>,
@@ -36,7 +36,7 @@ pub(super) fn span<N: Simplicial<D>, const D: usize>(
     RaySolid { distance: &distance, feature: &feature, radius, precision }.span(ray)
 }
 
-/// Returns the signed distance of a point and the unit vector out of the solid along which it is
+/// Returns the signed distance of a point, and the unit vector out of the solid along which it is
 /// measured; `None` if the point is not finite.
 pub(super) type DistanceFn<'a, N, const D: usize> =
     &'a dyn Fn(&Vector<N, D>) -> Option<(N, Vector<N, D>)>;
@@ -44,18 +44,20 @@ pub(super) type DistanceFn<'a, N, const D: usize> =
 /// A convex solid given by the distances of points in its local frame.
 pub(super) struct RaySolid<'a, N: Real, const D: usize> {
     pub(super) distance: DistanceFn<'a, N, D>,
-    /// Returns the feature at a point of the surface, given with the normal there.
+    /// Returns the feature at a point of the surface; the arguments are the point and the normal
+    /// there.
     pub(super) feature: &'a dyn Fn(&Vector<N, D>, &Vector<N, D>) -> FeatureId,
-    /// The solid lies within this distance of the local origin.
+    /// The radius of a ball about the local origin that contains the solid.
     pub(super) radius: N,
     /// The accuracy of distances, as a fraction of the radius.
     pub(super) precision: N,
 }
 
 impl<N: Real, const D: usize> RaySolid<'_, N, D> {
-    /// The span of the line; `None` if it misses, or leaves before time zero.
+    /// Returns the span of the line; `None` if the line misses the solid, or leaves it before time
+    /// zero.
     pub(super) fn span(&self, ray: &Ray<N, D>) -> Option<Span<N, D>> {
-        // A larger radius, since the radius itself is only right up to rounding.
+        // Uses a larger radius, since the radius is only accurate up to rounding.
         let around = roots(&ray.origin.coords, &ray.dir, self.radius * N::lit(1.0625))?;
         if around.leave < N::ZERO {
             return None;
@@ -70,29 +72,30 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
         let backward = Advance { solid: self, from: last, dir: -ray.dir, duration };
         let leave = match backward.first_contact() {
             Some(found) => Crossing { t: around.leave - found.t, ..found },
-            // By rounding the backward search missed: the line only touches.
+            // By rounding the search from the far end missed: the line only touches the solid.
             None => enter,
         };
         Some(Span { enter, leave, thin: false })
     }
 }
 
-/// A point that moves along a line from outside the solid.
+/// A point that moves along a line, starting outside the solid.
 struct Advance<'a, N: Real, const D: usize> {
     solid: &'a RaySolid<'a, N, D>,
     from: Vector<N, D>,
     dir: Vector<N, D>,
-    /// The time for which it may move.
+    /// The time up to which the point moves.
     duration: N,
 }
 
 impl<N: Real, const D: usize> Advance<'_, N, D> {
     /// Moves the point to the supporting plane between it and the solid, repeatedly, until the
-    /// distance is within the precision; `None` once it moves away from such a plane.
+    /// distance is within the precision. `None` if the point moves away from such a plane, or
+    /// reaches the end of `duration` first.
     ///
     /// The planes follow G. van den Bergen, "Ray Casting against General Convex Objects with
-    /// Application to Continuous Collision Detection" (2004), but are computed anew each time: each
-    /// one proves that the solid is not hit before it, so the time never overshoots.
+    /// Application to Continuous Collision Detection" (2004), but are computed anew in each step.
+    /// Each plane proves that the solid is not hit before it, so the time never overshoots.
     fn first_contact(&self) -> Option<Crossing<N, D>> {
         let touching = self.solid.precision * self.solid.radius;
         let mut t = N::ZERO;

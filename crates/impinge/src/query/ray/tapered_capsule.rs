@@ -8,8 +8,8 @@ use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, max, min, unit_or};
 use crate::shape::{FeatureId, Taper, TaperedCapsule};
 
-/// The two balls, and the frustum between the circles in which it touches them. Without any radius
-/// it is a segment.
+/// Returns the span of the union of the two balls and the frustum between the circles in which it
+/// touches them. If both radii are zero, the shape is a segment.
 pub(super) fn span<N: Real, const D: usize>(
     capsule: &TaperedCapsule<N, D>,
     ray: &Ray<N, D>,
@@ -28,25 +28,25 @@ pub(super) fn span<N: Real, const D: usize>(
     Span::union_of(side, Span::union_of(ball(0, 0), ball(1, 1)))
 }
 
-/// The frustum between the two circles, and a line.
+/// The frustum between the two circles of contact, and a line.
 ///
-/// A point at height `y` over the first end and at distance `x` from the axis is inside where
+/// A point at the height `y` over the first end and the distance `x` from the axis is inside where
 /// `cosine · x ≤ radius1 − sine · y`; the right-hand side is positive between the circles.
 struct TaperedSide<'a, N: Real, const D: usize> {
     taper: &'a Taper<N, D>,
-    /// The heights of the two circles.
+    /// The heights of the two circles over the first end.
     heights: [N; 2],
-    /// The time of the line's point nearest to the middle: all else is relative to it, so that the
-    /// origin of the ray may be far away.
+    /// The time at which the line is nearest to the middle of the capsule. The other quantities are
+    /// relative to the line's point at this time, so that the origin of the ray may be far away.
     start: N,
     against: Vector<N, D>,
-    /// The components of that point across and along the axis.
+    /// The components, across and along the axis, of the line's point at `start`.
     flat: Vector<N, D>,
     height: N,
-    /// The direction, split in the same components.
+    /// The components of the direction across and along the axis.
     flat_dir: Vector<N, D>,
     climb: N,
-    /// The right-hand side at that point, and its rate of change.
+    /// The value of `radius1 − sine · y` at the line's point at `start`, and its rate of change.
     surface_radius: N,
     widening: N,
 }
@@ -72,7 +72,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         }
     }
 
-    /// The span of the line in the frustum.
+    /// Returns the span of the line in the frustum.
     fn span(&self) -> Option<Span<N, D>> {
         let (low, high) = self.between_circles()?;
         let (enter, leave) = self.in_cone()?;
@@ -87,7 +87,8 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         in_order(&span).then_some(span)
     }
 
-    /// The interval in which the line is between the planes of the circles.
+    /// Returns the interval, relative to `start`, in which the line is between the planes of the
+    /// circles.
     fn between_circles(&self) -> Option<(N, N)> {
         let [low, high] = self.heights.mapped(|height| height - self.height);
         if self.climb == N::ZERO {
@@ -98,11 +99,11 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         Some((min(first, second), max(first, second)))
     }
 
-    /// The interval in which the line is in the cone, on the side where the right-hand side is
-    /// positive.
+    /// Returns the interval, relative to `start`, in which the line is in the cone, on the nappe
+    /// where `radius1 − sine · y` is positive.
     ///
-    /// The roots of `quadratic · t² + 2 · linear · t + constant`, each factor a difference of
-    /// squares that is not expanded.
+    /// The interval ends at roots of `quadratic · t² + 2 · linear · t + constant`, whose
+    /// coefficients are differences of squares that are not expanded.
     fn in_cone(&self) -> Option<(N, N)> {
         let (cosine, always) = (self.taper.cosine, (-N::INFINITY, N::INFINITY));
         let form = |a: N, b: N| (cosine * a - b) * (cosine * a + b);
@@ -135,7 +136,8 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         })
     }
 
-    /// The area of the parallelogram of the point and the direction across the axis.
+    /// Returns the area of the parallelogram of the line's point and its direction, both across the
+    /// axis.
     fn twist(&self) -> N {
         let speed = self.flat_dir.norm();
         let along = unit_or(&self.flat_dir, Vector::<N, D>::zeros());
@@ -153,7 +155,8 @@ mod tests {
 
     #[test]
     fn across_the_side_and_along_the_axis() {
-        // The side rises by 3 on 4; at height y over the small end its radius is (1 + 0.6 y) / 0.8.
+        // The side rises by 3 on 4; at the height y over the small end its radius is (1 + 0.6 y) /
+        // 0.8.
         let club = TaperedCapsule::try_from_ends(P::origin(), P::new(0.0, 5.0, 0.0), [1.0, 4.0])
             .expect("finite");
         let across = Ray::new(P::new(-10.0, 1.0, 0.0), V::x());

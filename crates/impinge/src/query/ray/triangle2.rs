@@ -5,20 +5,22 @@ use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Vector, cross2, max, min, perp, unit_or};
 use crate::shape::{FeatureId, Triangle};
 
-/// A corner relative to the line.
+/// A corner of the triangle relative to the line.
 #[derive(Clone, Copy)]
 struct RayCorner<N: Real> {
-    /// The time at which the line is nearest to it.
+    /// The time at which the line is nearest to the corner.
     t: N,
-    /// The signed distance from the line, positive on its left, in units of the direction's length.
+    /// The signed distance of the corner from the line, positive on its left, in units of the
+    /// direction's length.
     side: N,
 }
 
-/// For a counter-clockwise triangle, the line enters through a side that leads from its left to its
-/// right and leaves through one that leads back.
+/// Returns the span of the line in the triangle. The line enters a counter-clockwise triangle
+/// through a side that leads from the line's left to its right, and leaves through a side that
+/// leads back.
 ///
-/// Whether it hits depends on the three signs alone, and each is computed from one corner and the
-/// ray: triangles that share corners leave no gap.
+/// Whether the line hits depends on the signs of the three corners alone, and each is computed from
+/// one corner and the ray: triangles that share corners leave no gap.
 pub(super) fn span<N: Real>(triangle: &Triangle<N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
     let corners = triangle.corners().map(|corner| ray_corner(&corner, ray));
     let [a, b, c] = corners.map(|corner| corner.side);
@@ -51,14 +53,16 @@ fn ray_corner<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> RayCorner<N> {
     RayCorner { t, side: cross2(&ray.dir, &to_corner) }
 }
 
-/// Whether the side leads from the left of the line, or from it, to the right (`falling`) or back.
+/// Whether a side leads from the left of the line, or from the line, to the right (`falling`), or
+/// from right to left.
 fn crosses<N: Real>(corners: &[RayCorner<N>; 3], side: usize, falling: bool) -> bool {
     let (from, to) = (corners[side].side, corners[(side + 1) % 3].side);
     let (high, low) = if falling { (from, to) } else { (to, from) };
     high >= N::ZERO && low <= N::ZERO && high > low
 }
 
-/// The crossing of the line with a side: the time is interpolated between those of its ends.
+/// Returns the crossing of the line with a side; the time is interpolated between the times of the
+/// side's ends.
 fn crossing<N: Real>(
     triangle: &Triangle<N, 2>,
     corners: &[RayCorner<N>; 3],
@@ -75,8 +79,8 @@ fn crossing<N: Real>(
     Crossing::new(from.t + (to.t - from.t) * fraction, normal, FeatureId::Face(number))
 }
 
-/// The span, with the times swapped if rounding has swapped them: sides are classified by their
-/// direction, independently of the times.
+/// Returns the span, with the times exchanged if rounding has put them in the wrong order: sides
+/// are classified by their direction, independently of the times.
 fn in_order<N: Real>(enter: Crossing<N, 2>, leave: Crossing<N, 2>) -> Span<N, 2> {
     let (first, last) = (min(enter.t, leave.t), max(enter.t, leave.t));
     Span {
@@ -86,7 +90,7 @@ fn in_order<N: Real>(enter: Crossing<N, 2>, leave: Crossing<N, 2>) -> Span<N, 2>
     }
 }
 
-/// The span if all corners lie on the line: from the first to the last.
+/// Returns the span if all corners lie on the line: from the first corner to the last.
 fn lengthwise<N: Real>(corners: &[RayCorner<N>; 3], against: Vector<N, 2>) -> Span<N, 2> {
     let (mut first, mut last) = (0, 0);
     for index in 1..3 {

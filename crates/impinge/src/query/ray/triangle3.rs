@@ -8,10 +8,10 @@ use crate::math::{
 };
 use crate::shape::{FeatureId, Triangle};
 
-/// A hit in the interior, or, if the line is parallel to the triangle, the hits on the sides, each
-/// within rounding.
+/// Returns the span of the line: the hit in the interior, or, if the line is parallel to the
+/// triangle, the hits on the sides, each within rounding.
 ///
-/// Valid for both sides of the triangle, and for collinear corners.
+/// The method is valid for both sides of the triangle, and for collinear corners.
 pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let corners = triangle.corners();
     match through(&Shear::along(ray).of(corners)) {
@@ -29,16 +29,16 @@ pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Optio
     }
 }
 
-/// A ray for casts against many triangles one by one.
+/// A ray for casts against many triangles, one at a time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TriangleRay<N: Real> {
     shear: Shear<N>,
-    /// The power of two by which its direction is divided, as for all spans.
+    /// The power of two by which the ray's direction is divided, as for all spans.
     unit: N,
 }
 
-/// A hit in the interior of a triangle: the time along the divided direction, and in units of the
-/// ray.
+/// A hit in the interior of a triangle: `t` is the time along the divided direction, `toi` the time
+/// in units of the ray's direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InnerHit<N: Real> {
     t: N,
@@ -46,7 +46,7 @@ pub(super) struct InnerHit<N: Real> {
 }
 
 impl<N: Real> TriangleRay<N> {
-    /// A finite ray; `None` without a direction.
+    /// Returns the data of a finite ray; `None` if its direction is zero.
     #[inline(always)]
     pub(super) fn new(ray: &Ray<N, 3>) -> Option<Self> {
         let speed = max_component(&ray.dir);
@@ -57,8 +57,8 @@ impl<N: Real> TriangleRay<N> {
         Some(Self { shear: Shear::along(&Ray::new(ray.origin, ray.dir / unit)), unit })
     }
 
-    /// The result of [`span`] for most triangles that are hit; `None` if the full test has to
-    /// decide.
+    /// Returns the result of [`span`] for most triangles that are hit; `None` if the full test has
+    /// to decide.
     #[inline(always)]
     pub(super) fn inner_hit(&self, corners: &[Point<N, 3>; 3]) -> Option<InnerHit<N>> {
         match through(&self.shear.of(corners)) {
@@ -70,28 +70,28 @@ impl<N: Real> TriangleRay<N> {
         }
     }
 
-    /// The surface at an inner hit.
+    /// Returns the crossing at an inner hit, with its normal and face.
     pub(super) fn surface(&self, corners: &[Point<N, 3>; 3], hit: &InnerHit<N>) -> Crossing<N, 3> {
         crossing(corners, &self.shear.dir, hit.t)
     }
 }
 
-/// Space sheared so that a ray runs along its largest axis (Woop, Benthin and Wald, "Watertight Ray/Triangle
-/// Intersection", 2013).
+/// A shear of space in which a ray runs along the axis of its largest component (Woop, Benthin and
+/// Wald, "Watertight Ray/Triangle Intersection", 2013).
 #[derive(Clone, Copy, Debug)]
 struct Shear<N: Real> {
     origin: Point<N, 3>,
     dir: Vector<N, 3>,
-    /// Two axes across the ray, and its largest one.
+    /// The two axes across the ray, then the axis of its largest component.
     axes: [usize; 3],
 }
 
-/// A corner in the frame of the ray: `flat` across it and `t` along it.
+/// A corner in the frame of the ray: `flat` across the ray and `t` along it.
 #[derive(Clone, Copy)]
 struct Sheared<N: Real> {
     flat: Vector<N, 2>,
     t: N,
-    /// The magnitude of the terms of `flat`: its rounding error is proportional.
+    /// The magnitude of the terms of `flat`, to which its rounding error is proportional.
     size: N,
 }
 
@@ -102,7 +102,8 @@ impl<N: Real> Shear<N> {
         Self { origin: ray.origin, dir: ray.dir, axes: [(along + 1) % 3, (along + 2) % 3, along] }
     }
 
-    /// Each corner is transformed on its own, so that triangles that share it agree.
+    /// Transforms each corner independently, so that triangles that share a corner get bitwise
+    /// equal values.
     #[inline(always)]
     fn of(&self, corners: &[Point<N, 3>; 3]) -> [Sheared<N>; 3] {
         let [x, y, along] = self.axes;
@@ -123,18 +124,19 @@ impl<N: Real> Shear<N> {
 enum Through<N: Real> {
     Hit(N),
     Miss,
-    /// The ray is parallel to the triangle within rounding, and not clearly inside.
+    /// The ray is parallel to the triangle within rounding, and not clearly inside its outline.
     EdgeOn,
 }
 
-/// The signs of the three areas around the ray decide. Swapping the ends of a side negates its area
-/// to the bit, so triangles that share a side leave no gap; an area of zero belongs to both.
+/// Classifies the ray by the signs of the three areas around it. Swapping the ends of a side
+/// negates its area exactly, so triangles that share a side leave no gap; an area of zero belongs
+/// to both triangles.
 #[inline(always)]
 fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     let [a, b, c] = corners;
     let areas = [cross2(&b.flat, &c.flat), cross2(&c.flat, &a.flat), cross2(&a.flat, &b.flat)];
     let total = areas[0] + areas[1] + areas[2];
-    // Without branches: the deciding sign is unpredictable.
+    // Written without branches: the deciding sign is unpredictable.
     let all = |is: [bool; 3]| is[0] & is[1] & is[2];
     let all_left = all(filled(|side| areas[side] >= N::ZERO));
     let all_right = all(filled(|side| areas[side] <= N::ZERO));
@@ -147,7 +149,8 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     if total.abs() <= rounding { Through::EdgeOn } else { Through::Miss }
 }
 
-/// The crossing; its normal faces the ray, and the face is the one on that side.
+/// Returns the crossing at `t`. Its normal faces against the ray, and its face is the one on that
+/// side.
 fn crossing<N: Real>(corners: &[Point<N, 3>; 3], dir: &Vector<N, 3>, t: N) -> Crossing<N, 3> {
     let [a, b, c] = corners;
     let normal = cross(&(b - a), &(c - a));

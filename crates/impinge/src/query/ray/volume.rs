@@ -6,9 +6,9 @@ use crate::math::Real;
 use crate::shape::FeatureId;
 
 impl<N: Real, const D: usize> Aabb<N, D> {
-    /// The first hit of the ray on the box, by the rules of [`RayCast`](super::RayCast).
+    /// Returns the first hit of the ray on the box, by the rules of [`RayCast`](super::RayCast).
     ///
-    /// The faces are numbered like those of a cuboid.
+    /// The faces have the indices of a cuboid's faces.
     pub fn toi_and_normal_with_ray(
         &self,
         ray: &Ray<N, D>,
@@ -18,14 +18,14 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         cast(ray, solid, project, |ray| cuboid::span([self.mins(), self.maxs()], ray))
     }
 
-    /// The time of the first hit of the ray on the box, in units of the ray's direction.
+    /// Returns the time of the first hit of the ray on the box, in units of the ray's direction.
     pub fn toi_with_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<N> {
         self.toi_and_normal_with_ray(ray, solid).map(|hit| hit.toi)
     }
 }
 
 impl<N: Real, const D: usize> BoundingSphere<N, D> {
-    /// The first hit of the ray on the sphere, by the rules of [`RayCast`](super::RayCast).
+    /// Returns the first hit of the ray on the sphere, by the rules of [`RayCast`](super::RayCast).
     ///
     /// The only feature is `Face(0)`. An infinite sphere has no boundary to hit.
     pub fn toi_and_normal_with_ray(
@@ -38,7 +38,7 @@ impl<N: Real, const D: usize> BoundingSphere<N, D> {
         cast(ray, solid, project, |ray| ball::around(center, radius, FeatureId::Face(0), ray))
     }
 
-    /// The time of the first hit of the ray on the sphere, in units of the ray's direction.
+    /// Returns the time of the first hit of the ray on the sphere, in units of the ray's direction.
     pub fn toi_with_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<N> {
         self.toi_and_normal_with_ray(ray, solid).map(|hit| hit.toi)
     }

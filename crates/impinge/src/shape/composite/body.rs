@@ -9,51 +9,51 @@ use super::mesh_error::MeshError;
 use crate::math::{Mapped, Point, Pose, Real, Space};
 use crate::shape::CompositeShape;
 
-/// A body: all points that a closed surface of a composite winds around.
+/// A body: all points around which a closed surface of a composite winds.
 ///
-/// Public only as the argument of a hidden method.
+/// Public only because a hidden method of a public trait has it as an argument.
 #[expect(missing_debug_implementations, reason = "users cannot reach it")]
 pub struct EnclosedBody<'a, N: Real, const D: usize> {
-    /// Its boundary, in a frame of its own.
+    /// The boundary of the body, in the boundary's own frame.
     boundary: &'a dyn CompositeShape<N, D>,
     /// The pose of the boundary in the frame of the composite.
     pose: Pose<N, D>,
-    /// The number of the first part of the boundary among those of the composite.
+    /// Index, in the composite, of the boundary's first part.
     first: u32,
 }
 
 impl<'a, N: Space<D>, const D: usize> EnclosedBody<'a, N, D> {
-    /// The body that `boundary` bounds as a whole.
+    /// Returns the body that `boundary` bounds as a whole; the frame is that of `boundary`.
     pub(in crate::shape) fn within(boundary: &'a dyn CompositeShape<N, D>) -> Self {
         Self { boundary, pose: Pose::identity(), first: 0 }
     }
 
-    /// The body in the frame of a compound, for a child at `pose` whose first part has the number
-    /// `first`.
+    /// Returns this body of a compound's child in the compound's frame. The child lies at `pose`,
+    /// and its first part has the index `first` in the compound.
     pub(in crate::shape) fn of_child(&self, pose: &Pose<N, D>, first: u32) -> Self {
         Self { pose: pose.compose(&self.pose), first: first + self.first, ..*self }
     }
 
-    /// The parts of the boundary.
+    /// Returns the indices, in the composite, of the parts of the boundary.
     pub(crate) fn parts(&self) -> Range<u32> {
         self.first..self.first + self.boundary.num_parts()
     }
 
-    /// Whether the body contains a point of the composite's frame.
+    /// Whether the body contains `point`, which is given in the composite's frame.
     pub(crate) fn holds(&self, point: &Point<N, D>) -> bool {
         self.boundary.winds_around(&self.pose.inverse_point(point))
     }
 }
 
-/// Returns for each part the first part of its piece. Parts are connected if vertices of theirs
-/// have an equal `number`.
+/// Returns for each part the index of the first part of its connected piece. Two parts are
+/// connected if `number` maps a vertex of each to the same value, which must be below `vertices`.
 pub(super) fn pieces<const K: usize>(
     parts: &[[u32; K]],
     vertices: usize,
     number: impl Fn(u32) -> u32,
 ) -> Vec<u32> {
-    // Union-find over the vertices (Galler and Fischer, "An improved equivalence algorithm", 1964),
-    // lowest root.
+    // Union-find over the vertices (Galler and Fischer, "An improved equivalence algorithm", 1964);
+    // the root of a set is its lowest vertex.
     let mut above: Vec<u32> = (0..).take(vertices).collect();
     for part in parts {
         let roots = part.mapped(|vertex| root(&mut above, number(vertex)));
@@ -70,7 +70,7 @@ pub(super) fn pieces<const K: usize>(
     pieces
 }
 
-/// Returns the root above a vertex, with path halving.
+/// Returns the root of the set of vertex `at`, and halves the path to it in `above`.
 fn root(above: &mut [u32], mut at: u32) -> u32 {
     while above[at as usize] != at {
         above[at as usize] = above[above[at as usize] as usize];
@@ -79,11 +79,15 @@ fn root(above: &mut [u32], mut at: u32) -> u32 {
     at
 }
 
-/// Checks the orientation of the pieces of a closed surface by their signed contents: negative if
-/// the front is inside. A piece that is negative beyond rounding has to be the wall of a cavity.
+/// Checks the orientation of each piece of a closed surface by its signed area or volume, which is
+/// negative if the front faces inwards. A piece with a content below minus the rounding error must
+/// bound a cavity.
 ///
-/// `cone` is the signed content between a part and a fixed point; `is_cavity` is whether the other
-/// pieces wind around a part.
+/// `cone(part)` returns the signed content between a part and a fixed point; `is_cavity(part)`
+/// returns whether the other pieces wind around that part.
+///
+/// # Errors
+/// [`MeshError::InsideOut`] with the first part of a piece that is negative and bounds no cavity.
 pub(super) fn check_fronts(
     pieces: &[u32],
     cone: impl Fn(u32) -> f64,

@@ -1,4 +1,4 @@
-//! Compounds: shapes side by side, as one.
+//! Compounds: unions of placed shapes.
 
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Matrix, Point, Pose, Real, Space, Vector, is_unit, max, max_component, min};
@@ -15,18 +15,18 @@ use crate::shape::{
 
 /// The union of shapes, its children, each placed in the compound's frame.
 ///
-/// Children may be of any kind: convex solids, half-spaces, meshes, height fields, compounds. Its
-/// parts are theirs, numbered in order: first those of child 0, then those of child 1, … A child
-/// that is no composite is one part. The path to a part is the index of the child, then the child's
-/// own path.
+/// Children may be of any kind: convex solids, half-spaces, meshes, height fields, compounds. The
+/// compound's parts are the parts of its children, indexed in order: first those of child 0, then
+/// those of child 1, … A child that is not a composite is one part. The path to a part is the index
+/// of the child, then the child's own path.
 ///
 /// Seams are handled within the surface of a child, not between children. A search uses the tree
-/// over the boxes of the children, then searches each composite that it finds: parts of a child are
-/// found by their boxes in the frame of the child.
+/// over the boxes of the children, then runs in each composite child that it finds, with the search
+/// box transformed into the frame of that child.
 ///
 /// Compounds nest up to [`MAX_NESTING`](crate::shape::MAX_NESTING) deep.
 ///
-/// Cloning shares the shapes. Making it costs O(n log n) in the number of children.
+/// Cloning shares the shapes. Construction costs O(n log n) in the number of children.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -51,45 +51,45 @@ use crate::shape::{
 pub struct Compound<N: Space<D>, const D: usize> {
     children: Vec<(N::Isometry, ShapeHandle<N, D>)>,
     pub(in crate::shape) poses: Vec<Pose<N, D>>,
-    /// The number of the first part of each child, then the number of all parts.
+    /// The index of the first part of each child, then the number of all parts.
     pub(in crate::shape) firsts: Vec<u32>,
-    /// The nesting depth.
+    /// The nesting depth, at least 1 more than the depth of each child.
     depth: u32,
     /// The union of the boxes of the children.
     aabb: Aabb<N, D>,
-    /// Over the boxes of the children, loosened by the rounding errors of placing them.
+    /// The tree over the boxes of the children, enlarged by the rounding errors of placing them.
     pub(in crate::shape) tree: BoxTree<N, D>,
     sphere: BoundingSphere<N, D>,
-    /// Whether a child has a surface with seams.
+    /// Whether any child is a composite with a surface, and so has seams.
     has_surface: bool,
-    /// Whether a child has a body within a closed surface.
+    /// Whether any child has a body bounded by a closed surface.
     has_bodies: bool,
-    /// Whether a child has ghosts.
+    /// Whether any child has ghosts.
     has_ghosts: bool,
     revision: Revision,
 }
 
-/// Up to this many children, the box of a placed compound is the union of the boxes of its
-/// children.
+/// With at most this many children, [`Shape::aabb`] of a compound returns the union of the boxes of
+/// its children.
 const FEW_CHILDREN: usize = 32;
 
 impl<N: Space<D>, const D: usize> Compound<N, D> {
-    /// The compound of the given shapes at their positions.
+    /// Returns the union of the given shapes at their positions in the compound's frame.
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new(children: Vec<(N::Isometry, ShapeHandle<N, D>)>) -> Self {
         or_panic(Self::try_new(children))
     }
 
-    /// The compound of the given shapes at their positions.
+    /// Returns the union of the given shapes at their positions in the compound's frame.
     ///
     /// # Errors
-    /// If there is no shape, a position is not finite or its rotation has no length of 1, the parts
-    /// are more than 32 bits can number, or a child has the nesting depth
-    /// [`MAX_NESTING`](crate::shape::MAX_NESTING) already.
+    /// If there are no children, a position is not finite, a rotation is not of unit length, the
+    /// parts do not fit 32-bit indices, or a child already has the nesting depth
+    /// [`MAX_NESTING`](crate::shape::MAX_NESTING).
     pub fn try_new(children: Vec<(N::Isometry, ShapeHandle<N, D>)>) -> Result<Self, ShapeError> {
         if children.is_empty() {
             return Err(ShapeError::NoChildren);
@@ -134,7 +134,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         })
     }
 
-    /// The shapes and their positions in the frame of the compound.
+    /// Returns the children: each shape with its position in the frame of the compound.
     #[must_use]
     pub fn children(&self) -> &[(N::Isometry, ShapeHandle<N, D>)] {
         &self.children
@@ -146,15 +146,16 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         self.children.len()
     }
 
-    /// The compound scaled along the axes of its frame, about its origin; see [`Shape::scaled`].
+    /// Returns the compound scaled by `scale` along the axes of its frame, about its origin; see
+    /// [`Shape::scaled`].
     ///
-    /// Each child is scaled in place. Factors of one magnitude put no condition on its position;
-    /// otherwise its rotation must map axes to axes, or be about an axis across which the factors
-    /// have one magnitude: else the child would be sheared.
+    /// Each child is scaled in its own frame. Factors of equal magnitude allow any rotation of a
+    /// child. Otherwise the child's rotation must map axes to axes, or turn about an axis across
+    /// which the factors have equal magnitudes: any other rotation would shear the child.
     ///
     /// # Errors
-    /// If a factor is zero or not finite, a child would be sheared or cannot be scaled by these
-    /// factors, or numbers leave their range.
+    /// If a factor is zero or not finite, a child would be sheared, a child does not support its
+    /// factors, or a scaled position is not finite.
     pub fn try_scaled(&self, scale: &Vector<N, D>) -> Result<Self, ScaleError> {
         let scale = Scale::try_new(scale)?;
         let mut children = Vec::with_capacity(self.children.len());
@@ -167,42 +168,42 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         Ok(Self::try_new(children)?)
     }
 
-    /// The number of the first part of a child.
+    /// Returns the index of the first part of child `child`.
     pub(crate) fn first_part(&self, child: u32) -> u32 {
         self.firsts[child as usize]
     }
 
-    /// Returns the child that a part belongs to, and the part's number within the child.
+    /// Returns the index of the child that owns `part`, and the part's index within that child.
     ///
     /// # Panics
-    /// If there is no such part.
+    /// If `part` is not below the number of parts.
     #[must_use]
     pub fn child_of_part(&self, part: u32) -> (usize, u32) {
         assert!(part < self.num_parts(), "there is no part {part}: they are {}", self.num_parts());
-        // Children without parts share their start with the next: the last child that starts here
-        // owns the part.
+        // A child without parts has the same first index as the next child: the last child with an
+        // index at or below `part` owns the part.
         let child = self.firsts.partition_point(|&first| first <= part) - 1;
         (child, part - self.firsts[child])
     }
 
-    /// Child `child` as a composite, if it is one.
+    /// Returns child `child` as a composite; `None` for a single solid.
     pub(in crate::shape) fn composite(&self, child: usize) -> Option<&dyn CompositeShape<N, D>> {
         self.children[child].1.geometry().as_composite()
     }
 
-    /// Returns the surface of the child that a part belongs to, the child's pose, and the part's
-    /// number within the child.
+    /// Returns the surface of the child that owns `part`, the child's pose, and the part's index
+    /// within the child. `None` if the child has no surface.
     fn surface_at(&self, part: u32) -> Option<(SurfaceAccess<'_, N, D>, &Pose<N, D>, u32)> {
         let (child, own) = self.child_of_part(part);
         Some((self.composite(child)?.surface_access()?, &self.poses[child], own))
     }
 }
 
-/// Returns the pose of a child of a scaled compound, and its own factors; `None` if it would be
-/// sheared.
+/// Returns the pose of a child of the scaled compound, and the factors in the child's own frame;
+/// `None` if the child would be sheared.
 ///
-/// With the signs M and the magnitudes P of the factors, rotation R:
-/// `M P R = (M R M) (M (Rᵀ P R))`, a rotation after a scale if `Rᵀ P R` is diagonal.
+/// With M the signs and P the magnitudes of the factors, and R the child's rotation: `M P R = (M R
+/// M) (M (Rᵀ P R))`. This is a rotation after a scale if `Rᵀ P R` is diagonal.
 fn scaled_pose<N: Real, const D: usize>(
     pose: &Pose<N, D>,
     scale: Scale<'_, N, D>,
@@ -220,7 +221,7 @@ fn scaled_pose<N: Real, const D: usize>(
     Some((Pose { rotation, translation }, own.component_mul(&signs)))
 }
 
-/// Returns the diagonal of `Rᵀ P R`; `None` if an element off the diagonal exceeds rounding error.
+/// Returns the diagonal of `Rᵀ P R`; `None` if an off-diagonal element exceeds the rounding error.
 fn own_factors<N: Real, const D: usize>(
     rotation: &Matrix<N, D>,
     magnitudes: &Vector<N, D>,
@@ -232,7 +233,10 @@ fn own_factors<N: Real, const D: usize>(
     (!all.any(is_beside)).then(|| rotated.diagonal())
 }
 
-/// See [`Compound::firsts`].
+/// Computes [`Compound::firsts`].
+///
+/// # Errors
+/// If the parts do not fit 32-bit indices.
 fn first_parts<N: Space<D>, const D: usize>(
     children: &[(N::Isometry, ShapeHandle<N, D>)],
 ) -> Result<Vec<u32>, ShapeError> {
@@ -249,7 +253,7 @@ fn first_parts<N: Space<D>, const D: usize>(
     Ok(firsts)
 }
 
-/// The box of a shape placed at `pose`; unbounded if arithmetic overflows.
+/// Returns the AABB of `shape` placed at `pose`; unbounded if arithmetic overflows.
 pub(in crate::shape) fn boxed<N: Space<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
@@ -258,8 +262,8 @@ pub(in crate::shape) fn boxed<N: Space<D>, const D: usize>(
     Aabb::try_new(*aabb.mins(), *aabb.maxs()).unwrap_or_else(|_| Aabb::unbounded())
 }
 
-/// The sphere around the centre of the box that contains the spheres of the children; no larger
-/// than the sphere around the box.
+/// Returns the smallest sphere about the centre of `aabb` that contains the bounding spheres of the
+/// children, or the sphere around `aabb` if that is smaller.
 fn sphere_around<N: Space<D>, const D: usize>(
     aabb: &Aabb<N, D>,
     children: &[(N::Isometry, ShapeHandle<N, D>)],
@@ -283,7 +287,7 @@ fn surface_of<N: Space<D>, const D: usize>(
     shape.geometry().as_composite()?.surface()
 }
 
-/// A shape as a composite, if it has bodies among its parts.
+/// Returns the shape as a composite if it has bodies among its parts, else `None`.
 fn bodies_of<N: Space<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
 ) -> Option<&dyn CompositeShape<N, D>> {
@@ -323,8 +327,8 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
         Some(self.revision)
     }
 
-    /// Visits the corners of the innermost composite, with the number of its first part in the
-    /// upper 32 bits.
+    /// Visits the corner numbers of the child, with the index of the child's first part added in
+    /// the upper 32 bits.
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         let (child, own) = self.child_of_part(part);
         if let Some(composite) = self.composite(child) {
@@ -373,7 +377,7 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
     }
 }
 
-/// A part of a child without a surface is a solid of its own: it admits every normal.
+/// A part of a child without a surface is a separate solid: every normal is admitted.
 impl<N: Space<D>, const D: usize> Surface<N, D> for Compound<N, D> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
         self.surface_at(part).is_none_or(|(surface, pose, own)| {
@@ -425,15 +429,14 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         self.aabb
     }
 
-    /// With more than `FEW_CHILDREN` children the box is that of the rotated local box, as for a
-    /// composite child.
+    /// With more than `FEW_CHILDREN` children the result is the box of the rotated local box.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         if self.children.len() > FEW_CHILDREN {
             return self.local_aabb().transformed_by(pose);
         }
         let placed = self.children.iter().zip(&self.poses);
-        // A child is placed twice, and rounded twice: its position by the first pose is rotated by
-        // the second.
+        // A child's position is rounded twice: in the child's own pose, and in the rotation by
+        // `pose`.
         let turn = Pose { translation: Vector::<N, D>::zeros(), ..*pose };
         let boxes = placed.map(|((_, shape), own)| match shape.geometry().as_composite() {
             // No recursion into composites: nested compounds may share children, so the cost would
@@ -450,7 +453,8 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
         Aabb::of_rotated(low, high, N::TWO * arms + length_of(&extent), pose)
     }
 
-    /// About the centre of the box; no larger than the sphere around the box.
+    /// Returns a sphere about the centre of the local box; no larger than the sphere around that
+    /// box.
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         self.sphere
     }

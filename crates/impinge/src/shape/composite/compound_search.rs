@@ -1,7 +1,7 @@
 //! The search of a compound: first among the boxes of its children, then within each composite
 //! child.
 //!
-//! Lower bounds that nested searches report remain lower bounds in the frame of the compound.
+//! Lower bounds reported by nested searches are also lower bounds in the frame of the compound.
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::outward::slack_of;
@@ -69,7 +69,8 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for Compound<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> Compound<N, D> {
-    /// Returns a child that is a composite, and a box in its frame around `aabb`.
+    /// Returns child `child` as a composite, and a box in the child's frame around `aabb`; `None`
+    /// if the child is a single solid.
     fn nested(
         &self,
         child: usize,
@@ -81,9 +82,9 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
     }
 }
 
-/// The box by which the search finds a child. It contains the rounding errors of the child in the
-/// frames in which the pair algorithms place it: these are proportional to the child's own
-/// coordinates and its position, which may cancel in the plain box.
+/// Returns the box by which the search finds a child. The box is enlarged by the rounding errors of
+/// the child in the frames in which the pair algorithms place it. These errors are proportional to
+/// the child's own coordinates and its position, which may cancel in the plain box.
 pub(in crate::shape) fn search_box<N: Space<D>, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
@@ -97,11 +98,11 @@ pub(in crate::shape) fn search_box<N: Space<D>, const D: usize>(
     aabb.loosened(N::TWO * of_parts + rounding(largest(ends)))
 }
 
-/// The box around `aabb` in the child's frame, loosened by the rounding error with which `aabb`, at
-/// rest or moving, meets the child's box `own`.
+/// Returns the box around `aabb` in the child's frame. It is enlarged by the rounding error of
+/// testing `aabb`, at rest or moving, against the child's box `own`.
 ///
-/// A rotated point, or the velocity times the time to meet `own`, is off by a few epsilon times the
-/// coordinates on the way.
+/// A rotated point, or the velocity times the time of impact with `own`, has an error of a few
+/// epsilon times the coordinates involved.
 fn within<N: Real, const D: usize>(
     aabb: &Aabb<N, D>,
     pose: &Pose<N, D>,
@@ -112,14 +113,14 @@ fn within<N: Real, const D: usize>(
     aabb.transformed_by(&pose.inverse()).loosened(rounding(largest(ends)))
 }
 
-/// The largest magnitude of the finite numbers.
+/// Returns the largest magnitude among the finite numbers; 0 if there are none.
 fn largest<'a, N: Real>(numbers: impl Iterator<Item = &'a N>) -> N {
     let finite = numbers.filter(|x| x.is_finite_number());
     finite.fold(N::ZERO, |largest, x| max(largest, x.abs()))
 }
 
-/// The amount by which boxes with coordinates up to `size` are loosened: covers points that the
-/// search and the pair algorithm transform into a frame and back.
+/// Returns the margin added to boxes with coordinates up to `size`. It covers the rounding of
+/// points that the search and the pair algorithm transform into a frame and back.
 fn rounding<N: Real>(size: N) -> N {
     N::lit(4.0) * slack_of(size)
 }

@@ -1,11 +1,11 @@
-//! Joints of a surface: where its parts meet, by equal positions, whatever the indices.
+//! Joints of a surface: the positions at which its parts meet, regardless of vertex indices.
 
 use crate::math::{Mapped, Point, Real, filled};
 
-/// The points at which parts meet.
+/// The joints of a surface, with the parts that meet at each.
 ///
-/// Vertices at one position form one joint, whose number is the first of them: pieces with vertices
-/// of their own, as exporters write them, join like pieces that share theirs.
+/// Vertices at the same position form one joint, whose index is that of the lowest such vertex. So
+/// pieces with duplicated vertices, as exporters write them, join like pieces that share vertices.
 ///
 /// ```text
 /// of_vertex[v]   joint of vertex v: the lowest vertex at its position
@@ -14,16 +14,17 @@ use crate::math::{Mapped, Point, Real, filled};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::shape) struct Joints {
-    /// The joint of each vertex.
+    /// The joint of each vertex: the index of the lowest vertex at the same position.
     of_vertex: Vec<u32>,
-    /// The start of each joint's parts in the list, then the end of the last.
+    /// For each joint, the index in `parts` where its list starts; the last entry is the length of
+    /// `parts`.
     starts: Vec<u32>,
-    /// The parts of each joint, ascending, each once.
+    /// The parts of each joint, in ascending order and without duplicates.
     parts: Vec<u32>,
 }
 
 impl Joints {
-    /// The joints of parts with `K` vertices each, which must exist.
+    /// Computes the joints of parts with `K` vertices each. The vertex indices must be valid.
     pub(in crate::shape) fn new<N: Real, const D: usize, const K: usize>(
         vertices: &[Point<N, D>],
         parts: &[[u32; K]],
@@ -57,12 +58,12 @@ impl Joints {
         Self { of_vertex, starts, parts: listed }
     }
 
-    /// The number of vertices.
+    /// Returns the number of vertices.
     pub(in crate::shape) const fn vertices(&self) -> usize {
         self.of_vertex.len()
     }
 
-    /// The joint of a vertex.
+    /// Returns the joint of a vertex.
     #[inline]
     pub(in crate::shape) fn of(&self, vertex: u32) -> u32 {
         self.of_vertex[vertex as usize]
@@ -81,7 +82,7 @@ impl Joints {
         &self.parts[start..end]
     }
 
-    /// Whether the vertices of each joint still lie at one position.
+    /// Whether the vertices of each joint still have the same position.
     pub(in crate::shape) fn are_together<N: Real, const D: usize>(
         &self,
         vertices: &[Point<N, D>],
@@ -90,7 +91,7 @@ impl Joints {
     }
 }
 
-/// Returns for each vertex the first one at the same position. Zeros of both signs are equal.
+/// Returns for each vertex the lowest vertex at the same position. +0 and −0 are equal.
 fn welded<N: Real, const D: usize>(vertices: &[Point<N, D>]) -> Vec<u32> {
     let key = |vertex: u32| -> [u64; D] {
         filled(|axis| (vertices[vertex as usize][axis] + N::ZERO).bits())

@@ -4,8 +4,8 @@ use core::fmt;
 
 use crate::math::{Point, Real, Vector};
 
-/// Why a [`TriMesh`](crate::shape::TriMesh) or a [`Polyline`](crate::shape::Polyline) refused its input. Parts are
-/// its triangles or segments.
+/// Why a [`TriMesh`](crate::shape::TriMesh) or a [`Polyline`](crate::shape::Polyline) rejected its
+/// input. Parts are the triangles or segments.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -18,37 +18,37 @@ use crate::math::{Point, Real, Vector};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// There is no part.
+    /// There are no parts.
     Empty,
-    /// A line through consecutive vertices has fewer than two.
+    /// A line through consecutive vertices was given fewer than two vertices.
     TooFewVertices {
-        /// How many were given.
+        /// The number of vertices given.
         given: usize,
     },
     /// A coordinate of a vertex is NaN or infinite.
     VertexNotFinite {
-        /// The index of the vertex.
+        /// The index of the first such vertex.
         vertex: usize,
     },
     /// A part refers to a vertex that does not exist.
     NoSuchVertex {
         /// The index of the part.
         part: usize,
-        /// The index that it refers to.
+        /// The vertex index that the part contains.
         vertex: u32,
-        /// How many vertices there are.
+        /// The number of vertices.
         vertices: usize,
     },
-    /// There are more vertices or parts than 32 bits can number.
+    /// There are more vertices or parts than 32-bit indices allow.
     TooMany {
-        /// How many were given.
+        /// The number of vertices or parts given.
         given: usize,
     },
-    /// The number of moved vertices differs from the mesh's.
+    /// The number of moved vertices differs from the number of vertices.
     WrongCount {
-        /// How many were given.
+        /// The number of vertices given.
         given: usize,
-        /// How many it has.
+        /// The number of vertices that the mesh or polyline has.
         needed: usize,
     },
     /// A solid has a border: the edge of a triangle, or the end of a segment, that no other
@@ -59,26 +59,25 @@ pub enum MeshError {
         /// The vertices at the ends of the edge; the vertex twice where a line is open.
         edge: [u32; 2],
     },
-    /// The parts of a solid at an edge, or at a vertex of a line, disagree about the inside: as
-    /// many have to traverse the edge, or start at the vertex, as traverse it backwards, or end
-    /// there.
+    /// The parts of a solid disagree about the inside. Each edge must be traversed equally often in
+    /// both directions; at each vertex of a line, as many segments must start as end.
     NotOriented {
-        /// The index of the part.
+        /// The index of a part at the edge or vertex.
         part: usize,
-        /// The vertices at the ends of the edge; the vertex twice in a line.
+        /// The vertices at the ends of the edge; for a line, the vertex twice.
         edge: [u32; 2],
     },
-    /// The front of a closed surface is on its inside, and no other surface is around it whose
-    /// cavity it could be.
+    /// The front of a closed surface faces its inside, and the surface is not a cavity in another
+    /// one.
     InsideOut {
-        /// The index of its first part.
+        /// The index of the first part of the surface.
         part: usize,
     },
     /// A scale is zero, infinite or NaN: no area or length would remain.
     BadScale {
-        /// The axis: 0 for x.
+        /// The index of the axis: 0 for x.
         axis: usize,
-        /// The scale along it.
+        /// The scale along that axis of the shape's frame.
         value: f64,
     },
 }
@@ -130,11 +129,11 @@ impl fmt::Display for MeshError {
 
 impl std::error::Error for MeshError {}
 
-/// The maximum number of vertices and of parts: the corners of all parts are numbered with 32 bits,
-/// and a few numbers are reserved.
+/// The maximum number of vertices and of parts: the corners of all parts need 32-bit indices, and a
+/// few values are reserved.
 const MAX: usize = (u32::MAX / 3 - 2) as usize;
 
-/// Checks that vertices are finite and at most [`MAX`].
+/// Checks that all vertices are finite and that there are at most [`MAX`].
 pub(in crate::shape) fn check_vertices<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
 ) -> Result<(), MeshError> {
@@ -146,7 +145,8 @@ pub(in crate::shape) fn check_vertices<N: Real, const D: usize>(
     }
 }
 
-/// Checks that there are parts, at most [`MAX`], whose vertices exist.
+/// Checks that there is at least one part and at most [`MAX`], and that all vertex indices are
+/// valid.
 pub(in crate::shape) fn check_parts<const K: usize>(
     parts: &[[u32; K]],
     vertices: usize,
@@ -165,7 +165,7 @@ pub(in crate::shape) fn check_parts<const K: usize>(
     Ok(())
 }
 
-/// Checks that moved vertices are finite and `needed` in number.
+/// Checks that the moved vertices are finite and that there are exactly `needed`.
 pub(in crate::shape) fn check_moved<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     needed: usize,
@@ -176,7 +176,7 @@ pub(in crate::shape) fn check_moved<N: Real, const D: usize>(
     check_vertices(vertices)
 }
 
-/// Checks that the scale along each axis is finite and not zero.
+/// Checks that each component of the scale is finite and not zero.
 pub(in crate::shape) fn check_scale<N: Real, const D: usize>(
     scale: &Vector<N, D>,
 ) -> Result<(), MeshError> {
@@ -187,7 +187,7 @@ pub(in crate::shape) fn check_scale<N: Real, const D: usize>(
     }
 }
 
-/// Returns the mesh, or panics with the error's text.
+/// Returns the mesh, or panics with the text of the error.
 #[track_caller]
 pub(in crate::shape) fn or_panic<S>(result: Result<S, MeshError>) -> S {
     match result {

@@ -1,9 +1,9 @@
-//! Shapes made of parts: the interface of composites to the queries.
+//! Shapes made of parts: the interface between composites and queries.
 //!
-//! Parts are numbered from 0; those of nested composites follow each other, so that one number
-//! identifies a part at any depth, and `path_to_part` on `dyn Shape` converts it to a path.
-//! Algorithms never treat a composite as a whole: they search for the parts that may matter
-//! ([`PartSearch`]) and treat each as a solid of its own.
+//! Parts are indexed from 0. The parts of nested composites follow each other, so that one index
+//! identifies a part at any depth; `path_to_part` on `dyn Shape` converts an index to a path. No
+//! algorithm processes a composite as a whole: it searches for candidate parts ([`PartSearch`]) and
+//! processes each as a separate solid.
 
 pub(crate) mod body;
 pub(crate) mod compound;
@@ -25,14 +25,15 @@ use crate::shape::{
     EnclosedBody, FeatureId, Geometry, Revision, Segment, Shape, SurfaceAccess, TriMesh, Triangle,
 };
 
-/// The path to a part: the index of the child, of its child, …, of the part in the last.
+/// The path to a part: the index of the child, then of the child's child, …, and last the index of
+/// the part in the innermost composite.
 pub type PartPath = SmallVec<[u32; 4]>;
 
 /// A shape that is the union of simple solids, its parts.
 ///
-/// Implement it, and [`Shape::geometry`] by [`Geometry::composite`], for a composite of your own: keep
-/// a [`BoxTree`](crate::partitioning::BoxTree) over the boxes of the parts and give it as the search.
-/// All is in the frame of the composite.
+/// To define your own composite, implement this trait, and [`Shape::geometry`] by
+/// [`Geometry::composite`]. Keep a [`BoxTree`](crate::partitioning::BoxTree) over the boxes of the
+/// parts and return it as the search. All coordinates are in the frame of the composite.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -51,25 +52,26 @@ pub type PartPath = SmallVec<[u32; 4]>;
             `CompositeShape`"
 )]
 pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
-    /// How many parts there are; they are numbered from 0.
+    /// Returns the number of parts; their indices start at 0.
     fn num_parts(&self) -> u32;
 
-    /// Returns one part: a solid that is not a composite, and its pose.
+    /// Returns one part: a solid that is not a composite, and its pose in the frame of the
+    /// composite.
     ///
     /// # Panics
-    /// If there is no such part.
+    /// If `part` is not below [`Self::num_parts`].
     fn part(&self, part: u32) -> Part<'_, N, D>;
 
-    /// The search structure over the parts.
+    /// Returns the search structure over the parts.
     fn search(&self) -> &dyn PartSearch<N, D>;
 
-    /// Calls `visit` with each part that a ray may hit at or before the time `limit`, and its
-    /// number: every part that it hits, each at most once. `visit` returns the new limit, which
-    /// never grows; a negative one ends the search. Near parts first is better, but no order is
-    /// promised.
+    /// Calls `visit` with the index and the geometry of each part that the ray may hit at a time up
+    /// to `limit`, inclusive. Every part that the ray hits must be visited, each part at most once.
+    /// `visit` returns the new limit, which never grows; a negative limit ends the search. Visiting
+    /// near parts first is faster, but no order is required.
     ///
     /// `around` is a box around the ray's origin that contains its rounding error. The default uses
-    /// [`Self::search`]; a composite with a sharper test than boxes may override it.
+    /// [`Self::search`]; override it in a composite whose test is tighter than boxes.
     fn parts_along(
         &self,
         ray: &Ray<N, D>,
@@ -80,32 +82,32 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         self.search().cast(around, &ray.dir, limit, &mut |part, _| visit(part, self.part(part)));
     }
 
-    /// The surface that the parts are pieces of, so that contacts do not catch on the seams between
-    /// them. `None` for solids side by side.
+    /// Returns the surface to which the parts belong, so that contacts do not catch on the seams
+    /// between parts. `None` if the parts are separate solids.
     fn surface(&self) -> Option<&dyn Surface<N, D>> {
         None
     }
 
-    /// The surface as the library's algorithms see it; the library's own composites provide more of
-    /// it.
+    /// Returns the surface for the library's algorithms; the library's own composites provide more
+    /// than [`Surface`].
     #[doc(hidden)]
     fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
         self.surface().map(SurfaceAccess::of_any)
     }
 
-    /// Calls `visit` with the number of each corner of a part that other parts may share: two parts
-    /// are adjacent if they have a number in common, which need not be a vertex index. The default
-    /// visits none, for solids side by side.
+    /// Calls `visit` with a number for each corner of a part that other parts may share. Two parts
+    /// are adjacent if they have a number in common; the number need not be a vertex index. The
+    /// default visits none, for separate solids.
     ///
-    /// In a triangle mesh or polyline the numbers are its vertices, with coinciding positions
-    /// merged; in a height field the points of its grid; in a compound those of its children, kept
-    /// apart as long as they are below 2³².
+    /// In a triangle mesh or polyline the numbers are vertex indices, with coinciding positions
+    /// merged. In a height field they are the indices of grid points. In a compound they are the
+    /// numbers of the children; those of different children differ as long as they are below 2³².
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         let _ = (part, visit);
     }
 
-    /// Whether two different parts share a corner, so that they touch trivially: such pairs are
-    /// skipped when the shape is tested against itself. The default uses [`Self::each_corner`].
+    /// Whether two different parts share a corner and therefore always touch. Tests of a shape
+    /// against itself skip such pairs. The default uses [`Self::each_corner`].
     fn are_adjacent(&self, part1: u32, part2: u32) -> bool {
         let (mut corners, mut is_shared) = (SmallVec::<[u64; 4]>::new(), false);
         self.each_corner(part1, &mut |corner| corners.push(corner));
@@ -113,59 +115,61 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         is_shared
     }
 
-    /// Appends the path to a part.
+    /// Appends the path to a part to `path`.
     fn extend_path(&self, part: u32, path: &mut PartPath) {
         path.push(part);
     }
 
-    /// The composite as a shape of the library, which can compute what it encloses; `None` for a
-    /// user's composite.
+    /// Returns the composite as a built-in shape, for which the library can compute what it
+    /// encloses; `None` for a user's composite.
     #[doc(hidden)]
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
         None
     }
 
-    /// The composite as a mesh, if it is one.
+    /// Returns the composite as a triangle mesh; `None` if it is another shape.
     #[doc(hidden)]
     fn as_mesh(&self) -> Option<&TriMesh<N, D>> {
         None
     }
 
-    /// The cache key of the composite's state; `None` for a user's composite, which may change
-    /// unnoticed.
+    /// Returns the cache key of the composite's state; `None` for a user's composite, which may
+    /// change without notice.
     #[doc(hidden)]
     fn revision(&self) -> Option<Revision> {
         None
     }
 
-    /// Calls `visit` with each closed surface among the parts that bounds an [`EnclosedBody`].
+    /// Calls `visit` with an [`EnclosedBody`] for each closed surface among the parts that bounds a
+    /// body.
     #[doc(hidden)]
     fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {
         let _ = visit;
     }
 
-    /// Whether [`Self::each_body`] visits any. O(1).
+    /// Whether [`Self::each_body`] visits any body. O(1).
     #[doc(hidden)]
     fn has_bodies(&self) -> bool {
         false
     }
 
-    /// Whether parts have ghosts beside them, which seams know and nothing touches. O(1).
+    /// Whether the composite has ghosts: parts that take part in seams, but that no query finds.
+    /// O(1).
     #[doc(hidden)]
     fn has_ghosts(&self) -> bool {
         false
     }
 
-    /// Whether the composite, as a boundary, winds around a point; either result is allowed for a
-    /// point on a part.
+    /// Whether the composite, as a boundary, winds around `point`; for a point on a part either
+    /// result is allowed.
     #[doc(hidden)]
     fn winds_around(&self, point: &Point<N, D>) -> bool {
         let _ = point;
         false
     }
 
-    /// The number of the connected piece that a part belongs to. By default a surface is one piece,
-    /// and each of the solids side by side is one.
+    /// Returns the index of the connected piece that a part belongs to. By default a surface is one
+    /// piece, and each separate solid is a piece.
     #[doc(hidden)]
     fn piece_of(&self, part: u32) -> u32 {
         if self.surface().is_some() { 0 } else { part }
@@ -186,7 +190,7 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Part<'a, N: Real, const D: usize> {
-    /// Its pose in the frame of the composite.
+    /// The pose of the solid in the frame of the composite.
     pub pose: Pose<N, D>,
     /// The solid, in its own frame.
     pub solid: PartSolid<'a, N, D>,
@@ -214,7 +218,7 @@ pub enum PartSolid<'a, N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> PartSolid<'_, N, D> {
-    /// The part as a shape.
+    /// Returns the solid as a shape.
     #[must_use]
     pub fn as_shape(&self) -> &dyn Shape<N, D> {
         match self {
@@ -224,7 +228,7 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
         }
     }
 
-    /// How queries see the part.
+    /// Returns the solid as queries see it.
     #[must_use]
     pub fn geometry(&self) -> Geometry<'_, N, D> {
         self.as_shape().geometry()
@@ -233,9 +237,9 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
 
 /// Searches of the parts of a composite by their boxes.
 ///
-/// A box may be larger than its part: callers test each proposed part. Each part is proposed at
-/// most once; near ones first is better, but no order is promised. Input that is not finite finds
-/// nothing, except for the infinite faces of an unbounded box.
+/// A box may be larger than its part: callers test each reported part. Each part is reported at
+/// most once; near parts first is faster, but no order is required. Non-finite input reports no
+/// parts, except for the infinite faces of an unbounded box.
 ///
 /// ```
 /// use impinge::dim2::bounding_volume::Aabb;
@@ -249,17 +253,17 @@ impl<N: Real, const D: usize> PartSolid<'_, N, D> {
 /// assert_eq!(found, [4]);
 /// ```
 pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
-    /// A box around all parts, as small as is cheap: every query reads it.
+    /// Returns a box around all parts, as small as is cheap to compute: every query reads it.
     ///
-    /// The default is unbounded, which is always right; two composites are then tested part by part
-    /// of the smaller one, however far apart they are.
+    /// The default is unbounded, which is always valid. Two composites are then tested against each
+    /// other for each part of the smaller one, however far apart they are.
     fn bounds(&self) -> Aabb<N, D> {
         Aabb::unbounded()
     }
 
-    /// The tree behind the search, if its boxes are those of the parts in the order of their
-    /// numbers. Two composites with a tree each are searched together, which is many times as fast
-    /// as part by part. `None` (the default) for every search but [`BoxTree`].
+    /// Returns the tree behind the search, if the index of each box in it is the index of its part.
+    /// Two composites that both have such a tree are traversed together, which is many times as
+    /// fast as part by part. Every search but [`BoxTree`] returns `None` (the default).
     fn as_tree(&self) -> Option<&BoxTree<N, D>> {
         None
     }
@@ -267,14 +271,14 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
     /// Calls `visit` with each part whose box overlaps or touches `aabb`.
     fn overlapping(&self, aabb: &Aabb<N, D>, visit: &mut dyn FnMut(u32));
 
-    /// Calls `visit` with each part whose box is at most `limit` from `aabb`, and a lower bound of
-    /// that distance. `visit` returns the new limit, which never grows: the distance of the nearest
-    /// part so far, to find the nearest. A negative one ends the search.
+    /// Calls `visit` with each part whose box is at most `limit` from `aabb`, and with a lower
+    /// bound of that distance. `visit` returns the new limit, which never grows: to find the
+    /// nearest part, it is the smallest distance so far. A negative limit ends the search.
     fn nearest(&self, aabb: &Aabb<N, D>, limit: N, visit: &mut dyn FnMut(u32, N) -> N);
 
-    /// Calls `visit` with each part whose box is hit, at or before the time `limit`, by `aabb`
-    /// moving with `velocity`, and a lower bound of the time. `visit` returns the new limit, as for
-    /// [`Self::nearest`]. A ray is a box without extent.
+    /// Calls `visit` with each part whose box is hit by `aabb`, moving with `velocity`, at a time
+    /// up to `limit`, inclusive, and with a lower bound of that time. `visit` returns the new
+    /// limit, which never grows; a negative limit ends the search. A ray is a box without extent.
     fn cast(
         &self,
         aabb: &Aabb<N, D>,
@@ -284,10 +288,10 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
     );
 }
 
-/// The normals that parts have as pieces of one surface, so that solids slide over seams.
+/// The contact normals that parts have as pieces of one surface, so that solids slide over seams.
 ///
-/// On their own, the triangles of a floor have edges that a sliding box would catch on. All is in
-/// the frame of the composite.
+/// Without it, the edges between the triangles of a floor would stop a sliding box. All vectors are
+/// in the frame of the composite.
 ///
 /// ```
 /// use impinge::dim2::math::{Point, Vector};
@@ -301,18 +305,18 @@ pub trait PartSearch<N: Real, const D: usize>: Send + Sync {
 /// assert_eq!(surface.snapped(0, &slanted), Some(Vector::y()));
 /// ```
 pub trait Surface<N: Real, const D: usize>: Send + Sync {
-    /// Whether the whole surface has the unit vector `normal`, away from the part, at the feature
-    /// of the part: at a face its own normal; at a convex seam a normal between those of the two
-    /// faces; at a flat or concave seam only the normals of the faces. Within a tolerance for
-    /// rounding.
+    /// Whether the unit vector `normal`, pointing away from the part, is a normal of the whole
+    /// surface at the feature of the part. At a face only the face normal is admitted; at a convex
+    /// seam any normal between those of the two faces; at a flat or concave seam only the face
+    /// normals. The test has a tolerance for rounding.
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool;
 
-    /// Returns the normal of the whole surface on the part that replaces `normal`, which
-    /// [`Self::admits`] rejected: the face's, on the side of `normal` if the surface has two sides.
-    /// `None` if the part is no border of the surface, such as a piece inside a filled shape.
+    /// Returns the normal that replaces `normal`, which [`Self::admits`] rejected: the face normal
+    /// of the part, on the side of `normal` if the surface has two sides. `None` if the part is not
+    /// on the border of the surface, such as a piece inside a filled shape.
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>>;
 
-    /// Whether the part can touch a solid whose centre is `center`: false behind a surface with one
-    /// side.
+    /// Whether the part can touch a solid whose centre is `center`: false if the surface is
+    /// one-sided and the centre is behind the part.
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool;
 }

@@ -1,4 +1,4 @@
-//! The box tree as the search of a composite.
+//! The implementation of [`PartSearch`] for the box tree.
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Space, Vector};
@@ -35,7 +35,7 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
     }
 }
 
-/// A tree numbers its boxes with 32 bits.
+/// Converts a box index to 32 bits; a tree has fewer than 2³² boxes.
 fn number(index: usize) -> u32 {
     u32::try_from(index).expect("a tree has fewer than 2^32 boxes")
 }

@@ -13,26 +13,26 @@ use crate::shape::composite::mesh_error::{
 use crate::shape::composite::polyline_parts;
 use crate::shape::{Revision, Segment};
 
-/// Segments that share ends: an open or closed line, several lines, or a network.
+/// Segments that share ends: one or several lines, open or closed, or a network.
 ///
-/// Parts are the segments, in the order given, each with the vertices 0 and 1 and the edge 0 of
-/// [`Segment`]; all is in the frame of the line. Segments join where the positions of their ends
-/// are equal, whatever the indices.
+/// Parts are the segments, in the order given. Each has the vertices 0 and 1 and the edge 0 of
+/// [`Segment`]; all coordinates are in the frame of the line. Segments join where the positions of
+/// their ends are equal, regardless of vertex indices.
 ///
 /// **Sides.** A line is a skin and has no inside, except in 2D for `encloses` and
-/// `signed_distance`, unless `solid` makes a closed one a body. In 2D it has two sides, or one
-/// after `one_sided`: then the solid side is its left, as for an outline that runs
-/// counter-clockwise, and nothing touches it from there.
+/// `signed_distance`, unless `solid` makes a closed line a body. In 2D it has two sides, or one
+/// after `one_sided`. The solid side is then its left, as for an outline that runs
+/// counter-clockwise, and no contact arises from that side.
 ///
 /// **Seams.** Contacts treat the line as one surface (see [`Surface`](crate::shape::Surface)): at a
-/// joint only normals of the whole line count, so that nothing catches on the joints of a floor.
-/// Segments that bend by less than 0.57 degrees (a sine of 0.01) count as straight.
-/// [`Self::with_internal_edges_kept`] switches this off.
+/// joint only normals of the whole line are admitted, so that nothing catches on the joints of a
+/// floor. Segments whose directions differ by less than 0.57 degrees (a sine of 0.01) count as
+/// straight. [`Self::with_internal_edges_kept`] disables this.
 ///
-/// **Bad segments.** A segment without length is kept, so that part numbers do not change: it acts
-/// as a point, and its neighbours join through it.
+/// **Degenerate segments.** A segment without length is kept, so that part indices do not change:
+/// it acts as a point, and its neighbours join through it.
 ///
-/// Making a line costs O(n log n), a search O(log n + what it finds).
+/// Construction costs O(n log n), a search O(log n + results).
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -55,15 +55,15 @@ pub struct Polyline<N: Real, const D: usize> {
     is_cycle: bool,
     /// Whether vertices have moved since the joints were computed.
     pub(in crate::shape) is_moved: bool,
-    /// Maps the direction of a segment to the normal on its front, for a line with one side; `None`
-    /// in 3D.
+    /// Maps the direction of a segment to the normal on its front; `None` for a line with two
+    /// sides, and in 3D.
     pub(in crate::shape) front: Option<Front<N, D>>,
     /// Whether `solid` was called; valid while [`Self::is_cycle`].
     pub(in crate::shape) is_solid: bool,
     pub(in crate::shape) keeps_internal_edges: bool,
-    /// The first segment of the piece of each segment.
+    /// For each segment, the first segment of its connected piece; computed on first use.
     pieces: OnceLock<Vec<u32>>,
-    /// Without the options, which are set later.
+    /// The cache key of the geometry; the options, which are set later, are not included.
     pub(in crate::shape) revision: Revision,
 }
 
@@ -71,40 +71,41 @@ pub struct Polyline<N: Real, const D: usize> {
 pub(crate) type Front<N, const D: usize> = fn(&Vector<N, D>) -> Vector<N, D>;
 
 impl<N: Space<D>, const D: usize> Polyline<N, D> {
-    /// The line through the vertices in order.
+    /// Returns the open line through the vertices in order.
     ///
     /// # Panics
-    /// Where [`Self::try_open`] returns an error.
+    /// If [`Self::try_open`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn open(vertices: Vec<Point<N, D>>) -> Self {
         or_panic(Self::try_open(vertices))
     }
 
-    /// The line through the vertices in order.
+    /// Returns the open line through the vertices in order.
     ///
     /// # Errors
-    /// If a coordinate is not finite, there are fewer than two vertices, or more than 32 bits can
-    /// number.
+    /// If a coordinate is not finite, there are fewer than two vertices, or the vertices do not fit
+    /// 32-bit indices.
     pub fn try_open(vertices: Vec<Point<N, D>>) -> Result<Self, MeshError> {
         let segments = chain(vertices.len())?;
         Self::try_new(vertices, segments)
     }
 
-    /// The line through the vertices in order, and from the last back to the first.
+    /// Returns the closed line through the vertices in order, and from the last back to the first.
     ///
     /// # Panics
-    /// Where [`Self::try_closed`] returns an error.
+    /// If [`Self::try_closed`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn closed(vertices: Vec<Point<N, D>>) -> Self {
         or_panic(Self::try_closed(vertices))
     }
 
-    /// The line through the vertices in order, and from the last back to the first.
+    /// Returns the closed line through the vertices in order, and from the last back to the first.
     ///
     /// # Errors
-    /// As for [`Self::try_open`].
+    /// If a coordinate is not finite, there are fewer than two vertices, or the vertices do not fit
+    /// 32-bit indices.
     pub fn try_closed(vertices: Vec<Point<N, D>>) -> Result<Self, MeshError> {
         let mut segments = chain(vertices.len())?;
         if let Some(&[_, last]) = segments.last() {
@@ -113,21 +114,21 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         Self::try_new(vertices, segments)
     }
 
-    /// The union of segments given by two vertices each, in any order.
+    /// Returns the union of segments, each given by the indices of its two vertices, in any order.
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new(vertices: Vec<Point<N, D>>, segments: Vec<[u32; 2]>) -> Self {
         or_panic(Self::try_new(vertices, segments))
     }
 
-    /// The union of segments given by two vertices each, in any order.
+    /// Returns the union of segments, each given by the indices of its two vertices, in any order.
     ///
     /// # Errors
-    /// If a coordinate is not finite, a segment refers to a vertex that does not exist, there is no
-    /// segment, or 32 bits cannot number the ends.
+    /// If a coordinate is not finite, a segment refers to a vertex that does not exist, there are
+    /// no segments, or the ends do not fit 32-bit indices.
     pub fn try_new(vertices: Vec<Point<N, D>>, segments: Vec<[u32; 2]>) -> Result<Self, MeshError> {
         check_vertices(&vertices)?;
         check_parts(&segments, vertices.len())?;
@@ -150,8 +151,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         })
     }
 
-    /// The line scaled along the axes of its frame, about its origin. If the scale mirrors it, each
-    /// segment is reversed, so that its solid side stays solid.
+    /// Returns the line scaled along the axes of its frame, about its origin. A mirroring scale
+    /// also reverses each segment, so that the solid side stays solid.
     ///
     /// # Errors
     /// If a scale is zero or not finite, or a coordinate becomes infinite.
@@ -169,17 +170,16 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
     /// Moves the vertices; see [`Self::try_set_vertices`].
     ///
     /// # Panics
-    /// Where [`Self::try_set_vertices`] returns an error.
+    /// If [`Self::try_set_vertices`] returns an error.
     #[track_caller]
     pub fn set_vertices(&mut self, vertices: &[Point<N, D>]) {
         or_panic(self.try_set_vertices(vertices));
     }
 
-    /// Moves the vertices, for a line that deforms: all of them, in the order of
-    /// [`Self::vertices`].
+    /// Moves all vertices of a deforming line; `vertices` has the order of [`Self::vertices`].
     ///
-    /// Segments that were joined stay joined, even if their ends are apart now. The tree is
-    /// refitted, not rebuilt: O(n). On an error nothing has changed.
+    /// Segments that were joined stay joined, even if their ends are now apart. The tree is
+    /// refitted, not rebuilt: O(n). On an error the line is unchanged.
     ///
     /// # Errors
     /// If a coordinate is not finite or the number of vertices differs.
@@ -207,35 +207,36 @@ impl<N: Real, const D: usize> Polyline<N, D> {
 }
 
 impl<N: Real, const D: usize> Polyline<N, D> {
-    /// The vertices, as given; some may belong to no segment.
+    /// Returns the vertices, as given; some may belong to no segment.
     #[must_use]
     pub fn vertices(&self) -> &[Point<N, D>] {
         &self.vertices
     }
 
-    /// The two vertices of each segment.
+    /// Returns the vertex indices of each segment.
     #[must_use]
     pub fn segments(&self) -> &[[u32; 2]] {
         &self.segments
     }
 
-    /// The number of segments.
+    /// Returns the number of segments.
     #[must_use]
     pub const fn num_segments(&self) -> usize {
         self.segments.len()
     }
 
-    /// One segment.
+    /// Returns one segment.
     ///
     /// # Panics
-    /// If there is no such segment.
+    /// If `index` is not below the number of segments.
     #[must_use]
     pub fn segment(&self, index: u32) -> Segment<N, D> {
         let [a, b] = self.ends(index);
         Segment::new(a, b)
     }
 
-    /// The segments joined to end 0 or 1 of a segment, including itself, ascending.
+    /// Returns the segments joined to end 0 or 1 of a segment, including the segment itself, in
+    /// ascending order.
     ///
     /// # Panics
     /// If there is no such segment or end.
@@ -251,13 +252,13 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.segments.iter().flatten().all(|vertex| joint(vertex).len() > 1)
     }
 
-    /// The tree over the boxes of the segments.
+    /// Returns the tree over the boxes of the segments.
     #[must_use]
     pub const fn tree(&self) -> &BoxTree<N, D> {
         &self.tree
     }
 
-    /// Whether nothing touches the line from its left.
+    /// Whether the line is one-sided: nothing touches it from its left.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         self.front.is_some()
@@ -270,8 +271,8 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.is_solid && self.is_cycle
     }
 
-    /// Returns for each segment the first one of its piece; segments that share ends are of one
-    /// piece.
+    /// Returns for each segment the first segment of its piece; segments that share ends belong to
+    /// one piece.
     pub(in crate::shape) fn pieces(&self) -> &[u32] {
         self.pieces.get_or_init(|| {
             let are_together = !self.is_moved || self.joints.are_together(&self.vertices);
@@ -280,13 +281,15 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         })
     }
 
-    /// Whether contacts treat each segment on its own; see [`Self::with_internal_edges_kept`].
+    /// Whether contacts treat each segment as a separate solid; see
+    /// [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
         self.keeps_internal_edges
     }
 
-    /// Makes contacts treat each segment on its own, with both its ends, as if it had no neighbours.
+    /// Makes contacts treat each segment as a separate solid, with both its ends, as if it had no
+    /// neighbours.
     #[must_use]
     pub const fn with_internal_edges_kept(mut self) -> Self {
         self.keeps_internal_edges = true;
@@ -299,11 +302,11 @@ impl<N: Real, const D: usize> Polyline<N, D> {
 }
 
 impl<N: Real> Polyline<N, 2> {
-    /// Whether the line is the outline of an area, or of several: at each joint as many segments
-    /// end as start, as in every [closed](Self::closed) one. O(1).
+    /// Whether the line is the outline of one or several areas: at each joint as many segments end
+    /// as start, as in every [closed](Self::closed) line. O(1).
     ///
-    /// If [`Self::set_vertices`] moves vertices apart that were at one position, the line is open.
-    /// [`Self::encloses`] and [`Self::signed_distance`] answer what lies inside.
+    /// If [`Self::set_vertices`] moves joined vertices apart, the line is no longer an outline.
+    /// [`Self::encloses`] and [`Self::signed_distance`] compute what lies inside.
     #[must_use]
     pub const fn is_outline(&self) -> bool {
         self.is_cycle
@@ -320,7 +323,7 @@ impl<N: Real> Polyline<N, 2> {
     /// Makes the line a body instead of a skin; see [`Self::try_solid`].
     ///
     /// # Panics
-    /// Where [`Self::try_solid`] returns an error.
+    /// If [`Self::try_solid`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn solid(self) -> Self {
@@ -334,9 +337,10 @@ impl<N: Real> Polyline<N, 2> {
     /// on the left of its segments; outlines that run clockwise are holes in others.
     ///
     /// # Errors
-    /// If the line is no [outline](Self::is_outline): the error has the first vertex at which it is
-    /// open or its segments disagree. If an outline runs clockwise and lies in no other one: the
-    /// error has a segment of it.
+    /// - [`MeshError::NotClosed`] or [`MeshError::NotOriented`] if the line is not an
+    ///   [outline](Self::is_outline), with the first vertex at fault.
+    /// - [`MeshError::InsideOut`] if an outline runs clockwise and lies in no other outline, with a
+    ///   segment of it.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -373,7 +377,7 @@ impl<N: Real> Polyline<N, 2> {
         Ok(self.one_sided())
     }
 
-    /// A power of two near the size of the line.
+    /// Returns a power of two near the largest coordinate of the line.
     fn scale(&self) -> f64 {
         let corners = self.tree.bounds().map(|bounds| [*bounds.mins(), *bounds.maxs()]);
         let largest = |corner: &Point<N, 2>| max_component(&corner.coords);
@@ -381,7 +385,8 @@ impl<N: Real> Polyline<N, 2> {
         size.power_of_two_below().as_f64()
     }
 
-    /// The error for the first vertex at which the numbers of starting and ending segments differ.
+    /// Returns the error for the first vertex at which the numbers of starting and ending segments
+    /// differ.
     fn opening(&self) -> MeshError {
         let joints = Joints::new(&self.vertices, &self.segments);
         for (part, vertex) in
@@ -399,13 +404,13 @@ impl<N: Real> Polyline<N, 2> {
                 _ => return MeshError::NotOriented { part, edge: [vertex; 2] },
             }
         }
-        // Vertices that were moved onto each other do not join: the joints stay as they were at
-        // first.
+        // Vertices that were moved to one position do not join: the joints are those of
+        // construction.
         MeshError::NotClosed { part: 0, edge: [self.segments[0][0]; 2] }
     }
 }
 
-/// Whether as many segments end as start at each joint.
+/// Whether at each joint as many segments end as start.
 fn is_cycle(vertices: usize, segments: &[[u32; 2]], joints: &Joints) -> bool {
     let mut surplus = vec![0_i64; vertices];
     for &[from, to] in segments {
@@ -415,7 +420,10 @@ fn is_cycle(vertices: usize, segments: &[[u32; 2]], joints: &Joints) -> bool {
     surplus.iter().all(|&starts| starts == 0)
 }
 
-/// The segments from each vertex to the next, at least one; too many vertices are rejected later.
+/// Returns the segments from each vertex to the next; a later check rejects too many vertices.
+///
+/// # Errors
+/// If there are fewer than two vertices.
 fn chain(vertices: usize) -> Result<Vec<[u32; 2]>, MeshError> {
     if vertices < 2 {
         return Err(MeshError::TooFewVertices { given: vertices });
@@ -423,7 +431,7 @@ fn chain(vertices: usize) -> Result<Vec<[u32; 2]>, MeshError> {
     Ok((1..).take(vertices - 1).map(|next| [next - 1, next]).collect())
 }
 
-/// The boxes of the segments, in their order.
+/// Returns the boxes of the segments, in the order of the segments.
 fn boxes_of<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     segments: &[[u32; 2]],
@@ -433,8 +441,8 @@ fn boxes_of<N: Real, const D: usize>(
     segments.iter().map(one).collect()
 }
 
-/// Converts an error of the tree, whose boxes are around finite points, so that only their number
-/// can be wrong.
+/// Converts an error of the tree. All boxes are around finite points, so only their count can be
+/// invalid.
 pub(in crate::shape) fn refused(error: BoxTreeError) -> MeshError {
     match error {
         BoxTreeError::BadBox { index, .. } => MeshError::VertexNotFinite { vertex: index },

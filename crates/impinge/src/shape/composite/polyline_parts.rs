@@ -1,4 +1,4 @@
-//! A polyline as a composite shape: segments with the seams between them.
+//! The implementation of composite shape for polylines: segments with the seams between them.
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, max_component, perp, unit};
@@ -11,7 +11,7 @@ use crate::shape::{
     Revision, ScaleError, Shape, ShapeHandle, Sidedness, Surface, SurfaceAccess,
 };
 
-/// The normal on the right of a direction.
+/// Returns the normal on the right of a direction.
 pub(in crate::shape) fn right_of<N: Real>(along: &Vector<N, 2>) -> Vector<N, 2> {
     -perp(along)
 }
@@ -81,7 +81,7 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
     }
 }
 
-/// The normals of a segment itself are all its perpendiculars: two in 2D, a circle of them in 3D.
+/// Both perpendiculars of a segment are its normals in 2D; in 3D a circle of perpendiculars.
 impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
         if self.keeps_internal_edges {
@@ -122,20 +122,21 @@ impl<N: Real, const D: usize> OwnSurface<N, D> for Polyline<N, D> {
 }
 
 impl<N: Real, const D: usize> Polyline<N, D> {
-    /// The unit vector along a segment; `None` without length.
+    /// Returns the unit vector along a segment; `None` if it has no length.
     fn along(&self, segment: u32) -> Option<Vector<N, D>> {
         let [a, b] = self.ends(segment);
         unit(&(b - a)).map(|(along, _)| along)
     }
 
-    /// The component of a vector along the front of a segment; zero if the line has two sides.
+    /// Returns the component of `vector` along the front normal of a segment; 0 if the line has two
+    /// sides or the segment has no length.
     fn height_over(&self, segment: u32, vector: &Vector<N, D>) -> N {
         let front = self.front.zip(self.along(segment)).map(|(front, along)| front(&along));
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// Whether no segment that leaves the joint rises along the normal, and the joint is not
-    /// straight.
+    /// Whether the joint admits `normal`: no segment that leaves the joint rises along it, and the
+    /// joint is not straight.
     fn joint_admits(&self, part: u32, end: u32, normal: &Vector<N, D>) -> bool {
         let joint = self.joints.of(self.segments[part as usize][end as usize]);
         let own = self.along(part).unwrap_or_else(Vector::<N, D>::zeros);
@@ -155,18 +156,18 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Polyline<N, D> {
         Geometry(Kind::Composite(self))
     }
 
-    /// The smallest box, in O(1).
+    /// Returns the smallest box, in O(1).
     fn local_aabb(&self) -> Aabb<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    /// The smallest box, up to rounding. O(log n) for a convex-looking line, up to O(n) for one
-    /// whose parts extend almost equally far.
+    /// Returns the smallest box, up to rounding. O(log n) for a nearly convex line, up to O(n) if
+    /// the parts extend almost equally far.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         aabb_at(pose, &self.segments, &self.vertices, &self.tree)
     }
 
-    /// The sphere about the centre of the box through the farthest vertex: O(n).
+    /// Returns the sphere about the centre of the local box through the farthest vertex. O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         sphere_around(&self.local_aabb(), self.segments.as_flattened().iter(), &self.vertices)
     }

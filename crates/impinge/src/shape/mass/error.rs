@@ -2,10 +2,10 @@
 
 use core::fmt;
 
-/// Why a shape, or some numbers, have no mass properties. Values are given as `f64`, exactly.
+/// Why a shape, or given numbers, have no mass properties. Values are given as `f64`, exactly.
 ///
-/// `part` is the part number that queries use: 0 for a shape of one part; `path_to_part` of the
-/// shape translates it for a nested compound.
+/// `part` is the part index that queries use: 0 for a shape of one part. `path_to_part` of the
+/// shape converts it to a path in nested compounds.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -21,31 +21,31 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MassError {
-    /// An input, or a number of the result, is NaN or infinite. A mass or a moment is infinite if
-    /// it exceeds the range of the scalar.
+    /// An input, or a component of the result, is NaN or infinite. A mass or a moment is infinite
+    /// if it exceeds the range of the scalar.
     NotFinite {
-        /// Which number.
+        /// The name of the quantity.
         what: &'static str,
-        /// The number.
+        /// The value.
         value: f64,
     },
     /// An input is below zero.
     Negative {
-        /// Which number.
+        /// The name of the input.
         what: &'static str,
-        /// The number.
+        /// The value given.
         value: f64,
     },
-    /// The shape is, or contains, a half-space: its mass is infinite.
+    /// The shape is, or contains, a half-space, whose mass is infinite.
     Unbounded {
-        /// The part that is a half-space.
+        /// The index of the part that is a half-space.
         part: u32,
     },
     /// A surface or line bounds no solid: an open mesh, a mesh whose triangles disagree about the
-    /// front, an open polyline, a polyline in 3D, a height field, a user's surface.
+    /// front, an open polyline, a polyline in 3D, a height field, or a user's surface.
     NotClosed {
-        /// In a triangle mesh the first triangle with an open side or a side in the wrong
-        /// direction, else the first part.
+        /// For a triangle mesh, the index of the first triangle with an open side or a side in the
+        /// wrong direction; for others, the index of the first part.
         part: u32,
     },
 }

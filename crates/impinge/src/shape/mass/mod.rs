@@ -1,9 +1,9 @@
 //! Mass properties of rigid bodies: mass, centre of mass, inertia.
 //!
-//! This module has the type and its arithmetic; [`crate::query::mass_properties`] computes them
-//! from shapes. Arithmetic is in double precision for both scalars and is rounded once. Principal
-//! moments are stored instead of the tensor: a small moment keeps its digits beside a large one,
-//! and none ever becomes negative.
+//! This module has the type and its arithmetic; [`crate::query::mass_properties`] computes the
+//! properties of shapes. Arithmetic is in double precision for both scalars and is rounded once.
+//! Principal moments are stored instead of the tensor: a small moment keeps its digits beside a
+//! large one, and none becomes negative.
 
 mod error;
 mod moments;
@@ -21,18 +21,19 @@ use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Vector}
 
 /// The mass of a rigid body, its centre of mass, and its inertia about that centre.
 ///
-/// All is in the frame of the body. [`mass_properties`](crate::query::mass_properties) computes
-/// them from a shape and a density, `new` takes numbers. The inertia is a number in 2D, about the
-/// centre and the axis out of the plane; in 3D a tensor, stored as its principal moments and axes.
+/// All quantities are in the frame of the body. [`mass_properties`](crate::query::mass_properties)
+/// computes them from a shape and a density, `new` takes them as numbers. In 2D the inertia is a
+/// number: the moment about the centre of mass and the axis out of the plane. In 3D it is a tensor,
+/// stored as its principal moments and axes.
 ///
 /// `+` joins two bodies in one frame, by the parallel axis theorem; an overlap counts twice. `-`
-/// removes a part from a body: a hollow ball is a ball minus a smaller one. [`Self::transformed`]
+/// removes a part from a body: a hollow ball is a ball minus a smaller ball. [`Self::transformed`]
 /// converts a body to another frame.
 ///
-/// **Inverses.** A solver multiplies impulses by the inverses of the mass and the inertia. The
-/// inverse of zero is defined as zero: a body without mass is not moved, and a body without inertia
-/// about an axis, such as a segment about itself, is not rotated about it, as if it were infinitely
-/// heavy. For a body that shall not rotate, or not move, use zeros in place of the inverses.
+/// **Inverses.** A solver multiplies impulses by the inverses of the mass and the inertia. Here the
+/// inverse of zero is zero. So a body without mass does not move, and a body without inertia about
+/// an axis, such as a segment about itself, does not rotate about that axis, as if it were
+/// infinitely heavy. For a body that must not rotate or move, use zero as the inverse.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Vector};
@@ -56,13 +57,13 @@ use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Vector}
 pub struct MassProperties<N: Real, const D: usize> {
     mass: N,
     center: Point<N, D>,
-    /// A rotation whose columns are the principal axes.
+    /// A rotation whose columns are the principal axes, in the frame of the body.
     axes: Matrix<N, D>,
-    /// By axis, as in [`Moments`].
+    /// The principal moments, by axis, of the tensor that [`Moments`] defines.
     principal: Vector<N, D>,
 }
 
-/// No mass, at the origin.
+/// The default has no mass and its centre at the origin.
 impl<N: Real, const D: usize> Default for MassProperties<N, D> {
     fn default() -> Self {
         let (axes, principal) = (Matrix::<N, D>::identity(), Vector::<N, D>::zeros());
@@ -71,26 +72,26 @@ impl<N: Real, const D: usize> Default for MassProperties<N, D> {
 }
 
 impl<N: Real, const D: usize> MassProperties<N, D> {
-    /// The mass; zero or more.
+    /// Returns the mass; zero or more.
     #[must_use]
     pub const fn mass(&self) -> N {
         self.mass
     }
 
-    /// 1 / mass; zero for a body without mass.
+    /// Returns 1 / mass; zero for a body without mass.
     #[must_use]
     pub fn inverse_mass(&self) -> N {
         inverse(self.mass)
     }
 
-    /// The centre of mass in the frame of the body; for a shape without mass some point of the
-    /// shape.
+    /// Returns the centre of mass in the frame of the body; for a shape without mass some point of
+    /// the shape.
     #[must_use]
     pub const fn center_of_mass(&self) -> &Point<N, D> {
         &self.center
     }
 
-    /// The centre of mass, in world coordinates, of a body placed at `position`.
+    /// Returns the centre of mass, in world coordinates, of a body placed at `position`.
     #[must_use]
     pub fn center_of_mass_at<R: AbstractRotation<N, D>>(
         &self,
@@ -99,7 +100,7 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         position.transform_point(&self.center)
     }
 
-    /// The body in the frame in which it is placed at `position`.
+    /// Returns the properties in the outer frame, in which the body is placed at `position`.
     ///
     /// ```
     /// use impinge::dim2::math::{Isometry, Point, Vector};
@@ -140,7 +141,7 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         Self::try_of_moments(&Moments { mass, principal: body.principal * factor, ..body })
     }
 
-    /// The properties in double precision.
+    /// Returns the properties in double precision.
     pub(crate) fn moments(&self) -> Moments<D> {
         Moments {
             mass: self.mass.as_f64(),
@@ -150,7 +151,7 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         }
     }
 
-    /// The properties, rounded to the scalar.
+    /// Returns the properties rounded to the scalar.
     fn of_moments(moments: &Moments<D>) -> Self {
         Self {
             mass: N::lit(moments.mass),
@@ -160,7 +161,10 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
         }
     }
 
-    /// The properties, rounded to the scalar; an error if one is NaN or beyond its range.
+    /// Returns the properties rounded to the scalar.
+    ///
+    /// # Errors
+    /// If a property is NaN or exceeds the range of the scalar.
     pub(crate) fn try_of_moments(moments: &Moments<D>) -> Result<Self, MassError> {
         let found = Self::of_moments(moments);
         finite("the mass", found.mass.as_f64())?;
@@ -174,13 +178,13 @@ impl<N: Real, const D: usize> MassProperties<N, D> {
     }
 }
 
-/// 1 / x; zero if the result is infinite or NaN.
+/// Returns 1 / x; zero if that is infinite or NaN.
 fn inverse<N: Real>(x: N) -> N {
     let inverse = N::ONE / x;
     if inverse.is_finite_number() { inverse } else { N::ZERO }
 }
 
-/// Two bodies in one frame, as one. A mass beyond the range of the scalar becomes infinite.
+/// Joins two bodies in one frame. A mass beyond the range of the scalar becomes infinite.
 impl<N: Real, const D: usize> Add for MassProperties<N, D> {
     type Output = Self;
 
@@ -195,8 +199,8 @@ impl<N: Real, const D: usize> AddAssign for MassProperties<N, D> {
     }
 }
 
-/// A body without a part of it, in the same frame; without mass if the part weighs at least as much
-/// as the body.
+/// Removes a part from a body in the same frame. The result has no mass if the part weighs at least
+/// as much as the body.
 impl<N: Real, const D: usize> Sub for MassProperties<N, D> {
     type Output = Self;
 
@@ -211,7 +215,7 @@ impl<N: Real, const D: usize> SubAssign for MassProperties<N, D> {
     }
 }
 
-/// All bodies in one frame as one, rounded once; the default for an empty iterator.
+/// Joins all bodies in one frame and rounds once; the default for an empty iterator.
 impl<N: Real, const D: usize> Sum for MassProperties<N, D> {
     fn sum<I: Iterator<Item = Self>>(bodies: I) -> Self {
         let all = bodies.map(|body| body.moments()).reduce(|all, body| all.plus(&body));

@@ -1,33 +1,34 @@
-//! Mass, centre and moments in double precision, for every scalar of the body.
+//! Mass, centre of mass and principal moments in double precision, for every scalar of the body.
 
 use crate::math::eigen::symmetric_eigen;
 use crate::math::{Matrix, Vector};
 
-/// Moments below `THIN` times the largest are set to zero: they are the rounding error of the sums.
+/// Moments below `THIN` times the largest moment are set to zero: they are the rounding error of
+/// the sums.
 const THIN: f64 = 16.0 * f64::EPSILON;
 
-/// The mass of a body, its centre, and its principal moments, in the body's frame.
+/// The mass of a body, its centre of mass, and its principal moments, in the body's frame.
 ///
-/// With the matrix `S = ∫ x xᵀ dm` about the centre, the tensor here is `tr(S) − S` in 2D and in 3D. In 3D it is
-/// the inertia tensor; in 2D it is the upper left block of the tensor of a thin plate, and its trace is the
-/// moment of inertia.
+/// With the matrix `S = ∫ x xᵀ dm` about the centre, the tensor here is `tr(S) − S` in 2D and in
+/// 3D. In 3D this is the inertia tensor. In 2D it is the upper left block of the tensor of a thin
+/// plate, and its trace is the moment of inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moments<const D: usize> {
     pub(crate) mass: f64,
     pub(crate) center: Vector<f64, D>,
-    /// A rotation whose columns are the principal axes.
+    /// A rotation whose columns are the principal axes, in the body's frame.
     pub(crate) axes: Matrix<f64, D>,
-    /// The eigenvalues of the tensor, in the order of the axes; none is negative.
+    /// The eigenvalues of the tensor, in the order of the columns of `axes`; none is negative.
     pub(crate) principal: Vector<f64, D>,
 }
 
-/// The distance matrix of the parallel axis theorem: `|d|² − d dᵀ`.
+/// Returns the matrix of the parallel axis theorem for the offset `d`: `|d|² − d dᵀ`.
 fn about<const D: usize>(offset: &Vector<f64, D>) -> Matrix<f64, D> {
     tensor_of(&(offset * offset.transpose()))
 }
 
-/// The tensor `tr(S) − S` of a matrix of second moments. Each element is a sum of its own, so that
-/// elements that are small beside the trace keep their digits.
+/// Returns the tensor `tr(S) − S` of a matrix `S` of second moments. Each diagonal element is
+/// summed directly, without a difference from the trace, so that small elements keep their digits.
 fn tensor_of<const D: usize>(second: &Matrix<f64, D>) -> Matrix<f64, D> {
     Matrix::<f64, D>::from_fn(|row, column| {
         if row != column {
@@ -38,13 +39,13 @@ fn tensor_of<const D: usize>(second: &Matrix<f64, D>) -> Matrix<f64, D> {
 }
 
 impl<const D: usize> Moments<D> {
-    /// A body without mass.
+    /// Returns a body without mass at `center`.
     pub(crate) fn massless(center: Vector<f64, D>) -> Self {
         let (axes, principal) = (Matrix::<f64, D>::identity(), Vector::<f64, D>::zeros());
         Self { mass: 0.0, center, axes, principal }
     }
 
-    /// A body from its second moments along its principal axes.
+    /// Returns a body from its second moments along its principal axes.
     pub(crate) fn along_axes(
         mass: f64,
         center: Vector<f64, D>,
@@ -55,12 +56,13 @@ impl<const D: usize> Moments<D> {
         Self { mass, center, axes, principal }
     }
 
-    /// A body from its matrix of second moments about the centre.
+    /// Returns a body from its matrix of second moments about the centre.
     pub(crate) fn of_seconds(mass: f64, center: Vector<f64, D>, second: &Matrix<f64, D>) -> Self {
         Self::of_tensor(mass, center, &tensor_of(second))
     }
 
-    /// A body from its tensor. Moments at or below the rounding error of the tensor become zero.
+    /// Returns a body from its tensor about the centre. Moments at or below the rounding error of
+    /// the tensor become zero.
     pub(crate) fn of_tensor(mass: f64, center: Vector<f64, D>, tensor: &Matrix<f64, D>) -> Self {
         let (principal, axes) = symmetric_eigen(tensor);
         let least = THIN * principal.amax();
@@ -68,24 +70,24 @@ impl<const D: usize> Moments<D> {
         Self { mass, center, axes, principal }
     }
 
-    /// The tensor about the centre, in the axes of the frame.
+    /// Returns the tensor about the centre of mass, in the axes of the frame.
     pub(crate) fn tensor(&self) -> Matrix<f64, D> {
         self.axes * Matrix::<f64, D>::from_diagonal(&self.principal) * self.axes.transpose()
     }
 
-    /// The body in the frame that the pose maps to.
+    /// Returns the body in the frame that the pose (`rotation`, `translation`) maps to.
     pub(crate) fn placed(&self, rotation: &Matrix<f64, D>, translation: &Vector<f64, D>) -> Self {
         let center = rotation * self.center + translation;
         Self { center, axes: rotation * self.axes, ..*self }
     }
 
-    /// The body with all densities multiplied by `density`.
+    /// Returns the body with all densities multiplied by `density`.
     pub(crate) fn of_density(&self, density: f64) -> Self {
         Self { mass: self.mass * density, principal: self.principal * density, ..*self }
     }
 
-    /// The body with all lengths multiplied by a power of two and moved to `origin`, at the same
-    /// density.
+    /// Returns the body at the same density with all lengths multiplied by `scale`, a power of two,
+    /// and then moved by `origin`.
     pub(crate) fn grown(&self, scale: f64, origin: &Vector<f64, D>) -> Self {
         let measure = (0..D).fold(self.mass, |measure, _| measure * scale);
         let grown = |moment: f64| (0..D + 2).fold(moment, |moment, _| moment * scale);
@@ -93,11 +95,12 @@ impl<const D: usize> Moments<D> {
         Self { mass: measure, center, principal, ..*self }
     }
 
-    /// Both bodies as one. If the mass is zero, the centre is midway between theirs.
+    /// Joins two bodies. If the total mass is zero, the centre is midway between the two centres.
     pub(crate) fn plus(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         let offset = other.center - self.center;
-        // Relative to the midpoint: equal centres stay equal, and the order does not matter.
+        // Measured from the midpoint, equal centres stay equal and the order of the bodies does not
+        // matter.
         let lead = if mass > 0.0 { (other.mass - self.mass) / mass * 0.5 } else { 0.0 };
         let center = self.center * 0.5 + other.center * 0.5 + offset * lead;
         if mass <= 0.0 {
@@ -108,7 +111,7 @@ impl<const D: usize> Moments<D> {
         Self::of_tensor(mass, center, &tensor)
     }
 
-    /// The body without `part`; without mass if `part` weighs at least as much.
+    /// Returns the body without `part`; without mass if `part` weighs at least as much.
     pub(crate) fn minus(&self, part: &Self) -> Self {
         let mass = self.mass - part.mass;
         if mass <= 0.0 {

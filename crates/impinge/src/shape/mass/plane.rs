@@ -1,13 +1,13 @@
-//! The inertia of bodies in 2D: one number.
+//! The inertia of bodies in 2D: a single number.
 
 use super::{MassError, MassProperties, Moments, amount, finite, inverse};
 use crate::math::{Matrix, Point, Real, Vector};
 
 impl<N: Real> MassProperties<N, 2> {
-    /// A body of the given centre of mass, mass, and moment of inertia about that centre.
+    /// Returns a body with the given centre of mass, mass, and moment of inertia about that centre.
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new(center: Point<N, 2>, mass: N, inertia: N) -> Self {
@@ -17,7 +17,7 @@ impl<N: Real> MassProperties<N, 2> {
         }
     }
 
-    /// A body of the given centre of mass, mass, and moment of inertia about that centre.
+    /// Returns a body with the given centre of mass, mass, and moment of inertia about that centre.
     ///
     /// # Errors
     /// If a number is not finite, or the mass or the moment is negative.
@@ -34,19 +34,20 @@ impl<N: Real> MassProperties<N, 2> {
         })
     }
 
-    /// The moment of inertia about the centre of mass; not negative.
+    /// Returns the moment of inertia about the centre of mass; not negative.
     #[must_use]
     pub fn inertia(&self) -> N {
         self.principal.x + self.principal.y
     }
 
-    /// 1 / inertia; zero for a body without inertia.
+    /// Returns 1 / inertia; zero for a body without inertia.
     #[must_use]
     pub fn inverse_inertia(&self) -> N {
         inverse(self.inertia())
     }
 
-    /// The moment of inertia about another point of the frame, by the parallel axis theorem.
+    /// Returns the moment of inertia about a point of the body's frame, by the parallel axis
+    /// theorem.
     ///
     /// ```
     /// use impinge::dim2::math::{Point, Vector};

@@ -5,11 +5,11 @@ use crate::math::na::UnitQuaternion;
 use crate::math::{Isometry3, Matrix, Point, Pose, Real, Space, Vector};
 
 impl<N: Real> MassProperties<N, 3> {
-    /// A body of the given centre of mass, mass, and inertia tensor about that centre, in the axes
-    /// of the frame.
+    /// Returns a body with the given centre of mass, mass, and inertia tensor about that centre, in
+    /// the axes of the frame.
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new(center: Point<N, 3>, mass: N, inertia: &Matrix<N, 3>) -> Self {
@@ -19,14 +19,15 @@ impl<N: Real> MassProperties<N, 3> {
         }
     }
 
-    /// A body of the given centre of mass, mass, and inertia tensor about that centre, in the axes
-    /// of the frame.
+    /// Returns a body with the given centre of mass, mass, and inertia tensor about that centre, in
+    /// the axes of the frame.
     ///
-    /// Only the symmetric part of the tensor is used. Whether a body of that inertia can be built
-    /// (no principal moment exceeds the sum of the other two) is not checked.
+    /// Only the symmetric part of the tensor is used. It is not checked whether such a body is
+    /// physical, that is, whether no principal moment exceeds the sum of the other two.
     ///
     /// # Errors
-    /// If a number is not finite, or the mass or a principal moment is negative by more than rounding.
+    /// If a number is not finite, the mass is negative, or a principal moment is negative by more
+    /// than rounding.
     ///
     /// ```
     /// use impinge::dim3::math::{Matrix, Point, Vector};
@@ -62,8 +63,8 @@ impl<N: Real> MassProperties<N, 3> {
         Self::try_of_moments(&Moments::of_tensor(mass, center, &symmetric))
     }
 
-    /// A body of the given centre of mass, mass, and principal moments of inertia about the axes
-    /// that `frame` rotates the axes of the body's frame to.
+    /// Returns a body with the given centre of mass, mass, and principal moments of inertia.
+    /// `frame` rotates the axes of the body's frame to the principal axes.
     ///
     /// # Errors
     /// If a number is not finite, or the mass or a moment is negative.
@@ -88,45 +89,45 @@ impl<N: Real> MassProperties<N, 3> {
         })
     }
 
-    /// The principal moments of inertia about the centre of mass, in the order of the axes of
-    /// [`Self::principal_frame`]; zero or more.
+    /// Returns the principal moments of inertia about the centre of mass, in the order of the axes
+    /// of [`Self::principal_frame`]; zero or more.
     #[must_use]
     pub const fn principal_moments(&self) -> &Vector<N, 3> {
         &self.principal
     }
 
-    /// The rotation from the axes of the body's frame to its principal axes.
+    /// Returns the rotation from the axes of the body's frame to the principal axes.
     ///
-    /// The identity if the inertia tensor is diagonal, and for a shape whose principal axes are
-    /// those of its frame: a ball, a box, a cylinder.
+    /// The result is the identity if the inertia tensor is diagonal, and for a shape whose
+    /// principal axes are the axes of its frame: a ball, a box, a cylinder.
     #[must_use]
     pub fn principal_frame(&self) -> UnitQuaternion<N> {
         let pose = Pose { rotation: self.axes, translation: Vector::<N, 3>::zeros() };
         <N as Space<3>>::isometry(&pose).rotation
     }
 
-    /// The inertia tensor about the centre of mass, in the axes of the body's frame.
+    /// Returns the inertia tensor about the centre of mass, in the axes of the body's frame.
     #[must_use]
     pub fn inertia(&self) -> Matrix<N, 3> {
         self.along(&self.axes, &self.principal)
     }
 
-    /// The inverse of the inertia tensor about the centre of mass, in the axes of the body's frame;
-    /// zero about an axis without inertia.
+    /// Returns the inverse of the inertia tensor about the centre of mass, in the axes of the
+    /// body's frame; zero about an axis without inertia.
     #[must_use]
     pub fn inverse_inertia(&self) -> Matrix<N, 3> {
         self.along(&self.axes, &self.principal.map(inverse))
     }
 
-    /// The inertia tensor about the centre of mass, in the world's axes, of a body placed at
-    /// `position`.
+    /// Returns the inertia tensor about the centre of mass, in the world's axes, of a body placed
+    /// at `position`.
     #[must_use]
     pub fn inertia_at(&self, position: &Isometry3<N>) -> Matrix<N, 3> {
         self.along(&self.world_axes(position), &self.principal)
     }
 
-    /// The inverse of [`Self::inertia_at`]: times a torque it gives the angular acceleration. Zero
-    /// about an axis without inertia. Cost: two products of matrices.
+    /// Returns the inverse of [`Self::inertia_at`]: its product with a torque is the angular
+    /// acceleration. Zero about an axis without inertia. The cost is two matrix products.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
@@ -145,7 +146,7 @@ impl<N: Real> MassProperties<N, 3> {
         self.along(&self.world_axes(position), &self.principal.map(inverse))
     }
 
-    /// The inertia tensor about another point of the body's frame, in the axes of that frame, by
+    /// Returns the inertia tensor about a point of the body's frame, in the axes of that frame, by
     /// the parallel axis theorem.
     #[must_use]
     pub fn inertia_about(&self, point: &Point<N, 3>) -> Matrix<N, 3> {
@@ -154,13 +155,13 @@ impl<N: Real> MassProperties<N, 3> {
         self.inertia() + (across - offset * offset.transpose()) * self.mass
     }
 
-    /// The principal axes in the world's axes.
+    /// Returns a rotation whose columns are the principal axes in the world's axes.
     fn world_axes(&self, position: &Isometry3<N>) -> Matrix<N, 3> {
         <N as Space<3>>::pose(position).rotation * self.axes
     }
 
-    /// The symmetric matrix with the given eigenvalues along the columns of a rotation; exact for
-    /// coordinate axes.
+    /// Returns the symmetric matrix with the eigenvalues `values` along the columns of `axes`;
+    /// exact for coordinate axes.
     fn along(&self, axes: &Matrix<N, 3>, values: &Vector<N, 3>) -> Matrix<N, 3> {
         Matrix::<N, 3>::from_fn(|row, column| {
             let product = |axis: usize| axes[(row, axis)] * axes[(column, axis)] * values[axis];

@@ -1,4 +1,4 @@
-//! Construction of polytopes from parts that are known to be convex.
+//! Construction of polytopes from vertices and faces that are known to be convex.
 
 use smallvec::SmallVec;
 
@@ -6,7 +6,8 @@ use crate::math::{Point, Real, Vector, max, perp, unit};
 use crate::shape::polytope::{Twin, count32};
 use crate::shape::{Polytope, PolytopeEdge, PolytopeFace};
 
-/// The mean of some points, computed in doubles scaled to about 1, whose sum does not overflow.
+/// Returns the mean of the points, computed in doubles scaled to about 1, so that the sum cannot
+/// overflow.
 fn center_of<N: Real, const D: usize>(points: &[Point<N, D>]) -> Point<N, D> {
     let largest = |size, p: &Point<N, D>| p.iter().fold(size, |size, x| max(size, x.abs()));
     let scale = points.iter().fold(N::ZERO, largest).power_of_two_below().as_f64();
@@ -16,14 +17,14 @@ fn center_of<N: Real, const D: usize>(points: &[Point<N, D>]) -> Point<N, D> {
     Point::from((sum / count).map(|x| N::lit(x * scale)))
 }
 
-/// Groups values by owner (a counting sort, stable): returns the start of each of the `count`
-/// groups followed by the end of the last, and the values.
+/// Groups values by owner (a stable counting sort). Returns the start index of each of the `count`
+/// groups, followed by the end of the last group, and the grouped values.
 fn grouped<T: Copy + Default>(
     count: usize,
     owned: impl Iterator<Item = (u32, T)> + Clone,
 ) -> (Vec<u32>, Vec<T>) {
-    // Filling advances the start of an owner to that of the next, so each start is stored one entry
-    // later.
+    // Filling advances the start of an owner to the start of the next owner, so each start is
+    // stored one entry later.
     let mut starts = vec![0; count + 2];
     owned.clone().for_each(|(owner, _)| starts[owner as usize + 2] += 1);
     for owner in 0..count {
@@ -40,7 +41,7 @@ fn grouped<T: Copy + Default>(
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// A polytope with vertices only; faces, edges and fans follow.
+    /// Returns a polytope with vertices only; the caller adds faces, edges and fans.
     fn from_vertices(vertices: Vec<Point<N, D>>) -> Self {
         Self {
             center: center_of(&vertices),
@@ -61,7 +62,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// Adds a face with the given loop; its sides follow later.
+    /// Appends a face with the given loop of vertices; the caller adds the loop's sides.
     fn push_face(&mut self, normal: Vector<N, D>, ring: &[u32]) {
         let heights = ring.iter().map(|&vertex| self.vertices[vertex as usize].coords.dot(&normal));
         let offset = heights.reduce(max).unwrap_or(N::ZERO);
@@ -72,7 +73,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// Computes for each vertex the edges (in 2D: the faces) that end at it.
+    /// Computes for each vertex its fan: the edges (in 2D: the faces) that end at it.
     fn collect_fans(&mut self) {
         let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
         let sides = (0_u32..).take(count);
@@ -90,14 +91,14 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 }
 
 impl<N: Real> Polytope<N, 2> {
-    /// The polygon with these corners, at least three, counter-clockwise.
+    /// Returns the polygon with the given corners, at least three, counter-clockwise.
     pub(in crate::shape) fn from_corners(corners: Vec<Point<N, 2>>) -> Self {
         let mut polygon = Self::from_vertices(corners);
         let count = count32(polygon.vertices.len());
         for side in 0..count {
             let next = if side + 1 < count { side + 1 } else { 0 };
             let [a, b] = [side, next].map(|vertex| polygon.vertices[vertex as usize]);
-            // Half of each coordinate: the difference of two large ones may overflow.
+            // Halves each coordinate first: the difference of two large coordinates may overflow.
             let along = b.coords * N::HALF - a.coords * N::HALF;
             let along = unit(&along).map_or_else(Vector::<N, 2>::x, |(along, _)| along);
             polygon.push_face(-perp(&along), &[side, next]);
@@ -110,8 +111,9 @@ impl<N: Real> Polytope<N, 2> {
 }
 
 impl<N: Real> Polytope<N, 3> {
-    /// The solid with these corners and faces, given by outward unit normals and loops of at least
-    /// three corners; `None` unless each side of a face is, reversed, a side of exactly one other.
+    /// Returns the solid with the given corners and faces; a face has an outward unit normal and a
+    /// loop of at least three corners. `None` unless each side of a face occurs reversed in exactly
+    /// one other face.
     pub(in crate::shape) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
         faces: impl Iterator<Item = (Vector<N, 3>, impl AsRef<[u32]>)>,
@@ -124,9 +126,9 @@ impl<N: Real> Polytope<N, 3> {
         Some(hull)
     }
 
-    /// Renumbers and reorients the edges so that edge `i` joins `ends[i]`.
+    /// Renumbers and reorients the edges so that edge `i` joins `ends[i]`, in this order.
     ///
-    /// `ends` must have exactly one entry for each edge.
+    /// `ends` must contain each edge of the solid exactly once.
     pub(in crate::shape) fn name_edges(&mut self, ends: &[[u32; 2]]) {
         let index_of = |edge: &PolytopeEdge| {
             let [a, b] = edge.vertices;
@@ -148,7 +150,7 @@ impl<N: Real> Polytope<N, 3> {
         self.collect_fans();
     }
 
-    /// Computes the edges, numbered by their first occurrence in the loops. `None` unless the sides
+    /// Computes the edges, indexed by their first occurrence in the loops. `None` unless the sides
     /// pair up.
     fn connect(&mut self) -> Option<()> {
         let sides = self.directed_sides();
@@ -171,7 +173,7 @@ impl<N: Real> Polytope<N, 3> {
         Some(())
     }
 
-    /// Returns for each entry of the loops the side to the next vertex.
+    /// Returns for each entry of the loops the directed side to the next vertex.
     fn directed_sides(&self) -> Vec<DirectedSide> {
         let mut sides = Vec::with_capacity(self.loops.len());
         for (face, of) in (0_u32..).zip(&self.faces) {
@@ -183,20 +185,21 @@ impl<N: Real> Polytope<N, 3> {
     }
 }
 
-/// No twin.
+/// The value of a side without a twin.
 const NONE: u32 = u32::MAX;
 
-/// A side of a face in the direction of the face's loop.
+/// A side of a face, in the direction of the face's loop.
 struct DirectedSide {
     from: u32,
     to: u32,
     face: u32,
 }
 
-/// Returns for each side one that runs in the opposite direction; [`NONE`] if there is none. If a
-/// side occurs twice, at least one of the two is not its twin's twin.
+/// Returns for each side the index of a side that runs in the opposite direction; [`NONE`] if there
+/// is none. If a side occurs twice, at least one of the two occurrences is not the twin of its
+/// twin.
 ///
-/// Searches the sides that leave the end with fewer of them. On a closed surface this takes linear
+/// For each side, searches the end that fewer sides leave. On a closed surface this takes linear
 /// time: Chiba and Nishizeki, "Arboricity and Subgraph Listing Algorithms" (1985).
 fn twins(vertices: usize, sides: &[DirectedSide]) -> Vec<u32> {
     let leaving = (0..).zip(sides).map(|(index, side)| (side.from, [side.to, index]));

@@ -5,7 +5,7 @@ use crate::shape::Polytope;
 #[cfg(feature = "serde")]
 use crate::shape::PolytopeFace;
 
-/// The largest height of a vertex above a face, in units of `N::EPSILON · reach`: the tolerances of
+/// The maximum height of a vertex above a face, in units of `N::EPSILON · reach`: the tolerances of
 /// the hull plus the rounding error of the plane.
 const SLACK: f64 = 48.0;
 
@@ -14,8 +14,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         N::lit(SLACK) * N::EPSILON * self.reach
     }
 
-    /// Checks that normals are unit, no vertex is above a face, and a face's own vertices are in
-    /// its plane.
+    /// Checks that normals are unit, no vertex is above a face, and the vertices of each face are
+    /// in its plane.
     fn validate_faces(&self) -> Result<(), &'static str> {
         for face in &self.faces {
             if (face.normal.norm() - N::ONE).abs() > N::lit(4.0) * N::EPSILON {
@@ -33,7 +33,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         Ok(())
     }
 
-    /// Checks that the fan of each vertex holds exactly the sides that end at it.
+    /// Checks that the fan of each vertex contains exactly the sides that end at it.
     fn validate_fans(&self) -> Result<(), &'static str> {
         for (index, at) in (0_u32..).zip(0..self.vertices.len()) {
             let fan = self.fan(at);
@@ -69,11 +69,11 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 }
 
 impl<N: Real> Polytope<N, 2> {
-    /// Checks that the sides close one counter-clockwise, convex loop; convex within
+    /// Checks that the sides close one counter-clockwise, convex loop. Convexity is checked within
     /// 48 · `N::EPSILON` times the largest distance of a vertex from the origin. Quadratic time.
     ///
     /// # Errors
-    /// Says what is wrong.
+    /// A text with the first violation found.
     pub fn validate(&self) -> Result<(), &'static str> {
         self.validate_faces()?;
         self.validate_fans()?;
@@ -97,12 +97,12 @@ impl<N: Real> Polytope<N, 2> {
 }
 
 impl<N: Real> Polytope<N, 3> {
-    /// Checks that the faces close a surface without holes in which each edge lies between two faces
-    /// that run along it in opposite directions; convex within 48 · `N::EPSILON` times the largest
-    /// distance of a vertex from the origin. Quadratic time.
+    /// Checks that the faces close a surface without holes, in which each edge lies between two
+    /// faces that traverse it in opposite directions. Convexity is checked within 48 · `N::EPSILON`
+    /// times the largest distance of a vertex from the origin. Quadratic time.
     ///
     /// # Errors
-    /// Says what is wrong.
+    /// A text with the first violation found.
     pub fn validate(&self) -> Result<(), &'static str> {
         self.validate_faces()?;
         self.validate_fans()?;

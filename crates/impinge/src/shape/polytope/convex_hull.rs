@@ -8,9 +8,9 @@ use crate::shape::error::or_panic;
 use crate::shape::scale::Scale;
 use crate::shape::{Geometry, Kind, Polytope, ScaleError, Shape, ShapeHandle};
 
-/// The convex hull of some points, with a volume.
+/// The convex hull of points that span a volume.
 ///
-/// Vertices are in the order in which the points were given; faces are polygons, counter-clockwise
+/// Vertices are in the order in which the points were given. Faces are polygons, counter-clockwise
 /// seen from outside. All methods of [`Polytope`] are available.
 ///
 /// ```
@@ -27,18 +27,18 @@ pub struct ConvexHull<N: Real> {
 }
 
 impl<N: Real> ConvexHull<N> {
-    /// The convex hull of points in any order; see [`Self::try_from_points`].
+    /// Returns the convex hull of points in any order; see [`Self::try_from_points`].
     ///
     /// # Panics
-    /// Where [`Self::try_from_points`] returns an error.
+    /// If [`Self::try_from_points`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn from_points(points: &[Point<N, 3>]) -> Self {
         or_panic(Self::try_from_points(points))
     }
 
-    /// The solid with these corners and faces, given by outward unit normals and loops of at least
-    /// three corners; `None` unless the faces close its surface.
+    /// Returns the solid with the given corners and faces; a face has an outward unit normal and a
+    /// loop of at least three corners. `None` unless the faces close the surface.
     pub(crate) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
         faces: impl Iterator<Item = (Vector<N, 3>, impl AsRef<[u32]>)>,
@@ -46,7 +46,7 @@ impl<N: Real> ConvexHull<N> {
         Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, faces)? })
     }
 
-    /// The solid as vertices, edges, faces and their adjacency.
+    /// Returns the vertices, edges and faces of the solid and their adjacency.
     #[must_use]
     pub const fn polytope(&self) -> &Polytope<N, 3> {
         &self.polytope

@@ -10,8 +10,8 @@ use crate::shape::{Geometry, Kind, Polytope, ScaleError, Shape, ShapeHandle};
 
 /// A convex polygon with at least three corners and an area.
 ///
-/// Vertices are counter-clockwise; `Face(i)` is the side from `Vertex(i)` to the next. All methods
-/// of [`Polytope`] are available.
+/// Vertices are counter-clockwise; `Face(i)` is the side from `Vertex(i)` to the next vertex. All
+/// methods of [`Polytope`] are available.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -28,32 +28,33 @@ pub struct ConvexPolygon<N: Real> {
 }
 
 impl<N: Real> ConvexPolygon<N> {
-    /// The polygon with a given convex outline, in either order; see [`Self::try_new`].
+    /// Returns the polygon with a given convex outline, in either order; see [`Self::try_new`].
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new(points: &[Point<N, 2>]) -> Self {
         or_panic(Self::try_new(points))
     }
 
-    /// The convex hull of points in any order; see [`Self::try_from_points`].
+    /// Returns the convex hull of points in any order; see [`Self::try_from_points`].
     ///
     /// # Panics
-    /// Where [`Self::try_from_points`] returns an error.
+    /// If [`Self::try_from_points`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn from_points(points: &[Point<N, 2>]) -> Self {
         or_panic(Self::try_from_points(points))
     }
 
-    /// The polygon with these corners: counter-clockwise, convex, at least three.
+    /// Returns the polygon with the given corners, which must be convex, counter-clockwise and at
+    /// least three.
     pub(crate) fn from_corners(corners: Vec<Point<N, 2>>) -> Self {
         Self { polytope: Polytope::<N, 2>::from_corners(corners) }
     }
 
-    /// The polygon as vertices, sides and their adjacency.
+    /// Returns the vertices and sides of the polygon and their adjacency.
     #[must_use]
     pub const fn polytope(&self) -> &Polytope<N, 2> {
         &self.polytope

@@ -7,7 +7,7 @@ use crate::shape::{
     ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, SideOrVertex, SupportMap,
 };
 
-/// The supporting feature for a direction: the index of a face, a side or a vertex.
+/// A supporting feature: the index of a face, a side or a vertex.
 #[derive(Clone, Copy, Debug)]
 enum HullPart {
     Face(u32),
@@ -15,11 +15,12 @@ enum HullPart {
     Vertex(usize),
 }
 
-/// Two vertices with their ids.
+/// The two ends of an edge, each with its id.
 type EdgeEnds<N, const D: usize> = [(FeatureId, Point<N, D>); 2];
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// The rule of [`SupportMap::core_feature`] with the limit `tilt`.
+    /// Applies the rule of [`SupportMap::core_feature`] with the limit `tilt`; returns the
+    /// supporting feature.
     fn part_toward(&self, direction: &Vector<N, D>, tilt: Tilt<N>) -> HullPart {
         let vertex = self.support_vertex(direction);
         let Some((side, slope)) = self.flattest_side(vertex, direction) else {
@@ -35,8 +36,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// Returns the vertex, side or face, within the supporting feature for the unit vector
-    /// `direction`, that a point of the surface lies on, up to `tolerance`.
+    /// Returns the id of the vertex, side or face on which a surface point lies, up to `tolerance`.
+    /// Only the supporting feature for the unit vector `direction`, and its sides and vertices, are
+    /// considered.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
@@ -60,7 +62,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// Returns the first of `vertices` within `2 tolerance` of a point.
+    /// Returns the id of the first of `vertices` within `2 tolerance` of a point; `None` if there
+    /// is none.
     fn end_at(&self, vertices: &[u32], point: &Point<N, D>, tolerance: N) -> Option<FeatureId> {
         let near = N::lit(4.0) * tolerance * tolerance;
         let is_near =
@@ -68,7 +71,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         vertices.iter().find(is_near).map(|&vertex| FeatureId::Vertex(vertex))
     }
 
-    /// Whether a point lies within `tolerance` of the line of a side.
+    /// Whether a point lies within `tolerance` of the line through a side.
     fn is_on_side(&self, side: u32, point: &Point<N, D>, tolerance: N) -> bool {
         let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
         let (along, arm) = (b - a, point - a);
@@ -89,14 +92,14 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         best
     }
 
-    /// Returns the face whose normal is most aligned with `direction`, the first of equals; 0 for
-    /// no face.
+    /// Returns the face whose normal is most aligned with `direction`, the first if there are
+    /// several; 0 if `faces` is empty.
     fn most_aligned(&self, faces: impl Iterator<Item = u32>, direction: &Vector<N, D>) -> u32 {
         let along = |face: u32| self.faces[face as usize].normal.dot(direction);
         faces.reduce(|best, face| if along(face) > along(best) { face } else { best }).unwrap_or(0)
     }
 
-    /// Writes a part as a feature.
+    /// Writes the feature `part` to `out`.
     fn fill(&self, part: HullPart, out: &mut Feature<N, D>) {
         match part {
             HullPart::Face(face) => self.fill_face(face, out),
@@ -107,7 +110,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// The id of a part.
+    /// Returns the id of the feature `part`.
     fn id_of(part: HullPart) -> FeatureId {
         match part {
             HullPart::Face(face) => FeatureId::Face(face),
@@ -116,7 +119,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// Writes face `index`; in 2D as a segment with a normal.
+    /// Writes face `index` to `out`; in 2D as a segment with a normal.
     fn fill_face(&self, index: u32, out: &mut Feature<N, D>) {
         let face = &self.faces[index as usize];
         out.clear();
@@ -125,7 +128,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             out.push(FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
         }
         let sides = self.face_sides(face);
-        // A side of a polygon in 2D is one segment, not a loop of two.
+        // In 2D a side is one segment, not a loop of two.
         let count = if sides.len() == 2 { 1 } else { sides.len() };
         for &side in &sides[..count] {
             out.side_ids.push(Self::side_id(side));
@@ -133,7 +136,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         out.normal = Some(face.normal);
     }
 
-    /// Returns the id and the ends of a part of two vertices; `None` for any other.
+    /// Returns the id and the ends of a feature with two vertices; `None` for any other feature.
     fn ends_of(&self, part: HullPart) -> Option<(FeatureId, EdgeEnds<N, D>)> {
         match part {
             HullPart::Side(side) => Some((Self::side_id(side), self.ends(side))),
@@ -154,8 +157,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         ends.map(|vertex| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]))
     }
 
-    /// The unit vector along the sum of the normals of some faces; that of face 0 if the sum is
-    /// zero.
+    /// Returns the unit vector along the sum of the normals of some faces; the normal of face 0 if
+    /// the sum is zero.
     fn mean_normal(&self, faces: impl Iterator<Item = u32>) -> Vector<N, D> {
         let normals = faces.map(|face| self.faces[face as usize].normal);
         let first = self.faces[0].normal;
@@ -179,7 +182,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 }
 
 impl<N: Real> Polytope<N, 2> {
-    /// See [`SideOrVertex::of`].
+    /// Implements [`SideOrVertex::of`] for polygons.
     pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> SideOrVertex<N> {
         if let ([vertices], [planes]) = (self.blocks(), self.planes())
             && self.faces.len() == self.vertices.len()
@@ -194,8 +197,8 @@ impl<N: Real> Polytope<N, 2> {
         SideOrVertex::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
     }
 
-    /// [`Self::supporting`] for up to 8 vertices, from the rows of the vertices and of the sides'
-    /// normals: the rule of [`Self::part_toward`] without access to the lists of sides.
+    /// Implements [`Self::supporting`] for up to 8 vertices: the rule of [`Self::part_toward`],
+    /// computed from rows of coordinates and normals, without the lists of sides.
     fn supporting_of_few(
         &self,
         [xs, ys]: &[[N; 8]; 2],
@@ -219,7 +222,7 @@ impl<N: Real> Polytope<N, 2> {
             along.map_or(N::ONE, |(along, _)| along.dot(direction).abs())
         };
         let (slope_before, slope_after) = (slope(before, vertex), slope(vertex, after));
-        // If both slopes are equal, the side of the lower index wins.
+        // If both slopes are equal, the side with the lower index wins.
         let is_after =
             if vertex > 0 { slope_after < slope_before } else { slope_after <= slope_before };
         let (side, to) = if is_after { (vertex, after) } else { (before, vertex) };
@@ -236,14 +239,14 @@ impl<N: Real> Polytope<N, 2> {
 }
 
 impl<N: Real> Polytope<N, 3> {
-    /// The id of the [`SupportMap::core_feature`].
+    /// Returns the id of the [`SupportMap::core_feature`].
     #[inline]
     pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> FeatureId {
         Self::id_of(self.part_toward(direction, Tilt::default_limit()))
     }
 
-    /// Fills a blank ring with face `index`. Returns false if the face has more corners than a ring
-    /// holds.
+    /// Fills a blank ring with face `index`. Returns false if the face has fewer than 3 corners or
+    /// more than a ring holds.
     pub(crate) fn fill_ring(&self, index: u32, ring: &mut FaceRing<N>) -> bool {
         let face = &self.faces[index as usize];
         let (vertices, sides) = (self.face_vertices(face), self.face_sides(face));
@@ -299,7 +302,7 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Polytope<N, D> {
                 self.mean_normal(self.side(self.side_index(id)).faces.into_iter())
             }
             FeatureId::Vertex(_) => {
-                // Each face at a vertex has two sides there, so each counts twice.
+                // Each face at a vertex has two sides there, so each normal is summed twice.
                 let fan = self.fan(Self::index_of(id, 0, self.vertices.len()) as usize);
                 self.mean_normal(fan.iter().flat_map(|&side| self.side(side).faces))
             }

@@ -30,11 +30,11 @@ use crate::shape::solids::segment::length_of;
 
 /// A convex solid with flat faces, in any dimension.
 ///
-/// In 2D the faces are the sides: face `i` leads from vertex `i` to vertex `i + 1`,
-/// counter-clockwise, and there are no edges. In 3D the faces are polygons, counter-clockwise
-/// seen from outside, and each edge lies between two faces.
+/// In 2D the faces are the sides: face `i` leads from vertex `i` to the next, counter-clockwise,
+/// and there are no edges. In 3D the faces are polygons, counter-clockwise seen from outside, and
+/// each edge lies between two faces.
 ///
-/// The id of a feature is its index in [`Self::vertices`], [`Self::edges`] or [`Self::faces`].
+/// The id of a feature has its index in [`Self::vertices`], [`Self::edges`] or [`Self::faces`].
 /// Finding a support point takes linear time in the number of vertices.
 ///
 /// ```
@@ -48,69 +48,71 @@ use crate::shape::solids::segment::length_of;
 /// let corners = hull.face_vertices(top);
 /// assert!(corners.iter().all(|&corner| hull.vertices()[corner as usize].y == 1.0));
 /// ```
-// The fields that queries of small solids read come first and inline: among thousands of solids
-// each further allocation is a cache miss.
+// The fields that queries of small solids read come first and are stored inline: among thousands of
+// solids each allocation is another cache miss.
 #[derive(Clone, PartialEq)]
 #[repr(C)]
 pub struct Polytope<N: Real, const D: usize> {
     pub(in crate::shape) center: Point<N, D>,
     pub(in crate::shape) reach: N,
-    /// The radius of a ball about `center` that no face cuts.
+    /// The radius of the largest ball about `center` inside all face planes; zero if there is none.
     pub(in crate::shape) inner_radius: N,
     pub(in crate::shape) vertices: Vec<Point<N, D>>,
-    /// The vertices in packets of 8, coordinate by coordinate; the last vertex fills the rest.
+    /// The vertices in packets of 8, one row per axis; the last vertex pads the last packet.
     pub(in crate::shape) blocks: Blocks<N, D>,
-    /// The planes of the faces in packets of 8; the last face fills the rest.
+    /// The planes of the faces in packets of 8; the last face pads the last packet.
     pub(in crate::shape) planes: SmallVec<[Planes<N, D>; 1]>,
-    /// The vertices in packets of four, for code without SIMD.
+    /// The vertices in packets of 4, for code without SIMD.
     pub(in crate::shape) quartets: Quartets<N, D>,
     pub(in crate::shape) faces: Vec<PolytopeFace<N, D>>,
-    /// The vertices of all faces, one loop after the other.
+    /// The vertex indices of all faces, one loop after the other.
     pub(in crate::shape) loops: Vec<u32>,
     /// For each entry of `loops`, the edge (in 2D: the face) that leads to the next vertex.
     pub(in crate::shape) loop_sides: Vec<u32>,
-    /// Empty in 2D.
+    /// The edges of the solid; empty in 2D.
     pub(in crate::shape) edges: Vec<PolytopeEdge>,
-    /// The edges (in 2D: the faces) at all vertices, one vertex after the other.
+    /// The edges (in 2D: the faces) at each vertex, one vertex after the other.
     pub(in crate::shape) fans: Vec<u32>,
-    /// The start of each vertex's fan, then the end of the last one.
+    /// For each vertex, the index in `fans` where its fan starts; the last entry is the length of
+    /// `fans`.
     pub(in crate::shape) fan_starts: Vec<u32>,
-    /// The unit vector along each entry of `fans`, in either direction; `None` if its length is
-    /// zero.
+    /// For each entry of `fans`, the unit vector along that side, in either direction; `None` if
+    /// the side has no length.
     pub(in crate::shape) fan_directions: Vec<Option<Vector<N, D>>>,
     pub(in crate::shape) twin: Twin<N, D>,
 }
 
-/// A copy of the polytope for caches of pairs, made on first use; clones of the polytope made after
-/// that share it, so that a pair recognizes the polytope by the pointer.
+/// A copy of the polytope for the caches of pairs, made on first use. Clones of the polytope made
+/// after that share the copy, so that a pair can recognize the polytope by the pointer.
 #[derive(Clone, Default)]
 pub(in crate::shape) struct Twin<N: Real, const D: usize>(OnceLock<Arc<Polytope<N, D>>>);
 
-/// The copy is a cache, not a property of the solid.
+/// Always equal: the copy is a cache, not a property of the solid.
 impl<N: Real, const D: usize> PartialEq for Twin<N, D> {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-/// Vertices or faces in a packet.
+/// The number of vertices or faces in a packet.
 pub(in crate::shape) const LANES: usize = 8;
-/// Vertices in a packet for code without SIMD: they fit in one register on every target.
+/// The number of vertices in a packet for code without SIMD; each row fits one register on every
+/// target.
 pub(in crate::shape) const QUARTET: usize = 4;
 
-/// Vertices in packets of 8; one packet is stored inline.
+/// Vertices in packets of 8, one row per axis; one packet is stored inline.
 type Blocks<N, const D: usize> = SmallVec<[[[N; LANES]; D]; 1]>;
-/// Vertices in packets of four; two packets are stored inline.
+/// Vertices in packets of 4, one row per axis; two packets are stored inline.
 type Quartets<N, const D: usize> = SmallVec<[[[N; QUARTET]; D]; 2]>;
 
-/// The planes of 8 faces, coordinate by coordinate.
+/// The planes of 8 faces, one row of normals per axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Planes<N: Real, const D: usize> {
     pub(crate) normals: [[N; LANES]; D],
     pub(crate) offsets: [N; LANES],
 }
 
-/// A flat face.
+/// A flat face of a polytope.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -123,7 +125,7 @@ pub(crate) struct Planes<N: Real, const D: usize> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PolytopeFace<N: Real, const D: usize> {
-    /// The unit vector out of the solid.
+    /// The outward unit normal.
     pub normal: Vector<N, D>,
     /// Every point of the solid has `normal · x ≤ offset`, up to rounding.
     pub offset: N,
@@ -151,65 +153,68 @@ impl<N: Real, const D: usize> PolytopeFace<N, D> {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PolytopeEdge {
-    /// Its ends: the loop of the first face runs from the first to the second.
+    /// The vertices at its ends: the loop of `faces[0]` traverses the edge from the first to the
+    /// second.
     pub vertices: [u32; 2],
-    /// The faces on its two sides.
+    /// The two faces that meet at the edge.
     pub faces: [u32; 2],
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    /// Returns a copy of the solid that later clones share.
+    /// Returns a copy of the solid, made on first use, that later clones share.
     pub(crate) fn twin(&self) -> &Arc<Self> {
         self.twin.0.get_or_init(|| Arc::new(self.clone()))
     }
 
-    /// The vertices.
+    /// Returns the vertices.
     #[must_use]
     pub fn vertices(&self) -> &[Point<N, D>] {
         &self.vertices
     }
 
-    /// The faces.
+    /// Returns the faces.
     #[must_use]
     pub fn faces(&self) -> &[PolytopeFace<N, D>] {
         &self.faces
     }
 
-    /// The edges; none in 2D.
+    /// Returns the edges; none in 2D.
     #[must_use]
     pub fn edges(&self) -> &[PolytopeEdge] {
         &self.edges
     }
 
-    /// The vertices around a face of this solid.
+    /// Returns the vertex indices around a face, which must belong to this solid.
     #[must_use]
     pub fn face_vertices(&self, face: &PolytopeFace<N, D>) -> &[u32] {
         let first = face.first as usize;
         &self.loops[first..first + face.len as usize]
     }
 
-    /// The sides around a face: edges, or in 2D the face itself, once for each of its two vertices.
+    /// Returns the sides around a face: edges, or in 2D the face itself, once for each of its two
+    /// vertices.
     pub(in crate::shape) fn face_sides(&self, face: &PolytopeFace<N, D>) -> &[u32] {
         let first = face.first as usize;
         &self.loop_sides[first..first + face.len as usize]
     }
 
-    /// The vertices in packets of 8, coordinate by coordinate; the last vertex fills the rest.
+    /// Returns the vertices in packets of 8, one row per axis; the last vertex pads the last
+    /// packet.
     pub(crate) fn blocks(&self) -> &[[[N; LANES]; D]] {
         &self.blocks
     }
 
-    /// The planes of the faces in packets of 8; the last face fills the rest.
+    /// Returns the planes of the faces in packets of 8; the last face pads the last packet.
     pub(crate) fn planes(&self) -> &[Planes<N, D>] {
         &self.planes
     }
 
-    /// The edges (in 2D: the faces) that end at a vertex.
+    /// Returns the edges (in 2D: the faces) that end at a vertex.
     pub(in crate::shape) fn fan(&self, vertex: usize) -> &[u32] {
         &self.fans[self.fan_range(vertex)]
     }
 
-    /// The edges (in 2D: the faces) that end at a vertex, and their directions.
+    /// Returns the edges (in 2D: the faces) that end at a vertex, and their directions.
     pub(in crate::shape) fn fan_along(
         &self,
         vertex: usize,
@@ -222,8 +227,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         self.fan_starts[vertex] as usize..self.fan_starts[vertex + 1] as usize
     }
 
-    /// An edge with its ends and its two faces. In 2D a face with its ends; both entries of `faces`
-    /// are the face itself.
+    /// Returns an edge with its ends and its two faces. In 2D returns a face with its ends; both
+    /// entries of `faces` are then the face itself.
     pub(in crate::shape) fn side(&self, index: u32) -> PolytopeEdge {
         match self.edges.get(index as usize) {
             Some(edge) => *edge,
@@ -234,19 +239,20 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// The id of an edge (in 2D: of a face).
+    /// Returns the id of an edge (in 2D: of a face).
     pub(in crate::shape) fn side_id(index: u32) -> FeatureId {
         FeatureId::flat::<D>(1, index)
     }
 
-    /// Returns the index of the face with the greatest signed height of `point`, the first of
-    /// equals, and that height: positive exactly if the point is outside.
+    /// Returns the index of the face over which `point` has the greatest signed height, the first
+    /// if there are several, and that height. The height is positive exactly if the point is
+    /// outside.
     pub(crate) fn highest_face(&self, point: &Point<N, D>) -> (u32, N) {
         let highest = polytope_support::plane(Level::new(), &self.planes, point);
         (count32(highest), self.faces[highest].height_of(point))
     }
 
-    /// The index of a vertex farthest along a direction: the first of equals.
+    /// Returns the index of a vertex farthest along a direction, the first if there are several.
     pub(in crate::shape) fn support_vertex(&self, direction: &Vector<N, D>) -> usize {
         if self.blocks.len() > 1 {
             polytope_support::vertex(Level::new(), &self.blocks, direction)
@@ -255,9 +261,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
-    /// [`Self::support_vertex`] without SIMD, which is as fast for few vertices.
+    /// Implements [`Self::support_vertex`] without SIMD, which is as fast for few vertices.
     ///
-    /// Written so that the compiler keeps each array in one register.
+    /// The loop is written so that the compiler keeps each array in one register.
     fn support_vertex_of_few(&self, direction: &Vector<N, D>) -> usize {
         let (mut heights, mut best_quartets) =
             (heights(&self.quartets[0], direction), [0_u32; QUARTET]);
@@ -278,7 +284,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             .1
     }
 
-    /// Packs vertices as [`Self::blocks`] and `quartets` hold them.
+    /// Packs vertices in the layout of [`Self::blocks`] and of `quartets`.
     pub(in crate::shape) fn blocks_of<Blocks, const COUNT: usize>(
         vertices: &[Point<N, D>],
     ) -> Blocks
@@ -292,8 +298,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         vertices.chunks(COUNT).map(block).collect()
     }
 
-    /// The radius of a ball about the centre that lies inside, up to rounding; zero if there is
-    /// none.
+    /// Returns the radius of a ball about the centre that lies inside the solid, up to rounding;
+    /// zero if there is none.
     #[inline]
     pub(crate) fn inner_radius(&self) -> N {
         self.inner_radius
@@ -306,7 +312,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         self.inner_radius = max(depths.fold(N::MAX, min), N::ZERO);
     }
 
-    /// Packs planes as [`Self::planes`] holds them.
+    /// Packs planes in the layout of [`Self::planes`].
     pub(in crate::shape) fn planes_of(faces: &[PolytopeFace<N, D>]) -> SmallVec<[Planes<N, D>; 1]> {
         let block = |some: &[PolytopeFace<N, D>]| {
             let last = some.len() - 1;
@@ -319,14 +325,14 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         faces.chunks(LANES).map(block).collect()
     }
 
-    /// The largest distance of a vertex from the origin.
+    /// Returns the largest distance of a vertex from the origin.
     pub(in crate::shape) fn reach_of(vertices: &[Point<N, D>]) -> N {
         vertices.iter().fold(N::ZERO, |reach, vertex| max(reach, length_of(&vertex.coords)))
     }
 }
 
-/// The heights of four vertices along a direction. (`map` of the standard library keeps the four in
-/// one register here.)
+/// Returns the heights of 4 vertices along a direction. (`map` of the standard library keeps the 4
+/// numbers in one register here.)
 #[inline]
 fn heights<N: Real, const D: usize>(
     quartet: &[[N; QUARTET]; D],

@@ -1,12 +1,12 @@
 //! SIMD kernels of polytopes: the support vertex among more than a few vertices, and the face plane
-//! with the greatest height of a point.
+//! over which a point has the greatest height.
 
 use crate::math::lanes::{dot, highest_lane, load, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide};
 use crate::shape::polytope::{LANES, Planes};
 
-/// Returns the index of the vertex farthest along a direction, the first of equals.
+/// Returns the index of the vertex farthest along a direction, the first if there are several.
 pub(in crate::shape) fn vertex<N: Real, const D: usize>(
     level: Level,
     blocks: &[[[N; LANES]; D]],
@@ -15,7 +15,8 @@ pub(in crate::shape) fn vertex<N: Real, const D: usize>(
     with_lanes!(level, simd => vertex_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, direction))
 }
 
-/// Returns the index of the plane with the greatest height of a point, the first of equals.
+/// Returns the index of the plane over which a point has the greatest height, the first if there
+/// are several.
 pub(in crate::shape) fn plane<N: Real, const D: usize>(
     level: Level,
     planes: &[Planes<N, D>],
@@ -24,7 +25,7 @@ pub(in crate::shape) fn plane<N: Real, const D: usize>(
     with_lanes!(level, simd => plane_in_lanes::<_, N, N::Lanes<_>, D>(simd, planes, point))
 }
 
-/// [`vertex`] in lanes.
+/// Implements [`vertex`] with the vector instructions `simd`.
 #[inline(always)]
 fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -40,7 +41,7 @@ fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     )
 }
 
-/// [`plane`] in lanes.
+/// Implements [`plane`] with the vector instructions `simd`.
 #[inline(always)]
 fn plane_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -59,7 +60,8 @@ fn plane_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     )
 }
 
-/// Returns the index of the greatest height over all lanes of all blocks, the first of equals.
+/// Returns the index of the greatest height over all lanes of all blocks, the first if there are
+/// several.
 #[inline(always)]
 fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>, B>(
     simd: S,
@@ -67,7 +69,7 @@ fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>, B>(
     heights: impl Fn(&B) -> V,
 ) -> usize {
     let mut highest = heights(&blocks[0]);
-    // Block numbers are small enough to be exact in the scalar type.
+    // Block indices are small enough to be exact in the scalar type.
     let (mut indices, mut index) = (V::all(simd, N::ZERO), N::ZERO);
     for block in &blocks[1..] {
         index += N::ONE;

@@ -10,8 +10,8 @@ use crate::shape::{
 
 /// The points within `radius` of the local origin.
 ///
-/// Radius zero is a point. Scaling by factors of different magnitudes gives an [`Ellipsoid`]. The
-/// only feature is `Face(0)`.
+/// With radius 0 it is a point. Scaling by factors of different magnitudes gives an [`Ellipsoid`].
+/// The only feature is `Face(0)`.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};
@@ -29,17 +29,17 @@ pub struct Ball<N: Real> {
 }
 
 impl<N: Real> Ball<N> {
-    /// The ball of the given radius, zero or more.
+    /// Returns the ball with the given radius, zero or more.
     ///
     /// # Panics
-    /// If the radius is negative or not finite; [`Self::try_new`] returns these.
+    /// If the radius is negative or not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(radius: N) -> Self {
         or_panic(Self::try_new(radius))
     }
 
-    /// The ball of the given radius, zero or more.
+    /// Returns the ball with the given radius, zero or more.
     ///
     /// # Errors
     /// If the radius is negative or not finite.
@@ -47,12 +47,12 @@ impl<N: Real> Ball<N> {
         Ok(Self { radius: size("the radius", radius)? })
     }
 
-    /// A ball whose radius comes from another ball, unchecked.
+    /// Returns the ball with a valid radius; the radius is not checked.
     pub(in crate::shape) const fn of_radius(radius: N) -> Self {
         Self { radius }
     }
 
-    /// The radius.
+    /// Returns the radius.
     #[inline]
     #[must_use]
     pub const fn radius(&self) -> N {

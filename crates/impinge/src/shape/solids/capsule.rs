@@ -11,7 +11,7 @@ use crate::shape::{
 /// The points within `radius` of a segment.
 ///
 /// Radius and length may be zero: a capsule without length is a ball, one without radius a segment.
-/// Vertices: 0 and 1 are the round ends; the round side is `Edge(0)`, in 2D too.
+/// The vertices 0 and 1 are the round ends; the round side is `Edge(0)`, also in 2D.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};
@@ -29,17 +29,19 @@ pub struct Capsule<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Capsule<N, D> {
-    /// The capsule along the local y axis; its segment extends `half_height` to both sides.
+    /// Returns the capsule along the local y axis; its segment extends from y = −`half_height` to y
+    /// = `half_height`.
     ///
     /// # Panics
-    /// If a size is negative or not finite; [`Self::try_new`] returns these.
+    /// If a size is negative or not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(half_height: N, radius: N) -> Self {
         or_panic(Self::try_new(half_height, radius))
     }
 
-    /// The capsule along the local y axis; its segment extends `half_height` to both sides.
+    /// Returns the capsule along the local y axis; its segment extends from y = −`half_height` to y
+    /// = `half_height`.
     ///
     /// # Errors
     /// If a size is negative or not finite.
@@ -49,10 +51,10 @@ impl<N: Real, const D: usize> Capsule<N, D> {
         Self::try_from_ends(Point::from(-b.coords), b, radius)
     }
 
-    /// The capsule around the segment between two points.
+    /// Returns the capsule around the segment between two points.
     ///
     /// # Errors
-    /// If the radius is negative or anything is not finite.
+    /// If the radius is negative, or the radius or a coordinate is not finite.
     pub fn try_from_ends(a: Point<N, D>, b: Point<N, D>, radius: N) -> Result<Self, ShapeError> {
         finite("a coordinate of the first end", &a.coords)?;
         finite("a coordinate of the second end", &b.coords)?;
@@ -60,20 +62,20 @@ impl<N: Real, const D: usize> Capsule<N, D> {
         Ok(Self { segment: Segment::try_new(a, b)?, radius })
     }
 
-    /// Half of the length of the core segment, as given to [`Self::new`].
+    /// Returns half of the length of the core segment, as given to [`Self::new`].
     #[must_use]
     pub fn half_height(&self) -> N {
         self.segment.half_length()
     }
 
-    /// The core segment.
+    /// Returns the core segment.
     #[inline]
     #[must_use]
     pub const fn segment(&self) -> &Segment<N, D> {
         &self.segment
     }
 
-    /// The radius.
+    /// Returns the radius.
     #[inline]
     #[must_use]
     pub const fn radius(&self) -> N {

@@ -15,12 +15,13 @@ use crate::shape::{
 /// The points between the apex at `(0, half_height, 0)` and the disk of `radius` around
 /// `(0, -half_height, 0)`.
 ///
-/// Sizes may be zero: a disk, a segment, a point. `Vertex(0)` is the apex, `Face(0)` the base,
-/// `Face(1)` the round side, `Edge(0)` the rim.
+/// Sizes may be zero; the cone is then a disk, a segment or a point. `Vertex(0)` is the apex,
+/// `Face(0)` the base, `Face(1)` the round side, `Edge(0)` the rim.
 ///
 /// As a feature the base is an inscribed octagon whose vertices and sides all have the id of the
-/// rim; the round side is the segment on it that faces the direction, from the rim to the apex. A
-/// cone without height is a disk: its upper side is the octagon reversed, with the id `Face(1)`.
+/// rim. The round side is its generating segment nearest to the direction, from the rim to the
+/// apex. A cone without height is a disk: its upper side is the octagon reversed, with the id
+/// `Face(1)`.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};
@@ -38,17 +39,19 @@ pub struct Cone<N: Real> {
 }
 
 impl<N: Real> Cone<N> {
-    /// The cone along the local y axis, of given half height and radius, each zero or more.
+    /// Returns the cone along the local y axis with the given half height and radius, each zero or
+    /// more.
     ///
     /// # Panics
-    /// If a size is negative or not finite; [`Self::try_new`] returns these.
+    /// If a size is negative or not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(half_height: N, radius: N) -> Self {
         or_panic(Self::try_new(half_height, radius))
     }
 
-    /// The cone along the local y axis, of given half height and radius, each zero or more.
+    /// Returns the cone along the local y axis with the given half height and radius, each zero or
+    /// more.
     ///
     /// # Errors
     /// If a size is negative or not finite.
@@ -57,14 +60,14 @@ impl<N: Real> Cone<N> {
         Ok(Self { half_height, radius: size("the radius", radius)? })
     }
 
-    /// Half the height along the y axis.
+    /// Returns half of the height along the y axis.
     #[inline]
     #[must_use]
     pub const fn half_height(&self) -> N {
         self.half_height
     }
 
-    /// The radius of the base.
+    /// Returns the radius of the base.
     #[inline]
     #[must_use]
     pub const fn radius(&self) -> N {
@@ -81,8 +84,9 @@ impl<N: Real> Cone<N> {
         Point::<N, 3>::new(N::ZERO, self.half_height, N::ZERO)
     }
 
-    /// The sine of the slope, along a unit vector, of the generating line that faces it: positive
-    /// if the apex lies farther along. `None` for a point.
+    /// Returns the sine of the slope, along a unit vector, of the generating line nearest to that
+    /// vector: positive if the apex lies farther along it than the rim. `None` for a cone that is a
+    /// point.
     fn sine(&self, direction: &Vector<N, 3>) -> Option<N> {
         let line = Vector::<N, 2>::new(-self.radius, N::TWO * self.half_height);
         let (line, _) = unit(&line)?;
@@ -91,8 +95,8 @@ impl<N: Real> Cone<N> {
 }
 
 impl<N: Real> Cone<N> {
-    /// The apex, base, rim or round side that a point of the surface lies on, up to `tolerance`; `None`
-    /// for a cone with a half height or radius of at most `4 tolerance`.
+    /// Returns the id of the apex, base, rim or round side on which a surface point lies, up to
+    /// `tolerance`. `None` for a cone with a half height or radius of at most `4 tolerance`.
     pub(crate) fn part_at<const D: usize>(
         &self,
         point: &Point<N, D>,
@@ -110,8 +114,8 @@ impl<N: Real> Cone<N> {
 }
 
 impl<N: Real> Cone<N> {
-    /// The supporting feature for a unit vector; `None` for the base, and for both sides of a cone
-    /// without height.
+    /// Returns the supporting feature for a unit vector; `None` if it is the base, or either side
+    /// of a cone without height.
     pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
         let is_axial = Tilt::default_limit().admits(radial_of(direction).norm_squared());
         if is_axial && (direction.y < N::ZERO || self.half_height == N::ZERO) {

@@ -10,18 +10,18 @@ use crate::shape::{
     ShapeHandle, SideOrVertex, SupportMap, tilt::Tilt,
 };
 
-/// The points whose coordinate on each axis has a magnitude of at most the half extent.
+/// The points whose coordinate on each axis has at most the magnitude of the half extent.
 ///
-/// Half extents may be zero: the box is then flat, a segment or a point.
+/// Half extents may be zero: the box is then a rectangle, a segment or a point.
 ///
-/// Vertices: bit `i` of the number says that coordinate `i` is positive. Faces: `2 · axis` on the
-/// positive side of an axis, one more on the negative side. Edges (in 3D): `4 · axis` of the
-/// direction plus two bits for the signs on the next two axes (x → y → z → x): 1 if the next
-/// coordinate is positive, 2 if the one after is.
+/// Vertices: bit `i` of the index is set if coordinate `i` is positive. Faces: `2 · axis` on the
+/// positive side of an axis, `2 · axis + 1` on the negative side. Edges (in 3D): `4 · axis` for the
+/// axis along which the edge runs, plus two bits for the signs on the next two axes (x → y → z →
+/// x): 1 if the next coordinate is positive, 2 if the one after is.
 ///
-/// Faces are given with their vertices counter-clockwise seen from outside (in 2D with the
-/// box on the left), so in 2D the outline counter-clockwise is faces 0, 2, 1, 3 and vertices
-/// 1, 3, 2, 0. A face without width is given as the segment or the point that it is.
+/// The vertices of a face are counter-clockwise seen from outside; in 2D a face has the box on its
+/// left. So in 2D the counter-clockwise outline has faces 0, 2, 1, 3 and vertices 1, 3, 2, 0. A
+/// face without width is returned as a segment or a point.
 ///
 /// ```
 /// use impinge::dim2::{math::Vector, shape::Cuboid, shape::Shape};
@@ -34,17 +34,17 @@ pub struct Cuboid<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
-    /// The box with the given half extents, each zero or more.
+    /// Returns the box with the given half extents, each zero or more.
     ///
     /// # Panics
-    /// If a half extent is negative or not finite; [`Self::try_new`] returns these.
+    /// If a half extent is negative or not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(half_extents: Vector<N, D>) -> Self {
         or_panic(Self::try_new(half_extents))
     }
 
-    /// The box with the given half extents, each zero or more.
+    /// Returns the box with the given half extents, each zero or more.
     ///
     /// # Errors
     /// If a half extent is negative or not finite.
@@ -56,12 +56,12 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         Ok(Self { half_extents })
     }
 
-    /// A box whose half extents come from another box, unchecked.
+    /// Returns the box with valid half extents; they are not checked.
     pub(in crate::shape) const fn reaching(half_extents: Vector<N, D>) -> Self {
         Self { half_extents }
     }
 
-    /// Half the size along each axis.
+    /// Returns the half extents along each axis.
     #[inline]
     #[must_use]
     pub const fn half_extents(&self) -> &Vector<N, D> {
@@ -85,8 +85,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
 }
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
-    /// The vertex, edge or face that a point of the surface lies on, up to `tolerance`; `None` for a
-    /// point inside, and for a box with a half extent of at most `4 tolerance`.
+    /// Returns the id of the vertex, edge or face on which a surface point lies, up to `tolerance`.
+    /// `None` for a point inside, and for a box with a half extent of at most `4 tolerance`.
     pub(crate) fn part_at(&self, point: &Point<N, D>, tolerance: N) -> Option<FeatureId> {
         let mut free = 0;
         for axis in 0..D {
@@ -100,7 +100,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
-    /// The id of a part from `2 D` bits: its free axes, and above them its positive ones.
+    /// Returns the id of a feature from `2 D` bits: the free axes, and above them the positive axes.
     #[inline]
     pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
         CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]
@@ -108,30 +108,29 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 }
 
 /// A vertex, edge or face: the points of the box whose coordinates vary on the `free` axes and
-/// equal those of `corner` on the others. Both are bit sets of axes; `corner` holds those with a
-/// positive sign.
+/// equal those of `corner` on the other axes. Both are bit sets; `corner` has the positive axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) struct CuboidPart<const D: usize> {
     free: u32,
     corner: u32,
 }
 
-/// The supporting feature of a box: a point, a segment or a face with sides.
+/// The supporting feature of a box, without its corners: a vertex, an edge or a face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SupportPart<N: Real, const D: usize> {
     part: CuboidPart<D>,
-    /// The outward normal; `None` if the part is no face.
+    /// The outward normal; `None` if the feature is not a face.
     pub(crate) normal: Option<Vector<N, D>>,
 }
 
 impl<N: Real, const D: usize> SupportPart<N, D> {
-    /// The direction of edge `index` of a box in 3D.
+    /// Returns the direction of edge `index` of a box in 3D.
     pub(crate) fn edge_direction(index: u32) -> Vector<N, D> {
         axis_vector((index / 4) as usize % D)
     }
 
-    /// The direction of the side of the part that is most nearly perpendicular to a vector, the
-    /// first of equals; `None` for a point.
+    /// Returns the direction of the feature's side that is most nearly perpendicular to `vector`,
+    /// the first if there are several; `None` for a vertex.
     pub(crate) fn flattest_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
         let first = if self.normal.is_some() { self.part.own_axis() + 1 } else { 0 };
         let axes =
@@ -142,7 +141,7 @@ impl<N: Real, const D: usize> SupportPart<N, D> {
     }
 }
 
-/// The unit vector along an axis.
+/// Returns the unit vector along an axis.
 fn axis_vector<N: Real, const D: usize>(axis: usize) -> Vector<N, D> {
     Vector::<N, D>::from_fn(|row, _| if row == axis { N::ONE } else { N::ZERO })
 }
@@ -154,8 +153,8 @@ const fn has(set: u32, axis: usize) -> bool {
 impl<const D: usize> CuboidPart<D> {
     const ALL: u32 = (1 << D) - 1;
 
-    /// The ids of all parts, by [`Self::free`] and then [`Self::corner`]; in at most three
-    /// dimensions.
+    /// The ids of all features, indexed by [`Self::free`] plus [`Self::corner`] shifted by `D`
+    /// bits; for at most three dimensions.
     const IDS: [FeatureId; 64] = {
         let mut ids = [FeatureId::Vertex(0); 64];
         let mut bits = 0;
@@ -169,9 +168,8 @@ impl<const D: usize> CuboidPart<D> {
         ids
     };
 
-    /// The supporting feature for a unit vector. Frees axes, the smallest component first, while
-    /// the tilt admits the sum of their squares; equals the rule for the axis edge and its most
-    /// aligned face.
+    /// Returns the supporting feature for a unit vector. Frees axes in the order of increasing
+    /// components, while `tilt` admits the sum of squares: the rule of [`SupportMap::core_feature`].
     pub(in crate::shape) fn toward<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
         let (mut free, mut sine_squared) = (0, N::ZERO);
         for _ in 1..D {
@@ -185,7 +183,7 @@ impl<const D: usize> CuboidPart<D> {
         Self { free, corner: signs(direction) }
     }
 
-    /// The face whose normal is most aligned with a direction.
+    /// Returns the face whose normal is most aligned with a direction.
     fn face_toward<N: Real>(direction: &Vector<N, D>) -> Self {
         let mut strongest = 0;
         for axis in 1..D {
@@ -196,12 +194,12 @@ impl<const D: usize> CuboidPart<D> {
         Self { free: Self::ALL & !(1 << strongest), corner: signs(direction) }
     }
 
-    /// The first fixed axis: for a face the axis of its normal.
+    /// Returns the first fixed axis: for a face the axis of its normal.
     const fn own_axis(self) -> usize {
         (!self.free & Self::ALL).trailing_zeros() as usize
     }
 
-    /// The number of free axes.
+    /// Returns the number of free axes.
     const fn dimension(self) -> usize {
         let (mut axis, mut count) = (0, 0);
         while axis < D {
@@ -211,7 +209,7 @@ impl<const D: usize> CuboidPart<D> {
         count
     }
 
-    /// The id by the numbering documented at [`Cuboid`].
+    /// Returns the id of the feature by the numbering documented at [`Cuboid`].
     pub(in crate::shape) const fn id(self) -> FeatureId {
         let dimension = self.dimension();
         let index = if dimension == 0 {
@@ -227,7 +225,7 @@ impl<const D: usize> CuboidPart<D> {
         FeatureId::flat::<D>(dimension, index)
     }
 
-    /// The part with an id; `None` if the box has no such part.
+    /// Returns the feature with the given id; `None` if the box has no such feature.
     fn of_id(id: FeatureId) -> Option<Self> {
         let part = match id {
             FeatureId::Vertex(corner) => Self { free: 0, corner },
@@ -246,9 +244,9 @@ impl<const D: usize> CuboidPart<D> {
         (part.free <= Self::ALL && part.corner <= Self::ALL && part.id() == id).then_some(part)
     }
 
-    /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
-    /// changes one coordinate at a time. In the cyclic order after a face's own axis it runs
-    /// counter-clockwise on the positive side if that order is an even permutation of the axes.
+    /// Returns the corners in the order documented at [`Cuboid`]: a Gray code over the free axes,
+    /// which changes one coordinate at a time. The axes follow cyclically after a face's own
+    /// axis. The loop is counter-clockwise on the positive side if this permutation is even.
     const fn ring(self) -> CuboidRing {
         let own = self.own_axis();
         let is_face = self.dimension() + 1 == D;
@@ -265,7 +263,7 @@ impl<const D: usize> CuboidPart<D> {
         if is_face && is_odd == has(self.corner, own) { ring.reversed() } else { ring }
     }
 
-    /// The ids of the sides of a ring: none for a point, one for a segment, four for a rectangle.
+    /// Returns the ids of a ring's sides: none for a point, one for a segment, else four.
     const fn side_ids(ring: &CuboidRing) -> [FeatureId; 4] {
         let (mut ids, mut at) = ([FeatureId::Vertex(0); 4], 0);
         while at < ring.count {
@@ -276,7 +274,7 @@ impl<const D: usize> CuboidPart<D> {
         ids
     }
 
-    /// The rings of all faces, by face number, and the ids of their sides.
+    /// The rings of all faces, by face index, and the ids of their sides.
     pub(in crate::shape) const FACES: [(CuboidRing, [FeatureId; 4]); 6] = {
         let (mut faces, mut index) =
             ([(CuboidRing::of_corner(0), [FeatureId::Vertex(0); 4]); 6], 0);
@@ -290,7 +288,7 @@ impl<const D: usize> CuboidPart<D> {
         faces
     };
 
-    /// The ends of all edges by edge number; `None` in 2D, where sides are faces.
+    /// The ends of all edges, by edge index; `None` in 2D, where sides are faces.
     const EDGES: [Option<[u32; 2]>; 12] = {
         let (mut edges, mut axis) = ([None; 12], 0);
         while axis < D {
@@ -308,7 +306,7 @@ impl<const D: usize> CuboidPart<D> {
         edges
     };
 
-    /// The normalised sum of the normals of the faces around the part.
+    /// Returns the normalised sum of the normals of the faces around the feature.
     #[inline]
     fn normal<N: Real>(self) -> Vector<N, D> {
         let mut normal = Vector::<N, D>::zeros();
@@ -317,12 +315,12 @@ impl<const D: usize> CuboidPart<D> {
                 normal[axis] = if has(self.corner, axis) { N::ONE } else { -N::ONE };
             }
         }
-        // The sum is unit already for a face.
+        // For a face the sum already has unit length.
         if self.dimension() + 1 == D { normal } else { normal / normal.norm() }
     }
 }
 
-/// The corners of a part that is not the whole box, as bit sets of axes: four at most.
+/// The corners of a feature, as bit sets of axes: four at most.
 #[derive(Clone, Copy)]
 pub(in crate::shape) struct CuboidRing {
     pub(in crate::shape) corners: [u32; 4],
@@ -334,7 +332,7 @@ impl CuboidRing {
         Self { corners: [corner; 4], count: 1 }
     }
 
-    /// Appends the corners in reverse order, moved to the positive side of an axis.
+    /// Appends the corners in reverse order, each moved to the positive side of `axis`.
     const fn reflected(mut self, axis: u32) -> Self {
         let mut back = 0;
         while back < self.count {
@@ -355,12 +353,13 @@ impl CuboidRing {
     }
 }
 
-/// The axes along which the component of a direction is not negative.
+/// Returns the set of axes along which the component of a direction is not negative.
 fn signs<N: Real, const D: usize>(direction: &Vector<N, D>) -> u32 {
     (0..D).fold(0, |set, axis| if direction[axis] < N::ZERO { set } else { set | 1 << axis })
 }
 
-/// The axis outside `taken` along which a direction has its smallest component.
+/// Returns the axis outside the set `taken` with the smallest component of a direction by
+/// magnitude; `None` if all axes are taken.
 fn weakest<N: Real, const D: usize>(direction: &Vector<N, D>, taken: u32) -> Option<usize> {
     let mut weakest = None;
     for axis in 0..D {
@@ -384,7 +383,8 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
         point
     }
 
-    /// The [`SupportMap::core_feature`] without corners; `None` if it is flat along a free axis.
+    /// Returns the [`SupportMap::core_feature`] without its corners; `None` if the box is flat
+    /// along a free axis of the feature.
     pub(crate) fn part_toward(&self, direction: &Vector<N, D>) -> Option<SupportPart<N, D>> {
         let part = CuboidPart::<D>::toward(direction, Tilt::default_limit());
         let is_flat = |axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO;
@@ -409,7 +409,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
             out.side_ids.push(id);
         }
         out.normal = matches!(out.id, FeatureId::Face(_)).then(|| part.normal());
-        // Corners coincide only if the box is flat along a free axis.
+        // Corners coincide only if the box is flat along a free axis of the feature.
         if (0..D).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO) {
             out.drop_repeated();
         }
@@ -425,7 +425,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 }
 
 impl<N: Real> Cuboid<N, 2> {
-    /// See [`SideOrVertex::of`]; `None` if the side has no length.
+    /// Implements [`SideOrVertex::of`] for boxes; `None` if the side has no length.
     pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> Option<SideOrVertex<N>> {
         let part = CuboidPart::<2>::toward(direction, Tilt::default_limit());
         let with_id = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));

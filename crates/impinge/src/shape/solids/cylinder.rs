@@ -12,15 +12,15 @@ use crate::shape::{
     SupportMap,
 };
 
-/// The points within `radius` of the y axis whose y is within `half_height` of zero.
+/// The points with a distance of at most `radius` from the y axis and with |y| ≤ `half_height`.
 ///
-/// Sizes may be zero: a disk, a segment, a point. `Face(0)` is the cap on the positive side of y,
-/// `Face(1)` the one on the negative side, `Face(2)` the round side; the rims are `Edge(0)` and
-/// `Edge(1)`.
+/// Sizes may be zero; the cylinder is then a disk, a segment or a point. `Face(0)` is the cap at
+/// positive y, `Face(1)` the cap at negative y, `Face(2)` the round side. `Edge(0)` and `Edge(1)`
+/// are the rims of these caps.
 ///
-/// As features the caps are inscribed octagons whose vertices and sides all have the id of the rim;
-/// the round side is the segment on it that faces the direction, and its ends have the ids of the
-/// rims.
+/// As features the caps are inscribed octagons whose vertices and sides all have the id of the rim.
+/// The round side is its generating segment nearest to the direction; the ends of the segment have
+/// the ids of the rims.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -38,17 +38,19 @@ pub struct Cylinder<N: Real> {
 }
 
 impl<N: Real> Cylinder<N> {
-    /// The cylinder along the local y axis, of given half height and radius, each zero or more.
+    /// Returns the cylinder along the local y axis with the given half height and radius, each zero
+    /// or more.
     ///
     /// # Panics
-    /// If a size is negative or not finite; [`Self::try_new`] returns these.
+    /// If a size is negative or not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(half_height: N, radius: N) -> Self {
         or_panic(Self::try_new(half_height, radius))
     }
 
-    /// The cylinder along the local y axis, of given half height and radius, each zero or more.
+    /// Returns the cylinder along the local y axis with the given half height and radius, each zero
+    /// or more.
     ///
     /// # Errors
     /// If a size is negative or not finite.
@@ -57,14 +59,14 @@ impl<N: Real> Cylinder<N> {
         Ok(Self { half_height, radius: size("the radius", radius)? })
     }
 
-    /// Half the height along the y axis.
+    /// Returns half of the height along the y axis.
     #[inline]
     #[must_use]
     pub const fn half_height(&self) -> N {
         self.half_height
     }
 
-    /// The radius.
+    /// Returns the radius.
     #[inline]
     #[must_use]
     pub const fn radius(&self) -> N {
@@ -79,8 +81,8 @@ impl<N: Real> Cylinder<N> {
 }
 
 impl<N: Real> Cylinder<N> {
-    /// The cap, rim or round side that a point of the surface lies on, up to `tolerance`; `None` for a
-    /// cylinder with a half height or radius of at most `4 tolerance`.
+    /// Returns the id of the cap, rim or round side on which a surface point lies, up to
+    /// `tolerance`. `None` for a cylinder with a half height or radius of at most `4 tolerance`.
     pub(crate) fn part_at<const D: usize>(
         &self,
         point: &Point<N, D>,
@@ -98,12 +100,12 @@ impl<N: Real> Cylinder<N> {
 }
 
 impl<N: Real> Cylinder<N> {
-    /// The number and the height of the cap on the side of a direction.
+    /// Returns the index and the y coordinate of the cap on the side of a direction.
     fn end_toward(&self, direction: &Vector<N, 3>) -> (u32, N) {
         if direction.y < N::ZERO { (1, -self.half_height) } else { (0, self.half_height) }
     }
 
-    /// The supporting feature for a unit vector; `None` for a cap.
+    /// Returns the supporting feature for a unit vector; `None` if it is a cap.
     pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
         if Tilt::default_limit().admits(radial_of(direction).norm_squared()) {
             return None;

@@ -9,10 +9,9 @@ use crate::shape::{
     CurvedSupport, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
 };
 
-/// The points whose coordinates, divided by the half axes, are within the unit ball: an ellipse in
-/// 2D.
+/// The points whose coordinates, divided by the half axes, lie in the unit ball; an ellipse in 2D.
 ///
-/// Centred at the local origin, with its axes along the coordinate axes. Half axes may be zero: the
+/// The centre is the local origin, and the axes are the coordinate axes. Half axes may be zero: the
 /// solid is then a flat disk, a segment or a point. The whole surface is `Face(0)`, whose
 /// supporting feature is always a point.
 ///
@@ -31,17 +30,17 @@ pub struct Ellipsoid<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Ellipsoid<N, D> {
-    /// The ellipsoid with the given half axes.
+    /// Returns the ellipsoid with the given half axes, each zero or more.
     ///
     /// # Panics
-    /// If a half axis is negative or not finite; [`Self::try_new`] returns these.
+    /// If a half axis is negative or not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(half_axes: Vector<N, D>) -> Self {
         or_panic(Self::try_new(half_axes))
     }
 
-    /// The ellipsoid with the given half axes.
+    /// Returns the ellipsoid with the given half axes, each zero or more.
     ///
     /// # Errors
     /// If a half axis is negative or not finite.
@@ -51,7 +50,7 @@ impl<N: Real, const D: usize> Ellipsoid<N, D> {
         Ok(Self { half_axes })
     }
 
-    /// The extent to both sides along each axis.
+    /// Returns the half axes: the extent from the centre to each side, by axis.
     #[inline]
     #[must_use]
     pub const fn half_axes(&self) -> &Vector<N, D> {

@@ -1,4 +1,5 @@
-//! The convex solids, one file each: construction, scaling, support points, features and boxes.
+//! The convex solids, one file each, with construction, scaling, support points, features and
+//! boxes.
 
 pub(crate) mod ball;
 pub(crate) mod capsule;

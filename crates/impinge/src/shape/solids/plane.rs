@@ -43,18 +43,18 @@ pub struct Plane<N: Real, const D: usize> {
 pub type HalfSpace<N, const D: usize> = Plane<N, D>;
 
 impl<N: Real, const D: usize> Plane<N, D> {
-    /// The half-space that `normal` points out of.
+    /// Returns the half-space with the outward normal `normal`.
     ///
     /// # Panics
-    /// If a coordinate of the normal is not finite, as for a zero vector that was normalized, or
-    /// its length differs from 1 by more than 0.8 %; [`Self::try_new`] returns these.
+    /// If a coordinate of the normal is not finite (the result of normalizing a zero vector), or
+    /// its length differs from 1 by more than 0.8 %; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(normal: Unit<Vector<N, D>>) -> Self {
         or_panic(Self::try_new(normal))
     }
 
-    /// The half-space that `normal` points out of.
+    /// Returns the half-space with the outward normal `normal`.
     ///
     /// # Errors
     /// If a coordinate of the normal is not finite, or its length differs from 1 by more than 0.8 %.
@@ -63,7 +63,7 @@ impl<N: Real, const D: usize> Plane<N, D> {
         Ok(Self { normal })
     }
 
-    /// The unit vector out of the solid.
+    /// Returns the outward unit normal.
     #[inline]
     #[must_use]
     pub const fn normal(&self) -> &Unit<Vector<N, D>> {
@@ -72,9 +72,10 @@ impl<N: Real, const D: usize> Plane<N, D> {
 }
 
 impl<N: Real, const D: usize> Plane<N, D> {
-    /// The box of the half-space whose outward normal is `normal` and whose boundary passes through
-    /// `point`: bounded on one side if the normal lies along an axis and `point` is not NaN, else
-    /// unbounded. A normal that only rounding brought onto an axis must not be given.
+    /// Returns the box of the half-space with the outward normal `normal` and a boundary through
+    /// `point`. The box is bounded on one side if the normal is exactly along an axis and `point`
+    /// is not NaN, else unbounded. The caller must not pass a normal that lies along an axis only
+    /// by rounding.
     fn aabb_of(normal: &Vector<N, D>, point: &Vector<N, D>) -> Aabb<N, D> {
         let (mut mins, mut maxs) = (*Aabb::unbounded().mins(), *Aabb::unbounded().maxs());
         for axis in 0..D {
@@ -99,7 +100,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Plane<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        // The product of a rotation with an axis is a column of the rotation, exactly.
+        // A rotation matrix times an axis is a column of the matrix, without rounding.
         let is_axis = self.normal.iter().filter(|&&x| x != N::ZERO).count() == 1;
         if is_axis || pose.is_aligned() {
             Self::aabb_of(&pose.vector(&self.normal), &pose.translation)

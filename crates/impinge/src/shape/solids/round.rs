@@ -10,9 +10,9 @@ fn axial<N: Real, const D: usize>(point: &Point<N, D>) -> (N, N) {
     (point[1], squares.fold(N::ZERO, |sum, square| sum + square).sqrt())
 }
 
-/// The coordinates of [`axial`] for a point of the surface of a solid about the y axis; `None` if
-/// `half_height` or `radius` is at most `4 tolerance`, where a point would lie on several parts at
-/// once.
+/// Returns the coordinates of [`axial`] for a surface point of a solid about the y axis. `None` if
+/// `half_height` or `radius` is at most `4 tolerance`: a point could then lie on several features
+/// at once.
 pub(in crate::shape) fn axial_on<N: Real, const D: usize>(
     point: &Point<N, D>,
     [half_height, radius]: [N; 2],
@@ -22,17 +22,17 @@ pub(in crate::shape) fn axial_on<N: Real, const D: usize>(
     (half_height > least && radius > least).then(|| axial(point))
 }
 
-/// The supporting feature of a cylinder or a cone, unless it is a cap.
+/// The supporting feature of a cylinder or a cone, if it is not a cap.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum RoundPart<N: Real> {
     /// A point of a rim, or the apex.
     Point(FeatureId, Point<N, 3>),
-    /// The generating line of the side that faces the direction, and its ends.
+    /// The generating line nearest to the direction, and its ends.
     Line(FeatureId, [(FeatureId, Point<N, 3>); 2]),
 }
 
 impl<N: Real> RoundPart<N> {
-    /// Writes the part as a feature.
+    /// Writes the feature to `out`.
     pub(in crate::shape) fn fill(self, out: &mut Feature<N, 3>) {
         match self {
             Self::Point(id, point) => out.set_point(id, point),
@@ -48,18 +48,19 @@ pub(in crate::shape) struct Disk<N: Real> {
     pub(in crate::shape) y: N,
 }
 
-/// The component of a direction across the y axis, as (x, z).
+/// Returns the component of a direction perpendicular to the y axis, as (x, z).
 pub(in crate::shape) fn radial_of<N: Real>(direction: &Vector<N, 3>) -> Vector<N, 2> {
     Vector::<N, 2>::new(direction.x, direction.z)
 }
 
 impl<N: Real> Disk<N> {
-    /// The point of the rim farthest along `direction`; the centre for a direction along the axis.
+    /// Returns the rim point farthest along `direction`; the centre if `direction` is along the
+    /// axis.
     pub(in crate::shape) fn rim_toward(self, direction: &Vector<N, 3>) -> Point<N, 3> {
         self.at(unit(&radial_of(direction)).map_or_else(Vector::<N, 2>::zeros, |(along, _)| along))
     }
 
-    /// The point of the rim farthest along the unit vector `direction`, and its derivative; `None`
+    /// Returns the rim point farthest along the unit vector `direction`, and its derivative. `None`
     /// if the squared component across the axis is at most epsilon, too small to give a direction.
     pub(in crate::shape) fn curved_rim(
         self,
@@ -70,16 +71,16 @@ impl<N: Real> Disk<N> {
         if !resolved {
             return None;
         }
-        // The point moves along the rim, by the radius per radian around the axis.
+        // The point moves along the rim by `radius` per radian of rotation about the axis.
         let around = Vector::<N, 3>::new(-radial.y, N::ZERO, radial.x);
         let pace = self.radius / length;
         let bend = Matrix::<N, 3>::from_fn(|i, j| around[i] * around[j] * pace);
         Some(CurvedSupport { point: self.at(radial), bend })
     }
 
-    /// The extents, along each outer axis, of the disk about the origin under a rotation. Computed
-    /// from the columns that span the disk: from its axis alone a small tilt would lose half of all
-    /// digits.
+    /// Returns the half extents, along each outer axis, of the disk about the origin under a
+    /// rotation. They are computed from the two columns that span the disk: computed from the axis,
+    /// a small tilt would lose half of its digits.
     pub(in crate::shape) fn extents(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
         Vector::<N, 3>::from_fn(|axis, _| {
             let spans = Vector::<N, 2>::new(rotation[(axis, 0)], rotation[(axis, 2)]);
@@ -91,9 +92,9 @@ impl<N: Real> Disk<N> {
         Point::<N, 3>::new(radial.x * self.radius, self.y, radial.y * self.radius)
     }
 
-    /// Writes the disk as an inscribed octagon that faces the side of the axis on which `direction`
-    /// lies, with its first vertex towards `direction` (towards x if that is lost in rounding). A
-    /// disk without radius is a point.
+    /// Writes the disk as an inscribed octagon, whose normal points to the side of the y axis on
+    /// which `direction` lies. The first vertex is towards `direction`, or towards x if that is
+    /// lost in rounding. A disk without radius is written as a point.
     pub(in crate::shape) fn fill_polygon(
         self,
         face: FeatureId,
@@ -106,8 +107,8 @@ impl<N: Real> Disk<N> {
         }
         out.clear();
         out.id = face;
-        // Seen from the positive side of y, with x to the right, z points down: clockwise in (x, z)
-        // is counter-clockwise there.
+        // Seen from positive y, with x to the right, z points down. So a loop that is clockwise in
+        // (x, z) is counter-clockwise in this view.
         let turn = if direction.y < N::ZERO { N::ONE } else { -N::ONE };
         let mut radial = first_sample(direction);
         for _ in 0..8 {
@@ -119,7 +120,8 @@ impl<N: Real> Disk<N> {
     }
 }
 
-/// The radial unit vector of a direction, or x where it is lost in rounding.
+/// Returns the unit vector of a direction's component across the axis; x if the component is lost
+/// in rounding.
 fn first_sample<N: Real>(direction: &Vector<N, 3>) -> Vector<N, 2> {
     let fallback = Vector::<N, 2>::new(N::ONE, N::ZERO);
     match unit(&radial_of(direction)) {

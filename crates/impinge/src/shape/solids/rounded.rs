@@ -10,12 +10,12 @@ use crate::shape::{
     CurvedSupport, Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
 };
 
-/// The points within `radius` of a convex shape: a box with rounded edges, say.
+/// The points within `radius` of a convex shape, such as a box with rounded edges.
 ///
-/// The solid is *larger* than the shape by the radius on all sides. The radius may be zero. Its
-/// features are those of the shape: a point over `Edge(3)` of a box is on `Edge(3)` of the rounded
-/// box, which is a piece of a cylinder there. Every distance to it, also inside, is the distance to
-/// the shape minus the radius, and is as accurate.
+/// The solid is *larger* than the shape by the radius on all sides. The radius may be zero. The
+/// features are those of the shape: a surface point nearest to `Edge(3)` of a box is on `Edge(3)`
+/// of the rounded box, which is a piece of a cylinder there. Every distance to the solid, also from
+/// inside, is the distance to the shape minus the radius, with the accuracy of that distance.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point, Vector};
@@ -32,36 +32,37 @@ use crate::shape::{
 pub struct Rounded<N: Real, const D: usize> {
     shape: ShapeHandle<N, D>,
     radius: N,
-    /// The nesting depth of rounded shapes.
+    /// The nesting depth: one more than the depth of the inner shape.
     depth: u32,
 }
 
 impl<N: Real, const D: usize> Rounded<N, D> {
-    /// The points within `radius` of a convex shape.
+    /// Returns the solid of all points within `radius` of a convex shape.
     ///
     /// # Panics
     /// If the radius is negative or not finite, the shape is not a bounded convex solid, or the
-    /// shape has the nesting depth [`MAX_NESTING`](crate::shape::MAX_NESTING) already;
-    /// [`Self::try_new`] returns these.
+    /// shape already has the nesting depth [`MAX_NESTING`](crate::shape::MAX_NESTING);
+    /// [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new<S: Shape<N, D>>(shape: S, radius: N) -> Self {
         or_panic(Self::try_new(shape, radius))
     }
 
-    /// The points within `radius` of a convex shape.
+    /// Returns the solid of all points within `radius` of a convex shape.
     ///
     /// # Errors
     /// If the radius is negative or not finite, the shape is a half-space or a composite, or the
-    /// shape has the nesting depth [`MAX_NESTING`](crate::shape::MAX_NESTING) already.
+    /// shape already has the nesting depth [`MAX_NESTING`](crate::shape::MAX_NESTING).
     pub fn try_new<S: Shape<N, D>>(shape: S, radius: N) -> Result<Self, ShapeError> {
         Self::try_from_handle(ShapeHandle::new(shape), radius)
     }
 
-    /// The points within `radius` of a shared convex shape.
+    /// Returns the solid of all points within `radius` of a shared convex shape.
     ///
     /// # Errors
-    /// As for [`Self::try_new`].
+    /// If the radius is negative or not finite, the shape is a half-space or a composite, or the
+    /// shape already has the nesting depth [`MAX_NESTING`](crate::shape::MAX_NESTING).
     pub fn try_from_handle(shape: ShapeHandle<N, D>, radius: N) -> Result<Self, ShapeError> {
         let radius = size("the radius", radius)?;
         let kind = shape.geometry().kind();
@@ -72,26 +73,26 @@ impl<N: Real, const D: usize> Rounded<N, D> {
         Ok(Self { shape, radius, depth })
     }
 
-    /// The inner shape.
+    /// Returns the inner shape.
     #[inline]
     #[must_use]
     pub const fn shape(&self) -> &ShapeHandle<N, D> {
         &self.shape
     }
 
-    /// The distance by which the solid extends beyond the shape.
+    /// Returns the distance by which the solid extends beyond the inner shape.
     #[inline]
     #[must_use]
     pub const fn radius(&self) -> N {
         self.radius
     }
 
-    /// Whether both have the same shared inner shape and radius.
+    /// Whether both solids share one inner shape and have equal radii.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.shape.is_same(&other.shape) && self.radius == other.radius
     }
 
-    /// The inner shape as queries see it.
+    /// Returns the inner shape as queries treat it.
     pub(crate) fn inner(&self) -> Geometry<'_, N, D> {
         self.shape.geometry()
     }
@@ -160,7 +161,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Rounded<N, D> {
         self.depth
     }
 
-    /// Needs factors of one magnitude.
+    /// Returns an error if the magnitudes of the factors differ.
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         let radius = self.radius * Scale::try_new(scale)?.uniform()?;
         Ok(ShapeHandle::new(Self::try_from_handle(self.shape.scaled(scale)?, radius)?))

@@ -10,7 +10,7 @@ use crate::shape::{
 
 /// The points between `a` and `b`, which may coincide.
 ///
-/// Vertices: 0 is `a`, 1 is `b`. The segment itself is `Edge(0)`, in 2D too.
+/// `Vertex(0)` is `a`, `Vertex(1)` is `b`. The segment itself is `Edge(0)`, also in 2D.
 ///
 /// ```
 /// use impinge::dim3::math::{Isometry, Point};
@@ -28,17 +28,17 @@ pub struct Segment<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Segment<N, D> {
-    /// The segment between two points.
+    /// Returns the segment between two points.
     ///
     /// # Panics
-    /// If a coordinate is not finite; [`Self::try_new`] returns that.
+    /// If a coordinate is not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(a: Point<N, D>, b: Point<N, D>) -> Self {
         or_panic(Self::try_new(a, b))
     }
 
-    /// The segment between two points.
+    /// Returns the segment between two points.
     ///
     /// # Errors
     /// If a coordinate is not finite.
@@ -48,36 +48,37 @@ impl<N: Real, const D: usize> Segment<N, D> {
         Ok(Self { a, b })
     }
 
-    /// The segment between two points that are known to be finite.
+    /// Returns the segment between two points that must be finite; they are not checked.
     #[inline]
     pub(crate) const fn of_finite(a: Point<N, D>, b: Point<N, D>) -> Self {
         Self { a, b }
     }
 
-    /// The first end.
+    /// Returns the first end.
     #[inline]
     #[must_use]
     pub const fn a(&self) -> &Point<N, D> {
         &self.a
     }
 
-    /// The second end.
+    /// Returns the second end.
     #[inline]
     #[must_use]
     pub const fn b(&self) -> &Point<N, D> {
         &self.b
     }
 
-    /// Half of the length, halved before it is measured: the difference of large ends may overflow.
+    /// Returns half of the length. Halves the coordinates first: the difference of large ones may
+    /// overflow.
     pub(in crate::shape) fn half_length(&self) -> N {
         length_of(&(self.b.coords * N::HALF - self.a.coords * N::HALF))
     }
 }
 
-/// The length of a vector, also if its square overflows or underflows.
+/// Returns the length of a vector, also if its square overflows or underflows.
 #[inline]
 pub(in crate::shape) fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> N {
-    // As in `unit`, without the direction.
+    // Squares in this range lose no digits; beyond it `unit` scales the vector first.
     let squared = v.norm_squared();
     if squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt() {
         return squared.sqrt();
@@ -85,13 +86,13 @@ pub(in crate::shape) fn length_of<N: Real, const D: usize>(v: &Vector<N, D>) -> 
     unit(v).map_or(N::ZERO, |(_, length)| length)
 }
 
-/// The larger distance of two points from the origin.
+/// Returns the larger distance of two points from the origin.
 pub(in crate::shape) fn farther<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>) -> N {
     max(length_of(&a.coords), length_of(&b.coords))
 }
 
-/// The box around a few points of a solid placed at `pose`; rounded outwards, and unbounded on
-/// overflow.
+/// Returns the box around a few points of a solid placed at `pose`; rounded outwards, and unbounded
+/// on overflow.
 pub(in crate::shape) fn box_at<N: Real, const D: usize, const K: usize>(
     pose: &Pose<N, D>,
     points: [&Point<N, D>; K],
@@ -101,7 +102,8 @@ pub(in crate::shape) fn box_at<N: Real, const D: usize, const K: usize>(
     let mut high = -low;
     for point in points {
         let rotated = pose.vector(&point.coords);
-        // The sum of magnitudes bounds the distance from the origin from above, without a root.
+        // The sum of magnitudes is an upper bound of the distance from the origin that needs no
+        // square root.
         size = max(point.iter().fold(N::ZERO, |sum, x| sum + x.abs()), size);
         for axis in 0..D {
             (low[axis], high[axis]) =

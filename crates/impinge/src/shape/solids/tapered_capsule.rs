@@ -1,4 +1,4 @@
-//! Tapered capsules: the hulls of two balls.
+//! Tapered capsules: the convex hulls of two balls.
 
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
@@ -13,13 +13,14 @@ use crate::shape::{
 
 /// The convex hull of two balls around the ends of a segment.
 ///
-/// Radii and length may be zero, and one ball may contain the other: then the solid is that ball.
-/// With equal radii it is a capsule, with one radius of zero a cone with a round base, with both a
-/// segment. Vertices: 0 and 1 are the round ends; the side, part of a cone, is `Edge(0)`, in 2D
-/// too.
+/// Radii and length may be zero, and one ball may contain the other; the solid is then the larger
+/// ball. With equal radii it is a capsule, with one radius of zero a cone with a round base, with
+/// two a segment. The vertices 0 and 1 are the round ends; the side, part of a cone, is `Edge(0)`,
+/// also in 2D.
 ///
-/// Its rounding is the smaller radius. Its core is the hull of a point and of a ball whose radius
-/// is the difference; as a feature the side is the generating segment that faces the direction.
+/// The rounding radius is the smaller radius. The core is the hull of a point and of a ball whose
+/// radius is the difference. As a feature the side is its generating segment nearest to the
+/// direction.
 ///
 /// ```
 /// use impinge::dim3::math::Isometry;
@@ -37,19 +38,19 @@ pub struct TaperedCapsule<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> TaperedCapsule<N, D> {
-    /// The tapered capsule along the local y axis: balls of radius `radius1` and `radius2` at `y` equal
-    /// to minus and plus `half_height`.
+    /// Returns the tapered capsule along the local y axis: a ball of `radius1` at y =
+    /// −`half_height` and a ball of `radius2` at y = `half_height`.
     ///
     /// # Panics
-    /// If a size is negative or not finite; [`Self::try_new`] returns these.
+    /// If a size is negative or not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(half_height: N, radius1: N, radius2: N) -> Self {
         or_panic(Self::try_new(half_height, radius1, radius2))
     }
 
-    /// The tapered capsule along the local y axis: balls of radius `radius1` and `radius2` at `y` equal
-    /// to minus and plus `half_height`.
+    /// Returns the tapered capsule along the local y axis: a ball of `radius1` at y =
+    /// −`half_height` and a ball of `radius2` at y = `half_height`.
     ///
     /// # Errors
     /// If a size is negative or not finite.
@@ -59,10 +60,10 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         Self::try_from_ends(Point::from(-end2.coords), end2, [radius1, radius2])
     }
 
-    /// The hull of the balls of given radii around two points.
+    /// Returns the convex hull of the balls of given radii around two points.
     ///
     /// # Errors
-    /// If a radius is negative or anything is not finite.
+    /// If a radius is negative, or a radius or a coordinate is not finite.
     pub fn try_from_ends(
         a: Point<N, D>,
         b: Point<N, D>,
@@ -74,27 +75,27 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         Ok(Self { segment, radii })
     }
 
-    /// Half of the distance between the centres of the balls, as given to [`Self::new`].
+    /// Returns half of the distance between the centres of the balls, as given to [`Self::new`].
     #[must_use]
     pub fn half_height(&self) -> N {
         self.segment.half_length()
     }
 
-    /// The segment between the centres of the balls.
+    /// Returns the segment between the centres of the balls.
     #[inline]
     #[must_use]
     pub const fn segment(&self) -> &Segment<N, D> {
         &self.segment
     }
 
-    /// The radii of the balls around the first and the second end.
+    /// Returns the radii of the balls around the first and the second end.
     #[inline]
     #[must_use]
     pub const fn radii(&self) -> [N; 2] {
         self.radii
     }
 
-    /// The position and slope of the side; `None` if one ball contains the other.
+    /// Returns the direction and slope of the side; `None` if one ball contains the other.
     pub(crate) fn taper(&self) -> Option<Taper<N, D>> {
         let [radius1, radius2] = self.radii;
         let (along, length) = unit(&(self.segment.b() - self.segment.a()))?;
@@ -104,24 +105,25 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
         has_side.then_some(Taper { along, length, sine, cosine })
     }
 
-    /// The index of the end with the larger ball, the first of equals.
+    /// Returns the index of the end with the larger ball; 0 if the radii are equal.
     pub(crate) fn larger_end(&self) -> usize {
         usize::from(self.radii[1] > self.radii[0])
     }
 
-    /// An end of the segment by its index.
+    /// Returns the end of the segment with index 0 or 1.
     pub(crate) fn end(&self, index: usize) -> &Point<N, D> {
         if index == 0 { self.segment.a() } else { self.segment.b() }
     }
 
-    /// The radii of the balls of the core; one of them is zero.
+    /// Returns the radii of the core's balls; one of them is zero.
     fn core_radii(&self) -> [N; 2] {
         self.radii.mapped(|radius| radius - self.rounding())
     }
 }
 
-/// The side of a tapered capsule: in every half-plane through the axis a line that touches both
-/// balls at the same unit normal, with component `cosine` away from the axis and `sine` along it.
+/// The side of a tapered capsule. In every half-plane through the axis it is a line that touches
+/// both balls, with a unit normal whose component is `cosine` away from the axis and `sine` along
+/// it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Taper<N: Real, const D: usize> {
     /// The unit vector from the first end to the second.
@@ -133,9 +135,9 @@ pub(crate) struct Taper<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Taper<N, D> {
-    /// The unit vector away from the axis nearest to `direction`, and the component of `direction`
-    /// along it. A perpendicular of the axis and zero if `direction` is along the axis, up to
-    /// rounding.
+    /// Returns the unit vector away from the axis that is nearest to `direction`, and the component
+    /// of `direction` along it. If `direction` is along the axis, up to rounding, returns some
+    /// perpendicular of the axis and zero.
     fn away(&self, direction: &Vector<N, D>) -> (Vector<N, D>, N) {
         let radial = direction - self.along * direction.dot(&self.along);
         let known = unit(&radial).filter(|&(_, length)| length > N::lit(16.0) * N::EPSILON);
@@ -163,7 +165,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
     ) -> Option<CurvedSupport<N, D>> {
         let large = self.larger_end();
         let (center, radius) = (self.end(large), self.core_radii()[large]);
-        // The part of the core at the smaller ball is its centre, a corner.
+        // The core's feature at the smaller ball is the centre of that ball, a vertex.
         let to_corner = (point - self.end(1 - large)).norm();
         if to_corner < ((point - center).norm() - radius).abs() {
             return None;
@@ -194,15 +196,15 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
         };
         let (away, across) = taper.away(direction);
         let climb = direction.dot(&taper.along);
-        // Positive if the second end lies farther along the direction than the first.
+        // The sine is positive if the second end lies farther along the direction than the first.
         let sine = taper.cosine * climb - taper.sine * across;
         let faces = taper.cosine * across + taper.sine * climb > N::ZERO;
         if !(faces && Tilt::default_limit().admits(sine * sine)) {
             let end = usize::from(sine > N::ZERO);
             return out.set_point(ids[end], self.core_support(direction));
         }
-        // On the larger ball: the support point itself, or the end of the side if the support point
-        // is on the smaller ball.
+        // The end on the larger ball: the support point, or the end of the side if the support
+        // point is on the smaller ball.
         let is_on_large = (sine > N::ZERO) == (large == 1);
         let side = away * taper.cosine + taper.along * taper.sine;
         let toward = if is_on_large { *direction } else { side };

@@ -14,23 +14,23 @@ use crate::shape::{
 /// A tetrahedron is flat if its smallest height is at most `FLAT` epsilon times its size.
 const FLAT: f64 = 4096.0;
 
-/// The corners of the faces of a tetrahedron whose fourth corner sees the first three clockwise;
-/// `FACES[i]` leaves out corner `i`.
+/// The corners of the faces, for a tetrahedron whose first three corners run clockwise seen from
+/// the fourth; `FACES[i]` is opposite to corner `i`.
 const FACES: [[u32; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// The vertices of the edges, by edge number.
+/// The vertices of each edge, by edge index.
 pub(in crate::shape) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// The points between four corners, which may be given in any order and may coincide or lie on a
+/// The convex hull of four corners, which may be given in any order and may coincide or lie on a
 /// line or in a plane.
 ///
-/// Vertices: 0 to 3 are the corners as given. `Face(i)` is opposite to `Vertex(i)`. Edges: 0 to 5
-/// join the vertices 0 1, 0 2, 0 3, 1 2, 1 3 and 2 3.
+/// The vertices 0 to 3 are the corners as given. `Face(i)` is opposite to `Vertex(i)`. The edges 0
+/// to 5 join the vertices 0 1, 0 2, 0 3, 1 2, 1 3 and 2 3.
 ///
-/// Without volume (a height below 4096 rounding units of its size) it is still the hull of its
-/// corners, and distances to it are as accurate. Its features are then the whole flat side, with
-/// the id of one of the faces there, and the edges of its outline; the longest edge if the corners
-/// lie on a line; the first vertex if they coincide.
+/// A tetrahedron without volume (a height of at most 4096 epsilon times its size) is still the hull
+/// of its corners, and distances to it are as accurate. Its features are then the whole flat side,
+/// with the id of one of the faces there, and the edges of its outline. If the corners lie on a
+/// line, the only feature is the longest edge; if they coincide, the first vertex.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -44,24 +44,25 @@ pub(in crate::shape) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2
 #[derive(Clone, PartialEq)]
 pub struct Tetrahedron<N: Real> {
     corners: [Point<N, 3>; 4],
-    /// If the tetrahedron is flat, only the vertices and ids are valid; the faces overlap.
+    /// The vertices, edges and faces. If the tetrahedron is flat, only the vertices and ids are
+    /// valid; the faces overlap.
     polytope: Polytope<N, 3>,
-    /// The outline, if the tetrahedron is flat.
+    /// The outline of a flat tetrahedron; `None` for one with a volume.
     flat: Option<FlatOutline<N>>,
 }
 
 impl<N: Real> Tetrahedron<N> {
-    /// The tetrahedron of four corners.
+    /// Returns the tetrahedron with four corners.
     ///
     /// # Panics
-    /// If a coordinate is not finite; [`Self::try_new`] returns that.
+    /// If a coordinate is not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(corners: [Point<N, 3>; 4]) -> Self {
         or_panic(Self::try_new(corners))
     }
 
-    /// The tetrahedron of four corners.
+    /// Returns the tetrahedron with four corners.
     ///
     /// # Errors
     /// If a coordinate is not finite.
@@ -81,27 +82,27 @@ impl<N: Real> Tetrahedron<N> {
         Ok(Self { corners, polytope, flat })
     }
 
-    /// The corners, in the order given.
+    /// Returns the corners, in the order given.
     #[inline]
     #[must_use]
     pub const fn corners(&self) -> &[Point<N, 3>; 4] {
         &self.corners
     }
 
-    /// The solid as vertices, edges and faces; `None` if it has no volume.
+    /// Returns the vertices, edges and faces of the solid; `None` if it has no volume.
     #[must_use]
     pub fn polytope(&self) -> Option<&Polytope<N, 3>> {
         self.flat.is_none().then_some(&self.polytope)
     }
 }
 
-/// Measures of four points, in doubles scaled to about 1.
+/// The size, height and orientation of four points, in doubles scaled to about 1.
 struct TetrahedronExtent {
-    /// The fourth corner sees the first three counter-clockwise.
+    /// Whether the first three corners run counter-clockwise seen from the fourth.
     is_mirrored: bool,
     /// The largest distance of a corner from the first.
     size: f64,
-    /// The smallest distance of a corner from the plane of the others.
+    /// The smallest distance of a corner from the plane of the other three.
     height: f64,
 }
 
@@ -124,38 +125,41 @@ impl TetrahedronExtent {
     }
 }
 
-/// The corners as doubles, relative to the first, divided by a power of two near their size.
+/// Returns the corners as doubles, relative to the first, divided by a power of two near their
+/// size.
 pub(in crate::shape) fn scaled<N: Real>(corners: &[Point<N, 3>; 4]) -> [Vector<f64, 3>; 4] {
     let corners = corners.map(|corner| corner.coords.map(N::as_f64));
-    // Two steps: the difference of two large corners may overflow, and of two close ones is small.
+    // Scales twice: the difference of two large corners may overflow, and that of two close corners
+    // is small.
     let unit = power_of_two_below(&corners) * 2.0;
     let from_first = corners.map(|corner| corner / unit - corners[0] / unit);
     let unit = power_of_two_below(&from_first);
     from_first.map(|corner| corner / unit)
 }
 
-/// The corners as doubles, divided by a power of two near the largest coordinate: without rounding.
+/// Returns the corners as doubles, divided by a power of two near the largest coordinate, without
+/// rounding.
 fn doubles<N: Real>(corners: &[Point<N, 3>; 4]) -> [Point<f64, 3>; 4] {
     let corners = corners.map(|corner| corner.coords.map(N::as_f64));
     let unit = power_of_two_below(&corners);
     corners.map(|corner| Point::from(corner / unit))
 }
 
-/// A power of two near the largest coordinate. Doubles are used for both scalars, also if `f64` is
-/// not one of them.
+/// Returns a power of two near the largest coordinate. This code always uses doubles, even if the
+/// crate is built without `f64` shapes.
 fn power_of_two_below(corners: &[Vector<f64, 3>; 4]) -> f64 {
     let largest = corners.iter().fold(0.0, |size: f64, corner| size.max(corner.amax()));
     f64::from_bits(largest.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE)
 }
 
-/// The vertices, edges and faces of four corners in any position.
+/// Returns the polytope of four corners in any position.
 fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N, 3> {
     let positions = doubles(&corners);
     let faces = FACES.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });
     let faces = faces.into_iter().map(|face| {
         let [a, b, c] = face.map(|corner| &positions[corner as usize]);
-        // The cross product of rounded sides would be off by the rounding error times length over
-        // height.
+        // Computed from rounded sides, the normal would have a relative error of epsilon times
+        // length over height.
         let normal = area_vector(a, b, c).try_normalize(0.0);
         let normal = normal.unwrap_or_else(Vector::<f64, 3>::y).map(N::lit);
         (unit(&normal).map_or(normal, |(normal, _)| normal), face)

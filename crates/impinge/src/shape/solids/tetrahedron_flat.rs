@@ -5,16 +5,16 @@ use crate::shape::solids::tetrahedron::{EDGES, scaled};
 use crate::shape::tilt::Tilt;
 use crate::shape::{Feature, FeatureId};
 
-/// Corners closer to a line than `STRAIGHT` epsilon times the size count as on it.
+/// Corners closer to a line than `STRAIGHT` epsilon times the size are treated as on the line.
 const STRAIGHT: f64 = 4096.0;
 
-/// The corners of the outline, counter-clockwise seen from where the normal points; two for a segment,
-/// one for a point.
+/// The corners of the outline, counter-clockwise seen from where `normal` points; two for a
+/// segment, one for a point.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::shape) struct FlatOutline<N: Real> {
     ring: Vec<u32>,
     points: Vec<Point<N, 3>>,
-    /// Meaningless for a segment or a point.
+    /// The unit normal of the plane; meaningless for a segment or a point.
     normal: Vector<N, 3>,
 }
 
@@ -32,7 +32,7 @@ impl<N: Real> FlatOutline<N> {
         Self { ring, points, normal }
     }
 
-    /// The rule of [`super::SupportMap::core_feature`] for a flat polygon.
+    /// Applies the rule of [`super::SupportMap::core_feature`] to the flat polygon.
     pub(in crate::shape) fn fill_toward(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
         if self.ring.len() < 3 {
             return self.fill_side(0, out);
@@ -63,7 +63,7 @@ impl<N: Real> FlatOutline<N> {
         if index + 1 < self.ring.len() { index + 1 } else { 0 }
     }
 
-    /// The sine of the slope of a side along a direction.
+    /// Returns the sine of the slope of a side along a direction; 1 for a side without length.
     fn slope(&self, side: usize, direction: &Vector<N, 3>) -> N {
         let along = unit(&(self.points[self.next(side)] - self.points[side]));
         along.map_or(N::ONE, |(along, _)| along.dot(direction).abs())
@@ -76,7 +76,7 @@ impl<N: Real> FlatOutline<N> {
         FeatureId::Edge(found.map_or(0, |(index, _)| index))
     }
 
-    /// Writes a side, or the vertex if there is only one.
+    /// Writes a side, or the vertex if the outline is a point.
     fn fill_side(&self, side: usize, out: &mut Feature<N, 3>) {
         let with_id = |at: usize| (FeatureId::Vertex(self.ring[at]), self.points[at]);
         if self.ring.len() == 1 {
@@ -85,8 +85,8 @@ impl<N: Real> FlatOutline<N> {
         out.set_segment(self.edge_id(side), [with_id(side), with_id(self.next(side))]);
     }
 
-    /// Writes the whole outline, with the id of the face opposite to the corner that is not in the
-    /// outline, or to the last corner if all are.
+    /// Writes the whole outline, with the id of the face opposite to the last corner that is not in
+    /// the outline, or to the last corner if all are in it.
     fn fill_face(&self, normal: Vector<N, 3>, is_back: bool, out: &mut Feature<N, 3>) {
         let left_out = (0..4).rev().find(|corner| !self.ring.contains(corner)).unwrap_or(3);
         out.clear();
@@ -102,7 +102,7 @@ impl<N: Real> FlatOutline<N> {
     }
 }
 
-/// The normal of the largest triangle, and twice its area.
+/// Returns the unit normal of the largest triangle, and twice its area.
 fn widest_normal(positions: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64)> {
     let [a, b, c, d] = positions;
     let triangles = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
@@ -113,7 +113,8 @@ fn widest_normal(positions: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64
     widest.try_normalize(0.0).map(|normal| (normal, widest.norm()))
 }
 
-/// The corners of the outline, in order around the normal: no corner lies outside of a side.
+/// Returns the corners of the outline, counter-clockwise around the normal: no corner lies outside
+/// a side by more than `tolerance`.
 fn ring(positions: &[Vector<f64, 3>; 4], normal: &Vector<f64, 3>, tolerance: f64) -> Vec<u32> {
     let is_left = |a: usize, b: usize, c: usize| {
         let side = positions[b] - positions[a];
@@ -159,7 +160,7 @@ fn index32(corner: usize) -> u32 {
     u32::try_from(corner).expect("one of four")
 }
 
-/// The two corners that are farthest apart; the first alone if they all coincide.
+/// Returns the two corners that are farthest apart; only the first corner if all coincide.
 fn ends(positions: &[Vector<f64, 3>; 4]) -> Vec<u32> {
     let apart = |[a, b]: [u32; 2]| (positions[a as usize] - positions[b as usize]).norm();
     let [a, b] = EDGES

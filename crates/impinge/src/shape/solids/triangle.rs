@@ -10,18 +10,18 @@ use crate::shape::{
     Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
 };
 
-/// The points between three corners, which may be given in either order and may coincide or lie on
+/// The convex hull of three corners, which may be given in either order and may coincide or lie on
 /// a line.
 ///
-/// In 3D it has no thickness and two sides. Vertices: 0, 1, 2 are `a`, `b`, `c`. Sides: `i` leads
-/// from vertex `i` to the next; they are faces in 2D and edges in 3D. In 3D `Face(0)` is the side
-/// from which `a`, `b`, `c` appear counter-clockwise and `Face(1)` the other.
+/// In 3D the triangle has no thickness and two sides. The vertices 0, 1, 2 are `a`, `b`, `c`. Side
+/// `i` leads from vertex `i` to the next vertex; sides are faces in 2D and edges in 3D. In 3D
+/// `Face(0)` is the side from which `a`, `b`, `c` appear counter-clockwise, and `Face(1)` the
+/// opposite side.
 ///
-/// As features, sides are given so that the loop they belong to runs counter-clockwise: in 2D with
-/// the triangle on the left, in 3D seen from where the direction points. The normal of a side, and
-/// in 3D of an edge, lies in the triangle's plane and points out. A triangle without area has its
-/// longest side as its only feature besides the vertices, a triangle whose corners coincide its
-/// first vertex.
+/// As features, sides are oriented so that their loop runs counter-clockwise: in 2D with the
+/// triangle on the left, in 3D seen from where the direction points. The normal of a side or edge
+/// lies in the triangle's plane and points out. A triangle without area has its longest side as its
+/// only feature besides the vertices. A triangle whose corners coincide has only its first vertex.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Point};
@@ -39,17 +39,17 @@ pub struct Triangle<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Triangle<N, D> {
-    /// The triangle of three corners.
+    /// Returns the triangle with three corners.
     ///
     /// # Panics
-    /// If a coordinate is not finite; [`Self::try_new`] returns that.
+    /// If a coordinate is not finite; [`Self::try_new`] returns an error instead.
     #[must_use]
     #[track_caller]
     pub fn new(a: Point<N, D>, b: Point<N, D>, c: Point<N, D>) -> Self {
         or_panic(Self::try_new(a, b, c))
     }
 
-    /// The triangle of three corners.
+    /// Returns the triangle with three corners.
     ///
     /// # Errors
     /// If a coordinate is not finite.
@@ -60,13 +60,13 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         Ok(Self { corners: [a, b, c] })
     }
 
-    /// The triangle of corners that are known to be finite, unchecked.
+    /// Returns the triangle of corners that must be finite; they are not checked.
     #[inline]
     pub(crate) const fn of_finite(corners: [Point<N, D>; 3]) -> Self {
         Self { corners }
     }
 
-    /// The corners, in the order given.
+    /// Returns the corners, in the order given.
     #[inline]
     #[must_use]
     pub const fn corners(&self) -> &[Point<N, D>; 3] {
@@ -95,7 +95,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Triangle<N, D> {
         let [a, b, c] = &self.corners;
         let most = max(a.coords.norm_squared(), b.coords.norm_squared());
         let most = max(most, c.coords.norm_squared());
-        // The root of the largest square is the largest length; outside this range see `length_of`.
+        // The square root of the largest square is the largest length; for squares out of this
+        // range see `length_of`.
         if most > N::MIN_POSITIVE.sqrt() && most < N::MAX.sqrt() {
             return most.sqrt();
         }

@@ -1,5 +1,5 @@
-//! The features of triangles, in any dimension: the supporting feature for a direction, and its
-//! winding.
+//! The features of triangles, in any dimension: the supporting feature for a direction, and the
+//! winding of its loop.
 
 use crate::math::{Matrix, Point, Real, Vector, cross, max, max_component, unit, unit_or};
 use crate::shape::solids::segment::length_of;
@@ -12,14 +12,15 @@ use crate::shape::{
 struct TriangleSpan<N: Real, const D: usize> {
     /// The index of the longest side.
     longest: usize,
-    /// Unit, along the longest side from its first vertex to its second.
+    /// The unit vector along the longest side, from its first vertex to its second.
     along: Vector<N, D>,
-    /// Unit, from the longest side to the opposite corner; `None` if the corners lie on a line.
+    /// The unit vector in the plane from the longest side to the opposite corner; `None` if the
+    /// corners lie on a line.
     rise: Option<Vector<N, D>>,
 }
 
 impl<N: Real, const D: usize> TriangleSpan<N, D> {
-    /// `None` if the corners coincide.
+    /// Returns the span of three corners; `None` if they coincide.
     fn of(corners: &[Point<N, D>; 3]) -> Option<Self> {
         let side = |i: usize| corners[(i + 1) % 3] - corners[i];
         let longer = |best: usize, i: usize| {
@@ -28,23 +29,25 @@ impl<N: Real, const D: usize> TriangleSpan<N, D> {
         let longest = longer(longer(0, 1), 2);
         let (along, length) = unit(&side(longest))?;
         let to_opposite = corners[(longest + 2) % 3] - corners[longest];
-        // Below this height the difference of coordinates may be pure rounding error.
+        // Below this height, the difference of coordinates may be rounding error alone.
         let tolerance = N::lit(16.0) * N::EPSILON * length;
         let rise = unit(&without(&to_opposite, &along));
         let rise = rise.filter(|&(_, height)| height > tolerance);
-        // A second projection makes it perpendicular to the last digit, however flat the triangle.
+        // A second projection makes the vector perpendicular to the last digit, however flat the
+        // triangle.
         let rise = rise.map(|(rise, _)| unit_or(&without(&rise, &along), rise));
         Some(Self { longest, along, rise })
     }
 
-    /// The squared component of a direction in the plane; `None` if the corners lie on a line.
+    /// Returns the squared component of a direction in the plane; `None` if the corners lie on a
+    /// line.
     fn squared_sine(&self, direction: &Vector<N, D>) -> Option<N> {
         let (along, rise) = (self.along.dot(direction), self.rise?.dot(direction));
         Some(along * along + rise * rise)
     }
 
-    /// The unit normal of the plane on the side of a direction; `None` if the direction lies in the
-    /// plane.
+    /// Returns the unit normal of the plane on the side of a direction. `None` if the direction
+    /// lies in the plane, or the corners lie on a line.
     fn normal_toward(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
         let rise = self.rise?;
         let rest = |v: &Vector<N, D>| without(&without(v, &self.along), &rise);
@@ -53,7 +56,7 @@ impl<N: Real, const D: usize> TriangleSpan<N, D> {
     }
 }
 
-/// The component of a vector perpendicular to a unit vector.
+/// Returns the component of a vector perpendicular to the unit vector `along`.
 fn without<N: Real, const D: usize>(v: &Vector<N, D>, along: &Vector<N, D>) -> Vector<N, D> {
     v - along * along.dot(v)
 }
@@ -82,8 +85,8 @@ fn is_left_handed<N: Real, const D: usize>(mut columns: Matrix<N, D>) -> bool {
 }
 
 impl<N: Real, const D: usize> Triangle<N, D> {
-    /// The order of the corners that runs counter-clockwise, seen from where `direction` points; in
-    /// 2D, from above.
+    /// Returns the corner indices in counter-clockwise order seen from where `direction` points; in
+    /// 2D seen from above.
     fn ring(&self, direction: &Vector<N, D>) -> [usize; 3] {
         let [a, b, c] = self.corners();
         let mut columns = Matrix::<N, D>::zeros();
@@ -119,9 +122,9 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         }
     }
 
-    /// The corner, side or face that a point of the surface lies on, up to `tolerance`, seen from where
-    /// the unit vector `direction` points; `None` if the corners lie on a line, and in 2D for a
-    /// point inside.
+    /// Returns the id of the corner, side or face on which a surface point lies, up to `tolerance`;
+    /// the face is the one that the unit vector `direction` points out of. `None` if the corners
+    /// lie on a line, and in 2D for a point inside.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
@@ -145,7 +148,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
             (Some(side), None) => Some(side_id::<D>(side)),
             (None, _) => {
                 let index = u32::from(self.ring(direction)[1] == 2);
-                // In 2D the interior is no feature.
+                // In 2D the interior is not a feature.
                 Some(FeatureId::flat::<D>(2, index)).filter(|id| matches!(id, FeatureId::Face(_)))
             }
             _ => None,
@@ -157,8 +160,8 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         (0..3).find(|&index| self.corners()[index] == support).unwrap_or(0)
     }
 
-    /// The side at the support vertex with the smallest slope, and the sine of that slope. If the
-    /// corners lie on a line, only the longest side is considered.
+    /// Returns the side at the support vertex with the smallest slope, and the sine of that slope.
+    /// If the corners lie on a line, only the longest side is considered.
     fn flattest_side(&self, span: &TriangleSpan<N, D>, direction: &Vector<N, D>) -> (usize, N) {
         if span.rise.is_none() {
             return (span.longest, span.along.dot(direction).abs());
@@ -173,7 +176,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         if back.1 < out.1 { back } else { out }
     }
 
-    /// Writes the face on the side of `direction`; in 3D only.
+    /// Writes the face on the side of `direction`. Called in 3D only.
     fn fill_polygon(
         &self,
         span: &TriangleSpan<N, D>,
@@ -191,7 +194,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         out.normal = span.normal_toward(direction);
     }
 
-    /// Writes a side; the longest if the corners lie on a line.
+    /// Writes side `side` with its normal.
     fn fill_side(&self, side: usize, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
         out.set_segment(side_id::<D>(side), self.side_ends(side, direction));
         let normal = self.side_normal(side).filter(|normal| normal.dot(direction) > N::ZERO);
@@ -202,7 +205,8 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         out.normal = normal.filter(|_| matches!(out.id, FeatureId::Face(_)));
     }
 
-    /// The unit vector in the triangle's plane out of a side; `None` if the corners lie on a line.
+    /// Returns the unit vector in the triangle's plane that points out of a side; `None` if the
+    /// corners lie on a line.
     fn side_normal(&self, side: usize) -> Option<Vector<N, D>> {
         TriangleSpan::of(self.corners())?.rise?;
         let corners = self.corners();
@@ -211,8 +215,9 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         Some(unit_or(&without(&normal, &along), normal))
     }
 
-    /// The normal of a vertex or a side. If the corners lie on a line, the normal of a vertex is
-    /// the direction from the centre to it, that of a side any perpendicular.
+    /// Returns the normal of a vertex or a side. If the corners lie on a line, the normal of a
+    /// vertex is the direction from the centre to it, and the normal of a side is any
+    /// perpendicular.
     fn thin_normal(&self, id: FeatureId) -> Vector<N, D> {
         let outward = |index: usize| unit(&(self.corners()[index] - self.center()));
         let normal = match id {
@@ -231,7 +236,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         normal.unwrap_or_else(|| axis(0))
     }
 
-    /// The ends of a side in the order of [`Self::ring`].
+    /// Returns the ends of a side in the order of [`Self::ring`].
     fn side_ends(&self, side: usize, direction: &Vector<N, D>) -> [(FeatureId, Point<N, D>); 2] {
         let ring = self.ring(direction);
         let ends = if ring[1] == 1 { [side, (side + 1) % 3] } else { [(side + 1) % 3, side] };
@@ -252,7 +257,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 }
 
 impl<N: Real> Triangle<N, 2> {
-    /// See [`SideOrVertex::of`]; `None` if the corners coincide.
+    /// Implements [`SideOrVertex::of`] for triangles; `None` if the corners coincide.
     pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> Option<SideOrVertex<N>> {
         let span = TriangleSpan::of(self.corners())?;
         let (side, slope) = self.flattest_side(&span, direction);
@@ -271,14 +276,15 @@ fn axis<N: Real, const D: usize>(index: usize) -> Vector<N, D> {
     axis
 }
 
-/// A unit vector perpendicular to a unit vector: the axis of its smallest component, projected.
+/// Returns a unit vector perpendicular to the unit vector `along`: the projection of the axis along
+/// which `along` has its smallest component.
 fn any_perpendicular<N: Real, const D: usize>(along: &Vector<N, D>) -> Vector<N, D> {
     let weakest =
         (1..D).fold(0, |best, at| if along[at].abs() < along[best].abs() { at } else { best });
     unit_or(&without(&axis(weakest), along), axis(weakest))
 }
 
-/// The id of a corner, 0 to 2.
+/// Returns the id of a corner, 0 to 2.
 fn vertex_id(index: usize) -> FeatureId {
     FeatureId::Vertex(u32::try_from(index).expect("there are three corners"))
 }
@@ -287,24 +293,26 @@ fn side_id<const D: usize>(index: usize) -> FeatureId {
     FeatureId::flat::<D>(1, u32::try_from(index).expect("there are three sides"))
 }
 
-/// The side between two different corners, in either order.
+/// Returns the index of the side between two different corners, in either order.
 fn side_between(from: usize, to: usize) -> usize {
     if (from + 1) % 3 == to { from } else { to }
 }
 
-/// A triangle is thin if its squared area is at most this times the longest squared side, squared.
+/// A triangle is thin if four times its squared area is at most this fraction of the fourth power
+/// of its longest side.
 pub(crate) const THIN_SQUARED: f64 = 1.0 / 1024.0;
-/// A quantity exceeds another clearly if it does so by this fraction; else rounding may decide.
+/// A quantity is clearly larger than another if the excess is at least this fraction; otherwise
+/// rounding may decide.
 pub(crate) const CLEAR: f64 = 1.0 / 1024.0;
 
 impl<N: Real> Triangle<N, 3> {
-    /// The id of the [`SupportMap::core_feature`] for a unit vector, by products alone; `None` for
-    /// thin triangles, and where rounding decides.
+    /// Returns the id of the [`SupportMap::core_feature`] for a unit vector, computed by products
+    /// alone. `None` for thin triangles, and where rounding decides.
     pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
         let [a, b, c] = self.corners();
         let sides = [b - a, c - b, a - c];
         let size = max(max_component(&sides[0]), max_component(&sides[1]));
-        // Scaled so that fourth powers neither overflow nor underflow.
+        // The sides are scaled so that fourth powers neither overflow nor underflow.
         let scaled_sides = sides.map(|side| side / size.power_of_two_below());
         let squared = [
             scaled_sides[0].norm_squared(),
@@ -314,7 +322,7 @@ impl<N: Real> Triangle<N, 3> {
         let longest = max(max(squared[0], squared[1]), squared[2]);
         let across = cross(&scaled_sides[0], &scaled_sides[1]);
         let (area, rise) = (across.norm_squared(), across.dot(direction));
-        // NaN counts as thin.
+        // A NaN area fails the comparison, so that the triangle is treated as thin.
         let is_wide = area > N::lit(THIN_SQUARED) * longest * longest;
         if !is_wide {
             return None;
@@ -329,7 +337,7 @@ impl<N: Real> Triangle<N, 3> {
             return None;
         }
         let climbs = scaled_sides.map(|side| side.dot(direction));
-        // The highest corner, from the climbs of the sides.
+        // The highest corner along the direction, from the components of the sides.
         let heights = [N::ZERO, climbs[0], climbs[0] + climbs[1]];
         let higher = |best: usize, at: usize| if heights[at] > heights[best] { at } else { best };
         let top = higher(higher(0, 1), 2);
@@ -348,7 +356,7 @@ impl<N: Real> Triangle<N, 3> {
     pub(crate) fn fill_ring(&self, direction: &Vector<N, 3>, face: &mut FaceRing<N>) {
         let [a, b, c] = self.corners();
         let edges = [b - a, c - a];
-        // Scaled so that products neither overflow nor underflow.
+        // The edges are scaled so that products neither overflow nor underflow.
         let size = max(max_component(&edges[0]), max_component(&edges[1])).power_of_two_below();
         let across = cross(&(edges[0] / size), &(edges[1] / size));
         let is_below = across.dot(direction) < N::ZERO;
@@ -448,7 +456,7 @@ impl<N: Real> ConvexPolyhedron<N, 3> for Triangle<N, 3> {
     }
 }
 
-/// Whether `id` is the second of the two faces.
+/// Whether `id` is `Face(1)`.
 #[track_caller]
 fn is_second_face(id: FeatureId) -> bool {
     assert!(matches!(id, FeatureId::Face(0 | 1)), "a triangle has no face named {id:?}");

@@ -1,30 +1,30 @@
-//! The edge between two triangles: which normals it admits, computed from the normals of its faces.
+//! The edge between two triangles: the contact normals that it admits, computed from its face
+//! normals.
 //!
-//! An edge admits the normals between those of its two faces on the side where it is a ridge, and
-//! none on the side where it is hollow. If the triangles are neither thin nor far from the origin
-//! for their size, the face normals alone decide this, without the directions from the edge into
-//! the faces that the rule of [`seam`](super::seam) needs. Cases near a limit are left to that
-//! rule.
+//! A convex edge (ridge) admits the normals between those of its two faces; a concave edge (hollow)
+//! admits none. If the triangles are not thin and not far from the origin for their size, the face
+//! normals alone decide this, without the directions from the edge into the faces that the rule of
+//! [`seam`](super::seam) needs. Cases near a limit are left to the rule of `seam`.
 
 use crate::math::{Mapped, Point, Real, Vector, cross, max, max_component, min};
 use crate::shape::surface::seam::{FLAT_SINE, slack};
 
-/// Minimum of the squared ratio of height to longest side for which a triangle is not thin: a
-/// height of 1/32 of that side.
+/// Minimum squared ratio of height to longest side of a triangle that is not thin: a height of 1/32
+/// of that side.
 const TALL: f64 = 1.0 / 1024.0;
-/// Relative width of the band around each limit of flatness in which the rule of seams decides.
+/// Relative width of the band around each limit of flatness that is left to the rule of `seam`.
 const CLOSE: f64 = 0.1;
 
-/// An edge shared by two triangles whose fronts are on one side of the surface.
+/// An edge shared by two triangles whose fronts are on the same side of the surface.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::shape) struct Bend<N: Real> {
-    /// The unit normals on the fronts; `cosine` is their scalar product.
+    /// The unit normals on the fronts of the two triangles; `cosine` is their scalar product.
     fronts: [Vector<N, 3>; 2],
     cosine: N,
     shape: BendShape,
 }
 
-/// The shape of an edge, seen from the front.
+/// The shape of an edge, seen from the front of its faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) enum BendShape {
     /// The angle between the faces is below `FLAT_SINE`.
@@ -45,7 +45,7 @@ impl<N: Real> Bend<N> {
         Some(Self::of(BendShape::new(corners, &fronts)?, fronts))
     }
 
-    /// Returns the edge between faces whose `shape` is known.
+    /// Returns the edge between two faces for which `shape` is already known.
     pub(in crate::shape) fn of(shape: BendShape, fronts: [Vector<N, 3>; 2]) -> Self {
         Self { fronts, cosine: fronts[0].dot(&fronts[1]), shape }
     }
@@ -58,8 +58,8 @@ impl<N: Real> Bend<N> {
         self.shape
     }
 
-    /// Whether the edge admits a unit vector other than the face normals. `None` close to a limit,
-    /// and for a vector that is not on the same side of both faces.
+    /// Whether the edge admits the unit vector `normal`, which must differ from both face normals.
+    /// `None` close to a limit, and for a vector that is not on the same side of both faces.
     pub(in crate::shape) fn admits(
         &self,
         normal: &Vector<N, 3>,
@@ -73,9 +73,9 @@ impl<N: Real> Bend<N> {
         }
         match (self.shape, is_front) {
             (BendShape::Flat, _) => {
-                // A level normal is that of a face. From √2 times `FLAT_SINE` on, its tilt along
-                // the edge or across it alone exceeds the limit; in between the rule of seams
-                // decides.
+                // Between coplanar faces only the face normal is admitted. From √2 times
+                // `FLAT_SINE` on, the tilt along the edge or the tilt across it exceeds the limit;
+                // in between the rule of `seam` decides.
                 let squared_sine = (N::ONE - along1 * along1) / N::lit(FLAT_SINE * FLAT_SINE);
                 let is_face_normal = squared_sine < N::lit(1.0 - CLOSE);
                 let is_tilted = squared_sine > N::lit(2.0 * (1.0 + CLOSE));
@@ -89,11 +89,11 @@ impl<N: Real> Bend<N> {
         }
     }
 
-    /// Whether the vector lies between the two fronts, or between their opposites, and is
+    /// Whether the vector lies between the two front normals, or between their opposites, and is
     /// perpendicular to the edge. `None` close to a limit.
     fn is_between(&self, normal: &Vector<N, 3>, [along1, along2]: [N; 2]) -> Option<bool> {
-        // The components of the vector across each front and towards the other, times the sine of
-        // the angle between the fronts.
+        // The components of the vector across each front normal and towards the other front normal,
+        // times the sine of the angle between the fronts.
         let insides = [along2 - self.cosine * along1, along1 - self.cosine * along2];
         let inside = if along1 < N::ZERO {
             min(-insides[0], -insides[1])
@@ -114,13 +114,13 @@ impl<N: Real> Bend<N> {
 }
 
 impl BendShape {
-    /// See [`Bend::new`].
+    /// Implements [`Bend::new`].
     pub(in crate::shape) fn new<N: Real>(
         corners: [&[Point<N, 3>; 3]; 2],
         fronts: &[Vector<N, 3>; 2],
     ) -> Option<Self> {
         let cosine = fronts[0].dot(&fronts[1]);
-        // False for NaN. Beyond 90° between the fronts the rule of seams decides.
+        // False for NaN. If the fronts are more than 90° apart, the rule of `seam` decides.
         let is_certain = cosine > N::ZERO && corners.iter().all(|corners| is_well_shaped(corners));
         if !is_certain {
             return None;
@@ -142,8 +142,8 @@ impl BendShape {
     }
 }
 
-/// Returns the signed height over a plane of the corner farthest from it: the one that is not on
-/// the shared edge. `front` is the unit normal of the plane.
+/// Returns the signed height over a plane of the corner farthest from it, which is the corner not
+/// on the shared edge. `front` is the unit normal of the plane.
 fn height_of<N: Real>(
     corners: &[Point<N, 3>; 3],
     plane: &[Point<N, 3>; 3],
@@ -155,8 +155,8 @@ fn height_of<N: Real>(
     })
 }
 
-/// Whether the triangle is not thin, its sides are longer than 4096 rounding units of its
-/// coordinates, and its squared area does not underflow.
+/// Whether the triangle is not thin, its sides are longer than 4096 epsilon times its coordinates,
+/// and its squared area does not underflow.
 fn is_well_shaped<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
     let [a, b, c] = corners;
     let (ab, ac) = (b - a, c - a);
@@ -178,7 +178,7 @@ mod tests {
     use crate::shape::composite::tri_mesh::{inward_of, normal_of};
     use crate::shape::surface::seam::{Seam, is_across};
 
-    /// The rule of seams for an edge between two faces, by the directions into them.
+    /// Returns whether the rule of `seam` admits a normal at an edge between two faces.
     fn rule<N: Real>(
         corners: [&[Point<N, 3>; 3]; 2],
         fronts: &[Vector<N, 3>; 2],
@@ -199,7 +199,7 @@ mod tests {
         for round in 0..20_000 {
             let (a, b) = (random.vector::<f64>(1.0), random.vector::<f64>(1.0));
             let tip1 = random.vector::<f64>(1.0);
-            // Every fifth is exactly flat, and others nearly.
+            // Every fifth edge is exactly flat, and others nearly.
             let flat = [1.0, 0.1, 0.01, 0.003, 0.0][round % 5];
             let tip2 = a + b - tip1 + random.vector::<f64>(1.0) * flat;
             let point = |v: Vector<f64, 3>| Point::from(v.map(N::lit));
@@ -207,8 +207,8 @@ mod tests {
                 ([point(a), point(b), point(tip1)], [point(b), point(a), point(tip2)]);
             let fronts = [normal_of(&first), normal_of(&second)];
             let Some(bend) = Bend::new([&first, &second], fronts) else { continue };
-            // Interpolates between the fronts or beyond, and adds a tilt; a quarter are on the
-            // back.
+            // Interpolates or extrapolates the fronts and adds a tilt; a quarter of the normals are
+            // on the back.
             let share = N::lit(0.7 * random.next() + 0.5);
             let aside =
                 random.vector::<f64>(1.0).map(N::lit) * N::lit([0.0, 0.004, 0.3][round % 3]);
@@ -216,12 +216,12 @@ mod tests {
             let normal = (fronts[0] + (fronts[1] - fronts[0]) * share + aside) * sign;
             let normal = normal / normal.norm();
             let is_one_sided = round % 7 == 0;
-            // `Bend::admits` is not defined for the face normals.
+            // `Bend::admits` is not defined for the face normals themselves.
             if fronts.iter().any(|own| max_component(&(own * sign - normal)) <= slack()) {
                 continue;
             }
             if let Some(answer) = bend.admits(&normal, is_one_sided) {
-                // The rule takes both triangles from the same corner of the edge.
+                // `rule` expects both triangles to start at the same corner of the edge.
                 let permuted = [second[0], second[1], second[2]];
                 let expected = rule([&first, &permuted], &fronts, &normal, is_one_sided);
                 assert_eq!(answer, expected, "round {round}: {bend:?} {normal:?}");

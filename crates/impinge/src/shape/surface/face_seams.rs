@@ -1,5 +1,5 @@
-//! The normals of a triangle of a surface in 3D and of its three neighbours, cached beside its
-//! corners.
+//! The front normals of a triangle of a 3D surface and of its three neighbours, cached beside the
+//! triangle's corners.
 //!
 //! ```text
 //!            c
@@ -15,23 +15,25 @@ use crate::shape::surface::bend::{Bend, BendShape};
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{FeatureId, Surface, SurfaceAccess};
 
-/// A triangle that has an area, and the shapes of its edges.
+/// The front normal of a triangle with an area, and the shapes of its edges.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FaceSeams<N: Real> {
-    /// Unit normal on the front, in the frame of the surface.
+    /// The unit normal on the front, in the frame of the surface.
     pub(in crate::shape) front: Vector<N, 3>,
     pub(in crate::shape) across: [Vector<N, 3>; 3],
-    /// `None` at a rim, and where [`Bend`] does not decide.
+    /// The shape of each edge; `None` at a rim, and where [`Bend`] does not decide.
     pub(in crate::shape) bends: [Option<BendShape>; 3],
     pub(in crate::shape) is_one_sided: bool,
-    /// Each neighbour is known to have its front on the same side as this triangle.
+    /// Whether each neighbour is known to have its front on the same side of the surface as this
+    /// triangle.
     is_oriented: bool,
 }
 
 impl<N: Real> FaceSeams<N> {
-    /// Returns the seams of a triangle by its front normal. `bend` returns the edge at a side, with
-    /// the fronts of this triangle and its neighbour in this order; `is_rim` says that a side
-    /// without a bend has no neighbour, or one that is oriented alike.
+    /// Computes the seams of a triangle from its front normal. `bend(side)` returns the edge at a
+    /// side, with the front of this triangle before that of its neighbour. `is_rim(side)` is called
+    /// where `bend` returns `None`; it returns whether the side has no neighbour, or one with its
+    /// front on the same side.
     pub(in crate::shape) fn new(
         front: Vector<N, 3>,
         is_one_sided: bool,
@@ -48,14 +50,14 @@ impl<N: Real> FaceSeams<N> {
         Self { front, across, bends, is_one_sided, is_oriented }
     }
 
-    /// Whether `face` is the normal of the front and the neighbours are oriented alike. If this
-    /// holds for all faces in contact, none hides another.
+    /// Whether `face` is the normal on the front and all neighbours have their fronts on the same
+    /// side. If this holds for all faces in contact, none hides another.
     pub(crate) fn is_front(&self, face: &Vector<N, 3>) -> bool {
         self.is_oriented && self.front.dot(face) > N::ZERO
     }
 
-    /// Returns this triangle as a surface that answers from these seams and falls back to
-    /// `surface`; `corner` is a corner of the triangle.
+    /// Returns this triangle as a surface that uses these seams and falls back to `surface`;
+    /// `corner` is a corner of the triangle.
     pub(crate) fn in_surface<'a>(
         &'a self,
         surface: SurfaceAccess<'a, N, 3>,
@@ -79,9 +81,9 @@ impl<N: Real> FaceSeams<N> {
     }
 }
 
-/// One triangle of a surface: answers from its seams where they decide, else from the surface.
+/// One triangle of a surface: uses its cached seams where they decide, else the surface.
 ///
-/// The normals asked about must differ from the face's own by more than rounding.
+/// Queried normals must differ from the face's own normal by more than rounding.
 pub(crate) struct KnownFace<'a, N: Real> {
     seams: &'a FaceSeams<N>,
     surface: SurfaceAccess<'a, N, 3>,
@@ -135,7 +137,7 @@ mod tests {
     use crate::math::xorshift::Xorshift;
     use crate::shape::{CompositeShape, Diagonals, HeightField, PartSolid, TriMesh};
 
-    /// Heights of a rough sheet of triangles, some of them level.
+    /// Returns random heights of a grid, some of them zero.
     fn heights(random: &mut Xorshift) -> Vec<f64> {
         (0..36).map(|at| if at % 5 < 2 { 0.0 } else { 0.5 * random.next() }).collect()
     }
@@ -157,8 +159,8 @@ mod tests {
         field
     }
 
-    /// Checks that cached seams answer as the surface does, for normals other than the triangle's
-    /// own; counts the answers.
+    /// Checks that cached seams and the surface give equal results, for normals other than the
+    /// triangle's own; adds the results to `counts`.
     fn check(parts: &dyn CompositeShape<f64, 3>, random: &mut Xorshift, counts: &mut [usize; 3]) {
         let surface = parts.surface_access().expect("a surface");
         for part in 0..parts.num_parts() {

@@ -1,5 +1,5 @@
 //! Adjacency of the parts of a surface: the shapes of edges, the normals that a seam admits, and
-//! the one-sidedness of chains.
+//! the one-sidedness of 2D chains.
 
 pub(crate) mod bend;
 pub(crate) mod face_seams;

@@ -1,4 +1,4 @@
-//! Methods of the library's own surfaces beyond [`Surface`]: shortcuts to the same contacts.
+//! Methods of the library's own surfaces beyond [`Surface`]: faster ways to the same contacts.
 
 use core::fmt;
 
@@ -19,8 +19,8 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         [is_first, !is_first && self.admits(part, feature, second)]
     }
 
-    /// [`Self::admits_in_turn`] at a corner of a triangle, for normals other than its own; `known`
-    /// are the seams of the triangle.
+    /// Runs [`Self::admits_in_turn`] at a corner of a triangle, for normals other than its own;
+    /// `known` has the seams of the triangle.
     fn corner_admits_in_turn(
         &self,
         part: u32,
@@ -32,27 +32,27 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         self.admits_in_turn(part, FeatureId::Vertex([0, 1, 2][corner]), normals)
     }
 
-    /// The seams of a triangle in 3D; `None` for other parts, for a triangle without area, and for
-    /// a surface that keeps its internal edges.
+    /// Returns the seams of a triangle in 3D; `None` for other parts, for a triangle without area,
+    /// and for a surface that keeps its internal edges.
     fn face_seams(&self, part: u32) -> Option<FaceSeams<N>> {
         let _ = part;
         None
     }
 
-    /// The sides that all segments of a chain in 2D have; `None` for other surfaces.
+    /// Returns the sidedness of all segments of a chain in 2D; `None` for other surfaces.
     fn sidedness(&self) -> Option<Sidedness> {
         None
     }
 
-    /// Whether the part bounds a body: a solid that overlaps it touches its front, whichever side
-    /// of the surface the centre of the solid is on.
+    /// Whether the part bounds a body. A solid that overlaps such a part touches its front,
+    /// whichever side of the surface the centre of the solid is on.
     fn is_body(&self, part: u32) -> bool {
         let _ = part;
         false
     }
 
-    /// Whether a ghost is adjacent to the part: what overlaps the part there alone touches the
-    /// neighbour that the ghost stands for.
+    /// Whether a ghost is adjacent to the part. A solid that overlaps the part only near the ghost
+    /// touches the neighbouring surface that the ghost represents.
     fn is_beside_ghost(&self, part: u32) -> bool {
         let _ = part;
         false
@@ -65,10 +65,10 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
     }
 }
 
-/// The surface of a composite for the algorithms of the library: a user's, or one of the library's
-/// own with shortcuts to the same contacts.
+/// The surface of a composite for the algorithms of the library: a user's surface, or one of the
+/// library with faster ways to the same contacts.
 ///
-/// Public only as the return type of a hidden method; users can neither make nor read one.
+/// Public only because a hidden method returns it; users can neither construct nor use one.
 #[derive(Clone, Copy)]
 pub struct SurfaceAccess<'a, N: Real, const D: usize> {
     surface: &'a dyn Surface<N, D>,
@@ -82,7 +82,7 @@ impl<N: Real, const D: usize> fmt::Debug for SurfaceAccess<'_, N, D> {
 }
 
 impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
-    /// Wraps a surface that may be a user's.
+    /// Wraps any surface, also a user's.
     pub(crate) fn of_any(surface: &'a dyn Surface<N, D>) -> Self {
         Self { surface, own: None }
     }
@@ -92,13 +92,14 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         Self { surface, own: Some(surface) }
     }
 
-    /// See [`Surface::admits`].
+    /// Calls [`Surface::admits`].
     #[inline]
     pub(crate) fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
         self.surface.admits(part, feature, normal)
     }
 
-    /// See [`OwnSurface::admits_in_turn`].
+    /// Runs [`OwnSurface::admits_in_turn`]; for a user's surface, calls [`Surface::admits`] for
+    /// each normal.
     pub(crate) fn admits_in_turn(
         &self,
         part: u32,
@@ -112,7 +113,8 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         [is_first, !is_first && self.admits(part, feature, normals[1])]
     }
 
-    /// See [`OwnSurface::corner_admits_in_turn`].
+    /// Runs [`OwnSurface::corner_admits_in_turn`]; for a user's surface, calls [`Surface::admits`]
+    /// for each normal.
     pub(crate) fn corner_admits_in_turn(
         &self,
         part: u32,
@@ -126,39 +128,39 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         }
     }
 
-    /// See [`OwnSurface::face_seams`].
+    /// Returns [`OwnSurface::face_seams`]; `None` for a user's surface.
     pub(crate) fn face_seams(&self, part: u32) -> Option<FaceSeams<N>> {
         self.own?.face_seams(part)
     }
 
-    /// See [`Surface::snapped`].
+    /// Calls [`Surface::snapped`].
     #[inline]
     pub(crate) fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
         self.surface.snapped(part, normal)
     }
 
-    /// See [`Surface::faces`].
+    /// Calls [`Surface::faces`].
     #[inline]
     pub(crate) fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
         self.surface.faces(part, center)
     }
 
-    /// See [`OwnSurface::is_body`].
+    /// Returns [`OwnSurface::is_body`]; false for a user's surface.
     pub(crate) fn is_body(&self, part: u32) -> bool {
         self.own.is_some_and(|own| own.is_body(part))
     }
 
-    /// See [`OwnSurface::is_beside_ghost`].
+    /// Returns [`OwnSurface::is_beside_ghost`]; false for a user's surface.
     pub(crate) fn is_beside_ghost(&self, part: u32) -> bool {
         self.own.is_some_and(|own| own.is_beside_ghost(part))
     }
 
-    /// See [`OwnSurface::sidedness`].
+    /// Returns [`OwnSurface::sidedness`]; `None` for a user's surface.
     pub(crate) fn sidedness(&self) -> Option<Sidedness> {
         self.own?.sidedness()
     }
 
-    /// See [`OwnSurface::has_regular_seams`].
+    /// Returns [`OwnSurface::has_regular_seams`]; false for a user's surface.
     pub(crate) fn has_regular_seams(&self) -> bool {
         self.own.is_some_and(OwnSurface::has_regular_seams)
     }

@@ -2,12 +2,12 @@
 //! joints of every composite surface.
 //!
 //! A point set has, at one of its points, exactly those normals along which no direction into the
-//! set rises: the polar cone of these directions. For an edge between two triangles that is the arc
-//! between their normals on the side where the edge is convex, for a vertex the cone over the
-//! normals of a convex corner; on the hollow side of a valley it is empty. So the rule depends only
-//! on the directions that leave the seam, neither on winding nor on sides. Contacts with other
-//! normals are ghosts of the pieces: Catto, "Ghost Collisions" (2020), for chains; Terdiman,
-//! "Contact generation for meshes" (2015); and the active edges of Jolt and Box3D.
+//! set rises: the polar cone of these directions. For an edge between two triangles this is the arc
+//! between their normals on the convex side; for a vertex it is the cone over the normals of a
+//! convex corner; on the concave side it is empty. So the rule depends only on the directions that
+//! leave the seam, not on winding or sides. Contacts with other normals are ghosts of single
+//! pieces: Catto, "Ghost Collisions" (2020), for chains; Terdiman, "Contact generation for meshes"
+//! (2015); and the active edges of Jolt and Box3D.
 //!
 //! ```text
 //!   n1   n2         ╲           ╱            n1
@@ -19,33 +19,32 @@
 //!  ridge: n1 to n2    valley: none    rim: n1 to -n1, away from the face
 //! ```
 //!
-//! The edge `e` is seen along itself, fronts up. On the back of the valley its normals are those
-//! from -n1 to -n2. A surface with one side has only the normals that are in front of its highest
-//! piece.
+//! The figure looks along the edge `e`, with fronts up. On the back of the valley, the edge has the
+//! normals from -n1 to -n2. A one-sided surface has only the normals in front of its highest piece.
 
 use crate::math::{Real, Vector, unit};
 
-/// The sine of the angle up to which two faces count as coplanar: 0.57 degrees.
+/// The sine of the angle up to which two faces are treated as coplanar: 0.57 degrees.
 pub(in crate::shape) const FLAT_SINE: f64 = 0.01;
 
-/// Bound of the sine of the angle by which rounding may turn a unit vector.
+/// Returns a bound of the sine of the angle by which rounding may turn a unit vector.
 pub(in crate::shape) fn slack<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
-/// Whether an angle counts as zero between pieces of one surface, by its sine.
+/// Whether an angle between pieces of one surface is treated as zero, given its sine.
 pub(in crate::shape) fn is_flat<N: Real>(sine: N) -> bool {
     sine.abs() <= N::lit(FLAT_SINE)
 }
 
-/// Whether two lines count as parallel, by the scalar product of unit vectors along them.
+/// Whether two lines are treated as parallel, given the scalar product of unit vectors along them.
 fn are_parallel<N: Real>(cosine: N) -> bool {
     N::ONE - cosine * cosine <= N::lit(FLAT_SINE * FLAT_SINE)
 }
 
-/// Whether a unit vector is perpendicular to an edge, within `FLAT_SINE`: the vector may be the
-/// result of an iteration, and an edge has no other normals to take instead. True for an edge
-/// without length.
+/// Whether a unit vector is perpendicular to an edge, within `FLAT_SINE`. The tolerance is large
+/// because the vector may be the result of an iteration, and an edge has no other normals to
+/// replace it. True for an edge without length.
 pub(in crate::shape) fn is_across<N: Real, const D: usize>(
     edge: &Vector<N, D>,
     normal: &Vector<N, D>,
@@ -53,16 +52,17 @@ pub(in crate::shape) fn is_across<N: Real, const D: usize>(
     unit(edge).is_none_or(|(along, _)| is_flat(along.dot(normal)))
 }
 
-/// A vector at a corner rises or sinks clearly if its sine exceeds `slack` by this factor.
+/// A side clearly rises or sinks along a normal if its sine exceeds `slack` by this factor.
 const CLEAR: f64 = 8.0;
 
-/// The sides that leave a corner, compared with a normal there. They decide most cases without the
-/// faces: the normal is rejected if a side rises along it, and admitted if all sink.
+/// Compares a normal at a corner with the sides that leave the corner. This decides most cases
+/// without the faces: the normal is rejected if a side rises along it, and admitted if all sides
+/// sink.
 pub(in crate::shape) struct CornerEdges<'a, N: Real, const D: usize> {
     normal: &'a Vector<N, D>,
-    /// A side rises clearly along the normal.
+    /// Whether a side clearly rises along the normal.
     has_rising: bool,
-    /// A side is perpendicular to the normal, within rounding.
+    /// Whether a side is perpendicular to the normal, within rounding.
     has_perpendicular: bool,
 }
 
@@ -71,7 +71,7 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
         Self { normal, has_rising: false, has_perpendicular: false }
     }
 
-    /// Adds a side of any length, as a vector away from the corner.
+    /// Adds a side, as a vector of any length away from the corner.
     #[inline]
     pub(in crate::shape) fn add(&mut self, edge: &Vector<N, D>) {
         let (rise, margin) = (edge.dot(self.normal), N::lit(CLEAR) * slack());
@@ -80,14 +80,14 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
         self.has_perpendicular |= !is_clear;
     }
 
-    /// Whether a side rises, so that more sides cannot change the answer.
+    /// Whether a side rises, so that more sides cannot change the result.
     pub(in crate::shape) const fn is_refused(&self) -> bool {
         self.has_rising
     }
 
     /// Whether the corner admits the normal, after all its sides were added; `None` where the faces
-    /// decide. `own` is the unit normal of a face at the corner; `is_bent` says that another face
-    /// there is known not to be coplanar with it.
+    /// decide. `own` is the unit normal of a face at the corner; `is_bent` is true if another face
+    /// there is known not to be coplanar with that face.
     pub(in crate::shape) fn admit(
         &self,
         (own, is_bent): (&Vector<N, D>, bool),
@@ -102,42 +102,43 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
     }
 }
 
-/// The state of one normal at a seam while the pieces of the seam are added.
+/// The state of one normal at a seam while the pieces around the seam are added.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     normal: Vector<N, D>,
-    /// The unit normal of the face, or the direction of the segment, that asks; zero if it has
-    /// none.
+    /// The unit normal of the queried face, or the unit direction of the queried segment; zero if
+    /// it has none.
     own: Vector<N, D>,
-    /// The component of the normal along the face or segment that asks.
+    /// The component of the normal along the queried face or segment.
     tilt: Vector<N, D>,
-    /// A piece lies on the side that the normal tilts to if a direction into it rises along `tilt`
+    /// A piece lies on the side to which the normal tilts if a direction into it rises along `tilt`
     /// by more than `margin`.
     margin: N,
-    /// The normal is that of the asking face or segment, and all pieces are coplanar with this,
-    /// within `FLAT_SINE`.
+    /// Whether the normal is that of the queried face or segment, and all pieces added so far are
+    /// coplanar with that face or segment, within `FLAT_SINE`.
     is_flat: bool,
-    /// A coplanar piece lies on the side that the normal tilts to, so the seam is no rim there.
+    /// Whether a coplanar piece lies on the side to which the normal tilts, so that the seam is not
+    /// a rim there.
     is_hemmed: bool,
-    /// No direction into a piece rises along the normal.
+    /// Whether no direction into a piece rises along the normal.
     is_in_cone: bool,
-    /// The rise of the highest piece along the normal, the absolute cosine of its front with the
-    /// normal, and whether its front is up. The highest piece at the seam is the first one met from
-    /// far along the normal; of two that rise equally, the flatter.
+    /// The component along the normal of the highest piece, the absolute cosine between its front
+    /// and the normal, and whether its front is up. The highest piece at the seam is the first one
+    /// met when coming from far along the normal; of two equally high pieces, the flatter.
     highest: N,
     flatness: N,
     is_front: bool,
 }
 
 impl<N: Real, const D: usize> Seam<N, D> {
-    /// Starts a seam between faces, for the face with the unit normal `own`.
+    /// Starts a seam between faces, for the queried face with the unit normal `own`.
     pub(in crate::shape) fn of_faces(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
         let along = own.dot(normal);
         Self::new(own, normal, normal - own * along, are_parallel(along))
     }
 
-    /// Marks the seam as an edge. A normal that tilts more along the edge than across it is not one
-    /// of a rim.
+    /// Marks the seam as an edge. A normal that tilts more along the edge than across it is then
+    /// not a normal of a rim.
     pub(in crate::shape) fn along(mut self, edge: &Vector<N, D>) -> Self {
         if let Some((along, _)) = unit(edge) {
             self.margin -= along.dot(&self.tilt).abs();
@@ -145,7 +146,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
         self
     }
 
-    /// Starts a seam between segments, for the one with the unit direction `own`.
+    /// Starts a seam between segments, for the queried segment with the unit direction `own`.
     pub(in crate::shape) fn of_segments(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
         let along = own.dot(normal);
         Self::new(own, normal, own * along, is_flat(along))
@@ -166,8 +167,8 @@ impl<N: Real, const D: usize> Seam<N, D> {
         }
     }
 
-    /// Adds a face. `rise` returns the largest component, along a vector, of the unit directions
-    /// from the seam into the face; `front` is the unit normal on its front, zero if it has no
+    /// Adds a face. `rise(v)` returns the largest component along `v` of the unit directions from
+    /// the seam into the face; `front` is the unit normal on the front, zero if the face has no
     /// area.
     pub(in crate::shape) fn add_face(
         &mut self,
@@ -182,12 +183,12 @@ impl<N: Real, const D: usize> Seam<N, D> {
     }
 
     /// Adds a segment by its unit direction away from the seam; `front` is the component of the
-    /// normal along its front, zero if it has two sides.
+    /// normal along the segment's front, zero if it has two sides.
     pub(in crate::shape) fn add_segment(&mut self, away: &Vector<N, D>, front: N) {
         self.add(|direction| away.dot(direction), away, front);
     }
 
-    /// Adds a piece; it is coplanar with the asking piece if `line` is parallel to `own`.
+    /// Adds a piece; it is coplanar with the queried piece if `line` is parallel to `own`.
     fn add(&mut self, rise: impl Fn(&Vector<N, D>) -> N, line: &Vector<N, D>, front: N) {
         let (own, flatness) = (rise(&self.normal), front.abs());
         self.is_in_cone &= own <= slack();
@@ -195,7 +196,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
         self.is_hemmed |= self.is_flat && rise(&self.tilt) > self.margin;
         let is_same = |a: N, b: N| (a - b).abs() <= slack();
         if is_same(own, self.highest) && is_same(flatness, self.flatness) {
-            // A piece that was added twice has its front up if it has in either.
+            // A piece that was added twice has its front up if the front is up in either addition.
             self.is_front |= front >= N::ZERO;
         } else if own > self.highest || (own == self.highest && flatness > self.flatness) {
             (self.highest, self.flatness) = (own, flatness);
@@ -203,9 +204,9 @@ impl<N: Real, const D: usize> Seam<N, D> {
         }
     }
 
-    /// Whether the whole surface has the normal at the seam and no face gives a better one: between
-    /// coplanar pieces only the normals of the faces count. At a rim, where all pieces lie on one
-    /// side, the normals that tilt to the other side are admitted, however many pieces there are.
+    /// Whether the whole surface admits the normal at the seam. Between coplanar pieces only the
+    /// face normals are admitted. At a rim, where all pieces lie on one side, the normals that tilt
+    /// to the open side are admitted, however many pieces there are.
     pub(in crate::shape) const fn admits(&self, is_one_sided: bool) -> bool {
         let is_flat = self.is_flat && self.is_hemmed;
         self.is_in_cone && !is_flat && (self.is_front || !is_one_sided)
@@ -220,8 +221,8 @@ mod tests {
         Vector::<f64, 3>::new(x, y, 0.0).normalize()
     }
 
-    /// Whether the edge of some faces admits a normal; a face is the direction into it and its
-    /// front.
+    /// Returns whether the edge of some faces admits a normal; each face is given by the direction
+    /// into it and its front normal.
     fn admits(normal: &Vector<f64, 3>, faces: &[(Vector<f64, 3>, Vector<f64, 3>)]) -> bool {
         let mut seam = Seam::of_faces(faces[0].1, normal).along(&Vector::<f64, 3>::z());
         for (inward, front) in faces {

@@ -1,4 +1,4 @@
-//! The normals that a segment of a chain in 2D admits, computed from its ends and those of adjacent
+//! The normals that a segment of a 2D chain admits, computed from its ends and those of adjacent
 //! segments.
 
 use smallvec::SmallVec;
@@ -9,15 +9,16 @@ use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::surface::seam::{Seam, slack};
 use crate::shape::{FeatureId, Surface, SurfaceAccess};
 
-/// The sides that the segments of a chain have. With this, contacts need not call the surface for
-/// each segment. Polylines and 2D height fields have one.
+/// The properties shared by all segments of a chain. With these, contacts need not call the surface
+/// for each segment. Polylines and 2D height fields have them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sidedness {
-    /// The front is on the left of a segment, looking from its first end to its second.
+    /// Whether the front is on the left of a segment, looking from its first end to its second.
     pub(in crate::shape) is_left: bool,
     pub(in crate::shape) is_one_sided: bool,
-    /// The side of a vector is decided by its component along the front, and the front wins a tie;
-    /// else by the vector's own perpendicular component, which may be too small for a side.
+    /// How to choose the side of a vector. If true, the sign of its component along the front
+    /// decides, and 0 means the front. If false, its own perpendicular component decides, which may
+    /// be too small to give a side.
     pub(in crate::shape) follows_front: bool,
     pub(in crate::shape) keeps_internal_edges: bool,
     pub(in crate::shape) joining: Joining,
@@ -26,38 +27,40 @@ pub(crate) struct Sidedness {
 /// The rule by which segments with ends at one position are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::shape) enum Joining {
-    /// All segments with an end there are joined.
+    /// All segments with an end at the position are joined.
     All,
-    /// The second end of each segment is joined to the first end of the segment with the next index
-    /// only.
+    /// The second end of each segment is joined to the first end of the segment with the next
+    /// index, and to no other.
     InRow,
     /// Only the surface can decide.
     Unknown,
 }
 
-/// Segments of a chain, including all that touch some box.
+/// A set of segments of a chain that contains all segments in some box.
 pub(crate) trait KnownSegments<N: Real>: Sync {
-    /// Whether all segments through a point are included.
+    /// Whether the set contains all segments with an end at `point`.
     fn are_all_at(&self, point: &Point<N, 2>) -> bool;
 
-    /// Visits the segments with an end at a point, by index in ascending order, with both ends.
+    /// Calls `visit` with the index and both ends of each segment that has an end at `point`, in
+    /// ascending order of index.
     fn each_ending_at(&self, point: &Point<N, 2>, visit: &mut dyn FnMut(u32, [Point<N, 2>; 2]));
 }
 
 impl Sidedness {
-    /// The unit normal on the front of a segment with the unit direction `along`.
+    /// Returns the unit normal on the front of a segment with the unit direction `along`.
     fn front<N: Real>(self, along: &Vector<N, 2>) -> Vector<N, 2> {
         let left = perp(along);
         if self.is_left { left } else { -left }
     }
 
-    /// The component of a vector along the front of a segment; zero for a chain with two sides.
+    /// Returns the component of a vector along the front of a segment; 0 for a chain with two sides
+    /// or a segment without length.
     fn height_over<N: Real>(self, along: Option<&Vector<N, 2>>, vector: &Vector<N, 2>) -> N {
         let along = along.filter(|_| self.is_one_sided);
         along.map_or(N::ZERO, |along| self.front(along).dot(vector))
     }
 
-    /// See [`Surface::snapped`].
+    /// Implements [`Surface::snapped`].
     fn snapped<N: Real>(self, along: &Vector<N, 2>, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
         if !(self.is_one_sided || self.follows_front) {
             return across(along, normal);
@@ -68,20 +71,20 @@ impl Sidedness {
     }
 }
 
-/// A segment of a chain as a surface: answers from its ends and neighbours, without a call of the
-/// chain's surface where these decide.
+/// A segment of a chain as a surface: uses its ends and neighbours where these decide, without a
+/// call of the chain's surface.
 pub(crate) struct KnownSegment<'a, N: Real> {
     surface: SurfaceAccess<'a, N, 2>,
     sidedness: Option<Sidedness>,
-    /// The adjacent segments.
+    /// The segments of the chain near this one, including the adjacent ones.
     others: &'a dyn KnownSegments<N>,
     ends: [Point<N, 2>; 2],
-    /// Unit, from the first end to the second; `None` without length.
+    /// The unit vector from the first end to the second; `None` without length.
     along: Option<Vector<N, 2>>,
 }
 
 impl<'a, N: Real> KnownSegment<'a, N> {
-    /// Returns a segment by its ends, with the exact coordinates that the surface has.
+    /// Returns a segment by its ends, whose coordinates must be exactly those that the surface has.
     pub(crate) fn new(
         surface: SurfaceAccess<'a, N, 2>,
         sidedness: Option<Sidedness>,
@@ -92,7 +95,8 @@ impl<'a, N: Real> KnownSegment<'a, N> {
         Self { surface, sidedness, others, ends, along }
     }
 
-    /// The segments joined to this one at one of its ends; `None` if they are not all known.
+    /// Returns the segments joined to this segment at one of its ends; `None` if not all of them
+    /// are known.
     fn joined(&self, sidedness: Sidedness, part: u32, end: u32) -> Option<Joined<N>> {
         let at = self.ends.get(end as usize)?;
         if sidedness.joining == Joining::Unknown || !self.others.are_all_at(at) {
@@ -110,7 +114,7 @@ impl<'a, N: Real> KnownSegment<'a, N> {
         Some(joined)
     }
 
-    /// Applies the rule of [`Seam`] to a normal at an end where these segments are joined.
+    /// Applies the rule of [`Seam`] to a normal at an end where the segments `joined` meet.
     fn seam_admits(&self, sidedness: Sidedness, joined: &Joined<N>, normal: &Vector<N, 2>) -> bool {
         let own = self.along.unwrap_or_else(Vector::<N, 2>::zeros);
         let mut seam = Seam::of_segments(own, normal);
@@ -121,14 +125,15 @@ impl<'a, N: Real> KnownSegment<'a, N> {
         seam.admits(sidedness.is_one_sided)
     }
 
-    /// Whether a normal is perpendicular to the segment within rounding; `None` without length.
+    /// Whether a normal is perpendicular to the segment within rounding; `None` if the segment has
+    /// no length.
     fn is_own(&self, normal: &Vector<N, 2>) -> Option<bool> {
         self.along.map(|along| along.dot(normal).abs() <= slack())
     }
 }
 
-/// Segments at one point: the unit vectors from their first ends to their second, and whether the
-/// first end is at the point.
+/// The segments at one point: the unit vectors from their first ends to their second, and whether
+/// the first end is at the point.
 type Joined<N> = SmallVec<[(Vector<N, 2>, bool); 4]>;
 
 impl<N: Real> Surface<N, 2> for KnownSegment<'_, N> {
@@ -175,7 +180,7 @@ impl<N: Real> OwnSurface<N, 2> for KnownSegment<'_, N> {
         feature: FeatureId,
         [first, second]: [&Vector<N, 2>; 2],
     ) -> [bool; 2] {
-        // Callers normally ask about an end only for normals other than the segment's own.
+        // Callers normally query an end only for normals other than the segment's own.
         if let (Some(sidedness), FeatureId::Vertex(end)) = (self.sidedness, feature)
             && !sidedness.keeps_internal_edges
             && self.is_own(first) != Some(true)

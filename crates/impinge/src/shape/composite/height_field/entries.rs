@@ -9,10 +9,10 @@ use crate::math::{Real, Vector};
 use crate::tables::compiled;
 
 compiled! {
-    /// Height fields.
+    /// Entry points of height fields, compiled once per scalar type.
     trait FieldEntries;
 
-    /// Builds the pyramid over the present cells.
+    /// Builds the pyramid over the cells that are neither holes nor ghosts.
     fn pyramid_over(field: &HeightField<N, D>) -> Pyramid<N> = new_pyramid;
 
     fn cells_overlapping(
@@ -28,7 +28,7 @@ compiled! {
         visit: &mut dyn FnMut(u32, N) -> N,
     ) = nearest_first;
 
-    /// Visits the cells that a moving box hits.
+    /// Visits the cells that a moving box hits up to the time `limit`; see [`first_met`].
     fn first_cells(
         field: &HeightField<N, D>,
         aabb: &Aabb<N, D>,
@@ -59,6 +59,7 @@ fn each_overlapping<N: Real, const D: usize>(
 }
 
 /// Visits the parts whose box is at most `limit` from `aabb`, with a lower bound of the distance.
+/// `visit` returns the new limit, which never grows.
 fn nearest_first<N: Real, const D: usize>(
     field: &HeightField<N, D>,
     aabb: &Aabb<N, D>,
@@ -72,8 +73,8 @@ fn nearest_first<N: Real, const D: usize>(
     }
 }
 
-/// Visits the parts whose box a moving box hits up to the time `limit`, with a lower bound of the
-/// time.
+/// Visits the parts whose box is hit, up to the time `limit`, by a moving box, with a lower bound
+/// of the time. `visit` returns the new limit, which never grows.
 fn first_met<N: Real, const D: usize>(
     field: &HeightField<N, D>,
     aabb: &Aabb<N, D>,

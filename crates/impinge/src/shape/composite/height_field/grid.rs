@@ -10,8 +10,8 @@ use crate::math::{Mapped, Point, Real, max, min};
 
 /// Heights in rows and columns, and the positions of the rows and columns. In 2D there is one row.
 ///
-/// The points lie at (`xs[column]`, height · `y_scale`, `zs[row]`). Every coordinate is read from
-/// here, so that neighbours have the same bits.
+/// A grid point is (`xs[column]`, height · `y_scale`, `zs[row]`). All code reads coordinates from
+/// here, so that neighbouring cells have bitwise equal corners.
 #[derive(Clone, Debug)]
 pub(super) struct Grid<N: Real> {
     pub(super) columns: usize,
@@ -23,7 +23,8 @@ pub(super) struct Grid<N: Real> {
 }
 
 impl<N: Real> Grid<N> {
-    /// Whether no two lines of the grid coincide; in 3D only.
+    /// Whether all grid lines along x, and all along z, have distinct positions. Only meaningful in
+    /// 3D.
     pub(super) fn has_extent(&self) -> bool {
         [&self.xs, &self.zs].iter().all(|lines| {
             let is_wide = lines[0].abs() > N::MIN_POSITIVE / N::EPSILON;
@@ -32,10 +33,11 @@ impl<N: Real> Grid<N> {
     }
 }
 
-/// Positions of `count` grid lines that divide `extent` evenly around zero; 0 for a single one.
+/// Returns the positions of `count` grid lines that divide `extent` evenly around zero; 0 for a
+/// single line.
 ///
-/// Symmetric: the last is minus the first, exactly. Never decreasing for a positive extent, never
-/// increasing for a negative one.
+/// The positions are symmetric: the last is exactly minus the first. They never decrease for a
+/// positive extent and never increase for a negative one.
 pub(super) fn lines<N: Real>(count: usize, extent: N) -> Vec<N> {
     let number = |x: i64| N::lit(x as f64);
     let last = i64::try_from(count).expect("a vector has fewer elements") - 1;
@@ -45,7 +47,7 @@ pub(super) fn lines<N: Real>(count: usize, extent: N) -> Vec<N> {
     (0..=last).map(|line| number(2 * line - last) / number(2 * last) * extent).collect()
 }
 
-/// A box: the minimum and maximum of x, y and z. In 2D z is zero.
+/// An AABB: the minimum and maximum of x, y and z. In 2D z is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GridExtent<N: Real> {
     pub(super) low: [N; 3],
@@ -53,7 +55,7 @@ pub(super) struct GridExtent<N: Real> {
 }
 
 impl<N: Real> GridExtent<N> {
-    /// The box between two points.
+    /// Returns the smallest box around two points.
     pub(super) fn between(a: [N; 3], b: [N; 3]) -> Self {
         let (mut low, mut high) = (a, b);
         for axis in 0..3 {
@@ -63,7 +65,7 @@ impl<N: Real> GridExtent<N> {
         Self { low, high }
     }
 
-    /// The smallest box around at least one point.
+    /// Returns the smallest box around the points, of which there must be at least one.
     pub(super) fn around(points: &[[N; 3]]) -> Self {
         let mut extent = Self { low: points[0], high: points[0] };
         for point in &points[1..] {
@@ -76,13 +78,14 @@ impl<N: Real> GridExtent<N> {
     }
 }
 
-/// A field as the search sees it: cells of a grid, each with up to two parts.
+/// The interface of a height field to the search: cells of a grid, each with up to two parts.
 pub(super) trait GridCells<N: Real> {
     fn grid(&self) -> &Grid<N>;
     fn pyramid(&self) -> &Pyramid<N>;
-    /// The unscaled heights of a cell without its holes.
+    /// Returns the range of the unscaled heights of a cell, without holes and ghosts; the empty span if
+    /// nothing is left.
     fn cell_span(&self, row: usize, column: usize) -> HeightSpan<N>;
-    /// The parts of a cell without its holes, and their boxes.
+    /// Returns the parts of a cell that are neither holes nor ghosts, and their boxes.
     fn parts(&self, row: usize, column: usize) -> SmallVec<[(u32, GridExtent<N>); 2]>;
 }
 
@@ -99,7 +102,8 @@ impl<N: Real> Grid<N> {
         Point::from(self.at(row, column))
     }
 
-    /// The box of a block; `None` if it is all holes.
+    /// Returns the box of a block whose cells have the unscaled heights `span`; `None` if all its
+    /// cells are holes.
     fn extent(
         &self,
         block: PyramidBlock,
@@ -112,7 +116,7 @@ impl<N: Real> Grid<N> {
         let end = |first: usize, count: usize| min_index((first + 1) << block.level, count);
         let (row, column) = (block.row << block.level, block.column << block.level);
         let (last_row, last_column) = (end(block.row, cells[0]), end(block.column, cells[1]));
-        // In 2D the only row of cells lies on one line.
+        // In 2D there is one row of cells, whose points all have the same z.
         let last_row = min_index(last_row, self.zs.len() - 1);
         // Rounding keeps the order of products, so the scaled span is the span of the scaled
         // heights.
@@ -122,7 +126,7 @@ impl<N: Real> Grid<N> {
     }
 }
 
-/// The box of all cells, in x and z including the holes; `None` if all are holes.
+/// Returns the box of all cells, in x and z including the holes; `None` if all cells are holes.
 pub(super) fn whole<N: Real>(field: &impl GridCells<N>) -> Option<GridExtent<N>> {
     let pyramid = field.pyramid();
     let span = pyramid.span(pyramid.top(), &|row, column| field.cell_span(row, column));
@@ -133,12 +137,12 @@ fn min_index(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// Calls `visit` with the parts whose box has a key, a number of at least zero, at or below
-/// `limit`, and their key. `visit` returns the new limit, which never grows. The key of a box must
-/// not exceed that of a box inside it.
+/// Calls `visit` with each part whose box has a key at or below `limit`, and with that key. `key`
+/// returns a number of at least zero, or `None` to skip the box; the key of a box must not exceed
+/// the key of a box inside it. `visit` returns the new limit, which never grows.
 ///
-/// Descends the pyramid, at each block to the child with the smallest key first. The stack grows by
-/// at most three blocks per level.
+/// Descends the pyramid; the child block with the smallest key comes first. The stack grows by at
+/// most three blocks per level.
 pub(super) fn search<N: Real>(
     field: &impl GridCells<N>,
     limit: N,
@@ -176,7 +180,7 @@ pub(super) fn search<N: Real>(
     }
 }
 
-/// Calls `visit` with each part whose box overlaps the probe, once.
+/// Calls `visit` once with each part whose box overlaps the probe.
 ///
 /// The lines of the grid determine which cells lie under the probe. Up to `FEW_CELLS` are tested
 /// one by one; more are found by a descent of the pyramid, which skips blocks above or below the
@@ -208,8 +212,8 @@ pub(super) fn overlapping<N: Real>(
 /// Up to this many cells are tested one by one.
 const FEW_CELLS: usize = 32;
 
-/// The cells between lines that have a point in common with `low..=high`. A single line has one
-/// cell, which lies on it.
+/// Returns the range of cells between grid lines that have a point in common with `low..=high`. A
+/// single line has one cell, which lies on that line.
 fn cells_between<N: Real>(lines: &[N], low: N, high: N) -> Range<usize> {
     let last = lines.len() - 1;
     let (before, until) = if lines[last] < lines[0] {
@@ -221,7 +225,7 @@ fn cells_between<N: Real>(lines: &[N], low: N, high: N) -> Range<usize> {
     before.saturating_sub(1)..min_index(until, if last == 0 { 1 } else { last })
 }
 
-/// Inserts a block among those from `base` on, which are sorted with the smallest key last.
+/// Inserts `block` into `stack[base..]`, which is sorted by key with the smallest key last.
 fn push_sorted<N: Real>(
     stack: &mut SmallVec<[(N, PyramidBlock); 40]>,
     base: usize,

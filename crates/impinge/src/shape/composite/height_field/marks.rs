@@ -1,9 +1,9 @@
 //! Exceptions of single cells: holes, ghosts, and diagonals that differ from the rule.
 
-/// The two corners of a cell that the line between its two triangles joins.
+/// The diagonal of a cell: the two corners that the common side of its two triangles joins.
 ///
-/// Seen from the front, with columns to the right and rows downwards. Triangle 0 is the one with
-/// the side between the two corners of the lower column.
+/// The field is seen from the front, with columns to the right and rows downwards. Triangle 0 has
+/// the side between the two corners in the cell's lower column index.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -23,7 +23,7 @@ pub enum Diagonal {
     Backward,
 }
 
-/// The diagonals of the cells of a height field.
+/// The rule that sets the diagonals of all cells of a height field.
 ///
 /// ```
 /// use impinge::dim3::math::Vector;
@@ -35,12 +35,12 @@ pub enum Diagonal {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Diagonals {
-    /// All forward.
+    /// Every diagonal is [`Diagonal::Forward`].
     #[default]
     Forward,
-    /// All backward.
+    /// Every diagonal is [`Diagonal::Backward`].
     Backward,
-    /// Alternating like a chessboard: forward where row + column is even.
+    /// A chessboard pattern: forward where row + column is even, else backward.
     Zigzag,
 }
 
@@ -55,14 +55,14 @@ impl Diagonals {
     }
 }
 
-/// The rule for the diagonals of all cells, and the exceptions.
+/// The rule for the diagonals of all cells, and the exceptions of single cells.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Marks {
     diagonals: Diagonals,
     /// For each cell: bits 0 and 1 mark part 0 and 1 as holes, bit 2 reverses the diagonal, bit 3
-    /// marks a ghost. Empty as long as nothing is marked.
+    /// marks a ghost. Empty until a cell is marked.
     bits: Vec<u8>,
-    /// The number of ghosts.
+    /// The number of ghost cells.
     ghosts: usize,
 }
 
@@ -70,12 +70,13 @@ const OTHER_DIAGONAL: u8 = 4;
 const GHOST: u8 = 8;
 
 impl Marks {
-    /// No exceptions.
+    /// Returns marks without exceptions.
     pub(super) const fn new(diagonals: Diagonals) -> Self {
         Self { diagonals, bits: Vec::new(), ghosts: 0 }
     }
 
-    /// These marks with the diagonals of a rule alone.
+    /// Returns these marks with the rule `diagonals`; single reversed diagonals are removed, holes
+    /// and ghosts stay.
     pub(super) fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
         self.bits.iter_mut().for_each(|bits| *bits &= !OTHER_DIAGONAL);
         Self { diagonals, ..self }
@@ -103,7 +104,8 @@ impl Marks {
         self.set(cell, 1 << k, is_hole, cells);
     }
 
-    /// Whether the parts of a cell are known to the seams around it, and are not touched.
+    /// Whether the cell is a ghost: its parts take part in the seams around it, but no query finds
+    /// them.
     pub(super) fn is_ghost(&self, cell: usize) -> bool {
         self.has(cell, GHOST)
     }
@@ -118,12 +120,13 @@ impl Marks {
         self.set(cell, GHOST, is_ghost, cells);
     }
 
-    /// Whether part `k` of a cell is not touched: a hole, or one of a ghost.
+    /// Whether queries skip part `k` of a cell: the part is a hole, or the cell is a ghost.
     pub(super) fn is_untouched(&self, cell: usize, k: usize) -> bool {
         self.has(cell, 1 << k | GHOST)
     }
 
-    /// The diagonal of the cell at a row and column.
+    /// Returns the diagonal of the cell at `row` and `column`, in a grid of `columns` cells per
+    /// row.
     pub(super) fn diagonal(&self, [row, column]: [usize; 2], columns: usize) -> Diagonal {
         let default_diagonal = self.diagonals.of(row, column);
         match (default_diagonal, self.has(row * columns + column, OTHER_DIAGONAL)) {

@@ -1,8 +1,8 @@
 //! Height fields: a line in 2D, a surface in 3D, given by heights over a grid.
 //!
-//! Triangles, boxes and seams are computed from the heights on demand. Only the minimum and maximum
-//! height of blocks of cells is stored ([`Pyramid`]), in place of a tree. [`grid`] has what 2D and
-//! 3D share; `segments.rs` is 2D, `triangles.rs` is 3D.
+//! Triangles, boxes and seams are computed from the heights on demand. Instead of a tree, only the
+//! minimum and maximum height of blocks of cells is stored ([`Pyramid`]). [`grid`] has the code
+//! that 2D and 3D share; `segments.rs` is 2D, `triangles.rs` is 3D.
 //!
 //! ```text
 //! column      c           c + 1
@@ -37,26 +37,26 @@ use crate::shape::error::finite;
 
 /// A surface over a grid in the plane y = 0 (in 2D: a line over the x axis), given by its heights.
 ///
-/// It has no thickness: below its triangles (segments) there is nothing. Heights are multiplied by
-/// the y component of the scale. The other components are the extents of the whole field, which
-/// lies symmetrically around the local y axis: columns go along x, rows along z, both in the
-/// positive direction; a negative extent reverses them, and a negative y component turns the field
-/// upside down.
+/// The field has no thickness: there is no solid below its triangles (segments). Heights are
+/// multiplied by the y component of the scale. The other components are the extents of the whole
+/// field, which lies symmetrically around the local y axis: columns go along x, rows along z, both
+/// in the positive direction. A negative extent reverses the direction, and a negative y component
+/// turns the field upside down.
 ///
 /// **Front.** The front is the side towards which heights grow: +y, or −y if the scale's y
-/// component is negative. Both sides can be touched, or only the front after `one_sided`.
+/// component is negative. Both sides can be touched; after `one_sided` only the front.
 ///
-/// **Seams.** Contacts treat the field as one surface (see [`Surface`](crate::shape::Surface)),
-/// with the rule and the tolerance of [`TriMesh`](crate::shape::TriMesh).
-/// [`Self::with_internal_edges_kept`] switches this off.
+/// **Seams.** Contacts treat the field as one surface (see [`Surface`](crate::shape::Surface)), by
+/// the rule and the tolerance of [`TriMesh`](crate::shape::TriMesh).
+/// [`Self::with_internal_edges_kept`] disables this.
 ///
-/// **Cells.** Between four neighbouring heights lies a cell of two triangles, parts `2 · cell` and
-/// `2 · cell + 1`, divided along its [`Diagonal`]. The corners of a triangle run counter-clockwise
-/// seen from the front, so that in 3D `Face(0)` is the front. In 2D a cell, and part, is the
-/// segment from one height to the next. Parts may be holes: these keep their number, but no search
-/// finds them, and a seam beside one is a border. Cells may be ghosts, which no search finds either;
-/// a seam beside one is that of a surface that goes on, so that nothing bumps into the seams of a
-/// terrain of many fields (`with_ghost_border`).
+/// **Cells.** Four neighbouring heights form a cell of two triangles, parts `2 · cell` and `2 ·
+/// cell + 1`, divided along its [`Diagonal`]. The corners of a triangle run counter-clockwise seen
+/// from the front, so that in 3D `Face(0)` is the front. In 2D a cell is one part, the segment from
+/// one height to the next. Parts may be holes: a hole keeps its part index, but no search finds it,
+/// and a seam beside it is a border. Cells may be ghosts: no search finds a ghost, but the surface
+/// continues across the seams beside it. So nothing catches on the seams of a terrain of many
+/// fields (`with_ghost_border`).
 ///
 /// Making it takes one pass over the heights, changing a height O(log n). Memory: about two numbers
 /// per height, and a byte per cell if there are holes or single cells with a diagonal of their own.
@@ -87,18 +87,19 @@ pub struct HeightField<N: Real, const D: usize> {
     scale: Vector<N, D>,
     is_one_sided: bool,
     keeps_internal_edges: bool,
-    /// Without the options.
+    /// The cache key of the heights, scale and marks; the options are not included.
     revision: Revision,
 }
 
 impl<N: Real, const D: usize> HeightField<N, D> {
-    /// The unscaled heights, row by row.
+    /// Returns the unscaled heights, row by row.
     #[must_use]
     pub fn heights(&self) -> &[N] {
         &self.grid.heights
     }
 
-    /// The extents of the field, and the factor of its heights.
+    /// Returns the scale: the extents of the field along x and z, and in y the factor of the
+    /// heights.
     #[must_use]
     pub const fn scale(&self) -> &Vector<N, D> {
         &self.scale
@@ -124,26 +125,30 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         self
     }
 
-    /// Whether contacts treat each part on its own; see [`Self::with_internal_edges_kept`].
+    /// Whether contacts treat each part as a separate solid; see
+    /// [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
         self.keeps_internal_edges
     }
 
-    /// Makes contacts treat each part on its own, with all its edges and corners, as if it had no
-    /// neighbours.
+    /// Makes contacts treat each part as a separate solid, with all its edges and corners, as if it
+    /// had no neighbours.
     #[must_use]
     pub const fn with_internal_edges_kept(mut self) -> Self {
         self.keeps_internal_edges = true;
         self
     }
 
-    /// The cache key of the field with its options.
+    /// Returns the cache key of the field, including its options.
     fn revision_with_options(&self) -> Revision {
         self.revision.with(&[self.is_one_sided, self.keeps_internal_edges])
     }
 
-    /// The field with another scale; `depth` is its extent along z.
+    /// Returns the field with the scale `scale`; `depth` is its extent along z.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite.
     fn with_scale(&self, scale: Vector<N, D>, depth: N) -> Result<Self, ShapeError> {
         let mut scaled = self.clone();
         let heights = std::mem::take(&mut scaled.grid.heights);
@@ -151,8 +156,8 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         Ok(Self { scale, revision: Revision::new(), ..scaled })
     }
 
-    /// The field over a grid, without holes: both sides can be touched, and contacts treat it as
-    /// one surface.
+    /// Returns the field over a grid, without holes or ghosts: both sides can be touched, and
+    /// contacts treat the field as one surface.
     fn around(grid: Grid<N>, pyramid: Pyramid<N>, scale: Vector<N, D>) -> Self {
         let marks = Marks::new(Diagonals::Forward);
         let (is_one_sided, keeps_internal_edges, revision) = (false, false, Revision::new());
@@ -165,7 +170,7 @@ impl<N: Real, const D: usize> HeightField<N, D> {
     }
 }
 
-/// The grid of `rows` along z and `columns` along x; one row in 2D.
+/// Returns the grid of `rows` along z and `columns` along x; 2D has one row.
 fn grid<N: Real, const D: usize>(
     [rows, columns]: [usize; 2],
     heights: Vec<N>,
@@ -182,7 +187,7 @@ fn grid<N: Real, const D: usize>(
     Ok(Grid { columns, heights, xs, zs, y_scale: scale[1] })
 }
 
-/// Checks that every height is finite, also times the scale.
+/// Checks that every height is finite, both unscaled and scaled by `y_scale`.
 fn check_heights<N: Real>(heights: &[N], columns: usize, y_scale: N) -> Result<(), ShapeError> {
     let is_bad = |height: &N| !(*height * y_scale).is_finite_number() || !height.is_finite_number();
     match heights.iter().position(is_bad) {
@@ -196,7 +201,7 @@ fn check_count(given: usize) -> Result<(), ShapeError> {
     if given < 2 { Err(ShapeError::TooFewHeights { given, needed: 2 }) } else { Ok(()) }
 }
 
-/// Checks that 32 bits can number the parts.
+/// Checks that `needed` parts fit 32-bit indices.
 fn check_parts(needed: u64) -> Result<(), ShapeError> {
     match u32::try_from(needed) {
         Ok(_) => Ok(()),

@@ -1,13 +1,13 @@
 //! The minimum and maximum heights of blocks of cells, in levels of doubling block size.
 //!
-//! The span of a block equals that of its cells exactly, also after an edit.
+//! The span of a block is exactly the union of the spans of its cells, also after an edit.
 
 use crate::math::{Mapped, Real, max, min};
 
-/// The minimum and maximum height; infinity and minus infinity if empty.
+/// The minimum and maximum height; `[∞, −∞]` for the empty span.
 pub(super) type HeightSpan<N> = [N; 2];
 
-/// The span of a hole.
+/// Returns the empty span, which holes have.
 pub(super) fn no_span<N: Real>() -> HeightSpan<N> {
     [N::INFINITY, -N::INFINITY]
 }
@@ -16,22 +16,23 @@ pub(super) fn merged<N: Real>(a: HeightSpan<N>, b: HeightSpan<N>) -> HeightSpan<
     [min(a[0], b[0]), max(a[1], b[1])]
 }
 
-/// Blocks of 2 × 2 cells, of 2 × 2 such blocks, … up to one block of all; blocks at the far ends
-/// may have fewer. The spans of single cells are cheap to compute and not stored.
+/// Levels of blocks: 2 × 2 cells, then 2 × 2 of these blocks, … up to one block of all cells.
+/// Blocks at the far ends may be smaller. The spans of single cells are cheap to compute and not
+/// stored.
 ///
-/// About two thirds of a number per cell.
+/// Memory: about two thirds of a scalar per cell.
 #[derive(Clone, Debug)]
 pub(super) struct Pyramid<N: Real> {
-    /// The numbers of rows and columns of cells, at least one each.
+    /// The counts of rows and columns of cells, at least one each.
     cells: [usize; 2],
-    /// The first holds blocks of 2 × 2 cells, the last one block.
+    /// The levels from fine to coarse: the first has blocks of 2 × 2 cells, the last has one block.
     levels: Vec<PyramidLevel<N>>,
 }
 
 #[derive(Clone, Debug)]
 struct PyramidLevel<N: Real> {
     columns: usize,
-    /// Row by row.
+    /// The spans of the blocks, row by row.
     spans: Vec<HeightSpan<N>>,
 }
 
@@ -45,7 +46,7 @@ pub(super) struct PyramidBlock {
 }
 
 impl PyramidBlock {
-    /// The blocks one level below; some may lie beyond the far ends.
+    /// Returns the four blocks one level below; some may lie outside the grid.
     fn children(self) -> [Self; 4] {
         [(0, 0), (0, 1), (1, 0), (1, 1)].mapped(|(row, column)| Self {
             level: self.level - 1,
@@ -56,7 +57,7 @@ impl PyramidBlock {
 }
 
 impl<N: Real> Pyramid<N> {
-    /// Builds the pyramid over rows and columns of cells, at least one each.
+    /// Builds the pyramid over the given counts of rows and columns of cells, at least one each.
     pub(super) fn new(
         cells: [usize; 2],
         cell_span: impl Fn(usize, usize) -> HeightSpan<N>,
@@ -79,27 +80,28 @@ impl<N: Real> Pyramid<N> {
         pyramid
     }
 
-    /// A pyramid whose levels are not built yet.
+    /// Returns a pyramid without levels, to be built later.
     pub(super) const fn unbuilt(cells: [usize; 2]) -> Self {
         Self { cells, levels: Vec::new() }
     }
 
-    /// Moves the levels out, for a field that updates them while it is borrowed for its cells.
+    /// Moves the levels out and leaves a pyramid without levels, so that the field can be borrowed
+    /// for `cell_span` during an update.
     pub(super) fn take(&mut self) -> Self {
         Self { cells: self.cells, levels: std::mem::take(&mut self.levels) }
     }
 
-    /// The block of all cells.
+    /// Returns the block that contains all cells.
     pub(super) const fn top(&self) -> PyramidBlock {
         PyramidBlock { level: self.levels.len(), row: 0, column: 0 }
     }
 
-    /// The numbers of rows and columns of cells.
+    /// Returns the counts of rows and columns of cells.
     pub(super) const fn cells(&self) -> [usize; 2] {
         self.cells
     }
 
-    /// The blocks one level below, without those beyond the far ends.
+    /// Returns the child blocks, one level below, that lie inside the grid.
     pub(super) fn children(&self, block: PyramidBlock) -> impl Iterator<Item = PyramidBlock> {
         let [rows, columns] = self.cells;
         let children = block.children().into_iter();
@@ -108,7 +110,7 @@ impl<N: Real> Pyramid<N> {
         })
     }
 
-    /// The heights of a block.
+    /// Returns the span of a block; `cell_span` computes it at level 0.
     pub(super) fn span(
         &self,
         block: PyramidBlock,

@@ -10,14 +10,14 @@ pub(super) struct FieldProbe<N: Real> {
     own: GridExtent<N>,
 }
 
-/// Distances and times are lowered by this many epsilon of themselves, so that they are lower
+/// Distances and times are lowered by this many epsilon of their value, so that they are lower
 /// bounds: coordinates are subtracted (and divided) once, and at most three squares are summed. The
-/// rest is for rays: a ray that passes between two cells must find the one in which the test of
-/// triangles hits.
+/// excess serves rays: a ray between two cells must find the cell whose triangle the exact test
+/// hits.
 const ROUNDING: f64 = 16.0;
 
 impl<N: Real> FieldProbe<N> {
-    /// The box with the coordinates of `aabb`, and zero on axes that it lacks. `None` if it has no
+    /// Returns the probe for `aabb`, with zero on axes that 2D lacks. `None` if the box has no
     /// finite point.
     pub(super) fn new<const D: usize>(aabb: &Aabb<N, D>) -> Option<Self> {
         let mut own = GridExtent { low: [N::ZERO; 3], high: [N::ZERO; 3] };
@@ -30,12 +30,13 @@ impl<N: Real> FieldProbe<N> {
         is_reachable.then_some(Self { own })
     }
 
-    /// The minimum and maximum corner.
+    /// Returns the minimum and maximum corner.
     pub(super) const fn corners(&self) -> ([N; 3], [N; 3]) {
         (self.own.low, self.own.high)
     }
 
-    /// Zero if the boxes overlap, else `None`.
+    /// Returns 0 if the boxes overlap or touch, else `None`; a key for
+    /// [`search`](super::grid::search).
     pub(super) fn overlap(&self, other: &GridExtent<N>) -> Option<N> {
         let meets = (0..3).all(|axis| {
             self.own.low[axis] <= other.high[axis] && other.low[axis] <= self.own.high[axis]
@@ -43,7 +44,7 @@ impl<N: Real> FieldProbe<N> {
         meets.then_some(N::ZERO)
     }
 
-    /// A lower bound of the distance.
+    /// Returns a lower bound of the distance to `other`.
     pub(super) fn distance(&self, other: &GridExtent<N>) -> Option<N> {
         let mut gap = Vector::<N, 3>::zeros();
         for axis in 0..3 {
@@ -58,10 +59,10 @@ impl<N: Real> FieldProbe<N> {
         Some(distance * (N::ONE - N::lit(ROUNDING) * N::EPSILON))
     }
 
-    /// A lower bound of the time, zero or more, at which the box moving with `velocity` hits
-    /// `other`; `None` if it does not.
+    /// Returns a lower bound, at least 0, of the time at which the box moving with `velocity` hits
+    /// `other`; `None` if it misses.
     ///
-    /// Slabs (Kay and Kajiya 1986), widened by the rounding of the times (Ize 2013).
+    /// Slab test (Kay and Kajiya 1986), widened by the rounding errors of the times (Ize 2013).
     pub(super) fn time(&self, velocity: &[N; 3], other: &GridExtent<N>) -> Option<N> {
         let (mut enter, mut leave) = (N::ZERO, N::INFINITY);
         for (axis, &speed) in velocity.iter().enumerate() {
@@ -83,7 +84,7 @@ impl<N: Real> FieldProbe<N> {
     }
 }
 
-/// A velocity in 3D, with zero on the axes that it lacks; `None` if it is not finite.
+/// Returns `velocity` in 3D, with zero on the axes that 2D lacks; `None` if it is not finite.
 pub(super) fn lifted<N: Real, const D: usize>(velocity: &Vector<N, D>) -> Option<[N; 3]> {
     let mut lifted = [N::ZERO; 3];
     for axis in 0..D {

@@ -16,22 +16,22 @@ use crate::shape::{
 };
 
 impl<N: Real> HeightField<N, 2> {
-    /// The field of these heights; see [`Self::try_new`].
+    /// Returns the field of these heights; see [`Self::try_new`].
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new(heights: Vec<N>, scale: Vector<N, 2>) -> Self {
         or_panic(Self::try_new(heights, scale))
     }
 
-    /// The field of the given heights, at least two. There are no holes, and both sides can be
-    /// touched.
+    /// Returns the field of the given heights, at least two. There are no holes, and both sides can
+    /// be touched.
     ///
     /// # Errors
-    /// If there are too few heights; if a component of the scale, a height, or a height times the
-    /// scale is not finite; if 32 bits cannot number the segments.
+    /// If there are fewer than two heights; if a component of the scale, a height, or a height
+    /// times the scale is not finite; or if the segments do not fit 32-bit indices.
     pub fn try_new(heights: Vec<N>, scale: Vector<N, 2>) -> Result<Self, ShapeError> {
         check_count(heights.len())?;
         check_parts(heights.len() as u64 - 1)?;
@@ -42,7 +42,7 @@ impl<N: Real> HeightField<N, 2> {
         Ok(field)
     }
 
-    /// Makes exactly the cells holes for which `is_hole(cell)` is true.
+    /// Sets which cells are holes: exactly those for which `is_hole(cell)` is true.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize) -> bool) -> Self {
         let cells = self.num_cells();
@@ -56,32 +56,32 @@ impl<N: Real> HeightField<N, 2> {
     /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
     ///
     /// # Errors
-    /// If a factor is zero or not finite, or numbers leave their range.
+    /// If a factor is zero or not finite, or a scaled coordinate is not finite.
     pub fn try_scaled(&self, scale: &Vector<N, 2>) -> Result<Self, ScaleError> {
         let scale = Scale::try_new(scale)?.vector(&self.scale);
         Ok(self.with_scale(scale, N::ZERO)?)
     }
 
-    /// An unscaled height.
+    /// Returns the unscaled height at `index`.
     ///
     /// # Panics
-    /// If there is no height of this index.
+    /// If `index` is not below the number of heights.
     #[must_use]
     pub fn height(&self, index: usize) -> N {
         self.grid.heights[index]
     }
 
-    /// The point of the line at height `index`.
+    /// Returns the scaled point of the line at height `index`.
     ///
     /// # Panics
-    /// If there is no height of this index.
+    /// If `index` is not below the number of heights.
     #[must_use]
     pub fn point(&self, index: usize) -> Point<N, 2> {
         let [x, y, _] = self.grid.at(0, index);
         Point::<N, 2>::new(x, y)
     }
 
-    /// The segment between a height and the next; `None` if it is a hole or a ghost.
+    /// Returns the segment of a cell, from height `cell` to the next; `None` for a hole or a ghost.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -91,7 +91,7 @@ impl<N: Real> HeightField<N, 2> {
         Some(segment).filter(|_| !self.marks.is_untouched(cell, 0))
     }
 
-    /// Whether the part is a hole. Parts have the numbers of their cells.
+    /// Whether the part is a hole. The index of a part equals the index of its cell.
     ///
     /// # Panics
     /// If there is no such part.
@@ -115,13 +115,13 @@ impl<N: Real> HeightField<N, 2> {
         found
     }
 
-    /// Changes a height.
+    /// Sets the unscaled height at `index`.
     ///
     /// # Errors
-    /// If it is not finite, by itself or times the scale; nothing is changed then.
+    /// If the height, or the height times the scale, is not finite; the field is then unchanged.
     ///
     /// # Panics
-    /// If there is no height of this index.
+    /// If `index` is not below the number of heights.
     pub fn set_height(&mut self, index: usize, height: N) -> Result<(), ShapeError> {
         check_heights(&[height], 1, self.grid.y_scale)
             .map_err(|_| ShapeError::HeightNotFinite { row: 0, column: index })?;
@@ -134,11 +134,11 @@ impl<N: Real> HeightField<N, 2> {
         Ok(())
     }
 
-    /// Changes all heights.
+    /// Replaces all unscaled heights.
     ///
     /// # Errors
-    /// If their number differs or one is not finite, by itself or times the scale; nothing is
-    /// changed then.
+    /// If the number of heights differs, or a height or its product with the scale is not finite;
+    /// the field is then unchanged.
     pub fn set_heights(&mut self, heights: Vec<N>) -> Result<(), ShapeError> {
         let (given, needed) = (heights.len(), self.grid.heights.len());
         if given != needed {
@@ -185,7 +185,7 @@ impl<N: Real> HeightField<N, 2> {
     }
 }
 
-/// The unscaled heights of a cell.
+/// Returns the range of the unscaled heights of a cell.
 fn step_span<N: Real>(grid: &Grid<N>, cell: usize) -> HeightSpan<N> {
     let [a, b] = [grid.heights[cell], grid.heights[cell + 1]];
     merged([a, a], [b, b])
@@ -242,7 +242,7 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
         u32::try_from(self.num_cells()).expect("32 bits number the segments")
     }
 
-    /// For a hole, the segment that would be there.
+    /// Also returns the segment of a hole.
     fn part(&self, part: u32) -> Part<'_, N, 2> {
         let cell = self.cell_of(part);
         let segment = Segment::new(self.point(cell), self.point(cell + 1));
@@ -265,7 +265,7 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
         self.surface().map(|_| SurfaceAccess::of_own(self))
     }
 
-    /// The points of the field, in order.
+    /// Visits the indices of the two heights at the ends of the segment.
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         visit(part.into());
         visit(u64::from(part) + 1);
@@ -285,7 +285,8 @@ impl<N: Real> Shape<N, 2> for HeightField<N, 2> {
         Geometry::composite(self)
     }
 
-    /// Around all parts that are neither holes nor ghosts; the origin for a field without others.
+    /// Returns the box around all parts that are neither holes nor ghosts; the origin if there are
+    /// no such parts.
     fn local_aabb(&self) -> Aabb<N, 2> {
         match whole(self) {
             Some(GridExtent { low, high }) => {

@@ -1,5 +1,5 @@
-//! The seam rule of height fields: normals at a face, an edge or a vertex, computed from the
-//! heights around.
+//! The seam rule of height fields: the normals admitted at a face, an edge or a vertex, computed
+//! from the neighbouring heights.
 
 use smallvec::SmallVec;
 
@@ -66,7 +66,7 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
         let own = FieldFace::of(self, self.corners(part));
         let has_seams = !self.keeps_internal_edges && own.front != Vector::<N, 3>::zeros();
         let bend = |side| Fold::at(self, &own, side).bend;
-        // The fronts of a field agree: all face up, or all down.
+        // All front normals of a field point up, or all point down.
         has_seams.then(|| FaceSeams::new(own.front, self.is_one_sided, bend, |_| true))
     }
 
@@ -75,7 +75,7 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
         !self.keeps_internal_edges && self.grid.has_extent()
     }
 
-    /// Whether one of the cells around that of the part is a ghost.
+    /// Whether the cell of the part, or one of the eight cells around it, is a ghost.
     fn is_beside_ghost(&self, part: u32) -> bool {
         let ([row, column], ..) = self.locate(part);
         let [rows, columns] = self.pyramid.cells();
@@ -87,22 +87,22 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
     }
 }
 
-/// The index of a triangle in its cell, and two of the cell's corners.
+/// The index of a triangle in its cell, then two corners of the cell.
 type FanTriangle = (usize, usize, usize);
 
-/// The triangles at each corner of a cell: the index of a triangle and its two other corners. The
-/// corners a, b, c, d are numbered 0 to 3. The first table is for a forward diagonal, the second
-/// for a backward one; see `corners_in`.
+/// For each corner of a cell, the triangles at it: the index of the triangle and its two other
+/// corners. The corners a, b, c, d have the indices 0 to 3. The first table is for a forward
+/// diagonal, the second for a backward one; see `corners_in`.
 const FANS: [[&[FanTriangle]; 4]; 2] = [
     [&[(0, 1, 2), (1, 2, 3)], &[(0, 2, 0)], &[(0, 0, 1), (1, 3, 0)], &[(1, 0, 2)]],
     [&[(0, 1, 3)], &[(0, 3, 0), (1, 2, 3)], &[(1, 3, 1)], &[(0, 0, 1), (1, 1, 2)]],
 ];
 
-/// A triangle of a field.
+/// A triangle of a field, with its grid points and positions.
 struct FieldFace<N: Real> {
     corners: [GridPoint; 3],
     points: [Point<N, 3>; 3],
-    /// The unit normal on the front; zero without area.
+    /// The unit normal on the front; zero for a triangle without area.
     front: Vector<N, 3>,
 }
 
@@ -112,14 +112,15 @@ impl<N: Real> FieldFace<N> {
         Self { corners, points, front: normal_of(&points) }
     }
 
-    /// The corner that is not among the two ends of a side.
+    /// Returns the corner opposite the side with the ends `ends`; `None` if both ends are not among
+    /// the corners.
     fn beyond(&self, ends: &[GridPoint; 2]) -> Option<Point<N, 3>> {
         let at = self.corners.iter().position(|corner| !ends.contains(corner))?;
         Some(self.points[at])
     }
 }
 
-/// The cached neighbourhood of one feature of a triangle.
+/// The lazily computed neighbourhood of one feature of a triangle.
 struct Beside<N: Real> {
     fold: Option<Fold<N>>,
     star: Option<Star<N>>,
@@ -131,10 +132,10 @@ impl<N: Real> Beside<N> {
     }
 }
 
-/// A side of a triangle with its neighbour.
+/// A side of a triangle, with the triangle across it.
 struct Fold<N: Real> {
     ends: [GridPoint; 2],
-    /// The triangle across, and the bend between the two if it is plain.
+    /// The triangle across, and the edge angle between the two triangles if it is certain.
     other: Option<FieldFace<N>>,
     bend: Option<Bend<N>>,
 }
@@ -156,7 +157,7 @@ impl<N: Real> HeightField<N, 3> {
         [point(corners[0]), point(corners[1]), point(corners[2])]
     }
 
-    /// The unit normal on the front of a triangle; zero without area.
+    /// Returns the unit normal on the front of a triangle; zero without area.
     fn front_of(&self, corners: &[GridPoint; 3]) -> Vector<N, 3> {
         normal_of(&self.points_of(corners))
     }
@@ -167,7 +168,8 @@ impl<N: Real> HeightField<N, 3> {
         (*front != Vector::<N, 3>::zeros()).then_some(own)
     }
 
-    /// The triangles, ghosts and no holes, of some cells given by their rows and columns plus one.
+    /// Returns the triangles, including ghosts but not holes, of the cells in `cells`. A cell is
+    /// given by its row plus one and its column plus one; 0 is outside the field.
     fn in_cells(
         &self,
         cells: impl Iterator<Item = GridPoint>,
@@ -186,7 +188,8 @@ impl<N: Real> HeightField<N, 3> {
     /// counter-clockwise seen from the front, until a call returns true: at most 8 triangles.
     fn each_around(&self, at: GridPoint, mut visit: impl FnMut([GridPoint; 2]) -> bool) {
         let [rows, columns] = self.pyramid.cells();
-        // The four cells around the point, and the number of the point among the corners of each.
+        // The four cells around the point, and the index of the point among the corners of each
+        // cell.
         for (row, column, own) in [(1, 1, 2), (1, 0, 1), (0, 1, 3), (0, 0, 0)] {
             let cell = (at[0].wrapping_sub(row), at[1].wrapping_sub(column));
             if cell.0 >= rows || cell.1 >= columns {
@@ -208,7 +211,8 @@ impl<N: Real> HeightField<N, 3> {
         }
     }
 
-    /// The triangle across a side.
+    /// Returns the triangle across the side between `a` and `b`; `None` at the border or beside a
+    /// hole.
     fn across(&self, own: &[GridPoint; 3], [a, b]: [GridPoint; 2]) -> Option<[GridPoint; 3]> {
         let (row, column) = (a[0].min(b[0]), a[1].min(b[1]));
         // The triangle across a side along a row or column lies in the cell before or after; across
@@ -222,8 +226,8 @@ impl<N: Real> HeightField<N, 3> {
             .find(|other| other.contains(&a) && other.contains(&b) && other != own)
     }
 
-    /// Whether the field has a normal at a feature of a triangle; the neighbourhood is computed
-    /// once.
+    /// Whether the field admits `normal` at a feature of a triangle. `beside` keeps the
+    /// neighbourhood of the feature between calls.
     fn face_admits(
         &self,
         own: &FieldFace<N>,
@@ -249,7 +253,8 @@ impl<N: Real> HeightField<N, 3> {
             }
     }
 
-    /// Whether the field has a normal at a side of a triangle, by the cached bend if it is plain.
+    /// Whether the field admits `normal` at a side of a triangle; uses the cached edge angle if it
+    /// is certain.
     fn edge_admits(
         &self,
         own: &FieldFace<N>,
@@ -272,7 +277,8 @@ impl<N: Real> HeightField<N, 3> {
         is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
     }
 
-    /// Whether the field has a normal at a corner of a triangle that is not the triangle's own.
+    /// Whether the field admits `normal`, which is not the triangle's own normal, at a corner of
+    /// the triangle.
     fn vertex_admits(
         &self,
         own: &FieldFace<N>,
@@ -283,9 +289,9 @@ impl<N: Real> HeightField<N, 3> {
         self.point_admits_from(own.corners[corner % 3], star, (&own.front, false), normal)
     }
 
-    /// Whether the field has, at a point of the grid, a normal that is not the triangle's own.
-    /// `own` is the front of the triangle, and whether another triangle there is known not to be
-    /// coplanar with it.
+    /// Whether the field admits, at a grid point, a normal that is not the triangle's own. `own`
+    /// has the front normal of the triangle, and whether another triangle at the point is known not
+    /// to be coplanar with it.
     fn point_admits_from(
         &self,
         at: GridPoint,
@@ -304,7 +310,7 @@ impl<N: Real> HeightField<N, 3> {
         })
     }
 
-    /// Collects the sides that leave a point of the grid, until they reject a normal.
+    /// Collects the sides that leave a grid point; stops when they reject `normal`.
     fn edges_around<'n>(&self, at: GridPoint, normal: &'n Vector<N, 3>) -> CornerEdges<'n, N, 3> {
         let (mut edges, [row, column]) = (CornerEdges::new(normal), at);
         let point = self.grid.point(row, column);
@@ -317,7 +323,7 @@ impl<N: Real> HeightField<N, 3> {
         edges
     }
 
-    /// The triangles around a point of the grid.
+    /// Returns the triangles around a grid point.
     fn star_of(&self, at: GridPoint) -> Star<N> {
         let (mut star, [row, column]) = (Star::new(), at);
         let point = self.grid.point(row, column);
@@ -333,19 +339,20 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// A triangle at a point of the grid: the unit vectors (or zero) along its sides that leave the
-/// point, and its front.
+/// A triangle at a grid point: the unit vectors along its two sides that leave the point (zero
+/// without length), and its front normal.
 struct StarFace<N: Real> {
     edges: [Vector<N, 3>; 2],
     front: Vector<N, 3>,
 }
 
-/// The rise of a unit vector along another one; −1 for the zero vector.
+/// Returns the component of the unit vector `edge` along the unit vector `along`; −1 if `edge` is
+/// zero.
 fn rise<N: Real>(edge: &Vector<N, 3>, along: &Vector<N, 3>) -> N {
     if *edge == Vector::<N, 3>::zeros() { -N::ONE } else { edge.dot(along) }
 }
 
-/// The triangles around a point.
+/// The triangles around a grid point.
 type Star<N> = SmallVec<[StarFace<N>; 8]>;
 
 impl<N: Real> Surface<N, 2> for HeightField<N, 2> {
@@ -378,7 +385,7 @@ impl<N: Real> OwnSurface<N, 2> for HeightField<N, 2> {
     fn sidedness(&self) -> Option<Sidedness> {
         let (is_one_sided, keeps_internal_edges) = (self.is_one_sided, self.keeps_internal_edges);
         let (is_left, follows_front) = (!self.is_mirrored(), true);
-        // Ghosts are not among the segments that a pair caches: the field itself is asked.
+        // The cached segments of a pair do not include ghosts, so the field itself is queried.
         let joining = if self.marks.has_ghosts() { Joining::Unknown } else { Joining::InRow };
         Some(Sidedness { is_left, is_one_sided, follows_front, keeps_internal_edges, joining })
     }
@@ -391,26 +398,27 @@ impl<N: Real> OwnSurface<N, 2> for HeightField<N, 2> {
 }
 
 impl<N: Real> HeightField<N, 2> {
-    /// The unit vector along a segment; `None` without length.
+    /// Returns the unit vector along a segment; `None` if the segment has no length.
     fn along(&self, part: u32) -> Option<Vector<N, 2>> {
         let index = part as usize;
         unit(&(self.point(index + 1) - self.point(index))).map(|(along, _)| along)
     }
 
-    /// The unit normal on the front of a segment; `None` without length.
+    /// Returns the unit normal on the front of a segment; `None` if the segment has no length.
     fn front(&self, part: u32) -> Option<Vector<N, 2>> {
         let left = perp(&self.along(part)?);
         Some(if self.is_mirrored() { -left } else { left })
     }
 
-    /// The component of a vector along the front of a segment; zero if the field has two sides.
+    /// Returns the component of `vector` along the front normal of a segment; 0 if the field has
+    /// two sides or the segment has no length.
     fn height_over(&self, part: u32, vector: &Vector<N, 2>) -> N {
         let front = self.front(part).filter(|_| self.is_one_sided);
         front.map_or(N::ZERO, |front| front.dot(vector))
     }
 
-    /// Whether no segment that leaves the point rises along the normal, and the two are not
-    /// collinear.
+    /// Whether the point admits `normal`: no segment that leaves the point rises along it, and the
+    /// two segments are not collinear.
     fn point_admits(&self, part: u32, index: usize, normal: &Vector<N, 2>) -> bool {
         let own = self.along(part).unwrap_or_else(Vector::<N, 2>::zeros);
         let mut seam = Seam::of_segments(own, normal);

@@ -20,23 +20,23 @@ use crate::shape::{
 pub(super) type GridPoint = [usize; 2];
 
 impl<N: Real> HeightField<N, 3> {
-    /// The field of rows and columns of heights, given row by row; see [`Self::try_new`].
+    /// Returns the field of rows and columns of heights, given row by row; see [`Self::try_new`].
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new(rows: usize, columns: usize, heights: Vec<N>, scale: Vector<N, 3>) -> Self {
         or_panic(Self::try_new(rows, columns, heights, scale))
     }
 
-    /// The field of rows and columns of heights, at least two of each, given row by row. All
-    /// diagonals are forward, there are no holes, and both sides can be touched.
+    /// Returns the field of rows and columns of heights, at least two of each, given row by row.
+    /// All diagonals are forward, there are no holes, and both sides can be touched.
     ///
     /// # Errors
-    /// If there are too few rows or columns, or the number of heights is not their product; if a
-    /// component of the scale, a height, or a height times the scale is not finite; if 32 bits
-    /// cannot number the triangles.
+    /// If there are fewer than two rows or columns, or the number of heights is not their product;
+    /// if a component of the scale, a height, or a height times the scale is not finite; or if the
+    /// triangles do not fit 32-bit indices.
     pub fn try_new(
         rows: usize,
         columns: usize,
@@ -60,7 +60,7 @@ impl<N: Real> HeightField<N, 3> {
         self
     }
 
-    /// Makes exactly the cells holes for which `is_hole(row, column)` is true.
+    /// Sets which cells are holes: exactly those for which `is_hole(row, column)` is true.
     #[must_use]
     pub fn with_holes(mut self, mut is_hole: impl FnMut(usize, usize) -> bool) -> Self {
         let [rows, columns] = self.pyramid.cells();
@@ -77,7 +77,7 @@ impl<N: Real> HeightField<N, 3> {
     /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
     ///
     /// # Errors
-    /// If a factor is zero or not finite, or numbers leave their range.
+    /// If a factor is zero or not finite, or a scaled coordinate is not finite.
     pub fn try_scaled(&self, scale: &Vector<N, 3>) -> Result<Self, ScaleError> {
         let scale = Scale::try_new(scale)?.vector(&self.scale);
         Ok(self.with_scale(scale, scale.z)?)
@@ -95,7 +95,7 @@ impl<N: Real> HeightField<N, 3> {
         self.grid.columns
     }
 
-    /// An unscaled height.
+    /// Returns the unscaled height at a row and column.
     ///
     /// # Panics
     /// If there is no such row or column.
@@ -105,7 +105,7 @@ impl<N: Real> HeightField<N, 3> {
         self.grid.height(row, column)
     }
 
-    /// The point of the surface at a row and column.
+    /// Returns the scaled point of the surface at a row and column.
     ///
     /// # Panics
     /// If there is no such row or column.
@@ -115,8 +115,8 @@ impl<N: Real> HeightField<N, 3> {
         self.grid.point(row, column)
     }
 
-    /// The number of the cell at a row and column; its triangles are the parts `2 · cell` and `2 ·
-    /// cell + 1`.
+    /// Returns the index of the cell at a row and column; its triangles are the parts `2 · cell`
+    /// and `2 · cell + 1`.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -130,7 +130,7 @@ impl<N: Real> HeightField<N, 3> {
         row * columns + column
     }
 
-    /// The diagonal of a cell.
+    /// Returns the diagonal of the cell at a row and column.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -140,7 +140,7 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.diagonal([row, column], self.pyramid.cells()[1])
     }
 
-    /// The two triangles of a cell; `None` for one that is a hole or a ghost.
+    /// Returns the two triangles of a cell; `None` for a triangle that is a hole or in a ghost.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -179,12 +179,12 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// Changes. They do not reach a world that holds the shape: shared shapes are immutable.
+/// Modifications. They do not affect a world that holds the shape: shared shapes are immutable.
 impl<N: Real> HeightField<N, 3> {
-    /// Changes a height.
+    /// Sets the unscaled height at a row and column.
     ///
     /// # Errors
-    /// If it is not finite, by itself or times the scale; nothing is changed then.
+    /// If the height, or the height times the scale, is not finite; the field is then unchanged.
     ///
     /// # Panics
     /// If there is no such row or column.
@@ -202,11 +202,11 @@ impl<N: Real> HeightField<N, 3> {
         Ok(())
     }
 
-    /// Changes all heights, given row by row.
+    /// Replaces all unscaled heights, given row by row.
     ///
     /// # Errors
-    /// If their number differs or one is not finite, by itself or times the scale; nothing is
-    /// changed then.
+    /// If the number of heights differs, or a height or its product with the scale is not finite;
+    /// the field is then unchanged.
     pub fn set_heights(&mut self, heights: Vec<N>) -> Result<(), ShapeError> {
         let (given, needed) = (heights.len(), self.grid.heights.len());
         if given != needed {
@@ -229,7 +229,7 @@ impl<N: Real> HeightField<N, 3> {
         self.refresh(row, column);
     }
 
-    /// Makes one triangle a hole, or restores it.
+    /// Makes one triangle a hole, or restores it; `part` is its index.
     ///
     /// # Panics
     /// If there is no such part.
@@ -268,7 +268,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// Conversions from part numbers to triangles.
+/// Conversions from part indices to triangles.
 impl<N: Real> HeightField<N, 3> {
     #[track_caller]
     fn check_point(&self, row: usize, column: usize) {
@@ -279,8 +279,8 @@ impl<N: Real> HeightField<N, 3> {
         );
     }
 
-    /// The row and column of the cell of a part, the number of the cell, and 0 or 1 for the
-    /// triangle in it.
+    /// Returns the row and column of the cell of a part, the index of the cell, and 0 or 1 for the
+    /// triangle in the cell.
     #[track_caller]
     pub(super) fn locate(&self, part: u32) -> (GridPoint, usize, usize) {
         let (cell, k) = (part as usize / 2, part as usize % 2);
@@ -289,14 +289,14 @@ impl<N: Real> HeightField<N, 3> {
         ([cell / columns, cell % columns], cell, k)
     }
 
-    /// The corners of a part, counter-clockwise seen from the front.
+    /// Returns the corners of a part, counter-clockwise seen from the front.
     pub(super) fn corners(&self, part: u32) -> [GridPoint; 3] {
         let ([row, column], _, k) = self.locate(part);
         self.corners_in(row, column, k)
     }
 
-    /// The corners of triangle `k` of the cell at a row and column, counter-clockwise seen from the
-    /// front.
+    /// Returns the corners of triangle `k` of the cell at a row and column, counter-clockwise seen
+    /// from the front.
     pub(super) fn corners_in(&self, row: usize, column: usize, k: usize) -> [GridPoint; 3] {
         let [a, b, c, d] =
             [[row, column], [row + 1, column], [row + 1, column + 1], [row, column + 1]];
@@ -307,7 +307,7 @@ impl<N: Real> HeightField<N, 3> {
             (Diagonal::Backward, 0) => [a, b, d],
             (Diagonal::Backward, _) => [d, b, c],
         };
-        // A mirror reverses the winding.
+        // A mirroring scale reverses the winding.
         let [first, second, third] = corners;
         if self.is_mirrored() { [first, third, second] } else { corners }
     }
@@ -322,7 +322,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 }
 
-/// The unscaled heights of a cell without holes.
+/// Returns the range of the unscaled heights of a cell, regardless of holes.
 fn square_span<N: Real>(grid: &Grid<N>, row: usize, column: usize) -> HeightSpan<N> {
     let above = row * grid.columns + column;
     let below = above + grid.columns;
@@ -335,7 +335,7 @@ fn min_index(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
 }
 
-/// The height of a triangle at (x, z); `None` beside it.
+/// Returns the height of a triangle at (x, z); `None` outside the triangle.
 fn height_over<N: Real>(corners: &[Point<N, 3>; 3], x: N, z: N) -> Option<N> {
     let [a, b, c] = corners;
     let side = |p: &Point<N, 3>, q: &Point<N, 3>| (q.z - p.z) * (x - p.x) - (q.x - p.x) * (z - p.z);
@@ -416,7 +416,7 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
         u32::try_from(2 * self.num_cells()).expect("32 bits number the triangles")
     }
 
-    /// For a hole, the triangle that would be there.
+    /// Also returns the triangle of a hole.
     fn part(&self, part: u32) -> Part<'_, N, 3> {
         let triangle = self.triangle_of(self.corners(part));
         Part { pose: Pose::identity(), solid: PartSolid::Triangle(triangle) }
@@ -438,7 +438,7 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
         self.surface().map(|_| SurfaceAccess::of_own(self))
     }
 
-    /// The points of the grid, row by row.
+    /// Visits the indices of the triangle's grid points, counted row by row.
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         for [row, column] in self.corners(part) {
             visit((row * self.grid.columns + column) as u64);
@@ -459,7 +459,8 @@ impl<N: Real> Shape<N, 3> for HeightField<N, 3> {
         Geometry::composite(self)
     }
 
-    /// Around all parts that are not holes; the origin for a field of holes only.
+    /// Returns the box around all parts that are neither holes nor ghosts; the origin if there are
+    /// no such parts.
     fn local_aabb(&self) -> Aabb<N, 3> {
         match whole(self) {
             Some(extent) => Aabb::new(Point::from(extent.low), Point::from(extent.high)),

@@ -1,8 +1,8 @@
 //! Walks around the sides and corners of a mesh.
 //!
-//! Meshes contain triangles without area as fillers: where a corner touches the middle of a longer
-//! side, a thin triangle joins the three. Seams are evaluated across them, as if they were not
-//! there.
+//! Some meshes contain triangles without area as fillers: where a corner touches the interior of a
+//! longer side, a thin triangle joins the three. Seams are evaluated across such triangles as if
+//! they were absent.
 
 use core::cell::OnceCell;
 
@@ -12,14 +12,14 @@ use super::TriMesh;
 use crate::math::{Mapped, Point, Real, Vector, filled, max, max_component, min, unit, unit_or};
 use crate::shape::solids::segment::length_of;
 
-/// The maximum number of sides of triangles without area that a walk crosses.
+/// The maximum number of sides of zero-area triangles that a walk crosses.
 const MAX_CROSSED: usize = 32;
-/// A triangle is tall if its squared height over its longest side is above this fraction of that
-/// side's square.
+/// A triangle is tall if its squared height over its longest side exceeds this fraction of that
+/// side's squared length.
 const TALL: f64 = 1.0 / 1024.0;
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
-    /// Calls `visit` with each other triangle at a side, and the index of the side within that
+    /// Calls `visit` with each other triangle at a side, and the index of that side in the other
     /// triangle.
     pub(super) fn each_across(
         &self,
@@ -36,15 +36,16 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         if let Some(other) = self.topology.single_across(triangle, side) {
             found(other);
         } else if self.topology.has_several_across(triangle, side) {
-            // All of them are at both ends: search the end with fewer triangles.
+            // Every triangle at the side is in the lists of both ends: search the shorter list.
             let [from, to] = ends.map(|joint| self.topology.joints.parts(joint));
             let fewer = if from.len() < to.len() { from } else { to };
             fewer.iter().filter(|&&other| other != triangle).for_each(|&other| found(other));
         }
     }
 
-    /// Calls `visit` with each other triangle with an area at a side, and the direction from the
-    /// side into it. Passes through triangles without area, whose sides lie along each other.
+    /// Calls `visit` with each other triangle at a side that has an area, and the direction from
+    /// the side into that triangle. The walk passes through zero-area triangles, whose sides are
+    /// collinear.
     pub(super) fn each_beyond(
         &self,
         triangle: u32,
@@ -54,8 +55,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.each_along(triangle, side, |other, inward, _| visit(other, inward));
     }
 
-    /// [`Self::each_beyond`] with the interval of the side along which each of the triangles lies,
-    /// measured from the beginning of the side; `None` for all of it.
+    /// Like [`Self::each_beyond`], but also passes the interval of the side along which the other
+    /// triangle lies, measured from the start of the side; `None` for the whole side.
     fn each_along(
         &self,
         triangle: u32,
@@ -92,7 +93,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// Whether part of a side of a triangle without area has no triangle with an area beside it.
+    /// Whether, for a side of a zero-area triangle, some interval of the side has no triangle with
+    /// an area beside it. False for a triangle with an area.
     pub(super) fn is_exposed(&self, triangle: u32, side: usize) -> bool {
         if self.inward(triangle, side).is_some() {
             return false;
@@ -114,9 +116,9 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         false
     }
 
-    /// Calls `visit` with each triangle on whose side a joint lies without being one of its
-    /// corners, and the direction from the side into it: those beyond a triangle without area whose
-    /// middle corner is at the joint.
+    /// Calls `visit` with each triangle that has the joint on a side but not as a corner, and with
+    /// the direction from that side into the triangle. Such triangles lie beyond a zero-area
+    /// triangle whose middle corner is at the joint.
     pub(super) fn each_beyond_joint(&self, joint: u32, mut visit: impl FnMut(u32, Vector<N, D>)) {
         for &triangle in self.topology.joints.parts(joint) {
             let at = self.corner_at(triangle, joint);
@@ -142,40 +144,42 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         }
     }
 
-    /// Whether the triangle is tall enough that its area is beyond doubt; false leaves the area
-    /// undecided.
+    /// Whether the triangle is tall enough to certainly have an area; if false, it may still have
+    /// one.
     pub(super) fn has_certain_area(&self, triangle: u32) -> bool {
         self.bends.has_certain_area(triangle, || is_tall(&self.corners(triangle)))
     }
 
-    /// The unit vectors along the sides of a triangle that leave a joint.
+    /// Returns the unit vectors along the two sides of a triangle that leave a joint; sides without
+    /// length are left out.
     pub(super) fn leaving(&self, triangle: u32, joint: u32) -> SmallVec<[Vector<N, D>; 2]> {
         let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
         let side = |turn: usize| unit(&(corners[(at + turn) % 3] - corners[at]));
         [1, 2].into_iter().filter_map(side).map(|(along, _)| along).collect()
     }
 
-    /// The first corner of a triangle that is at a joint.
+    /// Returns the index (0 to 2) of the first corner of a triangle that is at a joint; 0 if there
+    /// is none.
     pub(super) fn corner_at(&self, triangle: u32, joint: u32) -> usize {
         (0..3).find(|&at| self.joint_at(triangle, at) == joint).unwrap_or(0)
     }
 
-    /// The ends of a side.
+    /// Returns the two ends of a side.
     fn ends_of(&self, triangle: u32, side: usize) -> [Point<N, D>; 2] {
         let corners = self.corners(triangle);
         [corners[side], corners[(side + 1) % 3]]
     }
 
-    /// The unit vector in the triangle's plane from a side towards the opposite corner; `None`
-    /// without area.
+    /// Returns the unit vector in the triangle's plane, perpendicular to a side, towards the
+    /// opposite corner; `None` without area.
     pub(super) fn inward(&self, triangle: u32, side: usize) -> Option<Vector<N, D>> {
         let corners = self.corners(triangle);
         inward_of(&filled(|turn| corners[(side + turn) % 3]))
     }
 }
 
-/// The unit vector in the plane of a triangle from the side between its first two corners towards
-/// the third; `None` without area.
+/// Returns the unit vector in the plane of a triangle, perpendicular to the side between its first
+/// two corners, towards the third corner; `None` without area.
 pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
 ) -> Option<Vector<N, D>> {
@@ -185,19 +189,21 @@ pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     let rest = if from_a < from_b { c - a } else { c - b };
     let without = |v: &Vector<N, D>| v - along * along.dot(v);
     let (inward, height) = unit(&without(&rest))?;
-    // The height over the longest side is the smallest and decides whether there is an area.
+    // The height over the longest side is the smallest height, and decides whether there is an
+    // area.
     let longest = max(length, max(from_a, from_b));
     let least = height * (length / longest);
     let has_area = least > rounding_error(corners, longest);
     has_area.then(|| unit_or(&without(&inward), inward))
 }
 
-/// Whether the height over the longest side is far above the limit of an area; see [`inward_of`].
+/// Whether the height over the longest side is far above the rounding error that [`inward_of`] uses
+/// as the limit of an area.
 fn is_tall<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> bool {
     let [a, b, c] = corners;
     let (ab, ac, bc) = (b - a, c - a, c - b);
     let longest = max(ab.norm_squared(), max(ac.norm_squared(), bc.norm_squared()));
-    // Four times the squared area.
+    // This is four times the squared area.
     let along = ab.dot(&ac);
     let area = ab.norm_squared() * ac.norm_squared() - along * along;
     let farthest = corners.iter().map(|corner| max_component(&corner.coords)).fold(N::ZERO, max);
@@ -207,13 +213,13 @@ fn is_tall<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> bool {
         && area > N::MIN_POSITIVE / N::EPSILON
 }
 
-/// The line through a side, along which other sides of triangles without area are measured.
+/// The line through a side. Collinear sides of zero-area triangles are measured along it.
 struct SideLine<N: Real, const D: usize> {
     from: Point<N, D>,
-    /// Unit; zero if the side has no length.
+    /// The unit direction; zero if the side has no length.
     along: Vector<N, D>,
     length: N,
-    /// Lengths up to this are rounding errors.
+    /// Intervals up to this length are rounding errors.
     slack: N,
 }
 
@@ -225,27 +231,27 @@ impl<N: Real, const D: usize> SideLine<N, D> {
         Self { from, along, length, slack: rounding_error(corners, length) }
     }
 
-    /// The interval of a segment along the line, from the beginning of the side.
+    /// Returns the interval that a segment covers on the line, measured from the start of the side.
     fn span(&self, ends: &[Point<N, D>; 2]) -> [N; 2] {
         let [one, other] = ends.each_ref().mapped(|end| self.along.dot(&(end - self.from)));
         [min(one, other), max(one, other)]
     }
 
-    /// Whether an interval of the line has more than a point in common with the side; true for a
-    /// side without length.
+    /// Whether an interval of the line overlaps the side by more than `slack`; true for a side
+    /// without length.
     fn overlaps(&self, span: &[N; 2]) -> bool {
         self.length == N::ZERO || min(span[1], self.length) - max(span[0], N::ZERO) > self.slack
     }
 }
 
-/// Whether a side is in the list, or the list is full.
+/// Whether `crossed` contains the side, or is full.
 fn crossed_before<S>(crossed: &[(u32, usize, S)], triangle: u32, side: usize) -> bool {
     let is_same = |crossed: &(u32, usize, S)| (crossed.0, crossed.1) == (triangle, side);
     crossed.len() >= MAX_CROSSED || crossed.iter().any(is_same)
 }
 
-/// The height over its longest side up to which a triangle has no area: the rounding error of the
-/// difference of coordinates, and of the coordinates themselves.
+/// Returns the height over the longest side up to which a triangle has no area. It covers the
+/// rounding error of coordinate differences and of the coordinates themselves.
 pub(super) fn rounding_error<N: Real, const D: usize>(corners: &[Point<N, D>; 3], longest: N) -> N {
     let mut farthest = N::ZERO;
     for corner in corners {

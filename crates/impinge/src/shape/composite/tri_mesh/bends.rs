@@ -1,4 +1,4 @@
-//! Cached bends of the sides of a mesh's triangles, computed on first use.
+//! The cache of edge angles at the sides of a mesh's triangles, computed on first use.
 //!
 //! ```text
 //! bit   15 14 | 13          | 12     | 11 .. 8 | 7 .. 4 | 3 .. 0
@@ -9,26 +9,26 @@ use core::sync::atomic::{AtomicU16, Ordering};
 
 use crate::shape::surface::bend::BendShape;
 
-/// Bits for each side.
+/// The number of bits per side.
 const BITS: usize = 4;
-/// Codes of a side that was not computed yet, and of one that is not plain.
+/// Codes of a side whose edge angle is not computed yet, and of one whose edge angle is uncertain.
 const UNKNOWN: u16 = 0;
 const UNCLEAR: u16 = 4;
-/// Bits above the sides: the triangle is known to be plain, or known not to be.
+/// Flags above the bits of the sides: the triangle certainly has an area, or may have none.
 const CERTAIN_AREA: u16 = 1 << 12;
 const UNCERTAIN_AREA: u16 = 1 << 13;
 
-/// The [`BendShape`] of each triangle's sides, and which triangles are plain.
+/// The [`BendShape`] of each triangle's sides, and whether the triangle certainly has an area.
 ///
-/// The values are a function of the mesh: it does not matter who computes them first, nor that one
-/// of two concurrent writes is lost.
+/// The values depend only on the mesh. So it does not matter which thread computes a value first,
+/// or that one of two concurrent writes is lost.
 #[derive(Debug)]
 pub(super) struct Bends {
     sides: Vec<AtomicU16>,
 }
 
 impl Bends {
-    /// A cache for `triangles` triangles without values.
+    /// Returns an empty cache for `triangles` triangles.
     pub(super) fn new(triangles: usize) -> Self {
         let mut sides = Vec::new();
         sides.resize_with(triangles, AtomicU16::default);
@@ -42,7 +42,8 @@ impl Bends {
         }
     }
 
-    /// Returns the cached bend of a side, or computes and stores it; `None` if it is not plain.
+    /// Returns the cached edge angle of a side, or computes it with `find` and stores it; `None` if
+    /// it is uncertain.
     pub(super) fn at(
         &self,
         triangle: u32,
@@ -64,7 +65,7 @@ impl Bends {
         }
     }
 
-    /// Returns whether the triangle is plain, from the cache or by `find`.
+    /// Returns whether the triangle certainly has an area, from the cache or computed by `find`.
     pub(super) fn has_certain_area(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
         let kept = &self.sides[triangle as usize];
         let all = kept.load(Ordering::Relaxed);

@@ -1,4 +1,4 @@
-//! Construction of meshes, and of meshes from other ones.
+//! Construction of meshes, from triangles or from other meshes.
 
 use std::sync::OnceLock;
 
@@ -16,22 +16,22 @@ use crate::shape::composite::mesh_error::{
 use crate::shape::composite::polyline::refused;
 
 impl<N: Space<D>, const D: usize> TriMesh<N, D> {
-    /// The mesh of triangles given by three vertices each.
+    /// Returns the mesh of triangles, each given by the indices of its three vertices.
     ///
     /// # Panics
-    /// Where [`Self::try_new`] returns an error.
+    /// If [`Self::try_new`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn new(vertices: Vec<Point<N, D>>, triangles: Vec<[u32; 3]>) -> Self {
         or_panic(Self::try_new(vertices, triangles))
     }
 
-    /// The mesh of triangles given by three vertices each. Vertices may coincide or belong to no
-    /// triangle, and triangles may have no area.
+    /// Returns the mesh of triangles, each given by the indices of its three vertices. Vertices may
+    /// coincide or belong to no triangle, and triangles may have no area.
     ///
     /// # Errors
-    /// If a coordinate is not finite, a triangle refers to a vertex that does not exist, there is
-    /// no triangle, or 32 bits cannot number the corners.
+    /// If a coordinate is not finite, a triangle refers to a vertex that does not exist, there are
+    /// no triangles, or the corners do not fit 32-bit indices.
     pub fn try_new(
         vertices: Vec<Point<N, D>>,
         triangles: Vec<[u32; 3]>,
@@ -39,30 +39,30 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         entries::build_mesh(vertices, triangles, 0)
     }
 
-    /// The mesh with these ghosts; see [`Self::try_with_ghosts`].
+    /// Returns the mesh with its ghosts replaced by `ghosts`; see [`Self::try_with_ghosts`].
     ///
     /// # Panics
-    /// Where [`Self::try_with_ghosts`] returns an error.
+    /// If [`Self::try_with_ghosts`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn with_ghosts(self, ghosts: &[[u32; 3]]) -> Self {
         or_panic(self.try_with_ghosts(ghosts))
     }
 
-    /// The mesh with these ghosts, in place of those it had: triangles of the surface around it.
-    /// Nothing touches a ghost, no query finds it, and it is no part, but the seams beside it are
-    /// those of a surface that goes on. So nothing bumps into the seam between two tiles of a
-    /// terrain, each of which knows the triangles of the other at its border.
+    /// Returns the mesh with its ghosts replaced by `ghosts`: triangles of the surface around the
+    /// mesh. A ghost is not a part and no query finds it, but the surface continues across the
+    /// seams beside it. So nothing catches on the seam between two tiles of a terrain, if each tile
+    /// has the other's border triangles as ghosts.
     ///
-    /// Ghosts refer to the vertices of the mesh, and have the winding of its triangles. All
-    /// neighbours that share a corner with the border are needed, not only those that share a side.
-    /// Ghosts do not close a mesh: [`Self::neighbor`] is a border beside one.
+    /// Ghosts refer to the vertices of the mesh, and have the winding of its triangles. Pass all
+    /// neighbours that share a corner with the border, not only those that share a side. Ghosts do
+    /// not close a mesh: [`Self::neighbor`] returns a border for a side next to a ghost.
     ///
-    /// Costs as much as making the mesh.
+    /// The cost is that of building the mesh.
     ///
     /// # Errors
-    /// If a ghost refers to a vertex that does not exist, its number counted after the triangles,
-    /// or 32 bits cannot number the corners.
+    /// If a ghost refers to a vertex that does not exist, with the index of the ghost counted after
+    /// the triangles; or if the corners do not fit 32-bit indices.
     ///
     /// ```
     /// use impinge::dim3::math::Point;
@@ -82,7 +82,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         Ok(Self { is_one_sided, is_solid, keeps_internal_edges, ..made })
     }
 
-    /// See [`Self::try_new`]; the last `ghosts` triangles are ghosts.
+    /// Implements [`Self::try_new`]; the last `ghosts` triangles are ghosts.
     pub(super) fn build(
         vertices: Vec<Point<N, D>>,
         triangles: Vec<[u32; 3]>,
@@ -118,8 +118,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         })
     }
 
-    /// Merges vertices at one position: those that repeat an earlier one are dropped, and the
-    /// triangles renumbered. The behaviour of the mesh is unchanged.
+    /// Merges vertices at the same position: vertices that repeat an earlier one are dropped, and
+    /// the triangles refer to the earlier one. The behaviour of the mesh is unchanged.
     #[must_use]
     pub fn with_vertices_merged(self) -> Self {
         let (mut number, mut kept) = (Vec::with_capacity(self.vertices.len()), Vec::new());
@@ -138,8 +138,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.with(kept, triangles)
     }
 
-    /// Reverses the front of each triangle: the second and third corner are exchanged, and with
-    /// them the first and last side. A solid mesh becomes a skin.
+    /// Reverses the front of each triangle: exchanges the second and third corner, and with them
+    /// the first and last side. A solid mesh becomes a skin.
     #[must_use]
     pub fn flipped(self) -> Self {
         let triangles = self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
@@ -147,8 +147,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         Self { is_solid: false, ..self.with(vertices, triangles) }
     }
 
-    /// The mesh scaled along the axes of its frame, about its origin. If the scale mirrors it, the
-    /// triangles are flipped as by [`Self::flipped`], so that the front stays in front.
+    /// Returns the mesh scaled along the axes of its frame, about its origin. A mirroring scale
+    /// also flips the triangles, as [`Self::flipped`] does, so that the front stays in front.
     ///
     /// # Errors
     /// If a scale is zero or not finite, or a coordinate becomes infinite.
@@ -163,7 +163,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         Ok(self.with(vertices, triangles))
     }
 
-    /// The mesh of vertices and triangles that are known to be valid, with the options of this one.
+    /// Returns a mesh of the given valid vertices and triangles, with the options of this mesh.
     fn with(&self, vertices: Vec<Point<N, D>>, triangles: Vec<[u32; 3]>) -> Self {
         let made = or_panic(entries::build_mesh(vertices, triangles, self.ghosts));
         let Self { is_one_sided, is_solid, keeps_internal_edges, .. } = *self;
@@ -173,18 +173,17 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// Moves the vertices; see [`Self::try_set_vertices`].
     ///
     /// # Panics
-    /// Where [`Self::try_set_vertices`] returns an error.
+    /// If [`Self::try_set_vertices`] returns an error.
     #[track_caller]
     pub fn set_vertices(&mut self, vertices: &[Point<N, D>]) {
         or_panic(self.try_set_vertices(vertices));
     }
 
-    /// Moves the vertices, for a mesh that deforms: all of them, in the order of
-    /// [`Self::vertices`].
+    /// Moves all vertices of a deforming mesh; `vertices` has the order of [`Self::vertices`].
     ///
-    /// Triangles that were joined stay joined, even if their corners are apart now. The tree is
-    /// refitted, not rebuilt: O(n), a fifth to a tenth of the cost of making the mesh; a degraded
-    /// tree order is renewed over several calls. On an error nothing has changed.
+    /// Triangles that were joined stay joined, even if their corners are now apart. The tree is
+    /// refitted, not rebuilt: O(n), a fifth to a tenth of the cost of building the mesh. A degraded
+    /// tree order is renewed over several calls. On an error the mesh is unchanged.
     ///
     /// # Errors
     /// If a coordinate is not finite or the number of vertices differs.
@@ -192,7 +191,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         entries::move_vertices(self, vertices)
     }
 
-    /// See [`Self::try_set_vertices`].
+    /// Implements [`Self::try_set_vertices`].
     pub(super) fn move_vertices(&mut self, vertices: &[Point<N, D>]) -> Result<(), MeshError> {
         check_moved(vertices, self.vertices.len())?;
         let boxes = boxes_of(vertices, self.triangles());
@@ -225,12 +224,12 @@ fn corners_of<N: Real, const D: usize>(
     triangle.mapped(|vertex| vertices[vertex as usize])
 }
 
-/// The box of a triangle, as stored in the tree.
+/// Returns the box of a triangle, as stored in the tree.
 pub(crate) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> Aabb<N, D> {
     Aabb::from_points(corners).unwrap_or_else(Aabb::unbounded)
 }
 
-/// The unit normals of all triangles, zero without area; empty in 2D.
+/// Returns the unit normals of all triangles, zero for those without area; an empty vector in 2D.
 fn normals_of<N: Space<D>, const D: usize>(
     vertices: &[Point<N, D>],
     triangles: &[[u32; 3]],

@@ -19,11 +19,11 @@ use crate::tables::Here;
 /// The algorithms of meshes that differ by dimension.
 #[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
 pub trait MeshByDimension<N: Real, const D: usize> {
-    /// The unit normal on the front of a triangle, zero without area; `None` in 2D, where triangles
-    /// have no front.
+    /// Returns the unit normal on the front of a triangle, zero without area; `None` in 2D, where
+    /// triangles have no front.
     fn mesh_normal(corners: &[Point<N, D>; 3]) -> Option<Vector<N, D>>;
 
-    /// See [`Surface::admits`](crate::shape::Surface::admits).
+    /// Implements [`Surface::admits`](crate::shape::Surface::admits).
     fn mesh_admits(
         mesh: &TriMesh<N, D>,
         part: u32,
@@ -31,7 +31,8 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normal: &Vector<N, D>,
     ) -> bool;
 
-    /// Whether the mesh admits the first of two normals; if not, whether it admits the second.
+    /// Returns whether the mesh admits the first of two normals, and whether it admits the second
+    /// if it rejects the first.
     fn mesh_admits_in_turn(
         mesh: &TriMesh<N, D>,
         part: u32,
@@ -39,9 +40,9 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2];
 
-    /// [`Self::mesh_admits_in_turn`] at a corner, for normals that are not the triangle's own. The
-    /// flag beside the corner says that another triangle there is known not to be coplanar with
-    /// this one.
+    /// [`Self::mesh_admits_in_turn`] at a corner, for normals that differ from the triangle's own.
+    /// `corner` has the index of the corner, and whether another triangle there is known not to be
+    /// coplanar with this triangle.
     fn mesh_corner_admits_in_turn(
         mesh: &TriMesh<N, D>,
         part: u32,
@@ -49,29 +50,30 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2];
 
-    /// The edge angles of a triangle against its neighbours; `None` in 2D.
+    /// Returns the edge angles between a triangle and its neighbours; `None` in 2D.
     fn mesh_face_seams(mesh: &TriMesh<N, D>, part: u32) -> Option<FaceSeams<N>>;
 
-    /// See [`Surface::snapped`](crate::shape::Surface::snapped).
+    /// Implements [`Surface::snapped`](crate::shape::Surface::snapped).
     fn mesh_snapped(mesh: &TriMesh<N, D>, part: u32, normal: &Vector<N, D>)
     -> Option<Vector<N, D>>;
 
-    /// See [`CompositeShape::winds_around`](crate::shape::CompositeShape::winds_around).
+    /// Implements [`CompositeShape::winds_around`](crate::shape::CompositeShape::winds_around) for
+    /// a mesh.
     fn mesh_winds_around(mesh: &TriMesh<N, D>, point: &Point<N, D>) -> bool;
 
-    /// See [`CompositeShape::winds_around`](crate::shape::CompositeShape::winds_around), for a
-    /// polyline.
+    /// Implements [`CompositeShape::winds_around`](crate::shape::CompositeShape::winds_around) for
+    /// a polyline.
     fn line_winds_around(line: &Polyline<N, D>, point: &Point<N, D>) -> bool;
 
-    /// The blocks of triangles for rays, in the order of the tree; empty in 2D, where boxes
-    /// suffice.
+    /// Returns the blocks of triangle corners for ray tests, in the order of the tree; empty in 2D,
+    /// where boxes suffice.
     fn mesh_packed(
         tree: &BoxTree<N, D>,
         vertices: &[Point<N, D>],
         triangles: &[[u32; 3]],
     ) -> Vec<Triangles>;
 
-    /// Visits the parts that a ray may hit.
+    /// Calls `visit` with the parts that a ray may hit; `visit` returns the new limit.
     fn mesh_parts_along(
         mesh: &TriMesh<N, D>,
         bounds: &RayBounds<'_, N, D>,

@@ -1,4 +1,4 @@
-//! A mesh as a composite shape: triangles with the seams between them.
+//! The implementation of composite shape for meshes: triangles with the seams between them.
 
 use super::MeshByDimension;
 use super::rays::RayBounds;
@@ -95,7 +95,7 @@ impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
-        // Triangles without area have a zero normal and can be touched from both sides.
+        // A triangle without area has a zero normal and can be touched from both sides.
         let is_behind = || {
             let corner = self.vertices[self.triangles[part as usize][0] as usize];
             self.normals[part as usize].dot(&(center - corner)) < N::ZERO
@@ -149,18 +149,18 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
         Geometry(Kind::Composite(self))
     }
 
-    /// The smallest box, in O(1).
+    /// Returns the smallest box, in O(1).
     fn local_aabb(&self) -> Aabb<N, D> {
         self.tree.bounds().copied().unwrap_or_else(Aabb::unbounded)
     }
 
-    /// The smallest box, up to rounding. O(log n) for a convex-looking mesh, up to O(n) for one
-    /// whose parts extend almost equally far.
+    /// Returns the smallest box, up to rounding. O(log n) for a nearly convex mesh, up to O(n) if
+    /// the parts extend almost equally far.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         aabb_at(pose, self.triangles(), &self.vertices, &self.tree)
     }
 
-    /// The sphere about the centre of the box through the farthest vertex: O(n).
+    /// Returns the sphere about the centre of the local box through the farthest vertex. O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         sphere_around(&self.local_aabb(), self.triangles().as_flattened().iter(), &self.vertices)
     }
@@ -170,11 +170,11 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
     }
 }
 
-/// Up to this many corners are placed one by one to find the box around them.
+/// Meshes with at most this many corners are placed corner by corner to compute their box.
 const MAX_PLACED: usize = 192;
 
-/// The box around the vertices of parts placed at `pose`: from all of them if they are few, else
-/// from the extreme ones that the tree finds.
+/// Returns the box around the vertices of parts placed at `pose`. Uses all vertices if there are
+/// few, else the extreme vertices that the tree finds.
 pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     pose: &Pose<N, D>,
     parts: &[[u32; K]],
@@ -207,8 +207,8 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     Aabb::of_rotated(low, high, size, pose)
 }
 
-/// The sphere about the centre of a box that contains some vertices; its radius exceeds the
-/// distance of the farthest one by a bound of the rounding error.
+/// Returns the sphere about the centre of `aabb` that contains the vertices in `used`. Its radius
+/// exceeds the distance of the farthest one by a bound of the rounding error.
 pub(in crate::shape) fn sphere_around<'a, N: Real, const D: usize>(
     aabb: &Aabb<N, D>,
     used: impl Iterator<Item = &'a u32>,

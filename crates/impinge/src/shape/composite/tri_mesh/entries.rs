@@ -1,4 +1,4 @@
-//! The entries of meshes: construction, seam rules and rays.
+//! Entry points of meshes: construction, seam rules and ray tests.
 
 use super::rays::RayBounds;
 use super::{MeshByDimension, TriMesh};
@@ -8,7 +8,7 @@ use crate::shape::{FaceSeams, FeatureId, Part};
 use crate::tables::{Here, compiled};
 
 compiled! {
-    /// Meshes.
+    /// Entry points of meshes, compiled once per scalar type.
     trait MeshEntries;
 
     fn build_mesh(

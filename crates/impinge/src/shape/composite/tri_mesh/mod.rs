@@ -33,29 +33,29 @@ use crate::shape::{Revision, Triangle};
 
 /// Triangles that share corners: a filled shape in 2D, a surface in 3D, open or closed.
 ///
-/// Parts are the triangles, in the order given, with the vertices and sides of [`Triangle`]; all is
-/// in the frame of the mesh. Triangles join where the positions of their corners are equal,
-/// whatever the indices: a mesh whose triangles have corners of their own is as smooth as one that
-/// shares them. A corner in the middle of a side of another triangle does not join.
+/// Parts are the triangles, in the order given, with the vertices and sides of [`Triangle`]; all
+/// coordinates are in the frame of the mesh. Triangles join where the positions of their corners
+/// are equal, regardless of vertex indices, so a mesh with duplicated vertices is as smooth as one
+/// with shared vertices. A corner in the middle of a side of another triangle does not join.
 ///
 /// **Sides.** In 3D the front of a triangle is the side from which its corners run
 /// counter-clockwise. A mesh has two sides, or one after `one_sided`: then nothing touches it from
-/// behind, and a solid inside a closed mesh is not pushed deeper. A mesh is a skin without an
-/// inside in the queries that all shapes have, unless `solid` makes a closed one a body; `encloses`
-/// and `signed_distance` answer what a closed skin encloses. In 2D triangles are filled, and their
+/// behind, and a solid inside a closed mesh is not pushed deeper. For the queries that all shapes
+/// have, a mesh is a skin without an inside, unless `solid` makes a closed mesh a body. `encloses`
+/// and `signed_distance` compute what a closed skin encloses. In 2D triangles are filled, and their
 /// winding is irrelevant.
 ///
 /// **Seams.** Contacts treat the mesh as one surface (see [`Surface`](crate::shape::Surface)): at
-/// an edge or corner only normals of the whole surface count, so that nothing catches on the edges
-/// of a floor. Faces whose normals differ by less than 0.57 degrees (a sine of 0.01) count as
-/// coplanar. [`Self::with_internal_edges_kept`] switches this off.
+/// an edge or corner only normals of the whole surface are admitted, so that nothing catches on the
+/// edges of a floor. Faces whose normals differ by less than 0.57 degrees (a sine of 0.01) count as
+/// coplanar. [`Self::with_internal_edges_kept`] disables this.
 ///
-/// **Bad triangles.** A triangle with repeated or collinear corners is kept, so that part numbers
-/// do not change: it acts as a segment or a point.
+/// **Degenerate triangles.** A triangle with repeated or collinear corners is kept, so that part
+/// indices do not change: it acts as a segment or a point.
 ///
-/// Making a mesh costs O(n log n), a search O(log n + what it finds). A triangle with its share of
-/// vertices takes about 209 bytes in `f32`: 36 of them are a copy of its corners, stored next to
-/// those of its neighbours in the tree, for rays.
+/// Construction costs O(n log n), a search O(log n + results). A triangle with its share of
+/// vertices takes about 209 bytes in `f32`. Of these, 36 are a copy of its corners for rays, stored
+/// in the order of the tree.
 ///
 /// ```
 /// use impinge::dim3::math::Point;
@@ -72,18 +72,18 @@ use crate::shape::{Revision, Triangle};
 #[derive(Clone)]
 pub struct TriMesh<N: Real, const D: usize> {
     vertices: Vec<Point<N, D>>,
-    /// The triangles, then the ghosts: those belong to the topology and to the normals, and are no
-    /// parts.
+    /// The triangles, followed by the ghosts. Ghosts have entries in the topology and the normals,
+    /// but are not parts.
     triangles: Vec<[u32; 3]>,
-    /// The number of ghosts.
+    /// The number of ghosts, at the end of `triangles`.
     ghosts: usize,
     topology: Topology,
     /// The unit normal on the front of each triangle; zero without area. Empty in 2D.
     normals: Vec<Vector<N, D>>,
     bends: Bends,
     tree: BoxTree<N, D>,
-    /// The corners of the triangles in blocks, in the order of the tree's leaves, for rays. Empty
-    /// in 2D.
+    /// The corners of the triangles in blocks for ray tests, in the order of the tree's leaves.
+    /// Empty in 2D.
     packed: Vec<Triangles>,
     /// Whether each side is traversed equally often in both directions, and joined corners still
     /// coincide.
@@ -92,46 +92,46 @@ pub struct TriMesh<N: Real, const D: usize> {
     /// Whether `solid` was called; valid while [`Self::is_cycle`].
     is_solid: bool,
     keeps_internal_edges: bool,
-    /// The first triangle of the piece of each triangle.
+    /// For each triangle, the first triangle of its connected piece; computed on first use.
     pieces: OnceLock<Vec<u32>>,
     revision: Revision,
 }
 
 impl<N: Real, const D: usize> TriMesh<N, D> {
-    /// The vertices, as given; some may belong to no triangle.
+    /// Returns the vertices, as given; some may belong to no triangle.
     #[must_use]
     pub fn vertices(&self) -> &[Point<N, D>] {
         &self.vertices
     }
 
-    /// The three vertices of each triangle.
+    /// Returns the vertex indices of each triangle, without the ghosts.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles[..self.num_triangles()]
     }
 
-    /// The three vertices of each ghost; see [`Self::try_with_ghosts`].
+    /// Returns the vertex indices of each ghost; see [`Self::try_with_ghosts`].
     #[must_use]
     pub fn ghosts(&self) -> &[[u32; 3]] {
         &self.triangles[self.num_triangles()..]
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles, without the ghosts.
     #[must_use]
     pub const fn num_triangles(&self) -> usize {
         self.triangles.len() - self.ghosts
     }
 
-    /// One triangle.
+    /// Returns one triangle.
     ///
     /// # Panics
-    /// If there is no such triangle.
+    /// If `index` is not below the number of triangles and ghosts.
     #[must_use]
     pub fn triangle(&self, index: u32) -> Triangle<N, D> {
         Triangle::of_finite(self.corners(index))
     }
 
-    /// Returns the neighbour across side 0 to 2 of a triangle; ghosts are none. O(1).
+    /// Returns the neighbour across side 0 to 2 of a triangle; ghosts are not neighbours. O(1).
     ///
     /// # Panics
     /// If there is no such triangle or side.
@@ -140,7 +140,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.across(triangle, side as usize)
     }
 
-    /// [`Self::neighbor`], with a flip if both triangles traverse the side in the same direction.
+    /// Implements [`Self::neighbor`]. The neighbour is flipped if both triangles traverse the side
+    /// in the same direction.
     fn across(&self, triangle: u32, side: usize) -> EdgeNeighbor {
         let ends = self.joint_ends(triangle, side);
         let mut found = EdgeNeighbor::Border;
@@ -155,7 +156,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         found
     }
 
-    /// Whether every side with a length has a neighbour, so that a surface in 3D has no border.
+    /// Whether every side with a length has a neighbour, so that the surface in 3D has no border.
     /// O(n).
     #[must_use]
     pub fn is_closed(&self) -> bool {
@@ -165,8 +166,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         })
     }
 
-    /// Whether no side has more than two triangles, and the fronts of every two neighbours agree.
-    /// O(n).
+    /// Whether no side has more than two triangles, and the fronts of all neighbours agree. O(n).
     #[must_use]
     pub fn is_oriented(&self) -> bool {
         self.each_side().all(|(triangle, side)| match self.across(triangle, side) {
@@ -176,26 +176,27 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         })
     }
 
-    /// The tree over the boxes of the triangles.
+    /// Returns the tree over the boxes of the triangles.
     #[must_use]
     pub const fn tree(&self) -> &BoxTree<N, D> {
         &self.tree
     }
 
-    /// Whether nothing touches the mesh from behind.
+    /// Whether the mesh is one-sided: nothing touches it from behind.
     #[must_use]
     pub const fn is_one_sided(&self) -> bool {
         self.is_one_sided
     }
 
-    /// Whether contacts treat each triangle on its own; see [`Self::with_internal_edges_kept`].
+    /// Whether contacts treat each triangle as a separate solid; see
+    /// [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
         self.keeps_internal_edges
     }
 
-    /// Makes contacts treat each triangle on its own, with all its edges and corners, as if it had no
-    /// neighbours.
+    /// Makes contacts treat each triangle as a separate solid, with all its edges and corners, as
+    /// if it had no neighbours.
     #[must_use]
     pub const fn with_internal_edges_kept(mut self) -> Self {
         self.keeps_internal_edges = true;
@@ -206,17 +207,18 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.triangles[triangle as usize].mapped(|vertex| self.vertices[vertex as usize])
     }
 
-    /// The joints at the ends of a side, in the triangle's order.
+    /// Returns the joints at the two ends of a side, in the order of the triangle's corners.
     fn joint_ends(&self, triangle: u32, side: usize) -> [u32; 2] {
         [side, (side + 1) % 3].mapped(|corner| self.joint_at(triangle, corner))
     }
 
-    /// The joint at a corner.
+    /// Returns the joint at a corner (0 to 2) of a triangle.
     fn joint_at(&self, triangle: u32, corner: usize) -> u32 {
         self.topology.joints.of(self.triangles[triangle as usize][corner])
     }
 
-    /// The side of a triangle between two joints.
+    /// Returns the index of the side of a triangle between two joints, in either direction; `None`
+    /// if there is none.
     fn side_between(&self, triangle: u32, [from, to]: [u32; 2]) -> Option<usize> {
         (0..3).find(|&side| {
             let ends = self.joint_ends(triangle, side);
@@ -230,29 +232,28 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 }
 
 impl<N: Real> TriMesh<N, 3> {
-    /// Whether the mesh is the boundary of a volume, or of several: each side with a length is
-    /// traversed by as many triangles in one direction as in the other. O(1).
+    /// Whether the mesh bounds one or several volumes: each side with a length is traversed equally
+    /// often in both directions. O(1).
     ///
-    /// This holds for every mesh that [is closed](Self::is_closed) and
-    /// [oriented](Self::is_oriented); also for one whose bodies share a side, which then has four
-    /// triangles, or that has triangles with repeated corners. If [`Self::set_vertices`] moves
-    /// vertices apart that were at one position, the mesh is open. [`Self::encloses`] and
-    /// [`Self::signed_distance`] answer what lies inside.
+    /// True for every mesh that [is closed](Self::is_closed) and [oriented](Self::is_oriented).
+    /// Also true if bodies share a side, which then has four triangles, or if triangles have
+    /// repeated corners. If [`Self::set_vertices`] moves joined vertices apart, the result is
+    /// false. [`Self::encloses`] and [`Self::signed_distance`] compute what lies inside.
     #[must_use]
     pub const fn is_volume(&self) -> bool {
         self.is_cycle
     }
 
     /// Makes the mesh one-sided: nothing touches it from behind. The front of a triangle is the
-    /// side from which its corners run counter-clockwise. Neighbours should agree on it: see
-    /// [`Self::is_oriented`].
+    /// side from which its corners run counter-clockwise. The fronts of neighbours should agree:
+    /// see [`Self::is_oriented`].
     #[must_use]
     pub const fn one_sided(mut self) -> Self {
         self.is_one_sided = true;
         self
     }
 
-    /// The unit normal on the front of a triangle; `None` without area.
+    /// Returns the unit normal on the front of a triangle; `None` without area.
     ///
     /// # Panics
     /// If there is no such triangle.

@@ -1,4 +1,5 @@
-//! Rays among the triangles of a mesh: sixteen at once are sorted out by their signs.
+//! Ray tests against the triangles of a mesh: 16 triangles at once are culled by the signs of
+//! areas.
 
 use core::hint::black_box;
 
@@ -14,8 +15,8 @@ use crate::shape::{Part, PartSearch, PartSolid, Triangle};
 /// [`CompositeShape::parts_along`](crate::shape::CompositeShape::parts_along).
 type HitVisitor<'a, N, const D: usize> = &'a mut dyn FnMut(u32, Part<'_, N, D>) -> N;
 
-/// A ray in the frame of the mesh: `around` is a box around its origin with the rounding error,
-/// `limit` the latest time of a hit.
+/// A ray in the frame of the mesh: `around` is a box around the ray's origin that contains its
+/// rounding error, `limit` the latest time of a hit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayBounds<'a, N: Real, const D: usize> {
     pub(super) ray: &'a Ray<N, D>,
@@ -24,7 +25,7 @@ pub(super) struct RayBounds<'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> TriMesh<N, D> {
-    /// Finds the parts by their boxes alone.
+    /// Calls `visit` with the parts whose boxes the ray hits.
     pub(super) fn boxes_along(&self, bounds: &RayBounds<'_, N, D>, visit: HitVisitor<'_, N, D>) {
         let RayBounds { ray, around, limit } = *bounds;
         self.tree.cast(around, &ray.dir, limit, &mut |index, _| {
@@ -34,7 +35,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
 }
 
 impl<N: Real> TriMesh<N, 3> {
-    /// The corners of the triangles in the order of the tree, one block per leaf block.
+    /// Returns the corners of the triangles in the order of the tree, one block per leaf block.
     pub(super) fn packed(
         tree: &BoxTree<N, 3>,
         vertices: &[Point<N, 3>],
@@ -51,11 +52,11 @@ impl<N: Real> TriMesh<N, 3> {
         tree.packed().leaves().iter().map(block).collect()
     }
 
-    /// Finds the parts by their boxes, block by block, and by the signs of their areas around the
-    /// ray; by their boxes alone if the direction of the ray is zero.
+    /// Calls `visit` with the parts that pass two tests: the box, and the signs of the areas of the
+    /// triangle around the ray. If the direction is zero, only the box is tested.
     ///
-    /// The box of a part is tested last: where areas underflow, their signs are meaningless, in
-    /// this test and in the exact one.
+    /// The box of a part is tested last. Where areas underflow, their signs are meaningless here
+    /// and in the exact test, and only the box rejects the part.
     pub(super) fn parts_on_ray(&self, bounds: &RayBounds<'_, N, 3>, visit: HitVisitor<'_, N, 3>) {
         let RayBounds { ray, around, limit } = *bounds;
         if ray.dir.iter().all(|&x| x == N::ZERO) {
@@ -77,8 +78,8 @@ impl<N: Real> TriMesh<N, 3> {
         });
     }
 
-    /// The per-ray data of the block tests, for a ray with a direction; `around` is as in
-    /// [`RayBounds`].
+    /// Returns the per-ray data of the block tests; the direction of the ray must not be zero.
+    /// `around` is as in [`RayBounds`].
     #[inline(always)]
     pub(crate) fn ray_probe(&self, ray: &Ray<N, 3>, around: &Aabb<N, 3>) -> RayProbe {
         let size = self.tree.packed().size();
@@ -87,7 +88,7 @@ impl<N: Real> TriMesh<N, 3> {
     }
 
     /// Calls `visit` with the triangles that the ray may hit before `limit`; `visit` returns the
-    /// new limit. Limits are in the units of the probe. Triangles outside the tree are not visited.
+    /// new limit. Limits are in the units of the probe. Ghosts are not visited.
     #[inline(always)]
     pub(crate) fn visit_triangles(
         &self,
@@ -99,7 +100,7 @@ impl<N: Real> TriMesh<N, 3> {
         tree.visit_triangles(&self.packed, probe, limit, |at| visit(at.id, &self.corners_in(&at)));
     }
 
-    /// [`Self::visit_triangles`] for many rays.
+    /// Runs [`Self::visit_triangles`] for many rays at once.
     pub(crate) fn visit_triangles_of_many(
         &self,
         walks: &mut [Walk],
@@ -111,16 +112,16 @@ impl<N: Real> TriMesh<N, 3> {
         }
     }
 
-    /// Touches the corners of a triangle that [`Self::corners_in`] will read, to bring them into
-    /// the cache.
+    /// Loads a coordinate of each corner of a triangle that [`Self::corners_in`] will read, to
+    /// bring it into the cache.
     #[inline(always)]
     pub(crate) fn touch_corners(&self, index: u32) {
         let triangle = self.triangles.get(index as usize).filter(|_| !holds_all::<N>());
         black_box(triangle.map(|corners| corners.mapped(|at| self.vertices[at as usize][0])));
     }
 
-    /// The corners of a triangle: from its block if that holds them exactly, else from the
-    /// vertices.
+    /// Returns the corners of a triangle: from its block if the block holds them exactly, else from
+    /// the vertices.
     #[inline(always)]
     pub(crate) fn corners_in(&self, at: &TriangleAt<'_>) -> [Point<N, 3>; 3] {
         if !holds_all::<N>() {
@@ -130,7 +131,7 @@ impl<N: Real> TriMesh<N, 3> {
     }
 }
 
-/// Whether blocks hold corners of this scalar exactly.
+/// Whether blocks, which store `f32`, hold corners of the scalar `N` exactly.
 fn holds_all<N: Real>() -> bool {
     N::EPSILON.as_f64() >= f64::from(f32::EPSILON)
 }

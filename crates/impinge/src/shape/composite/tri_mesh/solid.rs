@@ -1,4 +1,4 @@
-//! Meshes in 3D as the boundary of a body.
+//! Meshes in 3D that bound a body.
 
 use super::TriMesh;
 use crate::math::{Mapped, Point, Real, max, max_component};
@@ -14,8 +14,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.is_solid && self.is_cycle
     }
 
-    /// Returns for each triangle the first one of its piece; triangles that share corners are of
-    /// one piece.
+    /// Returns for each triangle the first triangle of its piece; triangles that share corners
+    /// belong to one piece.
     pub(super) fn pieces(&self) -> &[u32] {
         self.pieces.get_or_init(|| {
             let joints = &self.topology.joints;
@@ -30,7 +30,7 @@ impl<N: Real> TriMesh<N, 3> {
     /// Makes the mesh a body instead of a skin; see [`Self::try_solid`].
     ///
     /// # Panics
-    /// Where [`Self::try_solid`] returns an error.
+    /// If [`Self::try_solid`] returns an error.
     #[must_use]
     #[track_caller]
     pub fn solid(self) -> Self {
@@ -40,23 +40,26 @@ impl<N: Real> TriMesh<N, 3> {
     /// Makes the mesh a body instead of a skin: the volume that it [encloses](Self::encloses)
     /// belongs to the shape.
     ///
-    /// A solid wholly inside touches the body: its distance is zero, an impact is at time zero, and
-    /// its contact leads out through the nearest part of the surface. The depth is how far the
-    /// solid extends below the plane through the nearest point there. The body contains the points
-    /// inside, and rays that start inside hit it at once if cast against a solid. Contacts outside
-    /// are those of a mesh with [one side](Self::one_sided), but a solid that overlaps the surface
-    /// is touched wherever its centre is. Inner surfaces whose fronts face each other are cavities:
-    /// points in them are outside.
+    /// A solid wholly inside touches the body: the distance is zero, the time of impact is zero,
+    /// and the contact leads out through the nearest part of the surface. The depth is how far the
+    /// solid extends below the plane through the nearest point of that part. Points inside belong
+    /// to the body, and rays that start inside hit it at once if cast against a solid. Contacts
+    /// outside are those of a [one-sided](Self::one_sided) mesh, but a solid that overlaps the
+    /// surface is touched wherever its centre is. Inner surfaces whose fronts face each other are
+    /// cavities: points in them are outside.
     ///
-    /// Later [`Self::set_vertices`] are not checked: while vertices that were at one position are
-    /// apart, the mesh is a skin with one side. [`Self::flipped`] makes it a skin for good.
+    /// Later calls of [`Self::set_vertices`] are not checked: while joined vertices are apart, the
+    /// mesh is a one-sided skin. [`Self::flipped`] makes it a skin permanently.
     ///
-    /// Cost: O(n), and O(log n) for each wall of a cavity.
+    /// The cost is O(n), and O(log n) for each wall of a cavity.
     ///
     /// # Errors
-    /// If the mesh does not [bound a volume](Self::is_volume): the error has the first edge at
-    /// which it is open or its fronts disagree. If a closed piece has its front inside and lies in
-    /// no other piece: the error has a triangle of it. A piece without volume has no inside.
+    /// - [`MeshError::NotClosed`] or [`MeshError::NotOriented`] if the mesh does not [bound a
+    ///   volume](Self::is_volume), with the first edge at fault.
+    /// - [`MeshError::InsideOut`] if a closed piece has its front inside and lies in no other
+    ///   piece, with a triangle of that piece.
+    ///
+    /// A piece without volume has no inside and causes no error.
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};
     /// use impinge::dim3::procedural;
@@ -98,7 +101,7 @@ impl<N: Real> TriMesh<N, 3> {
         Ok(self)
     }
 
-    /// A power of two near the size of the mesh.
+    /// Returns a power of two near the largest coordinate of the mesh.
     fn scale(&self) -> f64 {
         let corners = self.tree.bounds().map(|bounds| [*bounds.mins(), *bounds.maxs()]);
         let largest = |corner: &Point<N, 3>| max_component(&corner.coords);
@@ -106,14 +109,14 @@ impl<N: Real> TriMesh<N, 3> {
         size.power_of_two_below().as_f64()
     }
 
-    /// The error for the first edge that is not traversed equally often in both directions.
+    /// Returns the error for the first edge that is not traversed equally often in both directions.
     fn opening(&self) -> MeshError {
         let joints = Joints::new(&self.vertices, self.triangles());
         let ends = |part: u32, side: usize| {
             let corners = self.triangles[part as usize];
             [corners[side], corners[(side + 1) % 3]]
         };
-        // How often an edge is traversed in the given direction, and in the opposite one.
+        // Counts the traversals of an edge in the given direction, and in the opposite one.
         let counts = |[from, to]: [u32; 2]| {
             let mut counts = [0; 2];
             for &part in joints.parts(from) {
@@ -137,8 +140,8 @@ impl<N: Real> TriMesh<N, 3> {
                 _ => {}
             }
         }
-        // Vertices that were moved onto each other do not join: the joints stay as they were at
-        // first.
+        // Vertices that were moved to one position do not join: the joints are those of
+        // construction.
         MeshError::NotClosed { part: 0, edge: ends(0, 0) }
     }
 }

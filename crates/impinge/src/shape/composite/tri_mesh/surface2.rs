@@ -1,4 +1,5 @@
-//! The seam rule of filled triangles in 2D: the normals of their union at a side or a vertex.
+//! The seam rule of filled triangles in 2D: the normals of the union of the triangles at a side or
+//! a vertex.
 
 use super::TriMesh;
 use crate::math::{Real, Vector, cross2, max_component};
@@ -6,7 +7,7 @@ use crate::shape::FeatureId;
 use crate::shape::surface::seam::{is_flat, slack};
 
 impl<N: Real> TriMesh<N, 2> {
-    /// [`Surface::admits`](crate::shape::Surface::admits) in 2D.
+    /// Implements [`Surface::admits`](crate::shape::Surface::admits) in 2D.
     pub(super) fn admits_2d(&self, part: u32, feature: FeatureId, normal: &Vector<N, 2>) -> bool {
         if self.keeps_internal_edges {
             return true;
@@ -24,28 +25,30 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// The normal of a border side that is nearest to the given normal, if within a right angle;
-    /// `None` if the triangle has no such side, as inside the shape.
+    /// Returns the normal of the triangle's border side that is nearest to `normal`, if within a
+    /// right angle of it; `None` if the triangle has no such side, as inside the shape.
     pub(super) fn snapped_2d(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
         let open = (0..3).filter_map(|side| self.open_normal(part, side));
         let facing = open.filter(|own| own.dot(normal) > N::ZERO);
         facing.reduce(|best, own| if own.dot(normal) > best.dot(normal) { own } else { best })
     }
 
-    /// The outward normal of a side, if no triangle lies beyond it.
+    /// Returns the outward unit normal of a side; `None` if a triangle lies beyond the side, or the
+    /// triangle has no area.
     fn open_normal(&self, part: u32, side: usize) -> Option<Vector<N, 2>> {
         let outward = -self.inward(part, side)?;
         self.is_open_along(part, side, &outward).then_some(outward)
     }
 
-    /// Whether no other triangle at a side lies on the side of it that a direction points to.
+    /// Whether no other triangle at a side lies on the side's `direction` half-plane.
     fn is_open_along(&self, part: u32, side: usize, direction: &Vector<N, 2>) -> bool {
         let mut is_open = true;
         self.each_beyond(part, side, |_, inward| is_open &= inward.dot(direction) <= slack());
         is_open
     }
 
-    /// Whether a side is a border with this normal; a triangle without area may have both normals.
+    /// Whether a side is on the border and has the outward normal `normal`; a zero-area triangle
+    /// may have both normals.
     fn side_admits(&self, part: u32, side: usize, normal: &Vector<N, 2>) -> bool {
         match self.open_normal(part, side) {
             Some(own) => max_component(&(own - normal)) <= slack(),
@@ -57,11 +60,11 @@ impl<N: Real> TriMesh<N, 2> {
         }
     }
 
-    /// Whether no side that leaves the corner rises along the normal, and the two highest do not
-    /// form a straight border.
+    /// Whether the corner admits `normal`: no side that leaves the corner rises along it, and the
+    /// two highest sides do not form a straight border.
     fn corner_admits(&self, part: u32, corner: usize, normal: &Vector<N, 2>) -> bool {
         let joint = self.joint_ends(part, corner)[0];
-        // The highest side on the left of the normal and on its right; initially straight down.
+        // The highest side on the left of the normal, and on the right; both start straight down.
         let (mut is_highest, mut highest) = (true, [-normal; 2]);
         for &triangle in self.topology.joints.parts(joint) {
             for along in self.leaving(triangle, joint) {

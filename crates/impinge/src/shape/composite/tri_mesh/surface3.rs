@@ -1,4 +1,4 @@
-//! The seam rule of meshes in 3D: the normals at a face, an edge or a vertex.
+//! The seam rule of meshes in 3D: the normals admitted at a face, an edge or a vertex.
 
 use super::TriMesh;
 use super::around::rounding_error;
@@ -8,13 +8,14 @@ use crate::shape::surface::bend::{Bend, BendShape};
 use crate::shape::surface::seam::{CornerEdges, Seam, is_across, slack};
 use crate::shape::{FaceSeams, FeatureId};
 
-/// The unit normal on the side from which the corners run counter-clockwise; zero without area.
+/// Returns the unit normal on the side from which the corners run counter-clockwise; zero without
+/// area.
 pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
     let [a, b, c] = corners;
     let lengths = [length_of(&(b - a)), length_of(&(c - b)), length_of(&(a - c))];
     let longer = |best: usize, at: usize| if lengths[at] > lengths[best] { at } else { best };
     let longest = longer(longer(0, 1), 2);
-    // The product of the two shorter sides has the smallest rounding error.
+    // The cross product of the two shorter sides has the smallest rounding error.
     let tip = corners[(longest + 2) % 3];
     let sides = [corners[longest] - tip, corners[(longest + 1) % 3] - tip];
     let scale = lengths[longest].power_of_two_below();
@@ -25,7 +26,7 @@ pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector
 }
 
 impl<N: Real> TriMesh<N, 3> {
-    /// [`Surface::admits`](crate::shape::Surface::admits) in 3D.
+    /// Implements [`Surface::admits`](crate::shape::Surface::admits) in 3D.
     pub(super) fn admits_3d(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
         if self.keeps_internal_edges {
             return !self.is_one_sided || self.cosine(part, normal) >= -slack::<N>();
@@ -40,7 +41,7 @@ impl<N: Real> TriMesh<N, 3> {
             }
     }
 
-    /// [`Self::admits_3d`] for two normals, the second only if the first is rejected; the
+    /// Runs [`Self::admits_3d`] for two normals, for the second only if the first is rejected. The
     /// neighbourhood is evaluated once.
     pub(super) fn admits_in_turn_3d(
         &self,
@@ -65,7 +66,7 @@ impl<N: Real> TriMesh<N, 3> {
         }
     }
 
-    /// [`Surface::snapped`](crate::shape::Surface::snapped) in 3D; `None` without area.
+    /// Implements [`Surface::snapped`](crate::shape::Surface::snapped) in 3D; `None` without area.
     pub(super) fn snapped_3d(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let own = self.normal(part)?;
         let is_front = self.is_one_sided || own.dot(normal) >= N::ZERO;
@@ -76,7 +77,8 @@ impl<N: Real> TriMesh<N, 3> {
         self.normals[triangle as usize].dot(normal)
     }
 
-    /// Whether `normal` is the triangle's own normal, on a side that it has.
+    /// Whether `normal` is the triangle's own normal, on the front or, for a mesh with two sides,
+    /// on the back.
     fn is_own_normal(&self, part: u32, normal: &Vector<N, 3>) -> bool {
         self.snapped_3d(part, normal).is_some_and(|own| max_component(&(own - normal)) <= slack())
     }
@@ -85,13 +87,14 @@ impl<N: Real> TriMesh<N, 3> {
         self.bent_edge_admits(self.bend_at(part, side).as_ref(), part, side, normal)
     }
 
-    /// The bend of a side; `None` if it is not plain.
+    /// Returns the edge angle of a side; `None` if it is uncertain or the side has not exactly one
+    /// neighbour.
     fn bend_at(&self, part: u32, side: usize) -> Option<Bend<N>> {
         let other = self.topology.single_across(part, side)?;
         let fronts = [part, other].map(|face| self.normals[face as usize]);
         let find = || {
-            // If both triangles traverse the side in one direction, their fronts disagree and they
-            // lie on one side of it: no bend, but perhaps a rim.
+            // If both triangles traverse the side in the same direction, their fronts disagree and
+            // they lie on the same side of it: there is no edge angle, but perhaps a rim.
             let ends = self.joint_ends(part, side);
             let is_opposite = self
                 .side_between(other, ends)
@@ -102,8 +105,8 @@ impl<N: Real> TriMesh<N, 3> {
         Some(Bend::of(self.bends.at(part, side, find)?, fronts))
     }
 
-    /// Whether the edge is perpendicular to the normal, no face at it rises along the normal, and
-    /// the faces are not coplanar.
+    /// Whether the edge admits `normal`: the edge is perpendicular to it, no face at the edge rises
+    /// along it, and the faces are not coplanar.
     fn bent_edge_admits(
         &self,
         bend: Option<&Bend<N>>,
@@ -127,8 +130,8 @@ impl<N: Real> TriMesh<N, 3> {
         is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.is_exposed(part, side))
     }
 
-    /// The rise, along a vector of length at most 1, of the steeper of the two sides that leave a
-    /// joint.
+    /// Returns the larger of the components, along `normal` (of length at most 1), of the unit
+    /// vectors of the two sides that leave a joint.
     fn rise_from(&self, triangle: u32, joint: u32, normal: &Vector<N, 3>) -> N {
         let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
         let mut highest = -N::ONE;
@@ -140,8 +143,8 @@ impl<N: Real> TriMesh<N, 3> {
         highest
     }
 
-    /// Whether the surface has `normal`, which is not the triangle's own, at a corner. `is_bent`
-    /// says that another triangle there is known not to be coplanar with this one.
+    /// Whether the surface admits `normal`, which is not the triangle's own, at a corner. `is_bent`
+    /// is true if another triangle there is known not to be coplanar with this triangle.
     pub(super) fn vertex_admits(
         &self,
         part: u32,
@@ -152,7 +155,8 @@ impl<N: Real> TriMesh<N, 3> {
         let around = self.topology.joints.parts(joint);
         match self.edges_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
             Some(false) => return false,
-            // Triangles without area may have others beyond them.
+            // Beyond a triangle without area, other triangles may lie, which this walk does not
+            // see.
             Some(true) if around.iter().all(|&triangle| self.has_certain_area(triangle)) => {
                 return true;
             }
@@ -169,7 +173,8 @@ impl<N: Real> TriMesh<N, 3> {
         seam.admits(self.is_one_sided)
     }
 
-    /// Collects the sides that leave a corner, those of `part` first, until they reject the normal.
+    /// Collects the sides that leave a corner, those of `part` first; stops when they reject
+    /// `normal`.
     fn edges_around<'n>(
         &self,
         part: u32,
@@ -191,7 +196,8 @@ impl<N: Real> TriMesh<N, 3> {
         edges
     }
 
-    /// See [`OwnSurface::face_seams`](crate::shape::surface::own_surface::OwnSurface::face_seams).
+    /// Implements
+    /// [`OwnSurface::face_seams`](crate::shape::surface::own_surface::OwnSurface::face_seams).
     pub(super) fn face_seams_3d(&self, part: u32) -> Option<FaceSeams<N>> {
         let front = self.normal(part).filter(|_| !self.keeps_internal_edges)?;
         let (bend, is_rim) =
@@ -207,7 +213,7 @@ mod tests {
     use crate::shape::Surface;
     use crate::shape::surface::own_surface::OwnSurface;
 
-    /// A rough sheet of triangles.
+    /// Returns a mesh of a grid with random heights.
     fn rough_mesh(random: &mut Xorshift) -> TriMesh<f64, 3> {
         let position = |at: u32| {
             let [x, z] = [at % 6, at / 6].map(f64::from);

@@ -4,9 +4,9 @@ use crate::math::order::sort_few;
 use crate::math::{Mapped, Point, Real};
 use crate::shape::composite::joints::Joints;
 
-/// The neighbour across a side of a triangle of a mesh.
+/// The neighbour across a side of a mesh triangle.
 ///
-/// Sides join where the positions of their ends are equal, whatever the indices.
+/// Sides join where the positions of their ends are equal, regardless of vertex indices.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -19,16 +19,17 @@ use crate::shape::composite::joints::Joints;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeNeighbor {
-    /// None: the side is on the border. A side without length counts as one.
+    /// The side is on the border. A side without length counts as a border.
     Border,
-    /// One triangle.
+    /// Exactly one triangle is across the side.
     Triangle {
-        /// Its index.
+        /// The index of the neighbouring triangle.
         index: u32,
-        /// Whether both traverse the side in the same direction, so that their fronts disagree.
+        /// Whether both triangles traverse the side in the same direction, so that their fronts
+        /// disagree.
         is_flipped: bool,
     },
-    /// More than one triangle.
+    /// More than one triangle is across the side.
     Several,
 }
 
@@ -40,21 +41,21 @@ const SEVERAL: u32 = u32::MAX - 1;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Topology {
     pub(super) joints: Joints,
-    /// The triangle across each side of each triangle, or one of the two codes above.
+    /// The triangle across each side of each triangle, or `BORDER` or `SEVERAL`.
     across: Vec<[u32; 3]>,
     /// Whether each side is traversed equally often in both directions.
     pub(super) is_cycle: bool,
-    /// Whether vertices moved since: joined vertices may be apart, and vertices at one position not
-    /// joined.
+    /// Whether vertices moved since construction: joined vertices may be apart, and vertices at one
+    /// position may not be joined.
     pub(super) is_moved: bool,
 }
 
-/// A side, stored at the joint of its lower end: the other end, the triangle, the side's index
-/// within it, and whether it leads away from the joint.
+/// A side, stored at its end with the lower joint: the joint of its other end, the triangle, the
+/// side's index within the triangle, and whether the side leads away from the lower joint.
 type TopologySide = (u32, u32, u8, bool);
 
-/// Returns all sides with two different ends, grouped by the lower end, and the end of each joint's
-/// group.
+/// Returns all sides with two different ends, grouped by the lower joint, and the end index of each
+/// joint's group.
 fn sides_by_joint(joints: &Joints, triangles: &[[u32; 3]]) -> (Vec<TopologySide>, Vec<usize>) {
     let each = |visit: &mut dyn FnMut(u32, TopologySide)| {
         for (index, triangle) in (0..).zip(triangles) {
@@ -105,7 +106,7 @@ impl Topology {
         Self { joints, across, is_cycle, is_moved: false }
     }
 
-    /// The triangle across a side, if it is the only one.
+    /// Returns the triangle across a side if there is exactly one, else `None`.
     pub(super) fn single_across(&self, triangle: u32, side: usize) -> Option<u32> {
         Some(self.across[triangle as usize][side]).filter(|&across| across < SEVERAL)
     }
@@ -120,8 +121,8 @@ impl Topology {
     }
 }
 
-/// Stores the neighbours of each triangle of a group of equal sides. The group is in ascending
-/// order; a triangle without area may occur twice.
+/// Stores the neighbours of the triangles in `group`, a group of sides with equal ends in ascending
+/// order. A triangle without area may occur twice.
 fn link(group: &[TopologySide], across: &mut [[u32; 3]]) {
     for &(_, own, side, _) in group {
         let mut others = group.iter().map(|&(_, index, ..)| index).filter(|&index| index != own);
