@@ -5,9 +5,9 @@
 //!
 //! 1. points on the same pair of features, within [`SHARE`] of the pair's size;
 //! 2. points on other features within that length: features flicker where edges coincide, and a
-//! corner that slides over the triangles of a mesh meets another triangle in each step;
+//!    corner that slides over the triangles of a mesh meets another triangle in each step;
 //! 3. points on the same pair of features at any distance; a crossing of two edges only within
-//! [`REACH`] of the size.
+//!    [`REACH`] of the size.
 //!
 //! The distance of a match is the smaller of two: how far the point moved on the first solid, in
 //! that solid's frame, and how far it moved on the second, in the second's frame. It is zero for a

@@ -1,11 +1,11 @@
 //! Contacts of composites: the contacts of their parts that are also contacts of the whole shapes.
 //!
 //! 1. [`gather`] finds the parts within the prediction: the parts in [`part_cache`], as long as the
-//! cached box suffices, without the parts that a lower bound culls ([`cull`]).
+//!    cached box suffices, without the parts that a lower bound culls ([`cull`]).
 //! 2. [`part_contact`] computes the contact of each pair of parts. [`normal_filter`] rejects
-//! normals that a surface does not admit: at such a seam only contacts with the face count.
+//!    normals that a surface does not admit: at such a seam only contacts with the face count.
 //! 3. [`hidden`] drops contacts with faces that a neighbour hides; [`resolve`] drops contacts that
-//! another contact explains. Solids that overlap always keep a contact.
+//!    another contact explains. Solids that overlap always keep a contact.
 //! 4. [`inside`] adds the contacts of pieces that lie wholly inside a body and touch no part.
 //! 5. [`patch`] merges the remaining contacts into flat patches.
 //!

@@ -108,10 +108,10 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     /// 2. Slots that are too far from their old points lose the ids ([`Self::drop_jumped`]).
     /// 3. Old points without a slot pass on their ids by position ([`Self::match_positions`]).
     /// 4. If there are more than `limit` candidates, some are chosen, with a preference for slots
-    /// that continue old points ([`Self::chosen`]); ids of unchosen slots pass to chosen ones near
-    /// them.
+    ///    that continue old points ([`Self::chosen`]); ids of unchosen slots pass to chosen ones near
+    ///    them.
     /// 5. If only positions changed, the points are updated in place ([`Self::put_all`]); else new
-    /// points get ids and all points are written in the order of ids ([`Self::replace`]).
+    ///    points get ids and all points are written in the order of ids ([`Self::replace`]).
     #[inline(always)]
     pub(super) fn write_manifold(
         &self,
