@@ -197,7 +197,8 @@ pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 2], b: &[V; 2]) -> V {
 }
 
 impl<V, M> FacesInLanes<V, M> {
-    /// Finds the rectangle from the separating axis, and the parallelogram from the other box.
+    /// Finds the rectangle from the separating axis, and the parallelogram from the other box: `up`
+    /// leads from the centre of the other box to the centre of its face.
     #[inline(always)]
     pub(super) fn of_axis<S: Simd, N: Real>(
         simd: S,
@@ -217,7 +218,6 @@ impl<V, M> FacesInLanes<V, M> {
         let is_positive = f0.simd_gt(V::all(simd, N::ZERO));
         let half = in_turn(&is_m, &either(below.is_second, &boxes.half1, &boxes.half2));
         let [x, y, z] = &rotation;
-        // From the centre of the box to the centre of its face.
         let up = arm(&is_m, [x, y, z], half[0]);
         let outward: V = sign(simd, is_positive);
         let from_plane =
