@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 use super::between::{Between, by_number};
 use super::bounds::{extent, loosened};
 use super::nearest::{Wanted, nearest_between};
-use super::slabs::{AxisSlabs, corners, range};
+use super::slabs::{AxisSlabs, corners_of, range};
 use super::solid_bounds::{SolidBounds, gap_slack};
 use super::sweep::PartSweep;
 use crate::bounding_volume::Aabb;
@@ -23,7 +23,7 @@ use crate::shape::{CompositeShape, Kind};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartSeparation<N: Real, const D: usize> {
     pub(crate) separation: Separation<N, D>,
-    /// The same separation in the frame of [`Between::parts`], the first part's.
+    /// The separation in the frame of the first part, in which [`Between::parts`] states the pair.
     pub(crate) local: Separation<N, D>,
     /// Index of the part of the first shape, and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
@@ -190,8 +190,7 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
 
     /// Returns the extent of a part along a direction; infinite for parts without corners.
     fn extent(&self, which: usize, id: u32, along: &Vector<N, D>) -> N {
-        let part = self.parts[which].part(id);
-        let Some(corners) = corners(&part.solid, &part.pose) else { return N::INFINITY };
+        let Some(corners) = corners_of(self.parts[which], id) else { return N::INFINITY };
         range(&corners, along)[1]
     }
 
@@ -259,8 +258,7 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
     /// infinity without corners.
     fn gap_between(&self, parts: [u32; 2]) -> N {
         let middles = [0, 1].mapped(|which| {
-            let part = self.parts[which].part(parts[which]);
-            let [a, b, c] = corners(&part.solid, &part.pose)?;
+            let [a, b, c] = corners_of(self.parts[which], parts[which])?;
             Some(Point::from((a + b + c) * N::lit(1.0 / 3.0)))
         });
         let [Some(middle1), Some(middle2)] = middles else { return -N::INFINITY };
@@ -291,8 +289,7 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
         for group in near.chunks_mut(LANES) {
             let (mut tiles, mut is_known) = (PartPacket::blank(), [false; LANES]);
             for (lane, (_, other)) in group.iter().enumerate() {
-                let part = parts.part(*other);
-                if let Some(corners) = corners(&part.solid, &part.pose) {
+                if let Some(corners) = corners_of(parts, *other) {
                     tiles.put(lane, &corners.mapped(Point::from));
                     is_known[lane] = true;
                 }

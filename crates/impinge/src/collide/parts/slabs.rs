@@ -16,7 +16,7 @@ use smallvec::{SmallVec, smallvec};
 use super::between::Between;
 use super::sweep::PartSweep;
 use crate::math::{Mapped, Pose, Real, Space, Vector, max, max_component, min, unit};
-use crate::shape::{Part, PartSolid, Plane};
+use crate::shape::{CompositeShape, Part, PartSolid, Plane};
 
 /// Rounding error of gaps, in units of epsilon times the largest length.
 const ROUNDING: f64 = 128.0;
@@ -125,6 +125,19 @@ pub(crate) fn across<N: Real, const D: usize>(
     let sides = [without(other, one), without(one, other), without(one, &(other - one))];
     let all = sides.into_iter().chain([normal_to(one, other)]);
     all.filter_map(|direction| Some(unit(&direction)?.0))
+}
+
+/// Returns the corners of a part in the frame of its composite; `None` for a part without corners.
+/// The corners of a mesh are read directly.
+pub(crate) fn corners_of<N: Real, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    part: u32,
+) -> Option<[Vector<N, D>; 3]> {
+    if let Some(mesh) = parts.as_mesh() {
+        return Some(mesh.corners(part).mapped(|corner| corner.coords));
+    }
+    let part = parts.part(part);
+    corners(&part.solid, &part.pose)
 }
 
 /// Returns the placed corners of a triangle or segment, whose first end occurs twice; `None` for

@@ -8,13 +8,13 @@
 use super::between::Between;
 use super::bounds::extent;
 use super::pair_lanes::PartPairs;
-use super::slabs::{corners, range};
+use super::slabs::{corners_of, range};
 use super::solid_bounds::gap_slack;
 use crate::bounding_volume::Aabb;
 use crate::bvh::{TouchQuery, Toward, visit_touching};
 use crate::collide::packet::LANES;
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, min};
-use crate::shape::{CompositeShape, TriMesh};
+use crate::shape::CompositeShape;
 use crate::tables::ByDimension;
 
 /// Receives the pairs of parts that a search finds.
@@ -69,7 +69,6 @@ pub(crate) fn each_touching<N: Space<D>, const D: usize>(
     let mut search = TouchingSearch {
         between,
         parts: [parts1, parts2],
-        meshes: [parts1.as_mesh(), parts2.as_mesh()],
         max_distance: Some(max_distance),
         slack: if wanted == Touching::Nearest { gap_slack(size) } else { N::ZERO },
         wanted,
@@ -87,8 +86,6 @@ pub(crate) fn each_touching<N: Space<D>, const D: usize>(
 struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
-    /// The composites that are meshes, whose corners can be read faster.
-    meshes: [Option<&'a TriMesh<N, D>>; 2],
     max_distance: Option<N>,
     /// Rounding error by which boxes may be farther apart than the nearest parts.
     slack: N,
@@ -103,16 +100,6 @@ struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
-    /// Returns the corners of a part of the first shape (0) or the second (1), in the frame of its
-    /// shape; `None` for a part without corners.
-    fn corners_of(&self, which: usize, id: u32) -> Option<[Vector<N, D>; 3]> {
-        if let Some(mesh) = self.meshes[which] {
-            return Some(mesh.corners(id).mapped(|corner| corner.coords));
-        }
-        let part = self.parts[which].part(id);
-        corners(&part.solid, &part.pose)
-    }
-
     /// Returns whether two parts are beyond `max_distance` along the line through their centroids;
     /// this rejects most pairs that boxes do not.
     fn are_beyond(&self, one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) -> bool {
@@ -186,7 +173,7 @@ impl<N: Space<D>, const D: usize> TouchQuery<N, D> for TouchingSearch<'_, '_, N,
     /// corners in `own`.
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D> {
         let pose = self.pose(which);
-        let own = self.corners_of(which, id);
+        let own = corners_of(self.parts[which], id);
         self.own = own.map(|own| own.mapped(|corner| pose.point(&Point::from(corner)).coords));
         let Some([a, b, c]) = self.own else { return self.between.aabb_in_other(which, id) };
         let (mut low, mut high) = (a, a);
@@ -206,7 +193,7 @@ impl<N: Space<D>, const D: usize> TouchQuery<N, D> for TouchingSearch<'_, '_, N,
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         for &other in others {
             let pair = if which == 0 { [own, other] } else { [other, own] };
-            match (self.own, self.corners_of(1 - which, other)) {
+            match (self.own, corners_of(self.parts[1 - which], other)) {
                 (Some(one), Some(other)) if self.are_beyond(&one, &other) => {}
                 (Some(one), Some(other)) => self.keep(pair, &one, &other),
                 _ => self.found(pair),

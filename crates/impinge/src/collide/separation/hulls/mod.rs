@@ -48,7 +48,7 @@ mod vertices;
 use self::face::ReferenceFace;
 pub(super) use self::polyhedral::{LocalFeatures, Polyhedral, THIN};
 use self::vertices::Vertices;
-use super::{general, shared_corner};
+use super::{Algorithm, general, shared_corner};
 use crate::collide::Pair;
 use crate::convex::{Separation, Units};
 use crate::math::lanes::with_lanes;
@@ -69,12 +69,7 @@ pub(super) const PLANE_BLOCKS: usize = 8;
 /// vertices and faces, in blocks of 8. Thin triangles, flat boxes and larger hulls fall back to
 /// the general algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
-    match result(Level::new(), pair, limit) {
-        SatResult::Beyond => None,
-        SatResult::Found(found) => Some(shared_corner::with_shared_corner(pair, found))
-            .filter(|found| found.distance <= limit),
-        SatResult::Unproved => general::of_flat_cores(pair, limit),
-    }
+    result(Level::new(), pair, limit).separation(pair, limit, general::of_flat_cores)
 }
 
 /// Runs the test; returns `Unproved` also for solids that do not fit the lanes or have no width.
@@ -92,15 +87,32 @@ fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N
     }
 }
 
-/// The result of the test.
+/// The result of a separating axis test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum SatResult<N: Real> {
+pub(super) enum SatResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
     /// The separation of the cores or solids, proved.
     Found(Separation<N, 3>),
     /// No result is proved.
     Unproved,
+}
+
+impl<N: Real> SatResult<N> {
+    /// Returns the separation of the pair within `limit`, by `fallback` if no result is proved.
+    pub(super) fn separation(
+        self,
+        pair: &Pair<'_, N, 3>,
+        limit: N,
+        fallback: Algorithm<N, 3>,
+    ) -> Option<Separation<N, 3>> {
+        match self {
+            Self::Beyond => None,
+            Self::Found(found) => Some(shared_corner::with_shared_corner(pair, found))
+                .filter(|found| found.distance <= limit),
+            Self::Unproved => fallback(pair, limit),
+        }
+    }
 }
 
 /// Returns the rounding error of lengths, in units of the pair: 8 epsilon.

@@ -17,8 +17,8 @@
 //!      solid
 //! ```
 
+use super::super::general;
 use super::super::segments::nearest::core;
-use super::super::{general, shared_corner};
 use super::edges::{
     CandidateEdges, EdgeBlock, ReferenceEdge, nearest_points, normal_between, proved,
     squared_distances,
@@ -44,14 +44,11 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     limit: N,
 ) -> Option<Separation<N, 3>> {
     let (_, radius) = core(pair, &pair.first);
-    match result(Level::new(), pair, limit + radius) {
-        SatResult::Beyond => None,
-        SatResult::Found(found) => {
-            let found = shared_corner::with_shared_corner(pair, found.rounded(radius, N::ZERO));
-            Some(found).filter(|found| found.distance <= limit)
-        }
-        SatResult::Unproved => general::of_flat_cores(pair, limit),
-    }
+    let result = match result(Level::new(), pair, limit + radius) {
+        SatResult::Found(found) => SatResult::Found(found.rounded(radius, N::ZERO)),
+        other => other,
+    };
+    result.separation(pair, limit, general::of_flat_cores)
 }
 
 /// Runs the test for the cores of a pair.

@@ -19,8 +19,7 @@
 //! with nearest points at corners.
 
 use crate::collide::Pair;
-use crate::collide::separation::hulls::{self, THIN};
-use crate::collide::separation::shared_corner;
+use crate::collide::separation::hulls::{self, SatResult, THIN};
 use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min};
 use crate::shape::{Kind, SupportMap, Triangle};
@@ -41,25 +40,15 @@ pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     let (Kind::Triangle(first), Kind::Triangle(second)) = (pair.first, pair.second) else {
         return hulls::separation(pair, limit);
     };
-    match by_axes([first, second], &pair.pose12, limit) {
-        Axes::Beyond => None,
-        Axes::Found(found) => Some(shared_corner::with_shared_corner(pair, found))
-            .filter(|found| found.distance <= limit),
-        Axes::Unproved => hulls::separation(pair, limit),
-    }
-}
-
-/// Result of the separating axis test.
-enum Axes<N: Real> {
-    /// The triangles are farther apart than the limit.
-    Beyond,
-    Found(Separation<N, 3>),
-    /// No two points prove the result.
-    Unproved,
+    by_axes([first, second], &pair.pose12, limit).separation(pair, limit, hulls::separation)
 }
 
 /// Tests the axes in the frame of the first triangle, in units of the pair.
-fn by_axes<N: Real>(triangles: [&Triangle<N, 3>; 2], pose12: &Pose<N, 3>, limit: N) -> Axes<N> {
+fn by_axes<N: Real>(
+    triangles: [&Triangle<N, 3>; 2],
+    pose12: &Pose<N, 3>,
+    limit: N,
+) -> SatResult<N> {
     let [reach1, reach2] = triangles.mapped(SupportMap::reach);
     let units = Units::of(reach1, reach2, &pose12.translation);
     let translation = pose12.translation * units.shrink;
@@ -68,14 +57,14 @@ fn by_axes<N: Real>(triangles: [&Triangle<N, 3>; 2], pose12: &Pose<N, 3>, limit:
         PlacedTriangle::new(triangles[0], units.shrink),
         PlacedTriangle::new(triangles[1], units.shrink).map(|second| second.at(&pose)),
     ];
-    let [Some(first), Some(second)] = placed else { return Axes::Unproved };
+    let [Some(first), Some(second)] = placed else { return SatResult::Unproved };
     let [face1, face2] = [FaceAxis::new(&first, &second), FaceAxis::new(&second, &first)];
     let (edges, inexact) = EdgeAxis::best(&first, &second);
     let rounding_error = hulls::rounding_error::<N>();
     let is_second = face2.gap > face1.gap + rounding_error;
     let face = if is_second { &face2 } else { &face1 };
     if max(face.gap, edges.gap) > hulls::beyond_limit(&units, limit) {
-        return Axes::Beyond;
+        return SatResult::Beyond;
     }
     let of_edges =
         || edges.points(&first, &second).filter(|_| edges.gap > face.gap - rounding_error);
@@ -88,9 +77,9 @@ fn by_axes<N: Real>(triangles: [&Triangle<N, 3>; 2], pose12: &Pose<N, 3>, limit:
     match found {
         // False for NaN.
         Some(found) if inexact <= found.distance + rounding_error => {
-            Axes::Found(found.scaled(units.scale))
+            SatResult::Found(found.scaled(units.scale))
         }
-        _ => Axes::Unproved,
+        _ => SatResult::Unproved,
     }
 }
 
@@ -268,9 +257,9 @@ mod tests {
         let pair = Pair { first, second, pose12: Pose::identity() };
         let found = general::of_flat_cores(&pair, N::INFINITY).expect("within infinity");
         match by_axes([one, other], &pair.pose12, N::INFINITY) {
-            Axes::Found(axes) => (found.distance, Some(axes.distance)),
-            Axes::Beyond => unreachable!("there is no limit"),
-            Axes::Unproved => (found.distance, None),
+            SatResult::Found(axes) => (found.distance, Some(axes.distance)),
+            SatResult::Beyond => unreachable!("there is no limit"),
+            SatResult::Unproved => (found.distance, None),
         }
     }
 
