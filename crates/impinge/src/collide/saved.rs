@@ -7,7 +7,7 @@ use crate::math::Real;
 use crate::math::numbers::{Damage, NumberSource, Numbers};
 use crate::shape::FeatureId;
 
-/// What a point has beside numbers.
+/// The features, id and code of a contact point; its numbers are stored apart.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct PointRecord {
     features: [FeatureId; 2],
@@ -16,7 +16,7 @@ pub(crate) struct PointRecord {
 }
 
 impl PointRecord {
-    /// Appends the place and the distance of a point to numbers.
+    /// Returns the record of a point, and appends its position and distance to `numbers`.
     pub(super) fn of<N: Real, const D: usize>(
         point: &RawPoint<N, D>,
         numbers: &mut Numbers<N>,

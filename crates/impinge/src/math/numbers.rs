@@ -16,18 +16,18 @@ use smallvec::SmallVec;
 
 use super::{Matrix, Point, Pose, Real, Space, Vector};
 
-/// What is wrong with saved data.
+/// A defect of saved data, as a sentence for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Damage(pub(crate) Cow<'static, str>);
 
 impl Damage {
-    /// Damage that a constructor found.
+    /// Makes the damage of a constructor's error.
     pub(crate) fn found(error: &impl fmt::Display) -> Self {
         Self(error.to_string().into())
     }
 }
 
-/// `Ok` if the condition holds, else the damage that it does not.
+/// Returns a [`Damage`] with the message `what` unless the condition holds.
 pub(crate) fn ensure(holds: bool, what: &'static str) -> Result<(), Damage> {
     if holds { Ok(()) } else { Err(Damage(what.into())) }
 }
@@ -183,7 +183,7 @@ impl<N: Real> fmt::Display for Numbers<N> {
     }
 }
 
-/// What a NaN begins with; its bits follow.
+/// Prefix of a NaN in text; its bits follow in hexadecimal.
 const NAN: &str = "NaN:";
 
 /// A number as what it is.

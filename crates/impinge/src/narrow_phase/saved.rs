@@ -1,7 +1,7 @@
 //! The narrow phase of a saved world: its pairs, in the order in which contacts are read.
 //!
-//! What a pair is asked, the copies of its solids and whether it touches follow from the rest. Which algorithm serves it
-//! does too, so data cannot bring a pair to another.
+//! The requests of pairs, the copies of their solids and the touching flags are computed from the table. So is the
+//! algorithm of each pair: data cannot assign a pair to another algorithm.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +25,7 @@ use crate::math::numbers::{Damage, Numbers, ensure};
 use crate::math::{Mapped, Real, Space};
 use crate::query::Proximity;
 
-/// What a narrow phase was made with.
+/// The arguments of a narrow phase: points per manifold, and the tolerance of contact reuse if it is enabled.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct PhaseRecord<N: Real> {
@@ -53,7 +53,7 @@ pub(crate) struct PairRecord<N: Real> {
     reference: Option<ReferenceRecord<N>>,
 }
 
-/// What is kept of a pair, by what is asked of it.
+/// The cached state of a pair, by its query type.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 enum StateRecord<N: Real> {
@@ -91,10 +91,10 @@ impl<N: Real, const D: usize> Reference<N, D> {
 }
 
 impl<N: Real> ReferenceRecord<N> {
-    /// The reference, of a pair with so many contacts.
+    /// Makes the reference of a pair with this number of contacts.
     fn restore<const D: usize>(&self, contacts: usize) -> Result<Reference<N, D>, Damage> {
         let (pose21, reach) = self.numbers.all(|n| Ok((n.pose()?, n.number()?)))?;
-        // That of a fast pair, which is not used before it is noted again, may be of other contacts.
+        // A paused reference is set again before its use, and may belong to earlier contacts.
         let is_used = self.pause == 0 && reach.is_finite_number();
         let is_whole = self.distances.len() == contacts || !is_used;
         ensure(is_whole, "a reference has other distances than contacts")?;
@@ -104,7 +104,7 @@ impl<N: Real> ReferenceRecord<N> {
 }
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
-    /// What the phase was made with; `None` if dispatchers of the user's choose its algorithms.
+    /// Returns the arguments of the phase; `None` if it has dispatchers of the user.
     pub(crate) fn phase_record(&self) -> Option<PhaseRecord<N>> {
         let max_points = self.contact_dispatcher.built_in_for_all()?;
         let is_reusing = self.lanes.composites.references.is_some();
@@ -115,7 +115,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         self.proximity_dispatcher.is_built_in_for_all().then_some(record)
     }
 
-    /// The phase as data; `None` if dispatchers of the user's choose its algorithms.
+    /// Returns the phase as data; `None` if it has dispatchers of the user.
     pub(crate) fn record(&self) -> Option<NarrowRecord<N>> {
         let phase = self.phase_record()?;
         let mut pairs = Vec::with_capacity(self.pairs.len());
@@ -156,14 +156,14 @@ impl<S: Parts, V, R> Group<S, V, R> {
 }
 
 impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
-    /// Adds a pair as it was, and answers its place.
+    /// Adds a saved pair and returns its index.
     fn push_again(&mut self, (key, state): (PairKey, S), is_touching: bool, is_due: bool) -> u32 {
         let place = self.push(key, state, is_touching);
         self.due[place as usize] = is_due;
         place
     }
 
-    /// The pair at a place has this reference, if pairs have any.
+    /// Sets the reference of the pair at an index, if the group stores references.
     fn refer_again(&mut self, place: u32, reference: Option<R>) {
         if let Some((references, reference)) = self.references.as_mut().zip(reference) {
             references[place as usize] = reference;

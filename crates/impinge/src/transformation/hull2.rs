@@ -9,7 +9,7 @@ use crate::shape::ShapeError;
 /// Returns the convex hull of some points: the indices of its corners, counter-clockwise, starting
 /// at the smallest x, and among several of these at the smallest y.
 ///
-/// Of coinciding points the first is used; points on a side are left out. A corner within `4 ·
+/// Uses the first of coinciding points; points on a side are left out. A corner within `4 ·
 /// N::EPSILON · max |x|` of the line between its neighbours is treated as a point on a side. So
 /// every given point is inside the polygon or within twice that distance of it. The time is O(n log
 /// n).

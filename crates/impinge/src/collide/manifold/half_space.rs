@@ -51,7 +51,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
             Kind::Triangle(triangle) => {
                 let corners = triangle.corners();
                 for (at, id) in (0_u32..3).enumerate() {
-                    // Of corners that coincide, only the first is added.
+                    // Coinciding corners are added once.
                     if !corners[..at].contains(&corners[at]) {
                         self.push(FeatureId::Vertex(id), corners[at], out);
                     }

@@ -33,7 +33,7 @@ pub(crate) const fn conforming_points<const D: usize>() -> usize {
 
 /// Computes the contacts of any two built-in shapes, composites included.
 ///
-/// The same type serves all pairs: it selects the algorithm by the kinds of the shapes at each
+/// One type serves all pairs: it selects the algorithm by the kinds of the shapes at each
 /// update, so even the shapes may change from one update to the next.
 ///
 /// ```

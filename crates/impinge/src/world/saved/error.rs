@@ -105,7 +105,7 @@ pub enum RestoreError {
     UnknownFilter(String),
     /// No world was saved as this data.
     Damaged {
-        /// What is wrong, in words.
+        /// The defect, in words.
         what: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Worlds as data: all that decides what a world answers from now on.
+//! Worlds as data: the state that determines all later answers of a world.
 //!
 //! | state | how it is saved |
 //! |---|---|
@@ -79,11 +79,11 @@ const VERSION: u32 = 1;
 #[derive(Debug)]
 pub struct SavedWorld<N: Real, const D: usize, T> {
     header: Header,
-    /// If the header is one of these.
+    /// `None` if the header has another version, scalar or dimension.
     record: Option<WorldRecord<N, T>>,
 }
 
-/// What comes first, to be understood by all versions.
+/// The first element of the data, which all versions read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Header {
     version: u32,
@@ -202,7 +202,7 @@ impl<'de, N: Real, const D: usize, T: Deserialize<'de>> Deserialize<'de> for Sav
 }
 
 struct WorldVisitor<N, T, const D: usize> {
-    /// What is not understood can be read over.
+    /// Whether the format allows to skip a value of unknown type.
     can_skip: bool,
     world: PhantomData<(N, T)>,
 }

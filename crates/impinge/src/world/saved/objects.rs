@@ -29,12 +29,12 @@ pub(super) struct ObjectRecord<N: Real, T> {
     predicted: Option<Numbers<N>>,
     /// Since the last update.
     changes: Option<BodyChanges>,
-    /// As of the last update, of an object with pairs that changed since.
+    /// State at the last update, for an object with pairs that has changed since.
     table: Option<RowRecord<N>>,
     data: T,
 }
 
-/// What the narrow phase reads of an object.
+/// The properties of an object that the narrow phase reads.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct RowRecord<N: Real> {

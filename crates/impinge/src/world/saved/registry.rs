@@ -1,4 +1,4 @@
-//! What saved worlds name and do not hold.
+//! The registry of what a saved world names instead of holding: filters, and shapes of the user.
 
 use core::fmt;
 use std::collections::BTreeMap;

@@ -88,7 +88,7 @@ impl Marks {
         (self.diagonals, &self.bits)
     }
 
-    /// What [`Self::parts`] gave, for as many cells as there are bits, if any.
+    /// Restores the marks that [`Self::parts`] returned; `bits` is empty or has one entry per cell.
     #[cfg(feature = "serde")]
     pub(super) fn of_parts(diagonals: Diagonals, bits: Vec<u8>) -> Self {
         let ghosts = bits.iter().filter(|&bits| bits & GHOST != 0).count();
