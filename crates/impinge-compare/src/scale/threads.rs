@@ -130,7 +130,7 @@ impl<W: Contender<D> + Send + Sync, const D: usize> Contender<D> for Pooled<W> {
         self.timed_step();
     }
 
-    fn read(&self) -> Reading {
+    fn read(&mut self) -> Reading {
         self.timed_read().1
     }
 
@@ -139,7 +139,7 @@ impl<W: Contender<D> + Send + Sync, const D: usize> Contender<D> for Pooled<W> {
         clocked(pool, || world.step()).0
     }
 
-    fn timed_read(&self) -> (f64, Reading) {
+    fn timed_read(&mut self) -> (f64, Reading) {
         clocked(&self.pool, || self.world.read())
     }
 

@@ -14,7 +14,7 @@ pub trait Contender<const D: usize> {
     fn step(&mut self);
 
     /// Reads every contact point; timed.
-    fn read(&self) -> Reading;
+    fn read(&mut self) -> Reading;
 
     /// Runs a step, and returns its time in nanoseconds.
     fn timed_step(&mut self) -> f64 {
@@ -22,7 +22,7 @@ pub trait Contender<const D: usize> {
     }
 
     /// Reads, and returns the time in nanoseconds with the result.
-    fn timed_read(&self) -> (f64, Reading) {
+    fn timed_read(&mut self) -> (f64, Reading) {
         timed(|| self.read())
     }
 

@@ -58,7 +58,7 @@ macro_rules! contender {
                 self.step();
             }
 
-            fn read(&self) -> Reading {
+            fn read(&mut self) -> Reading {
                 let digest = self.read();
                 Reading { points: digest.points, depth: digest.depth }
             }

@@ -61,6 +61,7 @@ pub mod ours;
 mod parry_tree;
 pub mod rapier;
 pub mod stages;
+mod streaming;
 
 #[cfg(feature = "jolt")]
 use impinge_compare_c::Jolt;
@@ -72,6 +73,7 @@ use contender::{Contender, Entrant, KINDS, race};
 use impinge_scenes::Scene;
 pub use stages::PREDICTION;
 use stages::{Stage, plane_stages, space_stages, stages};
+use streaming::Streaming;
 
 use crate::Arguments;
 use crate::table::Table;
@@ -84,6 +86,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     let mut table = Table::new("world", "ms");
     let plane: &[(&str, Maker<2>)] = &[
         ("impinge", |scene| Some(Box::new(ours::plane(scene)))),
+        ("impinge stream", |scene| Some(Box::new(Streaming::new(ours::plane(scene))))),
         ("impinge reusing", |scene| Some(Box::new(ours::plane(scene).reusing()))),
         ("rapier", |scene| Some(Box::new(rapier::plane::Rapier::new(scene)))),
         ("parry+tree", |scene| Some(Box::new(parry_tree::plane::ParryTree::new(scene)))),
@@ -94,6 +97,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     ];
     let space: &[(&str, Maker<3>)] = &[
         ("impinge", |scene| Some(Box::new(ours::space(scene)))),
+        ("impinge stream", |scene| Some(Box::new(Streaming::new(ours::space(scene))))),
         ("impinge reusing", |scene| Some(Box::new(ours::space(scene).reusing()))),
         ("rapier", |scene| Some(Box::new(rapier::space::Rapier::new(scene)))),
         ("parry+tree", |scene| Some(Box::new(parry_tree::space::ParryTree::new(scene)))),

@@ -132,6 +132,11 @@ where
         self.handles[number] = Some(handle);
     }
 
+    /// Returns the world.
+    pub fn world(&self) -> &CollisionWorld<f32, D, usize> {
+        &self.world
+    }
+
     /// Makes pairs keep their contacts until they have moved by half of the prediction.
     pub fn reusing(mut self) -> Self {
         let narrow_phase = DefaultNarrowPhase::new().reusing(PREDICTION / 2.0);
@@ -237,7 +242,7 @@ where
         self.world.update();
     }
 
-    fn read(&self) -> Reading {
+    fn read(&mut self) -> Reading {
         read(&self.world)
     }
 

@@ -194,7 +194,7 @@ impl Contender<DIM> for ParryTree {
         std::hint::black_box(&self.events);
     }
 
-    fn read(&self) -> Reading {
+    fn read(&mut self) -> Reading {
         let mut reading = Reading::default();
         let manifolds = self.pairs.values().flat_map(|pair| &pair.manifolds);
         for point in manifolds.flat_map(|manifold| &manifold.points) {

@@ -161,7 +161,7 @@ impl Contender<DIM> for Rapier {
         self.colliders.step();
     }
 
-    fn read(&self) -> Reading {
+    fn read(&mut self) -> Reading {
         self.colliders.read()
     }
 

@@ -148,6 +148,12 @@ pub mod narrow_phase {
     pub type ProximityAlgorithm<N> = crate::narrow_phase::ProximityAlgorithm<N, 3>;
     /// The contacts of a pair of objects.
     pub type ContactPair<'a, N> = crate::narrow_phase::ContactPair<'a, N, 3>;
+    /// All contacts of an update in dense lists.
+    pub type ContactStream<N> = crate::narrow_phase::ContactStream<N, 3>;
+    /// A manifold in a stream.
+    pub type StreamManifold<N> = crate::narrow_phase::StreamManifold<N, 3>;
+    /// A contact point in a stream.
+    pub type StreamPoint<N> = crate::narrow_phase::StreamPoint<N, 3>;
     /// The poses, shapes and query types that a narrow phase reads.
     pub type ObjectTable<N> = crate::narrow_phase::ObjectTable<N, 3>;
 }

@@ -35,6 +35,7 @@ mod rewind;
 pub(crate) mod saved;
 mod state;
 mod stateless;
+mod stream;
 mod substep;
 mod traits;
 mod update;
@@ -56,6 +57,7 @@ pub use reuse::ReuseError;
 pub(crate) use state::{CompositeState, ContactState, KeptContacts};
 pub use stateless::contact_manifolds;
 pub(crate) use stateless::{contact_manifolds_at, manifolds_of_placed};
+pub use stream::{ContactStream, StreamManifold, StreamPoint};
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
     ProximityAlgorithm, ProximityDetector, ProximityDispatcher,

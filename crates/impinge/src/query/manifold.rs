@@ -3,7 +3,7 @@
 use super::kinematic::KinematicSides;
 use super::{Contact, ContactKinematic};
 use crate::collide::{Pair, Placed, RawManifold, RawPoint};
-use crate::math::{Pose, Real, Unit, Vector};
+use crate::math::{Point, Pose, Real, Unit, Vector};
 
 /// The id of a contact, unique among all contacts of a world at all times.
 ///
@@ -248,6 +248,21 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
+    /// Passes a contact of a raw manifold with the normal `own` on: its id, its point on the user's
+    /// first solid in the world frame, and its depth. The bits are those of [`placed`].
+    #[inline]
+    pub(super) fn place(
+        &self,
+        own: &Vector<N, D>,
+        raw: &RawPoint<N, D>,
+        each: &mut impl FnMut(ContactId, Point<N, D>, N),
+    ) {
+        let on_second = || raw.point1 + own * raw.distance;
+        let own_first = if self.is_swapped { on_second() } else { raw.point1 };
+        let id = ContactId { pair: self.pair, number: raw.id };
+        each(id, self.pose1.point(&own_first), -raw.distance);
+    }
+
     /// Returns the placement of two solids given in the user's order.
     #[inline]
     pub(crate) fn of_pair(placed: &'a [Placed<'_, N, D>; 2], pair: u64, is_swapped: bool) -> Self {

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::collide::mesh::Patch;
 use crate::collide::{Pair, RawManifold, RawPoint};
-use crate::math::{Pose, Real, Space, Unit, Vector};
+use crate::math::{Point, Pose, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Geometry};
 
 /// A contact as [`ManifoldView::contacts`] returns it: its geometry, id, features and parts.
@@ -270,6 +270,25 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
             ViewSource::Made(_) => return [Vector::<N, D>::zeros(); 2],
         };
         [own, pose1.vector(&own)]
+    }
+
+    /// Calls `each` with the id, the point on the first solid in the world frame, and the depth of
+    /// each contact.
+    #[inline]
+    pub(crate) fn each_placed(&self, mut each: impl FnMut(ContactId, Point<N, D>, N)) {
+        match self.0 {
+            ViewSource::Convex(raw, placement, _) => {
+                raw.points.iter().for_each(|point| placement.place(&raw.normal, point, &mut each));
+            }
+            ViewSource::Patch(patch, placement, _) => {
+                let points = patch.points.iter().map(|point| &point.raw);
+                points.for_each(|point| placement.place(&patch.normal, point, &mut each));
+            }
+            ViewSource::Made(manifold) => {
+                let contacts = manifold.contacts().iter();
+                contacts.for_each(|made| each(made.id, made.contact.world1, made.contact.depth));
+            }
+        }
     }
 
     /// Returns the contact at an index; `normal` must be the result of [`Self::own_normal`].

@@ -14,7 +14,7 @@ use crate::collide::Placed;
 use crate::convex::Separation;
 use crate::math::{Point, Space, Vector};
 use crate::narrow_phase::{
-    DefaultNarrowPhase, Events, GeometricQueryType, Interaction, ObjectTable,
+    ContactStream, DefaultNarrowPhase, Events, GeometricQueryType, Interaction, ObjectTable,
 };
 use crate::partitioning::Sweep;
 use crate::query::{Impact, ImpactOptions, PointProjection, RayIntersection};
@@ -118,6 +118,14 @@ compiled! {
         slots: &'a [Slot],
         pieces: usize,
     ) -> Vec<ContactViewPiece<'a, N, D>> = narrow_phase::view_pieces_of;
+
+    /// Fills a stream with all manifolds; `slots` has the handles of the objects.
+    fn read_contacts(
+        narrow_phase: &DefaultNarrowPhase<N, D>,
+        table: &ObjectTable<N, D>,
+        slots: &[Slot],
+        stream: &mut ContactStream<N, D>,
+    ) = narrow_phase::read_all;
 
     fn update_pair(
         narrow_phase: &mut DefaultNarrowPhase<N, D>,

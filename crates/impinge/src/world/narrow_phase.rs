@@ -4,8 +4,8 @@ use super::objects::{Slot, handle_at};
 use super::{CollisionObjects, entries};
 use crate::math::Space;
 use crate::narrow_phase::{
-    CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, Interaction,
-    ObjectTable, ProximityPair, Views,
+    CollisionObjectHandle, ContactPair, ContactStream, DefaultNarrowPhase, Events, IdAllocator,
+    Interaction, ObjectTable, ProximityPair, Views,
 };
 use crate::query::{ContactManifold, ManifoldView};
 
@@ -215,6 +215,14 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
         vec![Box::new(views.into_iter())]
     }
 
+    /// Fills `stream` with the manifolds of [`Self::contact_views`], in the same order.
+    fn read_contacts(&self, objects: &CollisionObjects<N, D, T>, stream: &mut ContactStream<N, D>) {
+        let are_here =
+            |first, second| objects.get(first).is_some() && objects.get(second).is_some();
+        let views = self.contact_views(objects);
+        stream.fill(views.filter(|(first, second, _)| are_here(*first, *second)));
+    }
+
     /// Returns all pairs whose query type is proximity.
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a>;
 }
@@ -349,6 +357,10 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         entries::contact_view_pieces(self, objects.table(), objects.slots(), pieces)
     }
 
+    fn read_contacts(&self, objects: &CollisionObjects<N, D, T>, stream: &mut ContactStream<N, D>) {
+        entries::read_contacts(self, objects.table(), objects.slots(), stream);
+    }
+
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a> {
         Box::new(Self::proximity_pairs(self).map(named(objects.slots())))
     }
@@ -372,6 +384,21 @@ pub(super) fn view_pieces_of<'a, N: Space<D>, const D: usize>(
 ) -> Vec<ContactViewPiece<'a, N, D>> {
     let pieces = narrow_phase.contact_view_pieces(table, pieces);
     pieces.map(|views| named_views(views, slots)).collect()
+}
+
+/// Implements [`NarrowPhase::read_contacts`].
+pub(super) fn read_all<N: Space<D>, const D: usize>(
+    narrow_phase: &DefaultNarrowPhase<N, D>,
+    table: &ObjectTable<N, D>,
+    slots: &[Slot],
+    stream: &mut ContactStream<N, D>,
+) {
+    let views = narrow_phase.contact_views(table);
+    if views.is_plain {
+        stream.fill(views.plain(named(slots)));
+    } else {
+        stream.fill(views.particular(named(slots)));
+    }
 }
 
 /// Returns views with the handles of their objects. Plain and particular views have separate

@@ -4,7 +4,7 @@ use super::step::in_order;
 use super::{CollisionObject, CollisionObjects, CollisionWorld};
 use crate::math::Space;
 use crate::narrow_phase::{
-    CollisionObjectHandle, ContactEvent, ContactPair, ProximityEvent, ProximityPair,
+    CollisionObjectHandle, ContactEvent, ContactPair, ContactStream, ProximityEvent, ProximityPair,
 };
 use crate::query::{ContactManifold, ManifoldView};
 
@@ -194,6 +194,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let pieces = self.narrow_phase.contact_view_pieces(&self.objects, pieces);
         let views = pieces.into_iter().map(|views| PairViews { objects: &self.objects, views });
         views.collect()
+    }
+
+    /// Replaces the contents of `stream` by all contacts of the last update, in dense lists: the
+    /// fastest way to read all of them. The contacts and their order are those of
+    /// [`Self::contact_views`]; see [`ContactStream`] for an example.
+    pub fn read_contacts(&self, stream: &mut ContactStream<N, D>) {
+        self.narrow_phase.read_contacts(&self.objects, stream);
     }
 
     /// Returns the contact events of the last update: pairs that got their first contact point or
