@@ -193,8 +193,8 @@ impl PairEvents {
         let mut started = 0;
         stopped.clear();
         for chunk in ended.chunks(AT_ONCE) {
-            pairs.fetch(chunk);
-            pairs.fetch(&starting[started..starting.len().min(started + AT_ONCE)]);
+            pairs.prefetch(chunk);
+            pairs.prefetch(&starting[started..starting.len().min(started + AT_ONCE)]);
             for &key in chunk {
                 let (a, b) = unpack(key);
                 // A pair that the filter refused when it began is not in the table.
@@ -209,7 +209,7 @@ impl PairEvents {
             }
         }
         for chunk in starting[started..].chunks(AT_ONCE) {
-            pairs.fetch(chunk);
+            pairs.prefetch(chunk);
             for (a, b) in chunk.iter().copied().map(unpack) {
                 pairs.insert_new(a, b);
             }

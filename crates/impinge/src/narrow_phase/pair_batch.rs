@@ -71,7 +71,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let packed = |&[first, second]: &PairKey| pack(first, second);
         let keys: SmallVec<[u64; 2 * AT_ONCE]> =
             started.iter().chain(stopped).map(packed).collect();
-        self.pairs.fetch(&keys);
+        self.pairs.prefetch(&keys);
         let kind = |object: u32| table.shape(object).geometry().kind() as u32;
         let kinds = |sum: u32, &[first, second]: &PairKey| sum ^ kind(first) ^ kind(second);
         let mut seen = u64::from(started.iter().fold(0, kinds));
