@@ -347,7 +347,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         let Self { slots, records, table, .. } = self;
         let slot = slots.get(index as usize);
         if let Some(object) = slot.and_then(|slot| records.get(slot.place as usize)) {
-            table.lend(index, || object.body.row());
+            table.acquire(index, || object.body.row());
         }
     }
 

@@ -29,7 +29,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
     /// Reads the events that were added since the last call, and stores the handles in them.
     pub(super) fn note(&mut self, events: &Events, queued: &Events) {
         for (noted, events) in self.noted.iter_mut().zip([events, queued]) {
-            self.named.extend(events.named_from(*noted));
+            self.named.extend(events.handles_since(*noted));
             *noted = events.counts();
         }
     }
@@ -48,7 +48,7 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         self.noted = [(0, 0); 2];
         if !self.objects.is_empty() {
             let is_here = |handle: &CollisionObjectHandle| self.objects.contains_key(handle);
-            let named: BTreeSet<_> = events.named_from((0, 0)).filter(is_here).collect();
+            let named: BTreeSet<_> = events.handles_since((0, 0)).filter(is_here).collect();
             self.objects.retain(|handle, _| named.contains(handle));
         }
     }

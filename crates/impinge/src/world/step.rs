@@ -172,7 +172,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let interactions = core::mem::take(&mut self.interactions);
         self.tell_all(&interactions);
         self.interactions = interactions;
-        self.objects.table.tidy();
+        self.objects.table.compact();
     }
 
     /// Passes a started or stopped pair to the narrow phase.

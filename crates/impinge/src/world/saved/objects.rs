@@ -254,7 +254,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         match rows[index as usize].take() {
             Some((row, skin)) => {
                 self.table.set_skin(index, skin);
-                self.table.lend(index, || row);
+                self.table.acquire(index, || row);
             }
             None => self.lend(index),
         }
