@@ -6,7 +6,7 @@
 //!
 //! | state | who notes | how it comes back |
 //! |---|---|---|
-//! | objects, with data, skins and predictions | `fresh`, `fresh_to_move`, `get_mut`, `insert`, `remove` and `flush` of `CollisionObjects` | record by record |
+//! | objects, with data, skins and predictions | `body_mut`, `body_mut_to_move`, `get_mut`, `insert`, `remove` and `flush` of `CollisionObjects` | record by record |
 //! | rows of objects with pairs | `set`, `set_position`, `acquire`, `release` and `set_skin` of `ObjectTable` | they are written again |
 //! | boxes, proxies and their pairs | `apply_waiting` and `remove` of `PairFinder`; `PairTable`; `DBVTBroadPhase` | boxes are set in the trees, whose order affects time alone |
 //! | contacts and proximities | `Group`; before an update `PairGroups::note` and `note_due` | to their former positions, since `contact_views` reads in that order |

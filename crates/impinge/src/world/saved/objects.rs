@@ -198,7 +198,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         let (mut object, skin) = record.restore(handle, NOT_YET, shapes)?;
         let body = &mut object.body;
         if let Some(predicted) = predicted {
-            body.predict_again();
+            body.restore_predicted();
             self.changes.predict(handle.index(), predicted);
         }
         if skin > N::ZERO {
@@ -206,10 +206,10 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             self.table.set_skin(handle.index(), skin);
         }
         if let Some(changes) = changes {
-            self.changes.note_again(body, changes);
+            self.changes.restore_changes(body, changes);
         }
         let place = u32::try_from(self.records.len()).map_err(|_| Damage("many objects".into()))?;
-        self.slots[handle.uid()].place = place;
+        self.slots[handle.uid()].record = place;
         self.records.push(object);
         Ok(())
     }
@@ -220,7 +220,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         index: u32,
         proxy: ProxyHandle,
     ) -> Result<CollisionObjectHandle, Damage> {
-        let place = self.slots.get(index as usize).map(|slot| slot.place as usize);
+        let place = self.slots.get(index as usize).map(|slot| slot.record as usize);
         let object = place.and_then(|place| self.records.get_mut(place));
         let body = &mut object.ok_or(Damage("a proxy has no object".into()))?.body;
         ensure(body.proxy == NOT_YET, "an object has two proxies")?;
@@ -241,7 +241,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             }
             if first == second
                 && let Some(object) =
-                    self.records.get_mut(self.slots[first as usize].place as usize)
+                    self.records.get_mut(self.slots[first as usize].record as usize)
             {
                 object.body.toggle_self_pair();
             }
@@ -256,7 +256,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
                 self.table.set_skin(index, skin);
                 self.table.acquire(index, || row);
             }
-            None => self.lend(index),
+            None => self.acquire_row(index),
         }
         Ok(())
     }
@@ -325,7 +325,7 @@ impl<N: Real, T> ObjectRecord<N, T> {
         let (row, skin) = self.row.restore(handle, shapes)?;
         let mut body = WorldBody::new(row, self.groups, proxy);
         if self.is_fixed {
-            body.fix_again();
+            body.restore_fixed();
         }
         Ok((CollisionObject { body, data: self.data }, skin))
     }
