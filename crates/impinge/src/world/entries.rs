@@ -4,7 +4,7 @@
 use super::bodies::WorldBody;
 use super::changes::{ChangeList, ChangeTargets};
 use super::dirty::{DirtyTree, DirtyVisitor};
-use super::fork::UsualBroadPhase;
+use super::fork::DefaultBroadPhase;
 use super::objects::Slot;
 use super::queries::cast::Cast;
 use super::queries::shape;
@@ -205,5 +205,5 @@ compiled! {
 }
 
 fn boxed_broad_phase<N: Space<D>, const D: usize>(margin: N) -> Box<WorldBroadPhase<N, D>> {
-    Box::new(UsualBroadPhase::new(margin))
+    Box::new(DefaultBroadPhase::new(margin))
 }

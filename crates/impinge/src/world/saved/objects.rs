@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::super::bodies::{MAX_CHANGES, WorldBody};
 use super::super::changes::BodyChanges;
 use super::super::error::{usable_pose, usable_query};
-use super::super::fork::UsualBroadPhase;
+use super::super::fork::DefaultBroadPhase;
 use super::super::objects::Slot;
 use super::super::removed::RemovedObjects;
 use super::super::{CollisionGroups, CollisionObject, CollisionObjects};
@@ -262,7 +262,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// The boxes of the broad phase are those of objects that have not changed.
-    pub(super) fn check_boxes(&self, broad_phase: &UsualBroadPhase<N, D>) -> Result<(), Damage> {
+    pub(super) fn check_boxes(&self, broad_phase: &DefaultBroadPhase<N, D>) -> Result<(), Damage> {
         let is_right = |body: &WorldBody<N, D>| {
             let is_dirty = self.changes.is_dirty(body);
             is_dirty || *broad_phase.given_volume(body.proxy) == self.changes.volume(body)
