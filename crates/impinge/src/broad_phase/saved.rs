@@ -95,8 +95,8 @@ impl Handles {
 
     /// The index comes into use, unless there is none or it is in use.
     fn restore_handle(&mut self, index: u32) -> Result<ProxyHandle, Damage> {
-        let place = self.is_present.get_mut(index as usize);
-        let is_unused = place.is_some_and(|is_present| !core::mem::replace(is_present, true));
+        let is_present = self.is_present.get_mut(index as usize);
+        let is_unused = is_present.is_some_and(|is_present| !core::mem::replace(is_present, true));
         ensure(is_unused, "a proxy is there twice, or has no handle")?;
         Ok(self.at(index))
     }

@@ -89,7 +89,10 @@ fn compare_pairs<N: Real, const D: usize>(
     let mut pairs: Vec<u64> = finder.pairs().iter().map(|&(a, b)| pack(a, b)).collect();
     pairs.sort_unstable();
     assert_eq!(pairs, expected, "all pairs");
-    assert!(finder.containers.iter().all(|&home| home != Container::Nowhere), "all take part");
+    assert!(
+        finder.containers.iter().all(|&container| container != Container::Nowhere),
+        "all take part"
+    );
 }
 
 /// Asserts that objects came to rest, and that there were enough events and pairs for a meaningful
