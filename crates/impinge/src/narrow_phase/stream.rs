@@ -83,8 +83,10 @@ impl<N: Real, const D: usize> StreamManifold<N, D> {
 ///
 /// [`CollisionWorld::read_contacts`] fills the stream after an update. Each point knows its index
 /// in the lists of the fill before, so a solver keeps its impulses in a list parallel to
-/// [`Self::points`] and starts from the old ones without a hash map. A fill takes about half of the
-/// time in which [`CollisionWorld::contact_views`] reads the same contacts, and reuses its memory.
+/// [`Self::points`] and starts from the old ones without a hash map. For a pile of 9261 boxes in 3D
+/// with 435 440 contacts, filling, reading and fetching the old impulses takes 12 ms, where
+/// [`CollisionWorld::contact_views`] with a `HashMap` by id takes 60 to 90 ms. Without ids, the
+/// views alone are read in 7 ms. A stream keeps its memory.
 ///
 /// Features, parts and kinematics are not in the stream: read them by
 /// [`CollisionWorld::contact_pair`].
@@ -207,9 +209,8 @@ impl<N: Space<D>, const D: usize> ContactStream<N, D> {
         core::mem::swap(&mut self.now, &mut self.old);
         self.now.manifolds.clear();
         self.now.points.clear();
-        for (object1, object2, view) in views {
-            self.now.push([object1, object2], &view);
-        }
+        // Not a `for` loop: chains are faster to fold than to step.
+        views.for_each(|(object1, object2, view)| self.now.push([object1, object2], &view));
         self.connect();
     }
 
@@ -244,7 +245,7 @@ const TAKEN: u64 = ContactId::NULL.pair;
 impl<N: Space<D>, const D: usize> Lists<N, D> {
     /// Appends a manifold. A manifold of a custom algorithm may have contacts of several pair
     /// numbers, and is cut between them.
-    #[inline]
+    #[inline(always)]
     fn push(
         &mut self,
         [object1, object2]: [CollisionObjectHandle; 2],

@@ -71,6 +71,11 @@ impl<A: Iterator, B: Iterator<Item = A::Item>> Iterator for UnfusedChain<A, B> {
         }
         self.second.next()
     }
+
+    fn fold<C, F: FnMut(C, A::Item) -> C>(self, start: C, mut each: F) -> C {
+        let after_first = self.first.fold(start, &mut each);
+        self.second.fold(after_first, each)
+    }
 }
 
 /// Contacts of a pair of objects, as of the last update.

@@ -250,7 +250,7 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
 impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
     /// Passes a contact of a raw manifold with the normal `own` on: its id, its point on the user's
     /// first solid in the world frame, and its depth. The bits are those of [`placed`].
-    #[inline]
+    #[inline(always)]
     pub(super) fn place(
         &self,
         own: &Vector<N, D>,

@@ -229,6 +229,7 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
 
     /// Returns the unit vector from the first solid to the second, in the world frame. It is the
     /// normal of the first contact, which all contacts of a manifold share.
+    #[inline]
     #[must_use]
     pub fn normal(&self) -> Unit<Vector<N, D>> {
         let world = |own: &Vector<N, D>, placement: &Placement<'_, N, D>| {
@@ -274,7 +275,7 @@ impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
 
     /// Calls `each` with the id, the point on the first solid in the world frame, and the depth of
     /// each contact.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn each_placed(&self, mut each: impl FnMut(ContactId, Point<N, D>, N)) {
         match self.0 {
             ViewSource::Convex(raw, placement, _) => {

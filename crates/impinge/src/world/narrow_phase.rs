@@ -394,10 +394,10 @@ pub(super) fn read_all<N: Space<D>, const D: usize>(
     stream: &mut ContactStream<N, D>,
 ) {
     let views = narrow_phase.contact_views(table);
-    if views.is_plain {
-        stream.fill(views.plain(named(slots)));
+    if views.reads_in_place {
+        stream.fill(views.in_place(with_handles(slots)));
     } else {
-        stream.fill(views.particular(named(slots)));
+        stream.fill(views.with_built(with_handles(slots)));
     }
 }
 

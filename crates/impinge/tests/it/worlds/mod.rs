@@ -1,5 +1,6 @@
 //! Tests of collision worlds: rules, events and queries, also against models.
 
+mod contact_stream;
 mod extremes_of_worlds;
 #[cfg(feature = "serde")]
 mod saved_worlds;

@@ -6,8 +6,10 @@ use std::hash::{Hash, Hasher};
 
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Unit, Vector};
-use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
-use impinge::query::{ContactManifold, TrackedContact};
+use impinge::narrow_phase::{
+    CollisionObjectHandle, ContactStream, GeometricQueryType, StreamManifold,
+};
+use impinge::query::{Contact, ContactManifold, TrackedContact};
 use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Plane, Segment, ShapeHandle,
     Triangle,
@@ -285,11 +287,45 @@ fn assert_pieces_agree<N: Space<D>, const D: usize, T: Sync>(world: &CollisionWo
     }
 }
 
+/// Asserts that a stream has the contacts of the views, to the bit and in order.
+pub(crate) fn assert_stream_agrees<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    stream: &ContactStream<N, D>,
+) {
+    let streamed = stream.manifolds().iter().flat_map(|manifold| {
+        let points = stream.points()[manifold.range()].iter();
+        points.map(move |point| {
+            let pair = (manifold.object1, manifold.object2);
+            (pair, manifold.id(point), manifold.normal, point.world1, point.depth)
+        })
+    });
+    let viewed = world.contact_views().flat_map(|(object1, object2, view)| {
+        let pair = (object1.handle(), object2.handle());
+        view.contacts().map(move |point| {
+            let Contact { world1, normal, depth, .. } = point.contact;
+            (pair, point.id, normal, world1, depth)
+        })
+    });
+    assert!(streamed.eq(viewed), "the stream has the contacts of the views");
+    let ranges = stream.manifolds().iter().map(StreamManifold::range);
+    let end = ranges.fold(0, |start, range| {
+        assert!(
+            range.start == start && start < range.end,
+            "no gap, and no manifold without points"
+        );
+        range.end
+    });
+    assert_eq!(end, stream.points().len(), "each point belongs to a manifold");
+}
+
 /// Asserts that manifolds read in place equal the manifolds to the bit.
 pub(crate) fn assert_views_agree<N: Space<D>, const D: usize, T: Sync>(
     world: &CollisionWorld<N, D, T>,
 ) {
     assert_pieces_agree(world);
+    let mut stream = ContactStream::new();
+    world.read_contacts(&mut stream);
+    assert_stream_agrees(world, &stream);
     let views = world.contact_views();
     let mut views: Vec<_> = views.map(|(a, b, view)| ((a.handle(), b.handle()), view)).collect();
     views.sort_by_key(|(pair, _)| *pair);

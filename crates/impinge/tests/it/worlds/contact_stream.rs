@@ -1,0 +1,171 @@
+//! Streams of contacts: the indices in the fill before, against a map from ids.
+
+use crate::support::{scene_stage, world_stage};
+
+use std::collections::HashMap;
+
+use impinge::math::{Point, Space};
+use impinge::narrow_phase::ContactStream;
+use impinge::query::ContactId;
+use impinge::shape::{Polyline, ShapeHandle, TriMesh};
+use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge_scenes::{Scene, mixed_shapes, pile, shaken, spawn_and_despawn};
+
+use scene_stage::{Play, Player, assert_stream_agrees};
+use world_stage::{Stage, add, contacts, cube};
+
+/// A stream, and the index of each contact of its last fill.
+struct Checked<N: Space<D>, const D: usize> {
+    stream: ContactStream<N, D>,
+    indices: HashMap<ContactId, usize>,
+    /// Number of contacts found in the fill before, and of new contacts, over all fills.
+    kept: usize,
+    new: usize,
+}
+
+impl<N: Space<D>, const D: usize> Checked<N, D> {
+    fn new() -> Self {
+        Self { stream: ContactStream::new(), indices: HashMap::new(), kept: 0, new: 0 }
+    }
+
+    /// Fills the stream, and asserts that each contact has the index that its id had before.
+    fn fill<T>(&mut self, world: &CollisionWorld<N, D, T>) {
+        world.read_contacts(&mut self.stream);
+        assert_stream_agrees(world, &self.stream);
+        let mut indices = HashMap::new();
+        for manifold in self.stream.manifolds() {
+            for index in manifold.range() {
+                let point = &self.stream.points()[index];
+                let id = manifold.id(point);
+                assert_eq!(point.previous(), self.indices.get(&id).copied(), "of {id:?}");
+                assert_eq!(indices.insert(id, index), None, "{id:?} occurs once");
+                *if point.previous().is_some() { &mut self.kept } else { &mut self.new } += 1;
+            }
+        }
+        self.indices = indices;
+    }
+}
+
+/// A pile in which contacts begin and end at each step.
+fn shaken_pile<const D: usize>(count: usize) -> Scene<D> {
+    shaken(pile(count), 0.25)
+}
+
+fn follows_scenes<N: Play<D>, const D: usize>() {
+    let scenes: [fn(usize) -> Scene<D>; 4] = [pile, shaken_pile, mixed_shapes, spawn_and_despawn];
+    for (number, make) in scenes.into_iter().enumerate() {
+        let (mut player, mut checked) = (Player::<N, D>::new(make(150), 1.0), Checked::new());
+        for step in 0..12 {
+            player.step();
+            // A reader that misses some updates.
+            if step % 5 != 3 {
+                checked.fill(&player.world);
+            }
+        }
+        let Checked { kept, new, .. } = checked;
+        assert!(kept > 0 && new > 0, "scene {number}: {kept} kept, {new} new");
+    }
+}
+
+/// Rows of boxes, of which many are removed at once, so that other pairs take the memory of theirs.
+fn finds_pairs_that_moved_in_memory<N: Stage<D>, const D: usize>() {
+    let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.01));
+    let mut handles: Vec<_> =
+        (0..200).map(|n| add(&mut world, f64::from(n), &cube(0.5), contacts(0.125))).collect();
+    let mut checked = Checked::new();
+    world.update();
+    checked.fill(&world);
+    let all = checked.new;
+    assert!(all >= 199, "each box touches the next");
+    // More in a row than the stream looks ahead, and some single ones.
+    world.remove(&handles.drain(20..80).collect::<Vec<_>>());
+    world.remove(&[handles.remove(3), handles.remove(90)]);
+    checked.fill(&world);
+    world.update();
+    checked.fill(&world);
+    assert_eq!(checked.new, all, "no contact is new: the others only moved in memory");
+    // All at once are new, and then all of them are gone.
+    let far = add(&mut world, 300.0, &cube(0.5), contacts(0.125));
+    for (n, handle) in handles.iter().enumerate() {
+        world.set_position(*handle, N::on_x(2.0 * n as f64));
+    }
+    world.update();
+    checked.fill(&world);
+    assert!(checked.stream.points().is_empty() && world.contains(far), "all are apart");
+    for (n, handle) in handles.iter().enumerate() {
+        world.set_position(*handle, N::on_x(n as f64));
+    }
+    world.update();
+    let kept = checked.kept;
+    checked.fill(&world);
+    assert_eq!(checked.kept, kept, "a contact that comes back is new");
+    checked.stream.clear();
+    assert!(checked.stream.points().is_empty() && checked.stream.manifolds().is_empty());
+    checked.indices.clear();
+    checked.fill(&world);
+    assert_eq!(checked.kept, kept, "nothing is known after clearing");
+}
+
+/// A box with a skin that slides over a zigzag has several manifolds with one surface.
+fn follows_patches<N: Stage<D>, const D: usize>(zigzag: ShapeHandle<N, D>) {
+    let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.01));
+    add(&mut world, 0.0, &zigzag, contacts(0.0));
+    let solid = add(&mut world, 0.0, &cube(2.25), contacts(0.0));
+    let mut checked = Checked::new();
+    let mut most = 0;
+    for step in 0..24 {
+        let mut at = [0.0; D];
+        (at[0], at[1]) = (f64::from(step) * 0.125, 2.125);
+        world.set_position(solid, N::at(at));
+        world.set_skin(solid, N::lit(if step < 12 { 0.0 } else { 0.0625 }));
+        world.update();
+        checked.fill(&world);
+        most = most.max(checked.stream.manifolds().len());
+    }
+    assert!(most > 1, "several manifolds: {most}");
+    assert!(checked.kept > checked.new, "{} kept, {} new", checked.kept, checked.new);
+}
+
+#[test]
+fn patches_2d() {
+    fn zigzag<N: Space<2>>() -> ShapeHandle<N, 2> {
+        let point = |n: i32| [f64::from(n) * 0.5, if n % 2 == 0 { 0.0 } else { 0.125 }];
+        let points = (-20..=20).map(|n| Point::from(point(n).map(N::lit)));
+        ShapeHandle::new(Polyline::open(points.collect()))
+    }
+    follows_patches::<f32, 2>(zigzag());
+    follows_patches::<f64, 2>(zigzag());
+}
+
+#[test]
+fn patches_3d() {
+    fn zigzag<N: Space<3>>() -> ShapeHandle<N, 3> {
+        let point = |n: u32| {
+            let [i, k] = [n % 41, n / 41].map(f64::from);
+            [i * 0.5 - 10.0, if n % 41 % 2 == 0 { 0.0 } else { 0.125 }, k * 10.0 - 5.0]
+        };
+        let points = (0..82).map(|n| Point::from(point(n).map(N::lit)));
+        let cells = (0..40).flat_map(|n| [[n, n + 41, n + 42], [n, n + 42, n + 1]]);
+        ShapeHandle::new(TriMesh::new(points.collect(), cells.collect()))
+    }
+    follows_patches::<f32, 3>(zigzag());
+    follows_patches::<f64, 3>(zigzag());
+}
+
+/// A removed object is in no stream, even before the next update.
+fn skips_removed_objects<N: Stage<D>, const D: usize>() {
+    let mut world = CollisionWorld::<N, D, ()>::new(N::lit(0.01));
+    let handles = [0.0, 0.75].map(|x| add(&mut world, x, &cube(0.5), contacts(0.0)));
+    world.update();
+    let mut stream = ContactStream::new();
+    world.read_contacts(&mut stream);
+    assert_eq!(stream.manifolds().len(), 1);
+    let manifold = &stream.manifolds()[0];
+    assert_eq!([manifold.object1, manifold.object2], handles);
+    world.remove(&handles[..1]);
+    world.add(N::on_x(0.0), cube(0.5), CollisionGroups::new(), contacts(0.0), ());
+    world.read_contacts(&mut stream);
+    assert_eq!(stream.manifolds().len(), 0, "the new object has no contact before an update");
+}
+
+in_tests!(follows_scenes, finds_pairs_that_moved_in_memory, skips_removed_objects);
