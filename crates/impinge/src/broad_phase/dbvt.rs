@@ -264,12 +264,12 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         handle: ProxyHandle,
     ) -> Result<(), BroadPhaseError> {
         self.check(handle)?;
-        self.finder.ask_again(id_of(handle));
+        self.finder.refilter(id_of(handle));
         Ok(())
     }
 
     fn deferred_recompute_all_proximities(&mut self) {
-        self.finder.ask_all_again();
+        self.finder.refilter_all();
     }
 
     fn update(

@@ -1,14 +1,14 @@
 //! An update of the broad phase: from waiting boxes to events in canonical order.
 
 use super::PairFinder;
-use super::finder::{AGAIN, CHANGED, Home};
+use super::finder::{CHANGED, Container, REFILTER};
 use crate::bvh::{Changes, PARALLEL_FROM};
 use crate::math::Real;
 use crate::memory::Look;
 use crate::pairs::{PairTable, pack, unpack};
 
 /// Number of pairs whose table entries are prefetched at once.
-const AT_ONCE: usize = 16;
+const BATCH: usize = 16;
 
 /// Started and stopped pairs of an update, packed; each list is ascending.
 #[derive(Clone, Debug, Default)]
@@ -30,22 +30,22 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         callback: &mut dyn FnMut(u32, u32, bool),
     ) {
         self.clock = self.clock.wrapping_add(1);
-        if let Some(look) = self.recent.end_update(self.homes.len()) {
+        if let Some(look) = self.recent.end_update(self.containers.len()) {
             self.give_back(look);
         }
         if self.is_idle() {
             return self.keep_order(0);
         }
-        self.recent.note(self.waiting());
+        self.recent.note(self.num_waiting());
         self.apply_waiting();
-        self.apply_again();
+        self.apply_refilters();
         self.moving.refit_from(&self.loose);
         self.still.refit();
         let mut found = core::mem::take(&mut self.found);
         self.find_changes(&mut found);
         self.filter(&mut found, filter);
         // No user code runs from here until the state is consistent.
-        self.commit_and_settle(&found.ended);
+        self.commit_pairs_and_boxes(&found.ended);
         self.recent.note(found.began.len().max(found.ended.len()));
         self.found = found;
         let events = core::mem::take(&mut self.pair_events.events);
@@ -65,8 +65,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         debug_assert!(found.began.is_sorted_by(|a, b| a < b), "every pair begins once");
         for &key in &found.began {
             let (a, b) = unpack(key);
-            let is_again = (self.marks[a as usize] | self.marks[b as usize]) & AGAIN != 0;
-            let is_present = is_again && self.pairs.index_of(a, b).is_some();
+            let is_refiltered = (self.marks[a as usize] | self.marks[b as usize]) & REFILTER != 0;
+            let is_present = is_refiltered && self.pairs.index_of(a, b).is_some();
             match (is_present, filter(a, b)) {
                 (false, true) => self.pair_events.starting.push(key),
                 (true, false) => found.ended.push(key),
@@ -89,12 +89,12 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
         let escaped = self.moving.escaped().chain(self.still.escaped());
         for a in escaped.chain(self.searched.iter().copied()) {
-            self.parted_from(a, &mut found.ended);
+            self.push_ended_pairs(a, &mut found.ended);
         }
     }
 
     /// Appends the pairs of object `a` in the table whose loosened boxes no longer overlap.
-    fn parted_from(&self, a: u32, ended: &mut Vec<u64>) {
+    fn push_ended_pairs(&self, a: u32, ended: &mut Vec<u64>) {
         for (b, _) in self.pairs.partners(a) {
             if !self.loose[a as usize].overlaps(&self.loose[b as usize]) {
                 ended.push(pack(a, b));
@@ -109,7 +109,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         let mut test = |other: u32| {
             // A pair of two unbounded objects is reported once: by the one that changed, or by the
             // smaller id if both did.
-            let is_reported_by_other = self.homes[other as usize] == Home::Unbounded
+            let is_reported_by_other = self.containers[other as usize] == Container::Unbounded
                 && self.marks[other as usize] & CHANGED != 0
                 && (!is_changed || other < u);
             if other == u || is_reported_by_other {
@@ -122,7 +122,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             }
         };
         if is_changed {
-            let ids = (0..).zip(&self.homes).filter(|&(_, &home)| home != Home::Nowhere);
+            let ids = (0..)
+                .zip(&self.containers)
+                .filter(|&(_, &container)| container != Container::Nowhere);
             ids.for_each(|(other, _)| test(other));
         } else {
             self.changes.iter().for_each(|&other| test(other));
@@ -136,27 +138,27 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
 
     /// Updates the table of pairs, and prepares the trees for the next update. The two steps are
     /// independent.
-    fn commit_and_settle(&mut self, ended: &[u64]) {
+    fn commit_pairs_and_boxes(&mut self, ended: &[u64]) {
         let mut pairs = core::mem::take(&mut self.pairs);
         let mut pair_events = core::mem::take(&mut self.pair_events);
-        let is_large = self.homes.len() >= PARALLEL_FROM;
-        let mut commit = || pair_events.commit(&mut pairs, ended);
-        let mut settle = || {
+        let is_large = self.containers.len() >= PARALLEL_FROM;
+        let mut commit_pairs = || pair_events.commit(&mut pairs, ended);
+        let mut commit_boxes = || {
             let changed = self.changes.len();
-            self.settle();
+            self.commit_changes();
             self.keep_order(changed);
         };
         if is_large {
-            join(commit, settle);
+            join(commit_pairs, commit_boxes);
         } else {
-            commit();
-            settle();
+            commit_pairs();
+            commit_boxes();
         }
         (self.pairs, self.pair_events) = (pairs, pair_events);
     }
 
     /// Makes the present boxes the old ones for the next update, and clears all marks.
-    fn settle(&mut self) {
+    fn commit_changes(&mut self) {
         for &id in &self.changes {
             self.marks[id as usize] = 0;
         }
@@ -192,9 +194,9 @@ impl PairEvents {
         let Self { starting, stopped, events } = self;
         let mut started = 0;
         stopped.clear();
-        for chunk in ended.chunks(AT_ONCE) {
-            pairs.fetch(chunk);
-            pairs.fetch(&starting[started..starting.len().min(started + AT_ONCE)]);
+        for chunk in ended.chunks(BATCH) {
+            pairs.prefetch(chunk);
+            pairs.prefetch(&starting[started..starting.len().min(started + BATCH)]);
             for &key in chunk {
                 let (a, b) = unpack(key);
                 // A pair that the filter refused when it began is not in the table.
@@ -208,8 +210,8 @@ impl PairEvents {
                 }
             }
         }
-        for chunk in starting[started..].chunks(AT_ONCE) {
-            pairs.fetch(chunk);
+        for chunk in starting[started..].chunks(BATCH) {
+            pairs.prefetch(chunk);
             for (a, b) in chunk.iter().copied().map(unpack) {
                 pairs.insert_new(a, b);
             }

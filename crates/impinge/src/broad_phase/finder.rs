@@ -4,9 +4,9 @@ use core::fmt;
 
 use super::BroadPhaseError;
 use super::events::PairEvents;
+use super::exact_boxes::{ExactBoxes, LooseBounds};
 use super::rest::RestPass;
 use super::rewind::{BoxNote, FinderHead};
-use super::sieve::{KeptBounds, Sieve};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Changes, Joiner, Lanes, NONE, Tree};
 use crate::journal::Journal;
@@ -17,7 +17,7 @@ use crate::pairs::PairTable;
 /// The container in which the finder keeps an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) enum Home {
+pub(crate) enum Container {
     /// None: there is no such object, or no update has applied its box yet.
     Nowhere,
     /// The tree of moving objects.
@@ -31,7 +31,7 @@ pub(crate) enum Home {
 /// Mark of an object whose loosened box changed since the last update.
 pub(super) const CHANGED: u8 = 1;
 /// Mark of an object whose pairs must all be filtered again.
-pub(super) const AGAIN: u8 = 2;
+pub(super) const REFILTER: u8 = 2;
 
 /// A box to be set at the next update; `id` is [`NONE`] if the object has been removed since.
 #[derive(Clone, Copy, Debug)]
@@ -59,20 +59,20 @@ pub struct PairFinder<N: Real, const D: usize> {
     /// Loosened boxes at the last update, valid for unbounded objects marked as changed. As long as
     /// the largest id of these requires.
     previous: Vec<Bounds<D>>,
-    pub(super) homes: Vec<Home>,
+    pub(super) containers: Vec<Container>,
     pub(super) marks: Vec<u8>,
     /// By id: the value of `clock` in the update in which the loosened box last changed.
     pub(super) last_change: Vec<u32>,
     pub(super) waiting: Vec<Waiting<N, D>>,
     /// Scratch: indices in `waiting`.
-    leavers: Vec<u32>,
+    outside: Vec<u32>,
     /// By id: the object's index in `waiting`, or [`NONE`].
     pub(super) waiting_at: Vec<u32>,
     /// Objects that have a mark, each once.
     pub(super) changes: Vec<u32>,
     /// Objects whose pairs must be filtered again.
-    pub(super) again: Vec<u32>,
-    pub(super) is_all_again: bool,
+    pub(super) to_refilter: Vec<u32>,
+    pub(super) refilters_all: bool,
     pub(super) moving: Tree<D>,
     pub(super) still: Tree<D>,
     pub(super) unbounded: Vec<u32>,
@@ -94,8 +94,8 @@ pub struct PairFinder<N: Real, const D: usize> {
 }
 
 clone_fields!([N: Real, const D: usize] PairFinder<N, D> {
-    margin, exact, loose, previous, homes, marks, last_change, waiting, leavers, waiting_at, changes, again,
-    is_all_again, moving, still, unbounded, pairs, joiner, searched, resting, found, pair_events, lanes, clock,
+    margin, exact, loose, previous, containers, marks, last_change, waiting, outside, waiting_at, changes, to_refilter,
+    refilters_all, moving, still, unbounded, pairs, joiner, searched, resting, found, pair_events, lanes, clock,
     rest_pass, recent, journal,
 });
 
@@ -128,15 +128,15 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             exact: Vec::new(),
             loose: Vec::new(),
             previous: Vec::new(),
-            homes: Vec::new(),
+            containers: Vec::new(),
             marks: Vec::new(),
             last_change: Vec::new(),
             waiting: Vec::new(),
-            leavers: Vec::new(),
+            outside: Vec::new(),
             waiting_at: Vec::new(),
             changes: Vec::new(),
-            again: Vec::new(),
-            is_all_again: false,
+            to_refilter: Vec::new(),
+            refilters_all: false,
             moving: Tree::new(lanes),
             still: Tree::sparing(lanes),
             unbounded: Vec::new(),
@@ -173,7 +173,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// Returns the loosened box of an object; `None` before its first update and if there is no
     /// such object.
     pub fn loosened(&self, id: u32) -> Option<&Bounds<D>> {
-        let is_known = *self.homes.get(id as usize)? != Home::Nowhere;
+        let is_known = *self.containers.get(id as usize)? != Container::Nowhere;
         is_known.then(|| &self.loose[id as usize])
     }
 
@@ -189,15 +189,15 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// be dense.
     pub fn insert(&mut self, id: u32, aabb: Aabb<N, D>) {
         let needed = id as usize + 1;
-        if self.homes.len() < needed {
+        if self.containers.len() < needed {
             self.exact.resize(needed, aabb);
             self.loose.resize(needed, Bounds::NOWHERE);
-            self.homes.resize(needed, Home::Nowhere);
+            self.containers.resize(needed, Container::Nowhere);
             self.marks.resize(needed, 0);
             self.last_change.resize(needed, 0);
             self.waiting_at.resize(needed, NONE);
         }
-        debug_assert_eq!(self.homes[id as usize], Home::Nowhere, "object {id} exists");
+        debug_assert_eq!(self.containers[id as usize], Container::Nowhere, "object {id} exists");
         self.exact[id as usize] = aabb;
         self.set(id, aabb);
     }
@@ -215,13 +215,13 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 
     /// Filters every pair of the object again at the next update.
-    pub fn ask_again(&mut self, id: u32) {
-        self.again.push(id);
+    pub fn refilter(&mut self, id: u32) {
+        self.to_refilter.push(id);
     }
 
     /// Filters every pair again at the next update.
-    pub fn ask_all_again(&mut self) {
-        self.is_all_again = true;
+    pub fn refilter_all(&mut self) {
+        self.refilters_all = true;
     }
 
     /// Returns the packed pairs that contain at least one of the objects, each once, ascending.
@@ -239,63 +239,64 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         while let Some(pair) = self.pairs.any_pair_of(id) {
             self.pairs.remove_at(pair);
         }
-        self.leave_home(id);
+        self.remove_from_container(id);
         let index = id as usize;
         let at = core::mem::replace(&mut self.waiting_at[index], NONE);
         if at != NONE {
             self.waiting[at as usize].id = NONE;
         }
-        // `changes` is not empty here only after a filter panicked. `again` may keep the id: an
+        // `changes` is not empty here only after a filter panicked. `to_refilter` may keep the id: an
         // object that reuses it is new, and all its pairs are filtered in any case.
         self.changes.retain(|&other| other != id);
         self.marks[index] = 0;
     }
 
     /// Removes the object from its tree or list.
-    pub(super) fn leave_home(&mut self, id: u32) {
-        match core::mem::replace(&mut self.homes[id as usize], Home::Nowhere) {
-            Home::Nowhere => {}
-            Home::Moving => self.moving.remove(id),
-            Home::Still => self.still.remove(id),
-            Home::Unbounded => self.unbounded.retain(|&other| other != id),
+    pub(super) fn remove_from_container(&mut self, id: u32) {
+        match core::mem::replace(&mut self.containers[id as usize], Container::Nowhere) {
+            Container::Nowhere => {}
+            Container::Moving => self.moving.remove(id),
+            Container::Still => self.still.remove(id),
+            Container::Unbounded => self.unbounded.retain(|&other| other != id),
         }
     }
 
     /// Applies the waiting boxes, in the order in which they were set.
     pub(super) fn apply_waiting(&mut self) {
         let mut waiting = core::mem::take(&mut self.waiting);
-        let mut leavers = core::mem::take(&mut self.leavers);
+        let mut outside = core::mem::take(&mut self.outside);
         if self.journal.is_on() {
             waiting.iter().filter(|waiting| waiting.id != NONE).for_each(|one| self.note(one.id));
         }
-        self.list_leavers(&waiting, &mut leavers);
-        for &at in &leavers {
+        self.list_outside(&waiting, &mut outside);
+        for &at in &outside {
             let Waiting { id, aabb } = &waiting[at as usize];
-            self.leave_loose(*id, aabb);
+            self.update_loose(*id, aabb);
         }
         waiting.clear();
-        leavers.clear();
-        (self.waiting, self.leavers) = (waiting, leavers);
+        outside.clear();
+        (self.waiting, self.outside) = (waiting, outside);
     }
 
-    /// Stores the exact boxes. Lists in `leavers` the objects that leave their loosened boxes or
+    /// Stores the exact boxes. Lists in `outside` the objects that leave their loosened boxes or
     /// are in no tree, by their index in `waiting`.
-    fn list_leavers(&mut self, waiting: &[Waiting<N, D>], leavers: &mut Vec<u32>) {
-        leavers.clear();
-        leavers.resize(waiting.len(), 0);
-        let kept = KeptBounds { homes: &self.homes, loose: &self.loose };
-        let sieve = Sieve { first: 0, exact: &mut self.exact, waiting_at: &mut self.waiting_at };
-        let count = sieve.run(&kept, waiting, 0, leavers);
-        leavers.truncate(count);
+    fn list_outside(&mut self, waiting: &[Waiting<N, D>], outside: &mut Vec<u32>) {
+        outside.clear();
+        outside.resize(waiting.len(), 0);
+        let bounds = LooseBounds { containers: &self.containers, loose: &self.loose };
+        let exact_boxes =
+            ExactBoxes { first: 0, exact: &mut self.exact, waiting_at: &mut self.waiting_at };
+        let count = exact_boxes.write(&bounds, waiting, 0, outside);
+        outside.truncate(count);
     }
 
     /// Computes a new loosened box for an object whose exact box left the old one or that is in no
     /// tree.
     #[inline]
-    fn leave_loose(&mut self, id: u32, aabb: &Aabb<N, D>) {
+    fn update_loose(&mut self, id: u32, aabb: &Aabb<N, D>) {
         let index = id as usize;
         let loose = Bounds::enclosing(&aabb.loosened(self.margin));
-        if self.homes[index] == Home::Moving && loose.is_finite() {
+        if self.containers[index] == Container::Moving && loose.is_finite() {
             // The tree keeps its old box now, and reads the new one in its refit.
             self.last_change[index] = self.clock;
             self.mark(id, CHANGED);
@@ -303,32 +304,32 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             return self.moving.set_later(id);
         }
         let tight = Bounds::enclosing(aabb);
-        let is_unbounded = self.homes[index] == Home::Unbounded && !tight.is_finite();
+        let is_unbounded = self.containers[index] == Container::Unbounded && !tight.is_finite();
         if !(is_unbounded && self.loose[index].contains(&tight)) {
             self.last_change[index] = self.clock;
-            self.move_home(id, loose);
+            self.reinsert(id, loose);
         }
     }
 
     /// Moves an object from its container to the tree of moving objects, or to the list of
     /// unbounded ones.
     #[inline(never)]
-    fn move_home(&mut self, id: u32, loose: Bounds<D>) {
+    fn reinsert(&mut self, id: u32, loose: Bounds<D>) {
         let index = id as usize;
         let before = self.before(id);
         self.mark(id, CHANGED);
         self.loose[index] = loose;
         let is_bounded = loose.is_finite();
-        if !is_bounded || self.homes[index] == Home::Unbounded {
+        if !is_bounded || self.containers[index] == Container::Unbounded {
             self.searched.push(id);
         }
-        self.leave_home(id);
+        self.remove_from_container(id);
         if is_bounded {
-            self.homes[index] = Home::Moving;
+            self.containers[index] = Container::Moving;
             self.moving.insert(id, &loose, &before);
         } else {
             self.set_previous(id, before);
-            self.homes[index] = Home::Unbounded;
+            self.containers[index] = Container::Unbounded;
             self.unbounded.push(id);
         }
     }
@@ -344,12 +345,12 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// all its pairs must begin anew.
     pub(super) fn before(&self, id: u32) -> Bounds<D> {
         let index = id as usize;
-        let in_tree = match self.homes[index] {
-            Home::Nowhere => Some(Bounds::NOWHERE),
-            Home::Moving => self.moving.before(id),
-            Home::Still => self.still.before(id),
-            Home::Unbounded if self.marks[index] & CHANGED != 0 => Some(self.previous[index]),
-            Home::Unbounded => Some(self.loose[index]),
+        let in_tree = match self.containers[index] {
+            Container::Nowhere => Some(Bounds::NOWHERE),
+            Container::Moving => self.moving.before(id),
+            Container::Still => self.still.before(id),
+            Container::Unbounded if self.marks[index] & CHANGED != 0 => Some(self.previous[index]),
+            Container::Unbounded => Some(self.loose[index]),
         };
         // For such an object the tree stores an empty box, which an unbounded box would overlap.
         in_tree.filter(|before| *before != Bounds::EMPTY).unwrap_or(Bounds::NOWHERE)
@@ -366,27 +367,27 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
 
     /// Resets the old boxes of the objects to be filtered again, so that all their pairs begin
     /// anew.
-    pub(super) fn apply_again(&mut self) {
-        let mut again = core::mem::take(&mut self.again);
-        if core::mem::take(&mut self.is_all_again) {
-            again = (0..small(self.homes.len())).collect();
+    pub(super) fn apply_refilters(&mut self) {
+        let mut to_refilter = core::mem::take(&mut self.to_refilter);
+        if core::mem::take(&mut self.refilters_all) {
+            to_refilter = (0..small(self.containers.len())).collect();
         }
-        for &id in &again {
-            match self.homes[id as usize] {
-                Home::Nowhere => continue,
-                Home::Moving => self.moving.forget_before(id),
-                Home::Still => self.still.forget_before(id),
-                Home::Unbounded => self.set_previous(id, Bounds::NOWHERE),
+        for &id in &to_refilter {
+            match self.containers[id as usize] {
+                Container::Nowhere => continue,
+                Container::Moving => self.moving.forget_before(id),
+                Container::Still => self.still.forget_before(id),
+                Container::Unbounded => self.set_previous(id, Bounds::NOWHERE),
             }
-            self.mark(id, AGAIN);
+            self.mark(id, REFILTER);
             self.searched.push(id);
         }
-        again.clear();
-        self.again = again;
+        to_refilter.clear();
+        self.to_refilter = to_refilter;
     }
 
     /// Returns the number of boxes that the next update applies.
-    pub(super) fn waiting(&self) -> usize {
+    pub(super) fn num_waiting(&self) -> usize {
         self.waiting.len()
     }
 
@@ -394,7 +395,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// by id. The tree of moving objects releases its own memory when it is empty.
     pub(super) fn give_back(&mut self, look: Look) {
         look.trim(&mut self.waiting);
-        for list in [&mut self.leavers, &mut self.changes, &mut self.again] {
+        for list in [&mut self.outside, &mut self.changes, &mut self.to_refilter] {
             look.trim(list);
         }
         look.trim(&mut self.searched);
@@ -404,7 +405,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.pair_events.give_back(look);
         look.fit(&mut self.exact);
         look.fit(&mut self.loose);
-        look.fit(&mut self.homes);
+        look.fit(&mut self.containers);
         look.fit(&mut self.marks);
         look.fit(&mut self.last_change);
         look.fit(&mut self.waiting_at);
@@ -415,8 +416,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
 
     /// Returns `true` if the next update has nothing to do.
     pub(super) fn is_idle(&self) -> bool {
-        let asked = self.is_all_again || !self.again.is_empty();
-        self.waiting.is_empty() && self.changes.is_empty() && !asked
+        let is_refiltering = self.refilters_all || !self.to_refilter.is_empty();
+        self.waiting.is_empty() && self.changes.is_empty() && !is_refiltering
     }
 
     /// Checks every invariant; for tests.
@@ -427,22 +428,22 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.moving.validate()?;
         self.still.validate()?;
         self.pairs.validate()?;
-        for (id, &home) in (0..).zip(&self.homes) {
+        for (id, &container) in (0..).zip(&self.containers) {
             let index = id as usize;
-            let places = (self.moving.bounds(id), self.still.bounds(id));
+            let bounds = (self.moving.bounds(id), self.still.bounds(id));
             let listed = self.unbounded.iter().filter(|&&other| other == id).count();
             let loose = Some(self.loose[index]);
-            let is_at_home = match home {
-                Home::Nowhere => places == (None, None) && listed == 0,
-                Home::Moving => places == (loose, None) && listed == 0,
-                Home::Still => places == (None, loose) && listed == 0,
-                Home::Unbounded => places == (None, None) && listed == 1,
+            let is_contained = match container {
+                Container::Nowhere => bounds == (None, None) && listed == 0,
+                Container::Moving => bounds == (loose, None) && listed == 0,
+                Container::Still => bounds == (None, loose) && listed == 0,
+                Container::Unbounded => bounds == (None, None) && listed == 1,
             };
-            if !is_at_home {
-                return Err(format!("object {id} is not {home:?}: {places:?}, {listed}"));
+            if !is_contained {
+                return Err(format!("object {id} is not {container:?}: {bounds:?}, {listed}"));
             }
             let tight = Bounds::enclosing(&self.exact[index]);
-            if home != Home::Nowhere && !self.loose[index].contains(&tight) {
+            if container != Container::Nowhere && !self.loose[index].contains(&tight) {
                 return Err(format!("the exact box of {id} leaves its loosened box"));
             }
         }

@@ -193,8 +193,8 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
     /// `max_distance`, by ascending uid, until `visit` returns a negative distance. Ordered
     /// implementations override it.
     fn visit_nearest(&self, bv: &BV, max_distance: N, visit: &mut dyn FnMut(&T) -> N) {
-        let (reach, mut near) = (max(max_distance, N::ZERO), Vec::new());
-        self.interferences_with_bounding_volume(&bv.loosened(reach), &mut near);
+        let (distance, mut near) = (max(max_distance, N::ZERO), Vec::new());
+        self.interferences_with_bounding_volume(&bv.loosened(distance), &mut near);
         visit_all(&near, max_distance, visit);
     }
 
@@ -213,9 +213,9 @@ pub trait BroadPhase<N: Real, BV: BoundingVolume<N>, T> {
         max_time: N,
         visit: &mut dyn FnMut(&T) -> N,
     ) {
-        let (end, mut met) = (max(max_time, N::ZERO), Vec::new());
-        self.interferences_with_bounding_volume(&bv.swept(velocity, end), &mut met);
-        visit_all(&met, max_time, visit);
+        let (end, mut overlapping) = (max(max_time, N::ZERO), Vec::new());
+        self.interferences_with_bounding_volume(&bv.swept(velocity, end), &mut overlapping);
+        visit_all(&overlapping, max_time, visit);
     }
 
     /// Returns the loosened volume of an object, for drawing. `None` for a stale handle, before the

@@ -19,6 +19,7 @@
 mod dbvt;
 mod error;
 mod events;
+mod exact_boxes;
 mod finder;
 mod handle;
 mod interface;
@@ -28,7 +29,6 @@ mod rewind;
 #[cfg(feature = "serde")]
 pub(crate) mod saved;
 mod search;
-mod sieve;
 
 #[cfg(test)]
 mod tests;

@@ -1,24 +1,24 @@
 //! Moves objects at rest to the tree of still objects, and keeps both trees in order.
 
 use super::PairFinder;
-use super::finder::Home;
+use super::finder::Container;
 use crate::bvh::NONE;
 use crate::math::Real;
 
 /// Number of updates without a change after which an object is at rest.
-const REST: u32 = 32;
-/// An update scans at most `1 / WINDOW` of the slots of the tree of moving objects (plus one), and at most
-/// [`LOOKED_AT`], but at least one slot for every [`CHANGED_FOR_ONE`] changed objects.
-const WINDOW: usize = 32;
-const LOOKED_AT: usize = 512;
-const CHANGED_FOR_ONE: usize = 16;
-/// An update moves at most `TAKEN` objects at rest, or two for each changed object if that is more: so objects leave
+const REST_UPDATES: u32 = 32;
+/// An update scans at most `1 / SCAN_DIVISOR` of the slots of the tree of moving objects (plus one), and at most
+/// [`MAX_SCANNED`], but at least one slot for every [`CHANGED_PER_SLOT`] changed objects.
+const SCAN_DIVISOR: usize = 32;
+const MAX_SCANNED: usize = 512;
+const CHANGED_PER_SLOT: usize = 16;
+/// An update moves at most `MAX_RESTING` objects at rest, or two for each changed object if that is more: so objects leave
 /// faster than others can come to rest.
-const TAKEN: usize = 64;
-/// The trees are swapped only if there are at most `FEW` still objects, which then become moving ones ...
-const FEW: usize = 64;
-/// ... and at least `MANY` moving ones.
-const MANY: usize = 1024;
+const MAX_RESTING: usize = 64;
+/// The trees are swapped only if there are at most `MAX_STILL_TO_SWAP` still objects, which then become moving ones ...
+const MAX_STILL_TO_SWAP: usize = 64;
+/// ... and at least `MIN_MOVING_TO_SWAP` moving ones.
+const MIN_MOVING_TO_SWAP: usize = 1024;
 
 /// A pass over the slots of the tree of moving objects, from the last slot to the first, over many updates.
 #[derive(Clone, Copy, Debug)]
@@ -27,14 +27,15 @@ pub(super) struct RestPass {
     end: usize,
     resting: usize,
     /// Number of updates since the last one in which at least a quarter of the moving objects changed.
-    calm: u32,
+    quiet_updates: u32,
     /// Whether the pass moves objects at rest to the other tree, instead of only counting them.
-    takes: bool,
+    moves_resting: bool,
 }
 
 impl RestPass {
     /// The state before the first pass.
-    pub(super) const NONE: Self = Self { end: 0, resting: 0, calm: 0, takes: true };
+    pub(super) const NONE: Self =
+        Self { end: 0, resting: 0, quiet_updates: 0, moves_resting: true };
 }
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
@@ -48,7 +49,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         for &id in &resting {
             self.moving.remove(id);
             self.still.insert_still(id, &self.loose[id as usize]);
-            self.homes[id as usize] = Home::Still;
+            self.containers[id as usize] = Container::Still;
         }
         if !resting.is_empty() {
             self.moving.drop_free_end();
@@ -67,46 +68,53 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     /// objects at rest, the trees are swapped.
     fn list_resting(&mut self, changed: usize, resting: &mut Vec<u32>) {
         let slots = self.moving.slots_in_order();
-        let most = TAKEN.max(2 * changed);
-        let places = LOOKED_AT.min(slots.len() / WINDOW + 1).max(changed / CHANGED_FOR_ONE);
+        let max_resting = MAX_RESTING.max(2 * changed);
+        let num_scanned =
+            MAX_SCANNED.min(slots.len() / SCAN_DIVISOR + 1).max(changed / CHANGED_PER_SLOT);
         let mut pass = self.rest_pass;
-        let is_calm = 4 * changed < self.moving.len();
-        pass.calm = if is_calm { pass.calm.saturating_add(1) } else { 0 };
+        let is_quiet = 4 * changed < self.moving.len();
+        pass.quiet_updates = if is_quiet { pass.quiet_updates.saturating_add(1) } else { 0 };
         if pass.end == 0 || pass.end > slots.len() {
-            let is_bulk = self.still.len() <= FEW && self.moving.len() >= MANY;
-            let end = if is_bulk && pass.calm < REST { 0 } else { slots.len() };
-            pass = RestPass { end, resting: 0, calm: pass.calm, takes: !is_bulk || !pass.takes };
+            let is_bulk =
+                self.still.len() <= MAX_STILL_TO_SWAP && self.moving.len() >= MIN_MOVING_TO_SWAP;
+            let end = if is_bulk && pass.quiet_updates < REST_UPDATES { 0 } else { slots.len() };
+            pass = RestPass {
+                end,
+                resting: 0,
+                quiet_updates: pass.quiet_updates,
+                moves_resting: !is_bulk || !pass.moves_resting,
+            };
         }
-        for _ in 0..places.min(pass.end) {
+        for _ in 0..num_scanned.min(pass.end) {
             pass.end -= 1;
             let id = slots[pass.end];
-            if id == NONE || self.clock.wrapping_sub(self.last_change[id as usize]) < REST {
+            if id == NONE || self.clock.wrapping_sub(self.last_change[id as usize]) < REST_UPDATES {
                 continue;
             }
             pass.resting += 1;
-            if pass.takes {
+            if pass.moves_resting {
                 resting.push(id);
             }
-            if resting.len() == most {
+            if resting.len() == max_resting {
                 break;
             }
         }
         self.rest_pass = pass;
-        if !pass.takes && pass.end == 0 && 4 * pass.resting >= 3 * self.moving.len() {
-            self.exchange_trees();
+        if !pass.moves_resting && pass.end == 0 && 4 * pass.resting >= 3 * self.moving.len() {
+            self.swap_trees();
         }
     }
 
     /// Swaps the trees of moving and still objects. Objects that do move then leave the tree of still ones as they
     /// move.
-    fn exchange_trees(&mut self) {
+    fn swap_trees(&mut self) {
         core::mem::swap(&mut self.moving, &mut self.still);
         self.moving.spend();
         self.still.spare();
-        for home in &mut self.homes {
-            *home = match *home {
-                Home::Moving => Home::Still,
-                Home::Still => Home::Moving,
+        for container in &mut self.containers {
+            *container = match *container {
+                Container::Moving => Container::Still,
+                Container::Still => Container::Moving,
                 other => other,
             };
         }

@@ -4,7 +4,7 @@
 //! waiting changes, and the pairs. The positions of objects in the trees affect only time, and are
 //! not restored.
 
-use super::finder::{Home, Waiting, small};
+use super::finder::{Container, Waiting, small};
 use super::{DBVTBroadPhase, PairFinder, ProxyHandle};
 use crate::bounding_volume::Aabb;
 use crate::bvh::{Bounds, NONE};
@@ -24,7 +24,7 @@ pub(super) struct BoxNote<N: Real, const D: usize> {
     id: u32,
     exact: Aabb<N, D>,
     loose: Bounds<D>,
-    home: Home,
+    home: Container,
 }
 
 /// The changes that waited for the next update when a mark was set.
@@ -70,8 +70,8 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
 impl<N: Real, const D: usize> PairFinder<N, D> {
     fn add_mark(&mut self, number: u64) {
         // `changes` is not empty here only after a filter panicked.
-        let again = self.again.iter().chain(&self.changes).copied().collect();
-        let (waiting, is_all_again) = (self.waiting.clone(), self.is_all_again);
+        let again = self.to_refilter.iter().chain(&self.changes).copied().collect();
+        let (waiting, is_all_again) = (self.waiting.clone(), self.refilters_all);
         self.journal.mark(number, FinderHead { waiting, again, is_all_again });
         self.pairs.mark(number);
     }
@@ -80,7 +80,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     pub(super) fn note(&mut self, id: u32) {
         let index = id as usize;
         if self.journal.is_first(index) {
-            let (exact, loose, home) = (self.exact[index], self.loose[index], self.homes[index]);
+            let (exact, loose, home) =
+                (self.exact[index], self.loose[index], self.containers[index]);
             self.journal.note(BoxNote { id, exact, loose, home });
         }
     }
@@ -120,8 +121,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
                 self.waiting_at[*id as usize] = small(at);
             }
         }
-        self.again.clone_from(&head.again);
-        self.is_all_again = head.is_all_again;
+        self.to_refilter.clone_from(&head.again);
+        self.refilters_all = head.is_all_again;
     }
 
     /// Restores the boxes of an object. If it was bounded then and is now, it stays in its present
@@ -129,18 +130,22 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     fn bring_back(&mut self, &BoxNote { id, exact, loose, home }: &BoxNote<N, D>) {
         let index = id as usize;
         (self.exact[index], self.loose[index]) = (exact, loose);
-        match (self.homes[index], home) {
-            (Home::Moving, Home::Moving | Home::Still) => self.moving.set_still(id, &loose),
-            (Home::Still, Home::Moving | Home::Still) => self.still.set_still(id, &loose),
-            (_, Home::Nowhere) => self.leave_home(id),
-            (_, Home::Unbounded) => {
-                self.leave_home(id);
-                self.homes[index] = Home::Unbounded;
+        match (self.containers[index], home) {
+            (Container::Moving, Container::Moving | Container::Still) => {
+                self.moving.set_still(id, &loose)
+            }
+            (Container::Still, Container::Moving | Container::Still) => {
+                self.still.set_still(id, &loose)
+            }
+            (_, Container::Nowhere) => self.remove_from_container(id),
+            (_, Container::Unbounded) => {
+                self.remove_from_container(id);
+                self.containers[index] = Container::Unbounded;
                 self.unbounded.push(id);
             }
-            (_, Home::Moving | Home::Still) => {
-                self.leave_home(id);
-                self.homes[index] = Home::Moving;
+            (_, Container::Moving | Container::Still) => {
+                self.remove_from_container(id);
+                self.containers[index] = Container::Moving;
                 self.moving.insert_still(id, &loose);
             }
         }

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::finder::{Home, Waiting, small};
+use super::finder::{Container, Waiting, small};
 use super::handle::Handles;
 use super::{DBVTBroadPhase, PairFinder, ProxyHandle};
 use crate::bounding_volume::Aabb;
@@ -36,7 +36,7 @@ pub(crate) struct BoxRecord<N: Real> {
     proxy: u32,
     /// By handle index.
     object: u32,
-    home: Home,
+    home: Container,
     exact: Numbers<N>,
     /// If an update has seen the object.
     loose: Option<Numbers<f32>>,
@@ -52,18 +52,18 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     /// The broad phase as data; `index_of` gives the handle index of an object.
     pub(crate) fn record(&self, index_of: impl Fn(&T) -> u32) -> BroadRecord<N> {
         let (generations, free) = self.handles.record();
-        let there = (0..).zip(&self.proxies).filter_map(|(id, data)| Some((id, data.as_ref()?)));
+        let present = (0..).zip(&self.proxies).filter_map(|(id, data)| Some((id, data.as_ref()?)));
         let finder = &self.finder;
         let waiting = finder.waiting.iter().filter(|waiting| waiting.id != NONE);
         BroadRecord {
             margin: Numbers::of([self.margin()]),
             generations,
             free,
-            boxes: there.map(|(id, data)| finder.box_record(id, index_of(data))).collect(),
+            boxes: present.map(|(id, data)| finder.box_record(id, index_of(data))).collect(),
             waiting: waiting.map(|waiting| (waiting.id, numbers(&waiting.aabb))).collect(),
             // Changes are left over only where a filter panicked.
-            again: finder.again.iter().chain(&finder.changes).copied().collect(),
-            is_all_again: finder.is_all_again,
+            again: finder.to_refilter.iter().chain(&finder.changes).copied().collect(),
+            is_all_again: finder.refilters_all,
             clock: finder.clock,
         }
     }
@@ -94,9 +94,9 @@ impl Handles {
     }
 
     /// The index comes into use, unless there is none or it is in use.
-    fn use_again(&mut self, index: u32) -> Result<ProxyHandle, Damage> {
-        let place = self.is_present.get_mut(index as usize);
-        let is_unused = place.is_some_and(|is_present| !core::mem::replace(is_present, true));
+    fn restore_handle(&mut self, index: u32) -> Result<ProxyHandle, Damage> {
+        let is_present = self.is_present.get_mut(index as usize);
+        let is_unused = is_present.is_some_and(|is_present| !core::mem::replace(is_present, true));
         ensure(is_unused, "a proxy is there twice, or has no handle")?;
         Ok(self.at(index))
     }
@@ -115,7 +115,7 @@ impl Handles {
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
     fn box_record(&self, id: u32, object: u32) -> BoxRecord<N> {
-        let (home, index) = (self.homes[id as usize], id as usize);
+        let (home, index) = (self.containers[id as usize], id as usize);
         let loose = &self.loose[index];
         let loose = || Numbers::of(loose.lo.into_iter().chain(loose.hi));
         BoxRecord {
@@ -123,44 +123,47 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             object,
             home,
             exact: numbers(&self.exact[index]),
-            loose: (home != Home::Nowhere).then(loose),
+            loose: (home != Container::Nowhere).then(loose),
             last_change: self.last_change[index],
         }
     }
 
     /// Makes room for so many objects.
-    fn make_room(&mut self, count: usize) {
+    fn resize(&mut self, count: usize) {
         self.exact.resize(count, Aabb::unbounded());
         self.loose.resize(count, Bounds::NOWHERE);
-        self.homes.resize(count, Home::Nowhere);
+        self.containers.resize(count, Container::Nowhere);
         self.marks.resize(count, 0);
         self.last_change.resize(count, 0);
         self.waiting_at.resize(count, NONE);
     }
 
     /// Brings an object to its home, with its boxes.
-    fn take_home(&mut self, record: &BoxRecord<N>) -> Result<(), Damage> {
+    fn restore_box(&mut self, record: &BoxRecord<N>) -> Result<(), Damage> {
         let (id, index) = (record.proxy, record.proxy as usize);
         self.exact[index] = aabb(&record.exact)?;
         self.last_change[index] = record.last_change;
         let Some(loose) = &record.loose else {
-            return ensure(record.home == Home::Nowhere, "a proxy has no loosened box");
+            return ensure(record.home == Container::Nowhere, "a proxy has no loosened box");
         };
         let [lo, hi] = loose.all(|loose| Ok([loose.array()?, loose.array()?]))?;
         let loose = Bounds { lo, hi };
-        let is_around = loose.contains(&Bounds::enclosing(&self.exact[index]));
-        ensure(is_around, "a loosened box does not hold the exact one")?;
+        let encloses_exact = loose.contains(&Bounds::enclosing(&self.exact[index]));
+        ensure(encloses_exact, "a loosened box does not hold the exact one")?;
         match record.home {
-            Home::Nowhere => return Err(Damage("a proxy is nowhere".into())),
-            Home::Unbounded => self.unbounded.push(id),
-            Home::Moving | Home::Still => {
+            Container::Nowhere => return Err(Damage("a proxy is nowhere".into())),
+            Container::Unbounded => self.unbounded.push(id),
+            Container::Moving | Container::Still => {
                 ensure(loose.is_finite(), "an unbounded box is in a tree")?;
-                let tree =
-                    if record.home == Home::Still { &mut self.still } else { &mut self.moving };
+                let tree = if record.home == Container::Still {
+                    &mut self.still
+                } else {
+                    &mut self.moving
+                };
                 tree.insert_still(id, &loose);
             }
         }
-        (self.homes[index], self.loose[index]) = (record.home, loose);
+        (self.containers[index], self.loose[index]) = (record.home, loose);
         Ok(())
     }
 }
@@ -181,21 +184,21 @@ impl<N: Real> BroadRecord<N> {
         let count = self.generations.len();
         phase.handles = Handles::restored(&self.generations, self.free.clone());
         phase.proxies.resize_with(count, || None);
-        phase.finder.make_room(count);
+        phase.finder.resize(count);
         for record in &self.boxes {
-            let handle = phase.handles.use_again(record.proxy)?;
+            let handle = phase.handles.restore_handle(record.proxy)?;
             phase.proxies[handle.uid()] = Some(object(record.object, handle)?);
-            phase.finder.take_home(record)?;
+            phase.finder.restore_box(record)?;
         }
         phase.handles.check_free()?;
         for (id, waiting) in &self.waiting {
             let is_there = matches!(phase.proxies.get(*id as usize), Some(Some(_)));
             ensure(is_there, "a box waits for no proxy")?;
-            phase.finder.wait_once(*id, aabb(waiting)?)?;
+            phase.finder.restore_waiting(*id, aabb(waiting)?)?;
         }
         ensure(self.again.iter().all(|&id| (id as usize) < count), "no proxy is to be filtered")?;
-        phase.finder.again.clone_from(&self.again);
-        (phase.finder.is_all_again, phase.finder.clock) = (self.is_all_again, self.clock);
+        phase.finder.to_refilter.clone_from(&self.again);
+        (phase.finder.refilters_all, phase.finder.clock) = (self.is_all_again, self.clock);
         phase.finder.settle_trees();
         Ok(phase)
     }
@@ -216,12 +219,12 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
     ) -> Result<(), Damage> {
         let Self { handles, finder, .. } = self;
         // Where a filter panicked, boxes are ahead of pairs.
-        let are_ahead = !finder.again.is_empty();
+        let was_interrupted = !finder.to_refilter.is_empty();
         for [one, other] in pairs {
             ensure(handles.is_alive(one) && handles.is_alive(other), "a pair has no proxies")?;
             let [a, b] = [one, other].mapped(|handle| small(handle.uid()));
             let are_near = finder.loose[a as usize].overlaps(&finder.loose[b as usize]);
-            ensure(a != b && (are_near || are_ahead), "the boxes of a pair do not overlap")?;
+            ensure(a != b && (are_near || was_interrupted), "the boxes of a pair do not overlap")?;
             ensure(finder.pairs.insert(a, b).is_new, "a pair is there twice")?;
         }
         Ok(())
@@ -230,7 +233,7 @@ impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
 
 impl<N: Real, const D: usize> PairFinder<N, D> {
     /// A box waits for an object for which none does.
-    fn wait_once(&mut self, id: u32, aabb: Aabb<N, D>) -> Result<(), Damage> {
+    fn restore_waiting(&mut self, id: u32, aabb: Aabb<N, D>) -> Result<(), Damage> {
         ensure(self.waiting_at[id as usize] == NONE, "two boxes wait for a proxy")?;
         self.waiting_at[id as usize] = small(self.waiting.len());
         self.waiting.push(Waiting { id, aabb });

@@ -4,7 +4,7 @@ use core::iter;
 use core::ops::Range;
 
 use super::ObjectTable;
-use super::lanes::CompositeGroup;
+use super::pair_groups::CompositeGroup;
 use super::view::{Composite, View};
 use crate::math::{Space, max};
 
@@ -19,14 +19,14 @@ pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
     flags: u64,
     /// Index of the current pair, and its next patch; the patch is `usize::MAX` if there is no
     /// current pair.
-    place: usize,
+    row: usize,
     patch: usize,
 }
 
 impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
     pub(super) fn new(group: &'a CompositeGroup<N, D>, table: &'a ObjectTable<N, D>) -> Self {
         let touching = group.touching();
-        Self { table, group, touching, word: 0, flags: 0, place: 0, patch: usize::MAX }
+        Self { table, group, touching, word: 0, flags: 0, row: 0, patch: usize::MAX }
     }
 
     /// Restricts the iterator to a range of words of flags.
@@ -40,40 +40,40 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         while self.flags == 0 {
             self.flags = *self.touching.get(self.word)?;
             self.word += 1;
-            self.fetch();
+            self.prefetch();
         }
-        (self.place, self.patch) = (self.lowest(self.flags), 0);
+        (self.row, self.patch) = (self.lowest_row(self.flags), 0);
         self.flags &= self.flags - 1;
         Some(())
     }
 
     /// Returns the index of the pair that the lowest bit of `flags` stands for, in the word before
     /// `word`.
-    const fn lowest(&self, flags: u64) -> usize {
+    const fn lowest_row(&self, flags: u64) -> usize {
         (self.word - 1) * 64 + flags.trailing_zeros() as usize
     }
 
     /// Prefetches the data of the pairs of a word of flags, so that their loads overlap. Changes
     /// nothing.
-    fn fetch(&self) {
-        let (mut flags, mut seen) = (self.flags, N::ZERO);
+    fn prefetch(&self) {
+        let (mut flags, mut loaded) = (self.flags, N::ZERO);
         while flags != 0 {
-            let place = self.lowest(flags);
+            let row = self.lowest_row(flags);
             flags &= flags - 1;
-            let (key, entry) = (self.group.keys()[place], &self.group.states()[place]);
-            let home = self.table.pose(entry.state.home(key));
-            seen = max(seen, max(entry.state.prefetch(), home.translation[0]));
+            let (key, entry) = (self.group.keys()[row], &self.group.states()[row]);
+            let pose1 = self.table.pose(entry.state.frame_object(key));
+            loaded = max(loaded, max(entry.state.prefetch(), pose1.translation[0]));
         }
-        core::hint::black_box(seen);
+        core::hint::black_box(loaded);
     }
 
-    /// Iterates over the same contacts when some pairs are particular: manifolds of these pairs are
+    /// Iterates over all contacts when some pairs need built manifolds: the manifolds of these pairs are
     /// built for the reader.
-    pub(super) fn particular(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
+    pub(super) fn with_built(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
             self.next_pair()?;
-            let (group, place) = (self.group, u32::try_from(self.place).ok()?);
-            Some((group.key(place), Composite { table: self.table, group, place }))
+            let (group, row) = (self.group, u32::try_from(self.row).ok()?);
+            Some((group.key(row), Composite { table: self.table, group, row }))
         };
         iter::from_fn(next)
             .flat_map(|(key, pair)| pair.views().map(move |view| (key[0], key[1], view)))
@@ -87,8 +87,7 @@ impl<'a, N: Space<D>, const D: usize> Iterator for CompositeViews<'a, N, D> {
     fn next(&mut self) -> Option<Self::Item> {
         loop {
             if self.patch != usize::MAX {
-                let (key, entry) =
-                    (self.group.keys()[self.place], &self.group.states()[self.place]);
+                let (key, entry) = (self.group.keys()[self.row], &self.group.states()[self.row]);
                 let view = entry.state.view(self.table, key, entry.number, self.patch);
                 self.patch += 1;
                 if let Some(view) = view {

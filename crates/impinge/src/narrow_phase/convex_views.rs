@@ -4,7 +4,7 @@ use core::ops::Range;
 use core::{iter, slice};
 
 use super::ObjectTable;
-use super::lanes::ContactGroup;
+use super::pair_groups::ContactGroup;
 use super::state::KeptPoints;
 use super::view::{BuiltIn, View};
 use crate::math::Space;
@@ -53,7 +53,7 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
                 self.left = self.left.checked_sub(1)?;
                 (self.word, self.flags) = (self.word + 1, flags);
                 if flags != 0 {
-                    self.fetch(group);
+                    self.prefetch(group);
                     return Some(group);
                 }
             } else {
@@ -64,14 +64,14 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
 
     /// Prefetches the data of the pairs of a word of flags, so that their loads overlap. Changes
     /// nothing.
-    fn fetch(&self, group: &ContactGroup<N, D>) {
+    fn prefetch(&self, group: &ContactGroup<N, D>) {
         let (mut flags, mut sum) = (self.flags, 0_u32);
         while flags != 0 {
-            let place = place(self.word, &mut flags);
-            let (key, entry) = (group.keys()[place], &group.states()[place]);
-            let home = self.table.pose(entry.state.home(key));
-            let seen = (entry.number == 0) | (home.translation[0] > N::ZERO);
-            sum = sum.wrapping_add(entry.state.fetch()).wrapping_add(u32::from(seen));
+            let row = take_row(self.word, &mut flags);
+            let (key, entry) = (group.keys()[row], &group.states()[row]);
+            let pose1 = self.table.pose(entry.state.frame_object(key));
+            let loaded = (entry.number == 0) | (pose1.translation[0] > N::ZERO);
+            sum = sum.wrapping_add(entry.state.prefetch()).wrapping_add(u32::from(loaded));
         }
         core::hint::black_box(sum);
     }
@@ -80,16 +80,16 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
     #[inline]
     fn next_pair(&mut self) -> Option<(&'a ContactGroup<N, D>, usize)> {
         let group = if self.flags == 0 { self.next_word()? } else { self.group? };
-        Some((group, place(self.word, &mut self.flags)))
+        Some((group, take_row(self.word, &mut self.flags)))
     }
 
-    /// Iterates over the same contacts when some pairs are particular: manifolds of these pairs are
+    /// Iterates over all contacts when some pairs need built manifolds: the manifolds of these pairs are
     /// built for the reader.
-    pub(super) fn particular(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
+    pub(super) fn with_built(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
         let next = move || {
-            let (group, place) = self.next_pair()?;
-            let place = u32::try_from(place).expect("places are numbers of 32 bits");
-            Some((group.key(place), BuiltIn { table: self.table, group, place }))
+            let (group, row) = self.next_pair()?;
+            let row = u32::try_from(row).expect("rows are numbers of 32 bits");
+            Some((group.key(row), BuiltIn { table: self.table, group, row }))
         };
         iter::from_fn(next).filter_map(|(key, pair)| Some((key[0], key[1], pair.view()?)))
     }
@@ -97,10 +97,10 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
 
 /// Clears the lowest flag of the word before `word`, and returns the index of its pair.
 #[inline]
-const fn place(word: usize, flags: &mut u64) -> usize {
-    let place = (word - 1) * 64 + flags.trailing_zeros() as usize;
+const fn take_row(word: usize, flags: &mut u64) -> usize {
+    let row = (word - 1) * 64 + flags.trailing_zeros() as usize;
     *flags &= *flags - 1;
-    place
+    row
 }
 
 impl<'a, N: Space<D>, const D: usize> Iterator for ConvexViews<'a, N, D> {
@@ -108,8 +108,8 @@ impl<'a, N: Space<D>, const D: usize> Iterator for ConvexViews<'a, N, D> {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        let (group, place) = self.next_pair()?;
-        let (key, entry) = (group.keys()[place], &group.states()[place]);
+        let (group, row) = self.next_pair()?;
+        let (key, entry) = (group.keys()[row], &group.states()[row]);
         debug_assert!(entry.state.len() > 0, "a touching pair has contacts");
         Some((key[0], key[1], entry.state.view(self.table, key, entry.number)))
     }

@@ -9,7 +9,7 @@ use super::entry::{
 };
 use super::generator::DefaultContactDispatcher;
 use super::group::PairKey;
-use super::lanes::{Carried, Lane, Location, PairLanes, contact_lane, kind_pair};
+use super::pair_groups::{Carried, GroupId, Location, PairGroups, contact_group, kind_pair};
 use super::reuse::{ReuseError, usable_tolerance};
 use super::rewind::NarrowHead;
 use super::state::ContactState;
@@ -47,12 +47,12 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     pub(super) pairs: PairTable,
     /// Location of the state of each pair; parallel to `pairs`.
     pub(super) locations: Vec<Location>,
-    pub(super) lanes: PairLanes<N, D>,
+    pub(super) groups: PairGroups<N, D>,
     /// Greatest motion with which a pair keeps its contacts; unused without contact reuse.
     pub(super) tolerance: N,
     pub(crate) ids: IdAllocator,
-    /// Keys of pairs that were marked due since the last update; some of the pairs may be gone.
-    pub(super) due: Vec<PairKey>,
+    /// Keys of pairs that were marked dirty since the last update; some of the pairs may be gone.
+    pub(super) dirty_pairs: Vec<PairKey>,
     /// Scratch: changes of one update.
     pub(super) changes: PairChanges,
     pub(super) picked: Vec<Location>,
@@ -67,7 +67,7 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
 }
 
 clone_fields!([N: Space<D>, const D: usize] DefaultNarrowPhase<N, D> {
-    contact_dispatcher, proximity_dispatcher, pairs, locations, lanes, tolerance, ids, due, changes, picked,
+    contact_dispatcher, proximity_dispatcher, pairs, locations, groups, tolerance, ids, dirty_pairs, changes, picked,
     order, recent, touching, journal,
 });
 
@@ -106,10 +106,10 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             proximity_dispatcher: proximity.into(),
             pairs: PairTable::new(),
             locations: Vec::new(),
-            lanes: PairLanes::default(),
+            groups: PairGroups::default(),
             tolerance: N::ZERO,
             ids: IdAllocator::new(),
-            due: Vec::new(),
+            dirty_pairs: Vec::new(),
             changes: PairChanges::new(),
             picked: Vec::new(),
             recent: Recent::default(),
@@ -166,21 +166,21 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     pub fn try_reusing(self, tolerance: N) -> Result<Self, ReuseError> {
         let tolerance = usable_tolerance(tolerance)?;
         let Self { contact_dispatcher, proximity_dispatcher, .. } = self;
-        let lanes = PairLanes::with_references();
-        Ok(Self { contact_dispatcher, proximity_dispatcher, lanes, tolerance, ..Self::new() })
+        let groups = PairGroups::with_references();
+        Ok(Self { contact_dispatcher, proximity_dispatcher, groups, tolerance, ..Self::new() })
     }
 
     /// Updates all pairs, and occasionally releases memory.
     pub(crate) fn step(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
-        self.recent.note(self.due.len());
+        self.recent.note(self.dirty_pairs.len());
         self.update_pairs(table, events);
         if let Some(look) = self.recent.end_update(self.pairs.len()) {
-            look.trim(&mut self.due);
+            look.trim(&mut self.dirty_pairs);
             look.trim(&mut self.changes);
             look.trim(&mut self.picked);
             look.fit(&mut self.locations);
             self.pairs.fit(look);
-            self.lanes.fit(look);
+            self.groups.fit(look);
         }
     }
 
@@ -191,7 +191,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             return;
         }
         self.forget_order();
-        let (location, _) = self.enter(table, [first, second], Carried::Nothing);
+        let (location, _) = self.add_to_group(table, [first, second], Carried::Nothing);
         self.locations.push(location);
     }
 
@@ -205,7 +205,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         events: &mut Events,
     ) {
         let Some(index) = self.pairs.index_of(first, second) else { return };
-        let carried = self.leave(index);
+        let carried = self.remove_from_group(index);
         push_change(table, [first, second], carried.end(), events);
         let removed = self.pairs.remove_at(index);
         self.locations.swap_remove(removed.index);
@@ -237,8 +237,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         for (_, index) in partners {
             let key = PairKey::from(self.pairs.pairs()[index]);
             if !self.adjust(table, key, index) {
-                let carried = self.leave(index);
-                let (location, change) = self.enter(table, key, carried);
+                let carried = self.remove_from_group(index);
+                let (location, change) = self.add_to_group(table, key, carried);
                 self.locations[index] = location;
                 push_change(table, key, change, events);
             }
@@ -247,20 +247,20 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Returns the group and the maximum number of points of a manifold if the library's own
     /// algorithm serves a pair; `None` if a custom algorithm does.
-    pub(super) fn built_in_lane(
+    pub(super) fn built_in_group(
         &self,
         table: &ObjectTable<N, D>,
         key: PairKey,
-    ) -> Option<(Lane, usize)> {
+    ) -> Option<(GroupId, usize)> {
         let (a, b) = (table.shape(key[0]).as_ref(), table.shape(key[1]).as_ref());
         match table.query(key[0]).pair(table.query(key[1])) {
             PairQuery::Contacts { .. } => {
                 let max_points = self.contact_dispatcher.built_in(a, b)?;
-                Some((contact_lane(a, b), max_points))
+                Some((contact_group(a, b), max_points))
             }
             PairQuery::Proximity { .. } => {
                 let built_in = self.proximity_dispatcher.is_built_in(a, b);
-                built_in.then(|| (Lane::Proximity(kind_pair(a, b)), 0))
+                built_in.then(|| (GroupId::Proximity(kind_pair(a, b)), 0))
             }
         }
     }
@@ -269,60 +269,64 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// kind of query: updates the request, and moves the state to the group of the new kinds.
     /// Returns `false`, without a change, otherwise.
     fn adjust(&mut self, table: &ObjectTable<N, D>, key: PairKey, index: usize) -> bool {
-        let Some((new_lane, max_points)) = self.built_in_lane(table, key) else { return false };
-        let Location { lane, place } = self.locations[index];
+        let Some((new_group, max_points)) = self.built_in_group(table, key) else { return false };
+        let Location { group, row } = self.locations[index];
         let query = table.query(key[0]).pair(table.query(key[1]));
-        match (lane, new_lane, query) {
-            (Lane::Contacts(old), Lane::Contacts(new), PairQuery::Contacts { linear, angular }) => {
-                let taken = self.lanes.contacts[usize::from(old)].swap_remove(place);
-                self.note_move(taken.moved, place);
-                let mut entry = taken.state;
+        match (group, new_group, query) {
+            (
+                GroupId::Contacts(old),
+                GroupId::Contacts(new),
+                PairQuery::Contacts { linear, angular },
+            ) => {
+                let removed = self.groups.contacts[usize::from(old)].swap_remove(row);
+                self.note_move(removed.moved, row);
+                let mut entry = removed.state;
                 let linear = table.beyond_skins(key, linear);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
                 entry.state.set_solids(shapes(table, key));
-                let group = &mut self.lanes.contacts[usize::from(new)];
-                let place = group.push(key, entry, taken.is_touching);
-                self.locations[index] = Location { lane: new_lane, place };
+                let group = &mut self.groups.contacts[usize::from(new)];
+                let row = group.push(key, entry, removed.is_touching);
+                self.locations[index] = Location { group: new_group, row };
             }
-            (Lane::Composites, Lane::Composites, PairQuery::Contacts { linear, angular }) => {
-                let entry = self.lanes.composites.state_mut(place);
+            (GroupId::Composites, GroupId::Composites, PairQuery::Contacts { linear, angular }) => {
+                let entry = self.groups.composites.state_mut(row);
                 entry.state.forget_shapes();
                 let linear = table.beyond_skins(key, linear);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
             }
-            (Lane::Proximity(old), Lane::Proximity(new), PairQuery::Proximity { margin }) => {
-                let taken = self.lanes.proximity[usize::from(old)].swap_remove(place);
-                self.note_move(taken.moved, place);
-                let entry = ProximityEntry { margin, ..taken.state };
-                let place = self.lanes.proximity[usize::from(new)].push(key, entry, false);
-                self.locations[index] = Location { lane: new_lane, place };
+            (GroupId::Proximity(old), GroupId::Proximity(new), PairQuery::Proximity { margin }) => {
+                let removed = self.groups.proximity[usize::from(old)].swap_remove(row);
+                self.note_move(removed.moved, row);
+                let entry = ProximityEntry { margin, ..removed.state };
+                let row = self.groups.proximity[usize::from(new)].push(key, entry, false);
+                self.locations[index] = Location { group: new_group, row };
             }
             _ => return false,
         }
-        self.lanes.make_due(self.locations[index]);
-        self.due.push(key);
+        self.groups.mark_dirty(self.locations[index]);
+        self.dirty_pairs.push(key);
         true
     }
 
     /// Chooses an algorithm for a pair and adds the pair's state to a group, which continues from
     /// `carried`. Returns its location, and the change of its status if there is one.
-    fn enter(
+    fn add_to_group(
         &mut self,
         table: &ObjectTable<N, D>,
         key: PairKey,
         carried: Carried,
     ) -> (Location, Option<Change>) {
-        self.due.push(key);
+        self.dirty_pairs.push(key);
         self.touching.take();
         match table.query(key[0]).pair(table.query(key[1])) {
             PairQuery::Contacts { linear, angular } => {
-                self.enter_contacts(table, key, carried, linear, angular)
+                self.add_contacts(table, key, carried, linear, angular)
             }
-            PairQuery::Proximity { margin } => self.enter_proximity(table, key, carried, margin),
+            PairQuery::Proximity { margin } => self.add_proximity(table, key, carried, margin),
         }
     }
 
-    fn enter_contacts(
+    fn add_contacts(
         &mut self,
         table: &ObjectTable<N, D>,
         key: PairKey,
@@ -330,22 +334,24 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         linear: N,
         angular: N,
     ) -> (Location, Option<Change>) {
-        if let Some((lane, max_points)) = self.built_in_lane(table, key) {
+        if let Some((group, max_points)) = self.built_in_group(table, key) {
             let (is_touching, change) = carried.into_touching();
             let number = self.ids.allocate();
             let linear = table.beyond_skins(key, linear);
             let request = ManifoldRequest::new(linear, angular, max_points);
-            let place = match lane {
-                Lane::Contacts(group) => {
+            let row = match group {
+                GroupId::Contacts(kinds) => {
                     let entry = new_entry(table, key, request, number);
-                    self.lanes.contacts[usize::from(group)].push(key, entry, is_touching)
+                    self.groups.contacts[usize::from(kinds)].push(key, entry, is_touching)
                 }
-                Lane::Composites => {
-                    self.lanes.composites.push(key, ContactEntry::new(request, number), is_touching)
-                }
+                GroupId::Composites => self.groups.composites.push(
+                    key,
+                    ContactEntry::new(request, number),
+                    is_touching,
+                ),
                 _ => unreachable!("the query asks for contacts"),
             };
-            return (Location { lane, place }, change);
+            return (Location { group, row }, change);
         }
         let (a, b) = (table.shape(key[0]).as_ref(), table.shape(key[1]).as_ref());
         let Some(algorithm) = self.contact_dispatcher.get_contact_algorithm(a, b) else {
@@ -355,23 +361,25 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         let half = angular * N::HALF;
         let prediction = ContactPrediction::new(linear, half, half);
         let entry = CustomContactEntry { algorithm, prediction };
-        let place = self.lanes.custom_contacts.push(key, entry, is_touching);
-        (Location { lane: Lane::CustomContacts, place }, change)
+        let row = self.groups.custom_contacts.push(key, entry, is_touching);
+        (Location { group: GroupId::CustomContacts, row }, change)
     }
 
-    fn enter_proximity(
+    fn add_proximity(
         &mut self,
         table: &ObjectTable<N, D>,
         key: PairKey,
         carried: Carried,
         margin: N,
     ) -> (Location, Option<Change>) {
-        if let Some((lane, _)) = self.built_in_lane(table, key) {
-            let Lane::Proximity(group) = lane else { unreachable!("the query asks for proximity") };
+        if let Some((group, _)) = self.built_in_group(table, key) {
+            let GroupId::Proximity(kinds) = group else {
+                unreachable!("the query asks for proximity")
+            };
             let (status, change) = carried.into_status();
             let entry = ProximityEntry { margin, status };
-            let place = self.lanes.proximity[usize::from(group)].push(key, entry, false);
-            return (Location { lane, place }, change);
+            let row = self.groups.proximity[usize::from(kinds)].push(key, entry, false);
+            return (Location { group, row }, change);
         }
         let (a, b) = (table.shape(key[0]).as_ref(), table.shape(key[1]).as_ref());
         let Some(algorithm) = self.proximity_dispatcher.get_proximity_algorithm(a, b) else {
@@ -379,25 +387,25 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         };
         let (status, change) = carried.into_status();
         let entry = CustomProximityEntry { algorithm, margin, status };
-        let place = self.lanes.custom_proximity.push(key, entry, false);
-        (Location { lane: Lane::CustomProximity, place }, change)
+        let row = self.groups.custom_proximity.push(key, entry, false);
+        (Location { group: GroupId::CustomProximity, row }, change)
     }
 
     /// Removes the state of the pair at `index` in `pairs` from its group, and returns the status
     /// to carry over.
-    fn leave(&mut self, index: usize) -> Carried {
+    fn remove_from_group(&mut self, index: usize) -> Carried {
         let location = self.locations[index];
-        let (carried, moved) = self.lanes.take(location);
-        self.note_move(moved, location.place);
+        let (carried, moved) = self.groups.take(location);
+        self.note_move(moved, location.row);
         carried
     }
 
-    /// Updates the location of the pair that moved to index `place` when another pair was removed
+    /// Updates the location of the pair that moved to row `row` when another pair was removed
     /// from its group.
-    fn note_move(&mut self, moved: Option<PairKey>, place: u32) {
+    fn note_move(&mut self, moved: Option<PairKey>, row: u32) {
         let Some([first, second]) = moved else { return };
         let index = self.pairs.index_of(first, second).expect("every state belongs to a pair");
-        self.locations[index].place = place;
+        self.locations[index].row = row;
     }
 }
 
@@ -422,7 +430,7 @@ fn shapes<N: Space<D>, const D: usize>(
 }
 
 /// The location of pairs without an algorithm.
-pub(super) const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0 };
+pub(super) const NOWHERE: Location = Location { group: GroupId::Nothing, row: 0 };
 
 /// Pushes the event of a pair's change, if there is one.
 pub(super) fn push_change<N: Space<D>, const D: usize>(

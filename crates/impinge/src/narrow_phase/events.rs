@@ -141,7 +141,7 @@ impl Events {
 
     /// Iterates over the handles in events, from the given index of each list on; handles may
     /// repeat.
-    pub(crate) fn named_from(
+    pub(crate) fn handles_since(
         &self,
         (contacts, proximities): (usize, usize),
     ) -> impl Iterator<Item = CollisionObjectHandle> + '_ {

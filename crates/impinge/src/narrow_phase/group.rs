@@ -4,9 +4,9 @@
 //! not change results.
 //!
 //! ```text
-//! place        0      1      2     ...            swap_remove(1): the last pair moves to place 1
-//! keys        [a,b]  [a,c]  [d,e]                 and `Taken::moved` names it
-//! due          0      1      0
+//! row          0      1      2     ...            swap_remove(1): the last pair moves to row 1
+//! keys        [a,b]  [a,c]  [d,e]                 and `RemovedRow::moved` names it
+//! dirty        0      1      0
 //! touching    bit 0  bit 1  bit 2  (64 per word)
 //! states       S      S      S
 //! views        V      V      V     (none until a reader asks)
@@ -33,12 +33,12 @@ pub(crate) type PairKey = [u32; 2];
 
 /// A subset of at most [`CHUNK`] pairs, as a bit set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Chosen([u64; CHUNK / WORD]);
+pub(super) struct RowSet([u64; CHUNK / WORD]);
 
 /// The states of some pairs, in no particular order and without gaps.
 ///
-/// A pair's index (`place`) changes when another pair of the group is removed; [`Taken::moved`]
-/// reports it. The flags that are read for every pair, due and touching, are stored apart from the
+/// A pair's row changes when another pair of the group is removed; [`RemovedRow::moved`]
+/// reports it. The flags that are read for every pair, dirty and touching, are stored apart from the
 /// states, so that skipping a pair does not load its state.
 ///
 /// Each state has a view: the form in which users read it. All views are created together on first
@@ -47,9 +47,9 @@ pub(super) struct Chosen([u64; CHUNK / WORD]);
 #[derive(Debug)]
 pub(crate) struct Group<S: Parts, V = (), R = ()> {
     pub(super) keys: Vec<PairKey>,
-    /// By index: whether the pair must be updated even if neither object moves.
-    pub(super) due: Vec<bool>,
-    /// By index, as bits: whether the pair has contact points. Surplus bits are zero.
+    /// By row: whether the pair must be updated even if neither object moves.
+    pub(super) dirty: Vec<bool>,
+    /// By row, as bits: whether the pair has contact points. Surplus bits are zero.
     pub(super) touching: Vec<u64>,
     pub(super) states: Vec<S>,
     /// A view for each state; not created before the first access.
@@ -59,7 +59,7 @@ pub(crate) struct Group<S: Parts, V = (), R = ()> {
     pub(super) journal: Journal<GroupNote<S, R>>,
     /// References of the pairs in [`GroupNote::Written`] notes.
     pub(super) reference_journal: Journal<R>,
-    /// By index, if there are marks: the period in which the pair was last noted, or added.
+    /// By row, if there are marks: the period in which the pair was last noted, or added.
     pub(super) noted: Vec<u8>,
     /// The current period. Each mark begins a new one.
     pub(super) period: u8,
@@ -74,9 +74,9 @@ impl<S: Parts, V, R: Clone> Clone for Group<S, V, R> {
     }
 
     fn clone_from(&mut self, source: &Self) {
-        let Self { keys, due, touching, states, views, references, .. } = self;
+        let Self { keys, dirty, touching, states, views, references, .. } = self;
         keys.clone_from(&source.keys);
-        due.clone_from(&source.due);
+        dirty.clone_from(&source.dirty);
         touching.clone_from(&source.touching);
         states.clone_from(&source.states);
         views.take();
@@ -90,7 +90,7 @@ impl<S: Parts, V, R: Clone> Clone for Group<S, V, R> {
 /// Parallel slices over the pairs of a group or chunk.
 pub(crate) struct Rows<'a, S, V, R = ()> {
     pub(crate) keys: &'a [PairKey],
-    due: &'a mut [bool],
+    dirty: &'a mut [bool],
     touching: &'a mut [u64],
     pub(crate) states: &'a mut [S],
     /// A view for each state; empty if there are no views.
@@ -101,20 +101,20 @@ pub(crate) struct Rows<'a, S, V, R = ()> {
 
 /// A pair that was removed from a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Taken<S> {
+pub(crate) struct RemovedRow<S> {
     pub(crate) state: S,
     pub(crate) is_touching: bool,
-    /// The pair that moved to the index of the removed one; `None` if that was the last.
+    /// The pair that moved to the row of the removed one; `None` if that was the last.
     pub(crate) moved: Option<PairKey>,
 }
 
 impl<S: Parts, V, R> Default for Group<S, V, R> {
     fn default() -> Self {
-        let (keys, due, touching) = (Vec::new(), Vec::new(), Vec::new());
+        let (keys, dirty, touching) = (Vec::new(), Vec::new(), Vec::new());
         let (views, references) = (OnceLock::new(), None);
         Self {
             keys,
-            due,
+            dirty,
             touching,
             states: Vec::new(),
             views,
@@ -128,14 +128,14 @@ impl<S: Parts, V, R> Default for Group<S, V, R> {
 }
 
 /// Returns the word index of a pair's flag, and its bit.
-const fn flag(place: usize) -> (usize, u64) {
-    (place / WORD, 1 << (place % WORD))
+const fn flag(row: usize) -> (usize, u64) {
+    (row / WORD, 1 << (row % WORD))
 }
 
 /// Sets whether a pair touches; returns `true` if this changes its flag.
 #[inline]
-pub(super) fn set_touching(words: &mut [u64], place: usize, is_touching: bool) -> bool {
-    let (word, bit) = flag(place);
+pub(super) fn set_touching(words: &mut [u64], row: usize, is_touching: bool) -> bool {
+    let (word, bit) = flag(row);
     let is_new = (words[word] & bit != 0) != is_touching;
     words[word] ^= if is_new { bit } else { 0 };
     is_new
@@ -147,17 +147,17 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         Self { references: Some(Vec::new()), ..Self::default() }
     }
 
-    /// Adds a pair, marks it as due, and returns its index.
+    /// Adds a pair, marks it as dirty, and returns its row.
     pub(crate) fn push(&mut self, key: PairKey, state: S, is_touching: bool) -> u32 {
-        let place = self.keys.len();
+        let row = self.keys.len();
         if self.journal.is_on() {
             self.journal.note(GroupNote::Pushed);
             self.noted.push(self.period);
         }
         self.keys.push(key);
-        self.due.push(true);
+        self.dirty.push(true);
         self.touching.resize(self.keys.len().div_ceil(WORD), 0);
-        set_touching(&mut self.touching, place, is_touching);
+        set_touching(&mut self.touching, row, is_touching);
         self.states.push(state);
         if let Some(views) = self.views.get_mut() {
             views.push(V::default());
@@ -165,38 +165,38 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         if let Some(references) = &mut self.references {
             references.push(R::default());
         }
-        u32::try_from(place).expect("fewer than 2^32 pairs fit in memory")
+        u32::try_from(row).expect("fewer than 2^32 pairs fit in memory")
     }
 
-    /// Removes the pair at an index; the last pair moves to that index.
-    pub(crate) fn swap_remove(&mut self, place: u32) -> Taken<S> {
-        self.note_removed(place);
-        let (is_touching, place) = (self.is_touching(place), place as usize);
+    /// Removes the pair in a row; the last pair moves to that row.
+    pub(crate) fn swap_remove(&mut self, row: u32) -> RemovedRow<S> {
+        self.note_removed(row);
+        let (is_touching, row) = (self.is_touching(row), row as usize);
         let last = self.keys.len() - 1;
         let (word, bit) = flag(last);
         let is_last_touching = self.touching[word] & bit != 0;
-        set_touching(&mut self.touching, place, is_last_touching);
+        set_touching(&mut self.touching, row, is_last_touching);
         set_touching(&mut self.touching, last, false);
         self.touching.truncate(last.div_ceil(WORD));
-        self.keys.swap_remove(place);
-        self.due.swap_remove(place);
+        self.keys.swap_remove(row);
+        self.dirty.swap_remove(row);
         if let Some(views) = self.views.get_mut() {
-            views.swap_remove(place);
+            views.swap_remove(row);
         }
         if let Some(references) = &mut self.references {
-            references.swap_remove(place);
+            references.swap_remove(row);
         }
-        let (state, moved) = (self.states.swap_remove(place), self.keys.get(place).copied());
-        Taken { state, is_touching, moved }
+        let (state, moved) = (self.states.swap_remove(row), self.keys.get(row).copied());
+        RemovedRow { state, is_touching, moved }
     }
 
-    /// Replaces the pair at an index by another one, which is due and not touching. Returns `true`
+    /// Replaces the pair in a row by another one, which is dirty and not touching. Returns `true`
     /// if the old pair was touching.
-    pub(crate) fn replace(&mut self, place: u32, key: PairKey, state: S) -> bool {
-        self.note_whole(place);
-        let at = place as usize;
+    pub(crate) fn replace(&mut self, row: u32, key: PairKey, state: S) -> bool {
+        self.note_whole(row);
+        let at = row as usize;
         let was_touching = set_touching(&mut self.touching, at, false);
-        (self.keys[at], self.due[at], self.states[at]) = (key, true, state);
+        (self.keys[at], self.dirty[at], self.states[at]) = (key, true, state);
         if let Some(views) = self.views.get_mut() {
             views[at] = V::default();
         }
@@ -209,70 +209,70 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     /// Releases surplus memory of a group that has stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
         look.fit(&mut self.keys);
-        look.fit(&mut self.due);
+        look.fit(&mut self.dirty);
         look.fit(&mut self.states);
         if let Some(references) = &mut self.references {
             look.fit(references);
         }
     }
 
-    /// Returns `true` if the pair at an index has contact points.
-    pub(crate) fn is_touching(&self, place: u32) -> bool {
-        let (word, bit) = flag(place as usize);
+    /// Returns `true` if the pair in a row has contact points.
+    pub(crate) fn is_touching(&self, row: u32) -> bool {
+        let (word, bit) = flag(row as usize);
         self.touching[word] & bit != 0
     }
 
-    /// Marks a pair as due even if neither object moves, and drops its reference.
-    pub(crate) fn make_due(&mut self, place: u32) {
-        self.note_whole(place);
-        self.due[place as usize] = true;
+    /// Marks a pair as dirty even if neither object moves, and drops its reference.
+    pub(crate) fn mark_dirty(&mut self, row: u32) {
+        self.note_whole(row);
+        self.dirty[row as usize] = true;
         if let Some(references) = &mut self.references {
-            references[place as usize] = R::default();
+            references[row as usize] = R::default();
         }
     }
 
-    /// Returns the state of the pair at an index.
-    pub(crate) fn state(&self, place: u32) -> &S {
-        &self.states[place as usize]
+    /// Returns the state of the pair in a row.
+    pub(crate) fn state(&self, row: u32) -> &S {
+        &self.states[row as usize]
     }
 
-    /// Returns the state of the pair at an index, for changes; records its old value if there are
+    /// Returns the state of the pair in a row, for changes; records its old value if there are
     /// marks.
-    pub(crate) fn state_mut(&mut self, place: u32) -> &mut S {
-        self.note_whole(place);
-        &mut self.states[place as usize]
+    pub(crate) fn state_mut(&mut self, row: u32) -> &mut S {
+        self.note_whole(row);
+        &mut self.states[row as usize]
     }
 
-    /// Returns the view of the pair at an index; creates all views on first access.
-    pub(crate) fn view(&self, place: u32) -> &V {
+    /// Returns the view of the pair in a row; creates all views on first access.
+    pub(crate) fn view(&self, row: u32) -> &V {
         let make = || self.keys.iter().map(|_| V::default()).collect();
-        &self.views.get_or_init(make)[place as usize]
+        &self.views.get_or_init(make)[row as usize]
     }
 
-    /// Returns the key of the pair at an index.
-    pub(crate) fn key(&self, place: u32) -> PairKey {
-        self.keys[place as usize]
+    /// Returns the key of the pair in a row.
+    pub(crate) fn key(&self, row: u32) -> PairKey {
+        self.keys[row as usize]
     }
 
-    /// Returns the keys of all pairs, by index.
+    /// Returns the keys of all pairs, by row.
     pub(crate) fn keys(&self) -> &[PairKey] {
         &self.keys
     }
 
-    /// Returns the states of all pairs, by index.
+    /// Returns the states of all pairs, by row.
     pub(crate) fn states(&self) -> &[S] {
         &self.states
     }
 
-    /// Returns the touching flags, 64 in a word; the lowest bit is the lowest index.
+    /// Returns the touching flags, 64 in a word; the lowest bit is the lowest row.
     pub(crate) fn touching(&self) -> &[u64] {
         &self.touching
     }
 
-    /// Iterates over the touching pairs with their states, by ascending index.
+    /// Iterates over the touching pairs with their states, by ascending row.
     pub(crate) fn iter_touching(&self) -> impl Iterator<Item = (PairKey, &S)> {
         let pairs = (0..).zip(&self.keys).zip(&self.states);
-        let pairs = pairs.filter(|((place, _), _)| self.is_touching(*place));
+        let pairs = pairs.filter(|((row, _), _)| self.is_touching(*row));
         pairs.map(|((_, &key), state)| (key, state))
     }
 
@@ -284,14 +284,14 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     /// Returns slices over all pairs.
     pub(crate) fn rows(&mut self) -> Rows<'_, S, V, R> {
         let views = self.views.get_mut().map_or(&mut [][..], Vec::as_mut_slice);
-        let Self { keys, due, touching, states, references, .. } = self;
+        let Self { keys, dirty, touching, states, references, .. } = self;
         let references = references.as_deref_mut().unwrap_or_default();
-        Rows { keys, due, touching, states, views, references }
+        Rows { keys, dirty, touching, states, views, references }
     }
 }
 
-impl Chosen {
-    /// Removes the indices for which `stays` returns `false`.
+impl RowSet {
+    /// Removes the rows for which `stays` returns `false`.
     pub(super) fn retain(&mut self, mut stays: impl FnMut(usize) -> bool) {
         for index in self.indices() {
             let (word, bit) = flag(index);
@@ -320,19 +320,19 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
     }
 
     pub(crate) fn reborrow(&mut self) -> Rows<'_, S, V, R> {
-        let Rows { keys, due, touching, states, views, references } = self;
-        Rows { keys, due, touching, states, views, references }
+        let Rows { keys, dirty, touching, states, views, references } = self;
+        Rows { keys, dirty, touching, states, views, references }
     }
 
     /// Splits the slices into pieces of [`CHUNK`] pairs; the last one may be shorter.
     pub(crate) fn chunks(self) -> impl Iterator<Item = Rows<'a, S, V, R>> {
-        let (mut views, mut due) = (self.views.chunks_mut(CHUNK), self.due.chunks_mut(CHUNK));
+        let (mut views, mut dirty) = (self.views.chunks_mut(CHUNK), self.dirty.chunks_mut(CHUNK));
         let mut touching = self.touching.chunks_mut(CHUNK / WORD);
         let mut references = self.references.chunks_mut(CHUNK);
         let pairs = self.keys.chunks(CHUNK).zip(self.states.chunks_mut(CHUNK));
         pairs.map(move |(keys, states)| Rows {
             keys,
-            due: due.next().unwrap_or_default(),
+            dirty: dirty.next().unwrap_or_default(),
             touching: touching.next().unwrap_or_default(),
             states,
             views: views.next().unwrap_or_default(),
@@ -342,48 +342,48 @@ impl<'a, S, V, R> Rows<'a, S, V, R> {
 
     /// Returns the key of a pair, its state, and its view if the group has views.
     #[inline]
-    pub(crate) fn row(&mut self, index: usize) -> (PairKey, &mut S, Option<&mut V>) {
-        (self.keys[index], &mut self.states[index], self.views.get_mut(index))
+    pub(crate) fn row(&mut self, row: usize) -> (PairKey, &mut S, Option<&mut V>) {
+        (self.keys[row], &mut self.states[row], self.views.get_mut(row))
     }
 
-    /// Returns `true` if the pair needs a new query: it is marked as due, or one of its objects
+    /// Returns `true` if the pair needs a new query: it is marked as dirty, or one of its objects
     /// changed. Clears the mark.
     #[inline]
-    pub(crate) fn take_due<N: Space<D>, const D: usize>(
+    pub(crate) fn take_dirty<N: Space<D>, const D: usize>(
         &mut self,
-        index: usize,
+        row: usize,
         table: &ObjectTable<N, D>,
     ) -> bool {
-        let [first, second] = self.keys[index];
-        self.take_mark(index) | table.has_changed(first) | table.has_changed(second)
+        let [first, second] = self.keys[row];
+        self.take_dirty_flag(row) | table.has_changed(first) | table.has_changed(second)
     }
 
-    /// Returns `true` if the pair is marked as due, and clears the mark.
+    /// Returns `true` if the pair is marked as dirty, and clears the mark.
     #[inline]
-    pub(crate) fn take_mark(&mut self, index: usize) -> bool {
-        core::mem::take(&mut self.due[index])
+    pub(crate) fn take_dirty_flag(&mut self, row: usize) -> bool {
+        core::mem::take(&mut self.dirty[row])
     }
 
     /// Returns the pairs of a chunk that need a new query, and clears their marks.
     ///
     /// The loop over flags and change bits has no branches, so nothing waits for the memory of the
     /// pairs.
-    pub(super) fn take_all_due<N: Space<D>, const D: usize>(
+    pub(super) fn take_all_dirty<N: Space<D>, const D: usize>(
         &mut self,
         table: &ObjectTable<N, D>,
-    ) -> Chosen {
-        let mut chosen = Chosen([0; CHUNK / WORD]);
-        for index in 0..self.keys.len().min(CHUNK) {
-            let is_due = self.take_due(index, table);
-            chosen.0[index / WORD] |= u64::from(is_due) << (index % WORD);
+    ) -> RowSet {
+        let mut selected = RowSet([0; CHUNK / WORD]);
+        for row in 0..self.keys.len().min(CHUNK) {
+            let is_dirty = self.take_dirty(row, table);
+            selected.0[row / WORD] |= u64::from(is_dirty) << (row % WORD);
         }
-        chosen
+        selected
     }
 
     /// Sets whether the pair has contact points; returns `true` if this changes its flag.
     #[inline]
-    pub(crate) fn set_touching(&mut self, index: usize, is_touching: bool) -> bool {
-        set_touching(self.touching, index, is_touching)
+    pub(crate) fn set_touching(&mut self, row: usize, is_touching: bool) -> bool {
+        set_touching(self.touching, row, is_touching)
     }
 }
 
@@ -395,18 +395,22 @@ mod tests {
     fn the_last_pair_fills_the_gap() {
         let mut group = Group::<u32>::default();
         for n in 0..3 {
-            assert_eq!(group.push([n, n + 1], n, n == 2), n, "places are dense");
+            assert_eq!(group.push([n, n + 1], n, n == 2), n, "rows are dense");
         }
-        let taken = |state, is_touching, moved| Taken { state, is_touching, moved };
+        let removed = |state, is_touching, moved| RemovedRow { state, is_touching, moved };
         assert_eq!(
             group.swap_remove(0),
-            taken(0, false, Some([2, 3])),
+            removed(0, false, Some([2, 3])),
             "the last moves to the front"
         );
         assert_eq!((group.key(0), *group.state(0)), ([2, 3], 2), "with its state");
         assert_eq!(group.touching(), [1], "and with its flag");
-        assert_eq!(group.swap_remove(1), taken(1, false, None), "nobody moves when the last goes");
-        assert_eq!(group.swap_remove(0), taken(2, true, None), "none is left");
+        assert_eq!(
+            group.swap_remove(1),
+            removed(1, false, None),
+            "nobody moves when the last goes"
+        );
+        assert_eq!(group.swap_remove(0), removed(2, true, None), "none is left");
         assert!(group.touching().is_empty(), "nor a flag");
     }
 
@@ -418,9 +422,9 @@ mod tests {
             group.push([n, n], n, is_third(n));
         }
         for step in 0..150 {
-            let place = step * 7 % (200 - step);
-            let state = *group.state(place);
-            assert_eq!(group.swap_remove(place).is_touching, is_third(state), "that of {state}");
+            let row = step * 7 % (200 - step);
+            let state = *group.state(row);
+            assert_eq!(group.swap_remove(row).is_touching, is_third(state), "that of {state}");
         }
         let touching: Vec<_> = group.iter_touching().map(|(_, &state)| state).collect();
         let expected = group.states().iter().copied().filter(|&n| is_third(n));
@@ -448,7 +452,7 @@ mod tests {
         }
         group.swap_remove(1);
         group.push([9, 9], 9, false);
-        assert_eq!([1, 4].map(|place| *group.view(place)), [Some(4), None], "moved, and new");
+        assert_eq!([1, 4].map(|row| *group.view(row)), [Some(4), None], "moved, and new");
         for n in 5..130 {
             group.push([n, n], n, false);
         }

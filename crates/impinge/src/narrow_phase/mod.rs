@@ -6,28 +6,28 @@
 //!
 //! ```text
 //! pairs: PairTable       (first, second) by index, both handle indices
-//! locations              index -> Location { lane, place }
-//! lanes: PairLanes       contacts[kind pair]   one Group for each pair of shape kinds
+//! locations              index -> Location { group, row }
+//! groups: PairGroups     contacts[kind pair]   one Group for each pair of shape kinds
 //!                        composites            one Group for all pairs with a composite
 //!                        proximity[kind pair], custom_contacts, custom_proximity
-//! Group                  place -> keys | due | touching (bits) | states | views? | references?
+//! Group                  row -> keys | dirty | touching (bits) | states | views? | references?
 //! ```
 
-mod ahead;
 mod composite_views;
 mod convex_views;
 mod default_narrow_phase;
 mod detector;
-mod due;
+mod dirty_contacts;
 mod entry;
 mod events;
 mod generator;
 mod group;
 mod handle;
 mod ids;
-mod lanes;
 mod objects;
 mod pair_batch;
+mod pair_groups;
+mod prefetch;
 mod query_type;
 mod reuse;
 mod rewind;
@@ -42,7 +42,7 @@ mod view;
 
 pub use default_narrow_phase::DefaultNarrowPhase;
 pub use detector::{DefaultProximityDispatcher, PairProximityDetector};
-pub(crate) use due::{DueContacts, update_lanes2, update_lanes3};
+pub(crate) use dirty_contacts::{DirtyContacts, update_lanes2, update_lanes3};
 pub use events::{ContactEvent, Events, ProximityEvent};
 pub use generator::{DefaultContactDispatcher, PairManifoldGenerator};
 pub(crate) use generator::{Revolved, conforming_points};

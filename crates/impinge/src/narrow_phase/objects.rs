@@ -73,8 +73,8 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     /// Handle indices of the objects whose rows were written in the current update, in order of
     /// writing. An object that has lost its row since may still be listed, or be listed again.
     changed: Vec<u32>,
-    /// Number of rows taken since they were last sorted.
-    lent: usize,
+    /// Number of rows acquired since the last [`Self::compact`].
+    acquired: usize,
     /// Pairs computed since the last update, sorted by key, with the poses of their computation.
     pub(super) substeps: Vec<PairSolids<N, D>>,
     /// By handle index, up to the last object with a skin: the skin, as of the last update.
@@ -83,7 +83,7 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
 }
 
 clone_fields!([N: Space<D>, const D: usize] ObjectTable<N, D> {
-    rows, handles, solids, bounds, queries, isometries, is_written, free, changed, lent, substeps, skins, journal,
+    rows, handles, solids, bounds, queries, isometries, is_written, free, changed, acquired, substeps, skins, journal,
 });
 
 /// The state of an object before a change.
@@ -141,7 +141,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
             is_written: Vec::new(),
             free: Vec::new(),
             changed: Vec::new(),
-            lent: 0,
+            acquired: 0,
             substeps: Vec::new(),
             skins: Vec::new(),
             journal: Journal::default(),
@@ -165,7 +165,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     }
 
     /// Assigns a row to an object and writes it; does nothing if the object has a row.
-    pub(crate) fn lend(&mut self, index: u32, row: impl FnOnce() -> ObjectRow<N, D>) {
+    pub(crate) fn acquire(&mut self, index: u32, object: impl FnOnce() -> ObjectRow<N, D>) {
         if self.has_row(index) {
             return;
         }
@@ -173,13 +173,13 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
             self.rows.resize(index as usize + 1, NONE);
         }
         self.note(index);
-        self.lent += 1;
+        self.acquired += 1;
         match self.free.pop() {
-            Some(place) => {
-                self.rows[index as usize] = place;
-                self.set(index, row);
+            Some(row) => {
+                self.rows[index as usize] = row;
+                self.set(index, object);
             }
-            None => self.push(index, row()),
+            None => self.push(index, object()),
         }
     }
 
@@ -194,29 +194,29 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     }
 
     /// Overwrites the row of an object, if it has one.
-    pub(crate) fn set(&mut self, index: u32, row: impl FnOnce() -> ObjectRow<N, D>) {
+    pub(crate) fn set(&mut self, index: u32, object: impl FnOnce() -> ObjectRow<N, D>) {
         if self.has_row(index) {
             self.note(index);
-            let (place, row) = (self.row(index), row());
-            self.handles[place] = row.handle;
-            self.bounds[place] = ReachBounds::of(row.shape.as_ref());
-            self.solids[place].shape = row.shape;
-            self.queries[place] = row.query;
-            self.set_position(index, &row.isometry);
+            let (row, object) = (self.row(index), object());
+            self.handles[row] = object.handle;
+            self.bounds[row] = ReachBounds::of(object.shape.as_ref());
+            self.solids[row].shape = object.shape;
+            self.queries[row] = object.query;
+            self.set_position(index, &object.isometry);
         }
     }
 
-    fn push(&mut self, index: u32, row: ObjectRow<N, D>) {
-        let place = self.handles.len();
-        self.rows[index as usize] = u32::try_from(place).expect("no more rows than objects");
+    fn push(&mut self, index: u32, object: ObjectRow<N, D>) {
+        let row = self.handles.len();
+        self.rows[index as usize] = u32::try_from(row).expect("no more rows than objects");
         self.changed.push(index);
         self.is_written.push(true);
-        self.handles.push(row.handle);
-        self.bounds.push(ReachBounds::of(row.shape.as_ref()));
-        let pose = row.shape.geometry().pose_at(&row.isometry);
-        self.solids.push(ObjectSolid { pose, shape: row.shape });
-        self.isometries.push(row.isometry);
-        self.queries.push(row.query);
+        self.handles.push(object.handle);
+        self.bounds.push(ReachBounds::of(object.shape.as_ref()));
+        let pose = object.shape.geometry().pose_at(&object.isometry);
+        self.solids.push(ObjectSolid { pose, shape: object.shape });
+        self.isometries.push(object.isometry);
+        self.queries.push(object.query);
     }
 
     /// Writes the position of an object, if it has a row; does not change the rest of the row.
@@ -297,15 +297,15 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
 
     /// Sorts the rows by handle index and drops free ones, if more than a quarter have been
     /// assigned since the last time. A pass over the objects then accesses memory in order.
-    pub(crate) fn tidy(&mut self) {
-        if self.lent * 4 <= self.handles.len() {
+    pub(crate) fn compact(&mut self) {
+        if self.acquired * 4 <= self.handles.len() {
             return;
         }
-        self.lent = 0;
+        self.acquired = 0;
         let mut next = 0;
         for index in 0..self.rows.len() {
             if self.rows[index] != NONE {
-                self.exchange(self.rows[index] as usize, next);
+                self.swap_rows(self.rows[index] as usize, next);
                 next += 1;
             }
         }
@@ -319,7 +319,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     }
 
     /// Swaps a row in use with another row, which may be free.
-    fn exchange(&mut self, row: usize, other: usize) {
+    fn swap_rows(&mut self, row: usize, other: usize) {
         let (owner, other_owner) = (self.handles[row].uid(), self.handles[other].uid());
         if self.rows[other_owner] as usize == other {
             self.rows[other_owner] = self.rows[owner];
@@ -335,8 +335,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
 
     /// Releases memory that has not been needed for some time.
     pub(crate) fn give_back(&mut self, look: Look) {
-        self.lent += self.free.len();
-        self.tidy();
+        self.acquired += self.free.len();
+        self.compact();
         look.fit(&mut self.rows);
         look.fit(&mut self.handles);
         look.fit(&mut self.solids);
@@ -368,7 +368,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
                     match row {
                         None => self.release(index),
                         Some(row) if self.has_row(index) => self.set(index, || row),
-                        Some(row) => self.lend(index, || row),
+                        Some(row) => self.acquire(index, || row),
                     }
                     self.set_skin(index, skin);
                 }

@@ -7,17 +7,17 @@ use smallvec::SmallVec;
 use super::default_narrow_phase::{new_entry, push_change};
 use super::entry::Change;
 use super::group::PairKey;
-use super::lanes::{Lane, Location};
+use super::pair_groups::{GroupId, Location};
 use super::{DefaultNarrowPhase, Events, Interaction, ObjectTable, PairQuery};
 use crate::collide::ManifoldRequest;
 use crate::math::Space;
 use crate::pairs::pack;
 
 /// Number of started and of stopped pairs that are prefetched at once.
-const AT_ONCE: usize = 16;
+const BATCH: usize = 16;
 
 /// Keys of some pairs.
-type BatchKeys = SmallVec<[PairKey; AT_ONCE]>;
+type BatchKeys = SmallVec<[PairKey; BATCH]>;
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Adds the pairs that began and removes those that ended, as [`pair_started`](Self::pair_started) and
@@ -37,12 +37,12 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         };
         let (mut starting, mut stopping) = (all(true), all(false));
         loop {
-            let started: BatchKeys = starting.by_ref().take(AT_ONCE).collect();
-            let stopped: BatchKeys = stopping.by_ref().take(AT_ONCE).collect();
+            let started: BatchKeys = starting.by_ref().take(BATCH).collect();
+            let stopped: BatchKeys = stopping.by_ref().take(BATCH).collect();
             if started.is_empty() && stopped.is_empty() {
                 return;
             }
-            self.fetch(table, &started, &stopped);
+            self.prefetch(table, &started, &stopped);
             self.begin_and_end_some_pairs(table, [&started, &stopped], events);
         }
     }
@@ -67,23 +67,22 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     }
 
     /// Prefetches the data of some pairs, whose loads would otherwise wait for each other. Changes nothing.
-    fn fetch(&self, table: &ObjectTable<N, D>, started: &[PairKey], stopped: &[PairKey]) {
+    fn prefetch(&self, table: &ObjectTable<N, D>, started: &[PairKey], stopped: &[PairKey]) {
         let packed = |&[first, second]: &PairKey| pack(first, second);
-        let keys: SmallVec<[u64; 2 * AT_ONCE]> =
-            started.iter().chain(stopped).map(packed).collect();
-        self.pairs.fetch(&keys);
+        let keys: SmallVec<[u64; 2 * BATCH]> = started.iter().chain(stopped).map(packed).collect();
+        self.pairs.prefetch(&keys);
         let kind = |object: u32| table.shape(object).geometry().kind() as u32;
         let kinds = |sum: u32, &[first, second]: &PairKey| sum ^ kind(first) ^ kind(second);
-        let mut seen = u64::from(started.iter().fold(0, kinds));
+        let mut loaded = u64::from(started.iter().fold(0, kinds));
         for &[first, second] in stopped {
             let index = self.pairs.index_of(first, second);
             let location = index.map(|index| self.locations[index]);
-            if let Some(Location { lane: Lane::Contacts(group), place }) = location {
-                let entry = self.lanes.contacts[usize::from(group)].state(place);
-                seen ^= entry.number ^ u64::from(entry.state.fetch());
+            if let Some(Location { group: GroupId::Contacts(kinds), row }) = location {
+                let entry = self.groups.contacts[usize::from(kinds)].state(row);
+                loaded ^= entry.number ^ u64::from(entry.state.prefetch());
             }
         }
-        core::hint::black_box(seen);
+        core::hint::black_box(loaded);
     }
 
     /// Removes one pair and adds another.
@@ -110,25 +109,25 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         events: &mut Events,
     ) -> Option<()> {
         let index = self.pairs.index_of(old[0], old[1])?;
-        let Location { lane, place } = self.locations[index];
-        let (Lane::Contacts(group), PairQuery::Contacts { linear, angular }) =
-            (lane, table.query(new[0]).pair(table.query(new[1])))
+        let Location { group, row } = self.locations[index];
+        let (GroupId::Contacts(kinds), PairQuery::Contacts { linear, angular }) =
+            (group, table.query(new[0]).pair(table.query(new[1])))
         else {
             return None;
         };
         let (_, max_points) =
-            self.built_in_lane(table, new).filter(|built_in| built_in.0 == lane)?;
+            self.built_in_group(table, new).filter(|built_in| built_in.0 == group)?;
         if self.pairs.index_of(new[0], new[1]).is_some() {
             return None;
         }
         let linear = table.beyond_skins(new, linear);
         let request = ManifoldRequest::new(linear, angular, max_points);
         let entry = new_entry(table, new, request, self.ids.allocate());
-        let was_touching = self.lanes.contacts[usize::from(group)].replace(place, new, entry);
+        let was_touching = self.groups.contacts[usize::from(kinds)].replace(row, new, entry);
         let end = was_touching.then_some(Change::Contact { touching: false });
         push_change(table, old, end, events);
         self.pairs.replace(old.into(), new.into());
-        self.due.push(new);
+        self.dirty_pairs.push(new);
         self.forget_order();
         Some(())
     }

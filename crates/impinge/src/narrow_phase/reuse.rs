@@ -128,8 +128,8 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
     /// there is no bound.
     fn motion(&self, pose21: &Pose<N, D>) -> N {
         // The Frobenius norm of a difference of rotations bounds its spectral norm.
-        let turn = (pose21.rotation - self.pose21.rotation).norm();
-        (pose21.translation - self.pose21.translation).norm() + turn * self.reach
+        let rotation_change = (pose21.rotation - self.pose21.rotation).norm();
+        (pose21.translation - self.pose21.translation).norm() + rotation_change * self.reach
     }
 
     /// Measures the distance of each contact along its normal, which is fixed to the first solid; both points are fixed
@@ -141,12 +141,12 @@ impl<N: Space<D>, const D: usize> Reference<N, D> {
     /// vector from the first point as it is now to the opposite point: (R' − R) p + (t' − t) + d R' n. Only small
     /// differences occur, so that little precision is lost far from the origin.
     fn measure<S: KeptPoints<N, D>>(&self, pose21: &Pose<N, D>, state: &mut S, limit: N) -> bool {
-        let turned = self.pose21.rotation - pose21.rotation;
-        let moved = self.pose21.translation - pose21.translation;
+        let rotation_change = self.pose21.rotation - pose21.rotation;
+        let translation_change = self.pose21.translation - pose21.translation;
         let (mut index, mut is_near) = (0, false);
         state.each_point(|normal, distance, point| {
             let outer = pose21.rotation * normal;
-            let (slope, shift) = (turned.tr_mul(&outer), outer.dot(&moved));
+            let (slope, shift) = (rotation_change.tr_mul(&outer), outer.dot(&translation_change));
             let scale = outer.dot(&(self.pose21.rotation * normal));
             let before = self.distances[index];
             *distance = slope.dot(&point.coords) + shift + scale * before;
@@ -175,24 +175,24 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
     pub(super) fn keeps<S: KeptContacts<N, D>>(
         &self,
         rows: &mut KeptRows<'_, N, S, S::Manifolds, D>,
-        place: usize,
+        row: usize,
     ) -> bool {
-        !rows.references.is_empty() && self.moves_along(rows, place)
+        !rows.references.is_empty() && self.moves_along(rows, row)
     }
 
     /// Implements [`Self::keeps`] for groups that have references.
     fn moves_along<S: KeptContacts<N, D>>(
         &self,
         rows: &mut KeptRows<'_, N, S, S::Manifolds, D>,
-        place: usize,
+        row: usize,
     ) -> bool {
-        let (key, entry) = (rows.keys[place], &mut rows.states[place]);
+        let (key, entry) = (rows.keys[row], &mut rows.states[row]);
         let (is_swapped, limits) =
             (entry.state.is_swapped(), [self.tolerance, entry.request.prediction]);
         let pose21 = || self.pose21(key, is_swapped);
-        let is_kept = rows.references[place].keeps(&mut entry.state, pose21, limits);
+        let is_kept = rows.references[row].keeps(&mut entry.state, pose21, limits);
         if is_kept {
-            ContactView::expire_any(rows.views.get_mut(place));
+            ContactView::expire_any(rows.views.get_mut(row));
         }
         is_kept
     }
@@ -202,24 +202,24 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
     pub(super) fn note<S: KeptContacts<N, D>>(
         &self,
         rows: &mut KeptRows<'_, N, S, S::Manifolds, D>,
-        place: usize,
+        row: usize,
     ) {
-        let (key, state) = (rows.keys[place], &mut rows.states[place].state);
-        let Some(reference) = rows.references.get_mut(place) else { return };
+        let (key, state) = (rows.keys[row], &mut rows.states[row].state);
+        let Some(reference) = rows.references.get_mut(row) else { return };
         let is_swapped = state.is_swapped();
         let reaches =
-            || home_first(key, is_swapped).mapped(|object| self.table.bounds(object).reach());
+            || kept_order(key, is_swapped).mapped(|object| self.table.bounds(object).reach());
         reference.note(state, || self.pose21(key, is_swapped), reaches);
     }
 
     /// Returns the pose of the solid in whose frame contacts are stored, relative to the other solid.
     fn pose21(&self, key: PairKey, is_swapped: bool) -> Pose<N, D> {
-        let [home, other] = home_first(key, is_swapped);
-        Pose::relative(self.table.pose(other), self.table.pose(home))
+        let [first, other] = kept_order(key, is_swapped);
+        Pose::relative(self.table.pose(other), self.table.pose(first))
     }
 }
 
 /// Returns the object in whose frame contacts are stored, then the other object.
-const fn home_first([first, second]: PairKey, is_swapped: bool) -> [u32; 2] {
+const fn kept_order([first, second]: PairKey, is_swapped: bool) -> [u32; 2] {
     if is_swapped { [second, first] } else { [first, second] }
 }

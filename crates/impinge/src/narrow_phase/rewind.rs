@@ -6,7 +6,7 @@
 use super::default_narrow_phase::NOWHERE;
 use super::entry::{ContactEntry, CustomContactEntry, CustomProximityEntry, ProximityEntry};
 use super::group::{Group, PairKey, set_touching};
-use super::lanes::{Lane, Location, PairLanes};
+use super::pair_groups::{GroupId, Location, PairGroups};
 use super::state::{CompositeState, ContactState};
 use super::{DefaultNarrowPhase, IdAllocator, ObjectTable};
 use crate::collide::{PairIds, RawManifold, RawPoint};
@@ -121,7 +121,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         let at = place as usize;
         Box::new(GroupRow {
             key: self.keys[at],
-            due: self.due[at],
+            due: self.dirty[at],
             is_touching: self.is_touching(place),
             state: self.states[at].clone(),
             reference: self.references.as_ref().map(|references| references[at].clone()),
@@ -137,7 +137,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
         {
             return;
         }
-        let (due, is_touching) = (self.due[at], self.is_touching(place));
+        let (due, is_touching) = (self.dirty[at], self.is_touching(place));
         self.journal.note(GroupNote::Written { place, due, is_touching });
         self.states[at].each_part(|part| self.journal.note(GroupNote::Part(part)));
         if let Some(references) = &self.references {
@@ -165,7 +165,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     fn note_due<N: Space<D>, const D: usize>(&mut self, table: &ObjectTable<N, D>) {
         for place in 0..self.keys.len() {
             let [first, second] = self.keys[place];
-            if self.due[place] || table.has_changed(first) || table.has_changed(second) {
+            if self.dirty[place] || table.has_changed(first) || table.has_changed(second) {
                 self.note(u32::try_from(place).expect("fewer than 2^32 pairs fit in memory"));
             }
         }
@@ -258,7 +258,7 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
 
     fn put(&mut self, place: u32, due: bool, is_touching: bool, reference: Option<R>) {
         let at = place as usize;
-        self.due[at] = due;
+        self.dirty[at] = due;
         set_touching(&mut self.touching, at, is_touching);
         if let Some(views) = self.views.get_mut() {
             views[at] = V::default();
@@ -272,42 +272,42 @@ impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
 /// Runs `action` for each group, with its location.
 macro_rules! each_group {
     ($lanes:expr, |$lane:pat_param, $group:ident| $action:expr) => {{
-        let PairLanes { contacts, composites, proximity, custom_contacts, custom_proximity } =
+        let PairGroups { contacts, composites, proximity, custom_contacts, custom_proximity } =
             $lanes;
         for (number, $group) in (0..).zip(contacts) {
-            let $lane = Lane::Contacts(number);
+            let $lane = GroupId::Contacts(number);
             $action;
         }
         for (number, $group) in (0..).zip(proximity) {
-            let $lane = Lane::Proximity(number);
+            let $lane = GroupId::Proximity(number);
             $action;
         }
         {
-            let ($lane, $group) = (Lane::Composites, composites);
+            let ($lane, $group) = (GroupId::Composites, composites);
             $action;
         }
         {
-            let ($lane, $group) = (Lane::CustomContacts, custom_contacts);
+            let ($lane, $group) = (GroupId::CustomContacts, custom_contacts);
             $action;
         }
         {
-            let ($lane, $group) = (Lane::CustomProximity, custom_proximity);
+            let ($lane, $group) = (GroupId::CustomProximity, custom_proximity);
             $action;
         }
     }};
 }
 
-impl<N: Space<D>, const D: usize> PairLanes<N, D> {
+impl<N: Space<D>, const D: usize> PairGroups<N, D> {
     /// Records the pairs at some locations before they are computed.
     pub(super) fn note(&mut self, picked: &[Location]) {
-        for &Location { lane, place } in picked {
-            match lane {
-                Lane::Contacts(number) => self.contacts[usize::from(number)].note(place),
-                Lane::Composites => self.composites.note(place),
-                Lane::Proximity(number) => self.proximity[usize::from(number)].note(place),
-                Lane::CustomContacts => self.custom_contacts.note(place),
-                Lane::CustomProximity => self.custom_proximity.note(place),
-                Lane::Nothing => {}
+        for &Location { group, row } in picked {
+            match group {
+                GroupId::Contacts(number) => self.contacts[usize::from(number)].note(row),
+                GroupId::Composites => self.composites.note(row),
+                GroupId::Proximity(number) => self.proximity[usize::from(number)].note(row),
+                GroupId::CustomContacts => self.custom_contacts.note(row),
+                GroupId::CustomProximity => self.custom_proximity.note(row),
+                GroupId::Nothing => {}
             }
         }
     }
@@ -328,17 +328,17 @@ pub(crate) struct NarrowHead {
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Sets a mark; see [`Journal`](crate::journal::Journal).
     pub(crate) fn mark(&mut self, number: u64) {
-        let head = NarrowHead { ids: self.ids.clone(), due: self.due.clone() };
+        let head = NarrowHead { ids: self.ids.clone(), due: self.dirty_pairs.clone() };
         self.journal.mark(number, head);
         self.pairs.mark(number);
-        each_group!(&mut self.lanes, |_, group| group.mark(number));
+        each_group!(&mut self.groups, |_, group| group.mark(number));
     }
 
     /// Drops the marks with smaller numbers.
     pub(crate) fn forget_before(&mut self, number: u64) {
         self.journal.forget_before(number);
         self.pairs.forget_before(number);
-        each_group!(&mut self.lanes, |_, group| group.forget_before(number));
+        each_group!(&mut self.groups, |_, group| group.forget_before(number));
     }
 
     /// Undoes all changes since a mark. The cost is proportional to the number of changes.
@@ -350,20 +350,20 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             }
             None => locations.push(NOWHERE),
         });
-        each_group!(&mut self.lanes, |lane, group| {
+        each_group!(&mut self.groups, |lane, group| {
             let mut places = Vec::new();
             group.rewind(number, |place| places.push(place));
             for place in places {
                 let Some(&[first, second]) = group.keys.get(place as usize) else { continue };
                 if let Some(index) = self.pairs.index_of(first, second) {
-                    self.locations[index] = Location { lane, place };
+                    self.locations[index] = Location { group: lane, row: place };
                 }
             }
         });
         while self.journal.undo(number).is_some() {}
         if let Some(NarrowHead { ids, due }) = self.journal.head() {
             self.ids = ids.clone();
-            self.due.clone_from(due);
+            self.dirty_pairs.clone_from(due);
         }
         self.forget_order();
     }

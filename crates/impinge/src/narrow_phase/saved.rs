@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 use super::default_narrow_phase::new_entry;
 use super::entry::{ContactEntry, ProximityEntry, Status};
 use super::group::{Group, PairKey};
-use super::lanes::{Lane, Location};
 use super::objects::ObjectSolid;
+use super::pair_groups::{GroupId, Location};
 use super::reuse::Reference;
 use super::rewind::Parts;
-use super::state::{CompositeState, InOrder, KeptPoints};
+use super::state::{CompositeState, KeptPoints, OrderedContacts};
 use super::substep::PairSolids;
 use super::{
     DefaultContactDispatcher, DefaultNarrowPhase, DefaultProximityDispatcher, ObjectTable,
@@ -107,7 +107,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Returns the arguments of the phase; `None` if it has dispatchers of the user.
     pub(crate) fn phase_record(&self) -> Option<PhaseRecord<N>> {
         let max_points = self.contact_dispatcher.built_in_for_all()?;
-        let is_reusing = self.lanes.composites.references.is_some();
+        let is_reusing = self.groups.composites.references.is_some();
         let record = PhaseRecord {
             max_points: u32::try_from(max_points).unwrap_or(u32::MAX),
             tolerance: is_reusing.then(|| Numbers::of([self.tolerance])),
@@ -119,18 +119,18 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     pub(crate) fn record(&self) -> Option<NarrowRecord<N>> {
         let phase = self.phase_record()?;
         let mut pairs = Vec::with_capacity(self.pairs.len());
-        for group in &self.lanes.contacts {
+        for group in &self.groups.contacts {
             pairs.extend(group.pair_records(Reference::record, |entry| {
                 let (raw, is_swapped) = entry.state.kept();
                 StateRecord::Contacts { number: entry.number, is_swapped, manifold: raw.record() }
             }));
         }
-        pairs.extend(self.lanes.composites.pair_records(Reference::record, |entry| {
-            let InOrder { swapped, contacts } = &entry.state;
+        pairs.extend(self.groups.composites.pair_records(Reference::record, |entry| {
+            let OrderedContacts { swapped, contacts } = &entry.state;
             let (number, is_swapped) = (entry.number, *swapped);
             StateRecord::Composite { number, is_swapped, contacts: contacts.record() }
         }));
-        for group in &self.lanes.proximity {
+        for group in &self.groups.proximity {
             let unused = |(): &()| unreachable!("proximities have no references");
             let state = |entry: &ProximityEntry<N>| StateRecord::Proximity(entry.status.0);
             pairs.extend(group.pair_records(unused, state));
@@ -148,7 +148,7 @@ impl<S: Parts, V, R> Group<S, V, R> {
     ) -> impl Iterator<Item = PairRecord<N>> + 'a {
         (0..self.keys.len()).map(move |at| PairRecord {
             objects: self.keys[at],
-            is_due: self.due[at],
+            is_due: self.dirty[at],
             state: state(&self.states[at]),
             reference: self.references.as_ref().map(|references| reference(&references[at])),
         })
@@ -157,16 +157,21 @@ impl<S: Parts, V, R> Group<S, V, R> {
 
 impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     /// Adds a saved pair and returns its index.
-    fn push_again(&mut self, (key, state): (PairKey, S), is_touching: bool, is_due: bool) -> u32 {
-        let place = self.push(key, state, is_touching);
-        self.due[place as usize] = is_due;
-        place
+    fn push_restored(
+        &mut self,
+        (key, state): (PairKey, S),
+        is_touching: bool,
+        is_due: bool,
+    ) -> u32 {
+        let row = self.push(key, state, is_touching);
+        self.dirty[row as usize] = is_due;
+        row
     }
 
     /// Sets the reference of the pair at an index, if the group stores references.
-    fn refer_again(&mut self, place: u32, reference: Option<R>) {
+    fn restore_reference(&mut self, row: u32, reference: Option<R>) {
         if let Some((references, reference)) = self.references.as_mut().zip(reference) {
-            references[place as usize] = reference;
+            references[row as usize] = reference;
         }
     }
 }
@@ -202,10 +207,10 @@ impl<N: Real> NarrowRecord<N> {
             let is_known = first <= second && table.has_row(first) && table.has_row(second);
             ensure(is_known, "a pair has no objects")?;
             ensure(phase.pairs.insert(first, second).is_new, "a pair is there twice")?;
-            let location = phase.enter_again(table, pair)?;
+            let location = phase.restore_pair(table, pair)?;
             phase.locations.push(location);
             if pair.is_due {
-                phase.due.push(pair.objects);
+                phase.dirty_pairs.push(pair.objects);
             }
         }
         Ok(phase)
@@ -214,18 +219,18 @@ impl<N: Real> NarrowRecord<N> {
 
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Enters the state of a pair.
-    fn enter_again(
+    fn restore_pair(
         &mut self,
         table: &ObjectTable<N, D>,
         pair: &PairRecord<N>,
     ) -> Result<Location, Damage> {
         let (key, other) = (pair.objects, || Damage("a pair is kept as another sort is".into()));
-        let (lane, max_points) = self.built_in_lane(table, key).ok_or_else(other)?;
-        let (query, lanes) = (table.query(key[0]).pair(table.query(key[1])), &mut self.lanes);
+        let (group, max_points) = self.built_in_group(table, key).ok_or_else(other)?;
+        let (query, groups) = (table.query(key[0]).pair(table.query(key[1])), &mut self.groups);
         let reference = |contacts| pair.reference.as_ref().map(|r| r.restore(contacts)).transpose();
-        let place = match (lane, query, &pair.state) {
+        let row = match (group, query, &pair.state) {
             (
-                Lane::Contacts(group),
+                GroupId::Contacts(kinds),
                 PairQuery::Contacts { linear, angular },
                 StateRecord::Contacts { number, is_swapped, manifold },
             ) => {
@@ -234,13 +239,13 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 let mut entry = new_entry(table, key, request, *number);
                 entry.state.keep(manifold.restore()?, *is_swapped);
                 let (group, contacts) =
-                    (&mut lanes.contacts[usize::from(group)], entry.state.len());
-                let place = group.push_again((key, entry), contacts > 0, pair.is_due);
-                group.refer_again(place, reference(contacts)?);
-                place
+                    (&mut groups.contacts[usize::from(kinds)], entry.state.len());
+                let row = group.push_restored((key, entry), contacts > 0, pair.is_due);
+                group.restore_reference(row, reference(contacts)?);
+                row
             }
             (
-                Lane::Composites,
+                GroupId::Composites,
                 PairQuery::Contacts { linear, angular },
                 StateRecord::Composite { number, is_swapped, contacts },
             ) => {
@@ -250,24 +255,24 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 let order = if *is_swapped { [key[1], key[0]] } else { key };
                 let shapes = order.mapped(|object| table.shape(object).geometry());
                 let contacts = CompositeContacts::restored(contacts, shapes)?;
-                entry.state = InOrder { swapped: *is_swapped, contacts };
-                let (group, contacts) = (&mut lanes.composites, entry.state.len());
-                let place = group.push_again((key, entry), contacts > 0, pair.is_due);
-                group.refer_again(place, reference(contacts)?);
-                place
+                entry.state = OrderedContacts { swapped: *is_swapped, contacts };
+                let (group, contacts) = (&mut groups.composites, entry.state.len());
+                let row = group.push_restored((key, entry), contacts > 0, pair.is_due);
+                group.restore_reference(row, reference(contacts)?);
+                row
             }
             (
-                Lane::Proximity(group),
+                GroupId::Proximity(kinds),
                 PairQuery::Proximity { margin },
                 StateRecord::Proximity(status),
             ) => {
                 let entry = ProximityEntry { margin, status: Status(*status) };
-                let group = &mut lanes.proximity[usize::from(group)];
-                group.push_again((key, entry), false, pair.is_due)
+                let group = &mut groups.proximity[usize::from(kinds)];
+                group.push_restored((key, entry), false, pair.is_due)
             }
             _ => return Err(other()),
         };
-        Ok(Location { lane, place })
+        Ok(Location { group, row })
     }
 }
 

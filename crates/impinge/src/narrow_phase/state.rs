@@ -65,7 +65,7 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
 }
 
 /// Returns two placed solids as a pair, in the order in which contacts are stored.
-fn in_order<'a, N: Real, const D: usize>(
+fn ordered_pair<'a, N: Real, const D: usize>(
     placed: &[Placed<'a, N, D>; 2],
     is_swapped: bool,
 ) -> Pair<'a, N, D> {
@@ -116,19 +116,19 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Defau
 /// Contacts in the frame of the solid that comes first in canonical order.
 #[derive(Debug, Default)]
 #[repr(C)]
-pub(crate) struct InOrder<C> {
+pub(crate) struct OrderedContacts<C> {
     /// The canonical order at the last update was the reverse of the pair's own order.
     pub(super) swapped: bool,
     pub(super) contacts: C,
 }
 
-clone_fields!([C: Clone] InOrder<C> { swapped, contacts });
+clone_fields!([C: Clone] OrderedContacts<C> { swapped, contacts });
 
 /// Contacts of two convex solids. Fields that readers need come first.
 #[derive(Debug, Default)]
 #[repr(C)]
 pub(crate) struct ContactState<N: Real, const D: usize> {
-    kept: InOrder<RawManifold<N, D>>,
+    kept: OrderedContacts<RawManifold<N, D>>,
     /// Copies of the solids in the pair's own order, if both are small enough.
     solids: Option<[Solid<N, D>; 2]>,
 }
@@ -136,20 +136,20 @@ pub(crate) struct ContactState<N: Real, const D: usize> {
 clone_fields!([N: Real, const D: usize] ContactState<N, D> { kept, solids });
 
 /// Contacts of a pair with at least one composite.
-pub(crate) type CompositeState<N, const D: usize> = InOrder<CompositeContacts<N, D>>;
+pub(crate) type CompositeState<N, const D: usize> = OrderedContacts<CompositeContacts<N, D>>;
 
-impl<N: Real, const D: usize> InOrder<RawManifold<N, D>> {
+impl<N: Real, const D: usize> OrderedContacts<RawManifold<N, D>> {
     /// Brings the stored contacts into the canonical order of two solids of these kinds. Returns
     /// the indices of the first and the second solid.
     #[inline(always)]
-    fn order(
+    fn set_canonical_order(
         &mut self,
         poses: [&Pose<N, D>; 2],
         [kind1, kind2]: [Kind<'_, N, D>; 2],
     ) -> [usize; 2] {
         let swapped = is_swapped(poses[0], Geometry(kind1), poses[1], Geometry(kind2));
         let [first, second] = [usize::from(swapped), usize::from(!swapped)];
-        self.turn(swapped, |raw| {
+        self.set_order(swapped, |raw| {
             if !raw.points.is_empty() {
                 raw.flip(&Pose::relative(poses[first], poses[second]));
             }
@@ -158,18 +158,18 @@ impl<N: Real, const D: usize> InOrder<RawManifold<N, D>> {
     }
 }
 
-impl<C> InOrder<C> {
+impl<C> OrderedContacts<C> {
     /// Sets the canonical order; calls `flip` on the contacts if it has changed.
     #[inline(always)]
-    fn turn(&mut self, swapped: bool, flip: impl FnOnce(&mut C)) {
+    fn set_order(&mut self, swapped: bool, flip: impl FnOnce(&mut C)) {
         if swapped != self.swapped {
-            self.turn_round(flip);
+            self.flip_order(flip);
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn turn_round(&mut self, flip: impl FnOnce(&mut C)) {
+    fn flip_order(&mut self, flip: impl FnOnce(&mut C)) {
         flip(&mut self.contacts);
         self.swapped = !self.swapped;
     }
@@ -205,7 +205,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         {
             return;
         }
-        self.kept.turn(swapped, |raw| raw.flip(&pair.pose12));
+        self.kept.set_order(swapped, |raw| raw.flip(&pair.pose12));
         <N::Algorithms>::contacts(&pair, request, &mut self.kept.contacts);
     }
 
@@ -219,7 +219,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         if raw.points.is_empty() {
             return ContactManifold::default();
         }
-        let pair = in_order(placed, is_swapped);
+        let pair = ordered_pair(placed, is_swapped);
         let placement = Placement::of_pair(placed, pair_number, is_swapped);
         materialise(&pair, raw, &placement, old)
     }
@@ -233,7 +233,7 @@ impl<N: Real, const D: usize> ContactState<N, D> {
 
     /// Sets the manifold; `swapped` if it is in the frame of the second solid.
     pub(super) fn keep(&mut self, contacts: RawManifold<N, D>, swapped: bool) {
-        self.kept = InOrder { swapped, contacts };
+        self.kept = OrderedContacts { swapped, contacts };
     }
 
     /// Removes all contacts.
@@ -252,7 +252,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         request: &ManifoldRequest<N>,
     ) {
         let (poses, kinds) = ([pose1, pose2], [one.0, other.0]);
-        let [first, second] = self.kept.order(poses, kinds);
+        let [first, second] = self.kept.set_canonical_order(poses, kinds);
         let (poses, raw) = ([poses[first], poses[second]], &mut self.kept.contacts);
         if let [Some(one), Some(other)] = [copies[first], copies[second]] {
             let question = PairQuestion { poses, solids: [one, other], request };
@@ -284,30 +284,30 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     /// Flips the manifold to the present canonical order, and returns it with the solids in that
     /// order; `None` without copies of the solids.
     #[inline(always)]
-    pub(super) fn turned<'a>(
+    pub(super) fn canonical_question<'a>(
         &'a mut self,
         poses: [&'a Pose<N, D>; 2],
         request: &'a ManifoldRequest<N>,
     ) -> Option<(PairQuestion<'a, N, D>, &'a mut RawManifold<N, D>)> {
         let solids = self.solids.as_ref()?;
         let kinds = [solids[0].kind(), solids[1].kind()];
-        let [first, second] = self.kept.order(poses, kinds);
+        let [first, second] = self.kept.set_canonical_order(poses, kinds);
         let (poses, solids) = ([poses[first], poses[second]], [&solids[first], &solids[second]]);
         Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
     }
 
     /// Returns the handle index of the object in whose frame the contacts are stored.
     #[inline]
-    pub(super) const fn home(&self, [first, second]: PairKey) -> u32 {
+    pub(super) const fn frame_object(&self, [first, second]: PairKey) -> u32 {
         if self.kept.swapped { second } else { first }
     }
 
     /// Reads every cache line of the contacts that [`Self::view`] needs; the returned value is
     /// meaningless and only keeps the loads alive.
     #[inline]
-    pub(super) fn fetch(&self) -> u32 {
-        let names = self.kept.contacts.points.iter().map(|point| point.id);
-        names.fold(0, u32::wrapping_add)
+    pub(super) fn prefetch(&self) -> u32 {
+        let ids = self.kept.contacts.points.iter().map(|point| point.id);
+        ids.fold(0, u32::wrapping_add)
     }
 
     /// Returns a view of the contacts, of which there must be at least one.
@@ -318,7 +318,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         key: PairKey,
         number: u64,
     ) -> ManifoldView<'a, N, D> {
-        let pose1 = table.pose(self.home(key));
+        let pose1 = table.pose(self.frame_object(key));
         let placement = Placement { pose1, pair: number, is_swapped: self.kept.swapped };
         ManifoldView::of_convex(&self.kept.contacts, placement, PairRef::new(table, key))
     }
@@ -334,7 +334,7 @@ impl<N: Real, const D: usize> CompositeState<N, D> {
 
     /// Returns the handle index of the object in whose frame the contacts are stored.
     #[inline]
-    pub(super) const fn home(&self, [first, second]: PairKey) -> u32 {
+    pub(super) const fn frame_object(&self, [first, second]: PairKey) -> u32 {
         if self.swapped { second } else { first }
     }
 
@@ -354,7 +354,7 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         request: &ManifoldRequest<N>,
     ) {
         let ordered = Ordered::new(one, other);
-        self.turn(ordered.swapped, CompositeContacts::flip);
+        self.set_order(ordered.swapped, CompositeContacts::flip);
         self.contacts.update(&Between::of_ordered(&ordered), is_self, request);
     }
 
@@ -365,7 +365,7 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         placed: &[Placed<'_, N, D>; 2],
         mut each: impl FnMut(&Touched<'_, N, D>),
     ) {
-        let pair = in_order(placed, self.swapped);
+        let pair = ordered_pair(placed, self.swapped);
         for patch in self.contacts.patches() {
             patch.points.iter().for_each(|point| touched(&pair, patch, point, &mut each));
         }
@@ -395,7 +395,7 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         number: u64,
         patch: usize,
     ) -> Option<ManifoldView<'a, N, D>> {
-        let pose1 = table.pose(self.home(key));
+        let pose1 = table.pose(self.frame_object(key));
         let placement = Placement { pose1, pair: number, is_swapped: self.swapped };
         self.contacts.view(patch, placement, PairRef::new(table, key))
     }
@@ -428,7 +428,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
         pair_number: u64,
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> {
-        let pair = in_order(placed, self.swapped);
+        let pair = ordered_pair(placed, self.swapped);
         let placement = Placement::of_pair(placed, pair_number, self.swapped);
         self.contacts.manifolds(&pair, &placement, old)
     }

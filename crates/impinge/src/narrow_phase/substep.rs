@@ -52,8 +52,8 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
             let solids = key.map(|object| self.solid(object).clone());
             let pair = PairSolids { key, solids };
             match self.substeps.binary_search_by_key(&key, |pair| pair.key) {
-                Ok(place) => self.substeps[place] = pair,
-                Err(place) => self.substeps.insert(place, pair),
+                Ok(index) => self.substeps[index] = pair,
+                Err(index) => self.substeps.insert(index, pair),
             }
         }
         // In reverse order: both rows of a self-pair are the same.
@@ -63,7 +63,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
 
     /// Returns the two solids of a pair at the poses at which it is read.
     pub(super) fn placed_pair(&self, key: PairKey) -> [Placed<'_, N, D>; 2] {
-        match self.solids_between(key) {
+        match self.substep_solids(key) {
             None => posed(self, key).placed(),
             Some(pair) => {
                 let [first, second] = &pair.solids;
@@ -76,18 +76,18 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     /// Returns `true` if the contacts of a pair cannot be read in place at the poses of the rows:
     /// the pair was computed since the last update, or an object has a skin. Manifolds are then
     /// built for its readers.
-    pub(super) fn is_particular(&self, key: PairKey) -> bool {
-        self.solids_between(key).is_some() || self.skins_of(key) != [N::ZERO; 2]
+    pub(super) fn needs_built_manifolds(&self, key: PairKey) -> bool {
+        self.substep_solids(key).is_some() || self.skins_of(key) != [N::ZERO; 2]
     }
 
-    /// Returns `true` if no pair is [particular](Self::is_particular).
-    pub(super) fn is_plain(&self) -> bool {
+    /// Returns `true` if no pair [needs built manifolds](Self::needs_built_manifolds).
+    pub(super) fn reads_in_place(&self) -> bool {
         self.substeps.is_empty() && self.skins.is_empty()
     }
 
     /// Returns the solids of a pair if it was computed since the last update; else `None`.
-    fn solids_between(&self, key: PairKey) -> Option<&PairSolids<N, D>> {
-        let place = self.substeps.binary_search_by_key(&key, |pair| pair.key).ok()?;
-        Some(&self.substeps[place])
+    fn substep_solids(&self, key: PairKey) -> Option<&PairSolids<N, D>> {
+        let index = self.substeps.binary_search_by_key(&key, |pair| pair.key).ok()?;
+        Some(&self.substeps[index])
     }
 }

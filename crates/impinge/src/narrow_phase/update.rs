@@ -4,12 +4,12 @@ use crate::tables::ByDimension;
 use crate::tables::entries;
 use smallvec::SmallVec;
 
-use super::ahead::update_due;
 use super::default_narrow_phase::push_change;
-use super::due::{ContactRows, DueContacts};
+use super::dirty_contacts::{ContactRows, DirtyContacts};
 use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
 use super::group::{CHUNK, Group, PairKey, Rows};
-use super::lanes::{Lane, Location};
+use super::pair_groups::{GroupId, Location};
+use super::prefetch::update_prefetched;
 use super::reuse::{Reference, Reuse};
 use super::rewind::Parts;
 use super::state::KeptContacts;
@@ -22,7 +22,7 @@ use crate::math::Space;
 const SPARSE: usize = 8;
 
 /// Indices of pairs within a chunk.
-type LanePlaces = SmallVec<[usize; CHUNK]>;
+type RowIndices = SmallVec<[usize; CHUNK]>;
 
 /// Changes of an update, with their pairs.
 pub(super) type PairChanges = Vec<(PairKey, Change)>;
@@ -35,16 +35,16 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// [`Self::update_pairs`], compiled in this crate.
     pub(crate) fn update_pairs_here(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
-        let due = core::mem::take(&mut self.due);
+        let dirty = core::mem::take(&mut self.dirty_pairs);
         let mut changes = core::mem::take(&mut self.changes);
-        if self.is_sparse(table, due.len()) {
-            self.update_some(table, &due, &mut changes);
+        if self.is_sparse(table, dirty.len()) {
+            self.update_some(table, &dirty, &mut changes);
         } else {
             self.update_all(table, &mut changes);
         }
         self.report(table, changes, events);
-        self.due = due;
-        self.due.clear();
+        self.dirty_pairs = dirty;
+        self.dirty_pairs.clear();
     }
 
     /// Updates one pair to the rows of the table, and pushes its event. Returns `false` if there is
@@ -76,8 +76,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Returns `true` if few pairs need an update: the pairs of changed objects, and `more` others.
     fn is_sparse(&self, table: &ObjectTable<N, D>, more: usize) -> bool {
         let mut affected = more;
-        table.changed().iter().all(|&row| {
-            affected += self.pairs.count(row);
+        table.changed().iter().all(|&object| {
+            affected += self.pairs.count(object);
             affected * SPARSE < self.pairs.len()
         }) && affected * SPARSE < self.pairs.len()
     }
@@ -85,27 +85,27 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Updates all pairs by scanning group after group.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut PairChanges) {
         if self.journal.is_on() {
-            self.lanes.note_due(table);
+            self.groups.note_due(table);
         }
         let reuse = Reuse { table, tolerance: self.tolerance };
         // Most of the hundreds of groups are empty.
-        for group in self.lanes.contacts.iter_mut().filter(|group| !group.is_empty()) {
+        for group in self.groups.contacts.iter_mut().filter(|group| !group.is_empty()) {
             let solids = group.state(0).state.solids().copied();
             update_group(group, changes, |rows, changes| {
                 update_convex(rows, reuse, changes, solids.as_ref());
             });
         }
-        update_group(&mut self.lanes.composites, changes, |mut rows, changes| {
-            let mut due = rows.take_all_due(table);
+        update_group(&mut self.groups.composites, changes, |mut rows, changes| {
+            let mut dirty = rows.take_all_dirty(table);
             if !rows.references.is_empty() {
-                due.retain(|place| !reuse.keeps(&mut rows, place));
+                dirty.retain(|row| !reuse.keeps(&mut rows, row));
             }
-            update_due(&mut rows, table, due, |rows, place| {
-                compute_contact(rows, table, place, changes);
-                reuse.note(rows, place);
+            update_prefetched(&mut rows, table, dirty, |rows, row| {
+                compute_contact(rows, table, row, changes);
+                reuse.note(rows, row);
             });
         });
-        for group in self.lanes.proximity.iter_mut().filter(|group| !group.is_empty()) {
+        for group in self.groups.proximity.iter_mut().filter(|group| !group.is_empty()) {
             update_group(group, changes, |rows, changes| {
                 update_each(rows, table, changes, update_status);
             });
@@ -115,14 +115,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Updates pairs with custom algorithms one by one, since they share one allocator of ids.
     fn update_all_custom(&mut self, table: &ObjectTable<N, D>, changes: &mut PairChanges) {
-        for place in 0..self.lanes.custom_contacts.keys().len() {
-            if self.lanes.custom_contacts.rows().take_due(place, table) {
-                self.update_custom_contact(table, place, changes);
+        for row in 0..self.groups.custom_contacts.keys().len() {
+            if self.groups.custom_contacts.rows().take_dirty(row, table) {
+                self.update_custom_contact(table, row, changes);
             }
         }
-        for place in 0..self.lanes.custom_proximity.keys().len() {
-            if self.lanes.custom_proximity.rows().take_due(place, table) {
-                self.update_custom_proximity(table, place, changes);
+        for row in 0..self.groups.custom_proximity.keys().len() {
+            if self.groups.custom_proximity.rows().take_dirty(row, table) {
+                self.update_custom_proximity(table, row, changes);
             }
         }
     }
@@ -130,55 +130,55 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     fn update_custom_contact(
         &mut self,
         table: &ObjectTable<N, D>,
-        place: usize,
+        row: usize,
         changes: &mut PairChanges,
     ) {
-        let mut rows = self.lanes.custom_contacts.rows();
-        let (key, entry, _) = rows.row(place);
+        let mut rows = self.groups.custom_contacts.rows();
+        let (key, entry, _) = rows.row(row);
         let is_touching = entry.update(&*self.contact_dispatcher, table, key, &mut self.ids);
-        note_touching(&mut rows, place, is_touching, changes);
+        note_touching(&mut rows, row, is_touching, changes);
     }
 
     fn update_custom_proximity(
         &mut self,
         table: &ObjectTable<N, D>,
-        place: usize,
+        row: usize,
         changes: &mut PairChanges,
     ) {
-        let mut rows = self.lanes.custom_proximity.rows();
-        let (key, entry, _) = rows.row(place);
+        let mut rows = self.groups.custom_proximity.rows();
+        let (key, entry, _) = rows.row(row);
         let change = entry.update(&*self.proximity_dispatcher, table, key);
         changes.extend(change.map(|change| (key, change)));
     }
 
-    /// Updates the pairs of changed objects, and the pairs marked as due.
+    /// Updates the pairs of changed objects, and the pairs marked as dirty.
     fn update_some(
         &mut self,
         table: &ObjectTable<N, D>,
-        due: &[PairKey],
+        dirty: &[PairKey],
         changes: &mut PairChanges,
     ) {
         let mut picked = core::mem::take(&mut self.picked);
-        self.pick(table, due, &mut picked);
-        for picked in picked.chunk_by(|one, other| one.lane == other.lane) {
+        self.pick(table, dirty, &mut picked);
+        for picked in picked.chunk_by(|one, other| one.group == other.group) {
             self.update_picked(table, picked, changes);
         }
         picked.clear();
         self.picked = picked;
     }
 
-    /// Lists the locations of the pairs of changed objects and of pairs marked as due, each once,
-    /// sorted by group and index.
-    fn pick(&self, table: &ObjectTable<N, D>, due: &[PairKey], picked: &mut Vec<Location>) {
-        for &row in table.changed() {
+    /// Lists the locations of the pairs of changed objects and of pairs marked as dirty, each once,
+    /// sorted by group and row.
+    fn pick(&self, table: &ObjectTable<N, D>, dirty: &[PairKey], picked: &mut Vec<Location>) {
+        for &object in table.changed() {
             // A pair of two changed objects is listed for the smaller index only.
-            let mine = |partner: u32| !(table.has_changed(partner) && partner < row);
-            let partners = self.pairs.partners(row).filter(|(partner, _)| mine(*partner));
+            let mine = |partner: u32| !(table.has_changed(partner) && partner < object);
+            let partners = self.pairs.partners(object).filter(|(partner, _)| mine(*partner));
             picked.extend(partners.map(|(_, index)| self.locations[index]));
         }
         let still = |&&[a, b]: &&PairKey| !table.has_changed(a) && !table.has_changed(b);
-        let due = due.iter().filter(still).filter_map(|&[a, b]| self.pairs.index_of(a, b));
-        picked.extend(due.map(|index| self.locations[index]));
+        let dirty = dirty.iter().filter(still).filter_map(|&[a, b]| self.pairs.index_of(a, b));
+        picked.extend(dirty.map(|index| self.locations[index]));
         picked.sort_unstable();
         picked.dedup();
     }
@@ -191,39 +191,39 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         changes: &mut PairChanges,
     ) {
         if self.journal.is_on() {
-            self.lanes.note(picked);
+            self.groups.note(picked);
         }
         let reuse = Reuse { table, tolerance: self.tolerance };
-        match picked[0].lane {
-            Lane::Contacts(group) => {
-                let rows = self.lanes.contacts[usize::from(group)].rows();
+        match picked[0].group {
+            GroupId::Contacts(kinds) => {
+                let rows = self.groups.contacts[usize::from(kinds)].rows();
                 update_picked_convex(rows, reuse, picked, changes);
             }
-            Lane::Composites => {
-                let rows = &mut self.lanes.composites.rows();
-                update_places(rows, picked, |rows, place| {
-                    update_contact(rows, reuse, place, changes);
+            GroupId::Composites => {
+                let rows = &mut self.groups.composites.rows();
+                update_each_picked(rows, picked, |rows, row| {
+                    update_contact(rows, reuse, row, changes);
                 });
             }
-            Lane::Proximity(group) => {
-                let rows = &mut self.lanes.proximity[usize::from(group)].rows();
-                update_places(rows, picked, |rows, place| {
-                    update_status(rows, table, place, changes);
+            GroupId::Proximity(kinds) => {
+                let rows = &mut self.groups.proximity[usize::from(kinds)].rows();
+                update_each_picked(rows, picked, |rows, row| {
+                    update_status(rows, table, row, changes);
                 });
             }
-            Lane::CustomContacts => {
-                for place in picked.iter().map(|at| at.place as usize) {
-                    self.lanes.custom_contacts.rows().take_mark(place);
-                    self.update_custom_contact(table, place, changes);
+            GroupId::CustomContacts => {
+                for row in picked.iter().map(|at| at.row as usize) {
+                    self.groups.custom_contacts.rows().take_dirty_flag(row);
+                    self.update_custom_contact(table, row, changes);
                 }
             }
-            Lane::CustomProximity => {
-                for place in picked.iter().map(|at| at.place as usize) {
-                    self.lanes.custom_proximity.rows().take_mark(place);
-                    self.update_custom_proximity(table, place, changes);
+            GroupId::CustomProximity => {
+                for row in picked.iter().map(|at| at.row as usize) {
+                    self.groups.custom_proximity.rows().take_dirty_flag(row);
+                    self.update_custom_proximity(table, row, changes);
                 }
             }
-            Lane::Nothing => {}
+            GroupId::Nothing => {}
         }
     }
 }
@@ -232,12 +232,12 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 #[inline]
 pub(super) fn note_touching<S, V, R>(
     rows: &mut Rows<'_, S, V, R>,
-    index: usize,
+    row: usize,
     is_touching: bool,
     changes: &mut PairChanges,
 ) {
-    if rows.set_touching(index, is_touching) {
-        changes.push((rows.keys[index], Change::Contact { touching: is_touching }));
+    if rows.set_touching(row, is_touching) {
+        changes.push((rows.keys[row], Change::Contact { touching: is_touching }));
     }
 }
 
@@ -250,15 +250,15 @@ fn update_convex<N: Space<D>, const D: usize>(
     changes: &mut PairChanges,
     solids: Option<&[Solid<N, D>; 2]>,
 ) {
-    let mut due = rows.take_all_due(reuse.table);
+    let mut dirty = rows.take_all_dirty(reuse.table);
     let may_keep = !(rows.references.is_empty() || has_ball(solids));
     if may_keep {
-        due.retain(|place| !reuse.keeps(&mut rows, place));
+        dirty.retain(|row| !reuse.keeps(&mut rows, row));
     }
-    let places: LanePlaces = due.indices().collect();
-    compute_convex(&mut rows, reuse.table, &places, solids, changes);
+    let indices: RowIndices = dirty.indices().collect();
+    compute_convex(&mut rows, reuse.table, &indices, solids, changes);
     if may_keep {
-        places.iter().for_each(|&place| reuse.note(&mut rows, place));
+        indices.iter().for_each(|&row| reuse.note(&mut rows, row));
     }
 }
 
@@ -268,21 +268,21 @@ fn has_ball<N: Space<D>, const D: usize>(solids: Option<&[Solid<N, D>; 2]>) -> b
     solids.is_some_and(|solids| solids.iter().any(|solid| matches!(solid, Solid::Ball(_))))
 }
 
-/// Computes the contacts of the pairs at the given indices of a chunk.
+/// Computes the contacts of the pairs in the given rows of a chunk.
 fn compute_convex<N: Space<D>, const D: usize>(
     rows: &mut ContactRows<'_, N, D>,
     table: &ObjectTable<N, D>,
-    places: &[usize],
+    indices: &[usize],
     solids: Option<&[Solid<N, D>; 2]>,
     changes: &mut PairChanges,
 ) {
     let is_done = solids.is_some_and(|[solid1, solid2]| {
         let changes = &mut *changes;
-        let mut due = DueContacts { rows: rows.reborrow(), places, table, changes };
-        <N::Algorithms>::update_lanes([solid1, solid2], &mut due)
+        let mut dirty = DirtyContacts { rows: rows.reborrow(), indices, table, changes };
+        <N::Algorithms>::update_lanes([solid1, solid2], &mut dirty)
     });
     if !is_done {
-        places.iter().for_each(|&place| compute_contact(rows, table, place, changes));
+        indices.iter().for_each(|&row| compute_contact(rows, table, row, changes));
     }
 }
 
@@ -293,31 +293,31 @@ fn update_picked_convex<N: Space<D>, const D: usize>(
     picked: &[Location],
     changes: &mut PairChanges,
 ) {
-    let first = picked[0].place as usize;
+    let first = picked[0].row as usize;
     let solids = rows.states[first].state.solids().copied();
     let may_keep = !has_ball(solids.as_ref());
     for picked in picked.chunks(CHUNK) {
-        let mut places: LanePlaces = picked.iter().map(|at| at.place as usize).collect();
-        for &place in &places {
-            rows.take_mark(place);
+        let mut indices: RowIndices = picked.iter().map(|at| at.row as usize).collect();
+        for &row in &indices {
+            rows.take_dirty_flag(row);
         }
-        places.retain(|place| !(may_keep && reuse.keeps(&mut rows, *place)));
-        compute_convex(&mut rows, reuse.table, &places, solids.as_ref(), changes);
+        indices.retain(|row| !(may_keep && reuse.keeps(&mut rows, *row)));
+        compute_convex(&mut rows, reuse.table, &indices, solids.as_ref(), changes);
         if may_keep {
-            places.iter().for_each(|&place| reuse.note(&mut rows, place));
+            indices.iter().for_each(|&row| reuse.note(&mut rows, row));
         }
     }
 }
 
 /// Updates the picked pairs of any other group, one by one.
-fn update_places<S, V, R>(
+fn update_each_picked<S, V, R>(
     rows: &mut Rows<'_, S, V, R>,
     picked: &[Location],
     mut update: impl FnMut(&mut Rows<'_, S, V, R>, usize),
 ) {
     for at in picked {
-        rows.take_mark(at.place as usize);
-        update(rows, at.place as usize);
+        rows.take_dirty_flag(at.row as usize);
+        update(rows, at.row as usize);
     }
 }
 
@@ -325,12 +325,12 @@ fn update_places<S, V, R>(
 fn update_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
     reuse: Reuse<'_, N, D>,
-    place: usize,
+    row: usize,
     changes: &mut PairChanges,
 ) {
-    if !reuse.keeps(rows, place) {
-        compute_contact(rows, reuse.table, place, changes);
-        reuse.note(rows, place);
+    if !reuse.keeps(rows, row) {
+        compute_contact(rows, reuse.table, row, changes);
+        reuse.note(rows, row);
     }
 }
 
@@ -338,22 +338,22 @@ fn update_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
 fn compute_contact<N: Space<D>, S: KeptContacts<N, D>, const D: usize>(
     rows: &mut Rows<'_, ContactEntry<N, S>, ContactView<S::Manifolds>, Reference<N, D>>,
     table: &ObjectTable<N, D>,
-    place: usize,
+    row: usize,
     changes: &mut PairChanges,
 ) {
-    let (key, entry, view) = rows.row(place);
+    let (key, entry, view) = rows.row(row);
     let is_touching = entry.update(view, &posed(table, key));
-    note_touching(rows, place, is_touching, changes);
+    note_touching(rows, row, is_touching, changes);
 }
 
 /// Updates the proximity of one pair.
 fn update_status<N: Space<D>, const D: usize>(
     rows: &mut Rows<'_, ProximityEntry<N>, ()>,
     table: &ObjectTable<N, D>,
-    place: usize,
+    row: usize,
     changes: &mut PairChanges,
 ) {
-    let (key, entry, _) = rows.row(place);
+    let (key, entry, _) = rows.row(row);
     let change = entry.update(&posed(table, key));
     changes.extend(change.map(|change| (key, change)));
 }
@@ -395,9 +395,9 @@ fn update_each<N: Space<D>, S, V, R, const D: usize>(
     changes: &mut PairChanges,
     update: impl Fn(&mut Rows<'_, S, V, R>, &ObjectTable<N, D>, usize, &mut PairChanges),
 ) {
-    for place in 0..rows.len() {
-        if rows.take_due(place, table) {
-            update(&mut rows, table, place, changes);
+    for row in 0..rows.len() {
+        if rows.take_dirty(row, table) {
+            update(&mut rows, table, row, changes);
         }
     }
 }

@@ -7,7 +7,7 @@ use core::fmt;
 use super::composite_views::CompositeViews;
 use super::convex_views::ConvexViews;
 use super::group::PairKey;
-use super::lanes::{CompositeGroup, ContactGroup, Lane, PairLanes};
+use super::pair_groups::{CompositeGroup, ContactGroup, GroupId, PairGroups};
 use super::state::KeptPoints;
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
@@ -19,32 +19,35 @@ use crate::query::{ContactManifold, ManifoldView, Proximity};
 /// algorithms.
 pub(crate) struct Views<'a, N: Space<D>, const D: usize> {
     /// Whether every pair can be read in place.
-    pub(crate) is_plain: bool,
+    pub(crate) reads_in_place: bool,
     convex: ConvexViews<'a, N, D>,
     composites: CompositeViews<'a, N, D>,
     custom: Option<&'a DefaultNarrowPhase<N, D>>,
 }
 
 impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
-    /// Iterates over all manifolds, read in place and mapped by `name`. The sources are mapped
+    /// Iterates over all manifolds, read in place and mapped by `with_handles`. The sources are mapped
     /// before they are chained, because a chain copies its items.
-    pub(crate) fn plain<R>(
+    pub(crate) fn in_place<R>(
         self,
-        name: impl Fn(View<'a, N, D>) -> R + Copy,
+        with_handles: impl Fn(View<'a, N, D>) -> R + Copy,
     ) -> impl Iterator<Item = R> {
         let custom = self.custom.into_iter().flat_map(DefaultNarrowPhase::custom_views);
-        let others = Behind { first: self.composites.map(name), others: custom.map(name) };
-        Behind { first: self.convex.map(name), others }
+        let second = UnfusedChain {
+            first: self.composites.map(with_handles),
+            second: custom.map(with_handles),
+        };
+        UnfusedChain { first: self.convex.map(with_handles), second }
     }
 
-    /// Iterates over all manifolds, mapped by `name`. Manifolds of
-    /// [particular](ObjectTable::is_particular) pairs are built for the reader.
-    pub(crate) fn particular<R>(
+    /// Iterates over all manifolds, mapped by `with_handles`. Manifolds of
+    /// pairs that [need them](ObjectTable::needs_built_manifolds) are built for the reader.
+    pub(crate) fn with_built<R>(
         self,
-        name: impl Fn(View<'a, N, D>) -> R,
+        with_handles: impl Fn(View<'a, N, D>) -> R,
     ) -> impl Iterator<Item = R> {
         let custom = self.custom.into_iter().flat_map(DefaultNarrowPhase::custom_views);
-        self.convex.particular().chain(self.composites.particular()).chain(custom).map(name)
+        self.convex.with_built().chain(self.composites.with_built()).chain(custom).map(with_handles)
     }
 }
 
@@ -53,12 +56,12 @@ pub(crate) type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>)
 
 /// Chains two iterators. Unlike `chain`, it does not fuse the first one, and does not touch the
 /// second one before the first has ended.
-struct Behind<A, B> {
+struct UnfusedChain<A, B> {
     first: A,
-    others: B,
+    second: B,
 }
 
-impl<A: Iterator, B: Iterator<Item = A::Item>> Iterator for Behind<A, B> {
+impl<A: Iterator, B: Iterator<Item = A::Item>> Iterator for UnfusedChain<A, B> {
     type Item = A::Item;
 
     #[inline]
@@ -66,7 +69,7 @@ impl<A: Iterator, B: Iterator<Item = A::Item>> Iterator for Behind<A, B> {
         if let Some(item) = self.first.next() {
             return Some(item);
         }
-        self.others.next()
+        self.second.next()
     }
 }
 
@@ -107,7 +110,7 @@ enum ViewedContacts<'a, N: Space<D>, const D: usize> {
 pub(super) struct BuiltIn<'a, N: Space<D>, const D: usize> {
     pub(super) table: &'a ObjectTable<N, D>,
     pub(super) group: &'a ContactGroup<N, D>,
-    pub(super) place: u32,
+    pub(super) row: u32,
 }
 
 /// Position of the contacts of a pair with a composite.
@@ -115,58 +118,58 @@ pub(super) struct BuiltIn<'a, N: Space<D>, const D: usize> {
 pub(super) struct Composite<'a, N: Space<D>, const D: usize> {
     pub(super) table: &'a ObjectTable<N, D>,
     pub(super) group: &'a CompositeGroup<N, D>,
-    pub(super) place: u32,
+    pub(super) row: u32,
 }
 
 impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
     /// Returns the manifold; `None` if it has no contact.
     fn manifold(&self) -> Option<&'a ContactManifold<N, D>> {
-        if !self.group.is_touching(self.place) {
+        if !self.group.is_touching(self.row) {
             return None;
         }
-        let (group, place) = (self.group, self.place);
-        let placed = || self.table.placed_pair(group.key(place));
-        let entry = group.state(place);
-        let skins = self.table.skins_of(group.key(place));
+        let (group, row) = (self.group, self.row);
+        let placed = || self.table.placed_pair(group.key(row));
+        let entry = group.state(row);
+        let skins = self.table.skins_of(group.key(row));
         let make =
             |old| entries::public_manifold(&entry.state, &placed(), entry.number, old).grown(skins);
-        Some(group.view(place).manifolds(make))
+        Some(group.view(row).manifolds(make))
     }
 
-    /// Returns a view of the manifold, in place unless the pair is particular; `None` if it has no
+    /// Returns a view of the manifold, in place unless the pair needs a built manifold; `None` if it has no
     /// contact.
     pub(super) fn view(&self) -> Option<ManifoldView<'a, N, D>> {
-        let (group, place, key) = (self.group, self.place, self.group.key(self.place));
-        if self.table.is_particular(key) {
+        let (group, row, key) = (self.group, self.row, self.group.key(self.row));
+        if self.table.needs_built_manifolds(key) {
             return self.manifold().and_then(ManifoldView::of_manifold);
         }
-        let entry = group.state(place);
-        group.is_touching(place).then(|| entry.state.view(self.table, key, entry.number))
+        let entry = group.state(row);
+        group.is_touching(row).then(|| entry.state.view(self.table, key, entry.number))
     }
 }
 
 impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
     /// Returns the manifolds, each of which has at least one contact.
     fn manifolds(&self) -> &'a [ContactManifold<N, D>] {
-        let (group, place) = (self.group, self.place);
-        let placed = || self.table.placed_pair(group.key(place));
-        let entry = group.state(place);
-        let skins = self.table.skins_of(group.key(place));
+        let (group, row) = (self.group, self.row);
+        let placed = || self.table.placed_pair(group.key(row));
+        let entry = group.state(row);
+        let skins = self.table.skins_of(group.key(row));
         let make = |old| {
             let manifolds =
                 entries::composite_manifolds(&entry.state, &placed(), entry.number, old);
             manifolds.into_iter().map(|manifold| manifold.grown(skins)).collect()
         };
-        group.view(place).manifolds(make)
+        group.view(row).manifolds(make)
     }
 
-    /// Iterates over views of the manifolds, read in place unless the pair is particular.
+    /// Iterates over views of the manifolds, read in place unless the pair needs built manifolds.
     pub(super) fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
-        let (key, entry) = (self.group.key(self.place), self.group.state(self.place));
-        let is_particular = self.table.is_particular(key);
-        let made = if is_particular { self.manifolds() } else { &[] };
+        let (key, entry) = (self.group.key(self.row), self.group.state(self.row));
+        let needs_built_manifolds = self.table.needs_built_manifolds(key);
+        let made = if needs_built_manifolds { self.manifolds() } else { &[] };
         let view = move |patch| entry.state.view(self.table, key, entry.number, patch);
-        let kept = (0..).map_while(move |patch| (!is_particular).then(|| view(patch))?);
+        let kept = (0..).map_while(move |patch| (!needs_built_manifolds).then(|| view(patch))?);
         made.iter().filter_map(ManifoldView::of_manifold).chain(kept)
     }
 }
@@ -182,8 +185,8 @@ impl<'a, N: Space<D>, const D: usize> ContactPair<'a, N, D> {
     #[must_use]
     pub fn num_contacts(&self) -> usize {
         match self.0 {
-            ViewedContacts::BuiltIn(pair) => pair.group.state(pair.place).state.len(),
-            ViewedContacts::Composite(pair) => pair.group.state(pair.place).state.len(),
+            ViewedContacts::BuiltIn(pair) => pair.group.state(pair.row).state.len(),
+            ViewedContacts::Composite(pair) => pair.group.state(pair.row).state.len(),
             ViewedContacts::Custom(algorithm) => algorithm.num_contacts(),
         }
     }
@@ -271,14 +274,14 @@ fn sorted(pairs: &PairTable, is_wanted: impl Fn(usize) -> bool) -> Vec<u32> {
     let objects = pairs.pairs().iter().map(|&(_, second)| second + 1).max().unwrap_or(0);
     let (mut order, mut partners) = (Vec::new(), Vec::new());
     for object in 0..objects {
-        for (partner, place) in pairs.partners(object) {
-            if partner >= object && is_wanted(place) {
-                partners.push((partner, place));
+        for (partner, index) in pairs.partners(object) {
+            if partner >= object && is_wanted(index) {
+                partners.push((partner, index));
             }
         }
         partners.sort_unstable();
-        let places = partners.drain(..).map(|(_, place)| place);
-        order.extend(places.map(|place| u32::try_from(place).expect("a pair table is smaller")));
+        let indices = partners.drain(..).map(|(_, index)| index);
+        order.extend(indices.map(|index| u32::try_from(index).expect("a pair table is smaller")));
     }
     order
 }
@@ -318,7 +321,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         &'a self,
         table: &'a ObjectTable<N, D>,
     ) -> impl Iterator<Item = (u32, u32, &'a ContactManifold<N, D>)> + 'a {
-        let is_touching = |index: usize| self.lanes.is_touching(self.locations[index]);
+        let is_touching = |index: usize| self.groups.is_touching(self.locations[index]);
         let touching = self.touching.get_or_init(|| sorted(&self.pairs, is_touching));
         touching.iter().flat_map(move |&index| {
             let (first, second) = self.pairs.pairs()[index as usize];
@@ -330,9 +333,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Returns all manifolds with at least one contact, in memory order.
     pub(crate) fn contact_views<'a>(&'a self, table: &'a ObjectTable<N, D>) -> Views<'a, N, D> {
-        let convex = ConvexViews::new(&self.lanes.contacts, table);
-        let composites = CompositeViews::new(&self.lanes.composites, table);
-        Views { is_plain: table.is_plain(), convex, composites, custom: Some(self) }
+        let convex = ConvexViews::new(&self.groups.contacts, table);
+        let composites = CompositeViews::new(&self.groups.composites, table);
+        Views { reads_in_place: table.reads_in_place(), convex, composites, custom: Some(self) }
     }
 
     /// Splits [`Self::contact_views`] into at most `pieces` consecutive parts with about equally
@@ -342,7 +345,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         table: &'a ObjectTable<N, D>,
         pieces: usize,
     ) -> impl Iterator<Item = Views<'a, N, D>> + 'a {
-        let PairLanes { contacts, composites, .. } = &self.lanes;
+        let PairGroups { contacts, composites, .. } = &self.groups;
         // Cuts are between words of flags: first of convex solids, then of composites.
         let convex = ConvexViews::num_words(contacts);
         let words = convex + composites.touching().len();
@@ -363,7 +366,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Iterates over the manifolds of custom algorithms with at least one contact.
     fn custom_views<'a>(&'a self) -> impl Iterator<Item = View<'a, N, D>> + Send + 'a {
-        self.lanes.custom_contacts.iter_touching().flat_map(|(key, entry)| {
+        self.groups.custom_contacts.iter_touching().flat_map(|(key, entry)| {
             let manifolds = ContactPair::from_algorithm(&*entry.algorithm).manifolds();
             let views = manifolds.filter_map(ManifoldView::of_manifold);
             views.map(move |view| (key[0], key[1], view))
@@ -384,18 +387,18 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         index: usize,
     ) -> Option<ContactPair<'a, N, D>> {
         let location = self.locations[index];
-        match location.lane {
-            Lane::Contacts(group) => {
-                let group = &self.lanes.contacts[usize::from(group)];
-                let pair = BuiltIn { table, group, place: location.place };
+        match location.group {
+            GroupId::Contacts(kinds) => {
+                let group = &self.groups.contacts[usize::from(kinds)];
+                let pair = BuiltIn { table, group, row: location.row };
                 Some(ContactPair(ViewedContacts::BuiltIn(pair)))
             }
-            Lane::Composites => {
-                let (group, place) = (&self.lanes.composites, location.place);
-                Some(ContactPair(ViewedContacts::Composite(Composite { table, group, place })))
+            GroupId::Composites => {
+                let (group, row) = (&self.groups.composites, location.row);
+                Some(ContactPair(ViewedContacts::Composite(Composite { table, group, row })))
             }
-            Lane::CustomContacts => {
-                let entry = self.lanes.custom_contacts.state(location.place);
+            GroupId::CustomContacts => {
+                let entry = self.groups.custom_contacts.state(location.row);
                 Some(ContactPair(ViewedContacts::Custom(&*entry.algorithm)))
             }
             _ => None,
@@ -404,11 +407,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     fn proximity_at(&self, index: usize) -> Option<ProximityPair> {
         let location = self.locations[index];
-        let status = match location.lane {
-            Lane::Proximity(group) => {
-                self.lanes.proximity[usize::from(group)].state(location.place).status
+        let status = match location.group {
+            GroupId::Proximity(kinds) => {
+                self.groups.proximity[usize::from(kinds)].state(location.row).status
             }
-            Lane::CustomProximity => self.lanes.custom_proximity.state(location.place).status,
+            GroupId::CustomProximity => self.groups.custom_proximity.state(location.row).status,
             _ => return None,
         };
         Some(ProximityPair(status.0))
@@ -445,26 +448,26 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         }
         for (&pair, location) in self.pairs.pairs().iter().zip(&self.locations) {
             let key = PairKey::from(pair);
-            let place = location.place;
-            let found = match location.lane {
-                Lane::Contacts(group) => self.lanes.contacts[usize::from(group)].key(place),
-                Lane::Composites => self.lanes.composites.key(place),
-                Lane::Proximity(group) => self.lanes.proximity[usize::from(group)].key(place),
-                Lane::CustomContacts => self.lanes.custom_contacts.key(place),
-                Lane::CustomProximity => self.lanes.custom_proximity.key(place),
-                Lane::Nothing => key,
+            let row = location.row;
+            let found = match location.group {
+                GroupId::Contacts(kinds) => self.groups.contacts[usize::from(kinds)].key(row),
+                GroupId::Composites => self.groups.composites.key(row),
+                GroupId::Proximity(kinds) => self.groups.proximity[usize::from(kinds)].key(row),
+                GroupId::CustomContacts => self.groups.custom_contacts.key(row),
+                GroupId::CustomProximity => self.groups.custom_proximity.key(row),
+                GroupId::Nothing => key,
             };
             if found != key {
                 return Err(format!("the state of pair {key:?} is that of {found:?}"));
             }
-            let has_contacts = match location.lane {
-                Lane::Contacts(group) => {
-                    self.lanes.contacts[usize::from(group)].state(place).is_touching()
+            let has_contacts = match location.group {
+                GroupId::Contacts(kinds) => {
+                    self.groups.contacts[usize::from(kinds)].state(row).is_touching()
                 }
-                Lane::Composites => self.lanes.composites.state(place).is_touching(),
+                GroupId::Composites => self.groups.composites.state(row).is_touching(),
                 _ => continue,
             };
-            if has_contacts != self.lanes.is_touching(*location) {
+            if has_contacts != self.groups.is_touching(*location) {
                 return Err(format!("readers hold a wrong opinion of pair {key:?}"));
             }
         }

@@ -12,8 +12,8 @@
 //! The table has no boxes and no objects, only their indices. Its arrays are as long as the largest
 //! index seen, so indices should be dense. Its order depends on the calls alone.
 
-mod lines;
-mod places;
+mod adjacency;
+mod link_indices;
 mod table;
 
 pub(crate) use table::{PairTable, pack, unpack};

@@ -1,6 +1,6 @@
 //! The set of pairs with its dense array and its journal.
 
-use super::lines::{Lines, Link, small};
+use super::adjacency::{Adjacency, Link, small};
 use crate::journal::Journal;
 use crate::memory::{Look, clone_fields};
 
@@ -11,11 +11,11 @@ use crate::memory::{Look, clone_fields};
 #[derive(Debug, Default)]
 pub(crate) struct PairTable {
     pairs: Vec<(u32, u32)>,
-    lines: Lines,
+    adjacency: Adjacency,
     journal: Journal<PairNote>,
 }
 
-clone_fields!([] PairTable { pairs, lines, journal });
+clone_fields!([] PairTable { pairs, adjacency, journal });
 
 /// A change of the set, which can be undone.
 #[derive(Clone, Copy, Debug)]
@@ -81,26 +81,26 @@ impl PairTable {
     /// Returns the number of partners of `a`.
     #[must_use]
     pub(crate) fn count(&self, a: u32) -> usize {
-        self.lines.count(a)
+        self.adjacency.count(a)
     }
 
     /// Iterates over the partners of `a`, each with the index of the pair in [`Self::pairs`].
     pub(crate) fn partners(&self, a: u32) -> impl Iterator<Item = (u32, usize)> + '_ {
-        self.lines.links(a).map(|link| (link.partner, link.pair as usize))
+        self.adjacency.links(a).map(|link| (link.partner, link.pair as usize))
     }
 
     /// Returns the index of one pair of `a`, in constant time; `None` if `a` has no pair. To remove
     /// an object, remove such pairs until there is none.
     #[must_use]
     pub(crate) fn any_pair_of(&self, a: u32) -> Option<usize> {
-        Some(self.lines.last_link(a)?.pair as usize)
+        Some(self.adjacency.last_link(a)?.pair as usize)
     }
 
     /// Returns the index of the pair in [`Self::pairs`]; `None` if it is not in the set. Its ends
     /// may be given in either order.
     #[must_use]
     pub(crate) fn index_of(&self, a: u32, b: u32) -> Option<usize> {
-        self.lines.pair_of(a, b)
+        self.adjacency.pair_of(a, b)
     }
 
     /// Inserts the pair, unless it is in the set already.
@@ -137,12 +137,12 @@ impl PairTable {
     fn link(&mut self, index: usize, a: u32, b: u32) {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
         self.pairs[index] = (low, high);
-        self.lines.reach(high);
+        self.adjacency.extend_to(high);
         let pair = small(index);
-        self.lines.push(low, Link { partner: high, pair });
+        self.adjacency.push(low, Link { partner: high, pair });
         // An index paired with itself has a single link for both ends.
         if low != high {
-            self.lines.push(high, Link { partner: low, pair });
+            self.adjacency.push(high, Link { partner: low, pair });
         }
     }
 
@@ -168,9 +168,9 @@ impl PairTable {
     /// entry of the dense array stays.
     #[inline]
     fn unlink(&mut self, a: u32, b: u32) -> Option<usize> {
-        let index = self.lines.remove(a, b)?;
+        let index = self.adjacency.remove(a, b)?;
         if a != b {
-            self.lines.remove(b, a);
+            self.adjacency.remove(b, a);
         }
         Some(index)
     }
@@ -188,14 +188,14 @@ impl PairTable {
     /// Updates the links of the pair at `index` to that index.
     fn relink(&mut self, index: usize) {
         let ((low, high), pair) = (self.pairs[index], small(index));
-        self.lines.set_pair(low, Link { partner: high, pair });
-        self.lines.set_pair(high, Link { partner: low, pair });
+        self.adjacency.set_pair(low, Link { partner: high, pair });
+        self.adjacency.set_pair(high, Link { partner: low, pair });
     }
 
     /// Reads the heads of both ends of some packed pairs, to prefetch them with overlapping loads.
     /// Changes nothing.
     #[inline]
-    pub(crate) fn fetch(&self, keys: &[u64]) {
+    pub(crate) fn prefetch(&self, keys: &[u64]) {
         let count = |key: u64| {
             let (low, high) = unpack(key);
             self.count(low).wrapping_add(self.count(high))
@@ -233,7 +233,7 @@ impl PairTable {
     /// Releases surplus memory of a table that has stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
         look.fit(&mut self.pairs);
-        self.lines.fit(look);
+        self.adjacency.fit(look);
     }
 
     /// Checks every invariant of the layout; for tests.
@@ -241,19 +241,19 @@ impl PairTable {
     /// # Errors
     /// Returns a sentence that names the violated invariant.
     pub(crate) fn validate(&self) -> Result<(), String> {
-        self.lines.validate()?;
+        self.adjacency.validate()?;
         for (index, &(low, high)) in self.pairs.iter().enumerate() {
             let pair = Some(small(index));
             let mut ends = [(low, high), (high, low)].into_iter().map(|(from, to)| {
-                self.lines.links(from).find(|link| link.partner == to).map(|link| link.pair)
+                self.adjacency.links(from).find(|link| link.partner == to).map(|link| link.pair)
             });
             if low > high || ends.any(|end| end != pair) {
                 return Err(format!("pair {index} = ({low}, {high}) is linked wrongly"));
             }
         }
-        let links: usize = (0..small(self.lines.objects())).map(|a| self.count(a)).sum();
-        let alone = self.pairs.iter().filter(|(low, high)| low == high).count();
-        if links + alone != 2 * self.pairs.len() {
+        let links: usize = (0..small(self.adjacency.num_objects())).map(|a| self.count(a)).sum();
+        let self_pairs = self.pairs.iter().filter(|(low, high)| low == high).count();
+        if links + self_pairs != 2 * self.pairs.len() {
             return Err(format!("{links} links for {} pairs", self.pairs.len()));
         }
         Ok(())

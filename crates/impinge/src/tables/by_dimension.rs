@@ -25,7 +25,7 @@ use crate::convex::Separation;
 #[cfg(feature = "debug_render")]
 use crate::debug_render::{Sketch, sketch2, sketch3};
 use crate::math::{Point, Real, Space, Vector};
-use crate::narrow_phase::{DueContacts, Revolved, update_lanes2, update_lanes3};
+use crate::narrow_phase::{DirtyContacts, Revolved, update_lanes2, update_lanes3};
 use crate::query::composite::RayQuestion;
 use crate::query::mass::MassByDimension;
 use crate::query::point::{SurfacePoint, point2, point3};
@@ -122,7 +122,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     fn on_face(pair: &Pair<'_, N, D>, query: &OnFace<N, D>, out: &mut RawManifold<N, D>) -> bool;
 
     /// Updates some pairs of a group in SIMD lanes; `false` if there is no kernel for their kinds.
-    fn update_lanes(solids: [&Solid<N, D>; 2], due: &mut DueContacts<'_, '_, N, D>) -> bool
+    fn update_lanes(solids: [&Solid<N, D>; 2], due: &mut DirtyContacts<'_, '_, N, D>) -> bool
     where
         N: Space<D>;
 
@@ -259,7 +259,7 @@ impl<N: Real> ByDimension<N, 2> for Here {
         on_face2(pair, query, out)
     }
 
-    fn update_lanes(solids: [&Solid<N, 2>; 2], due: &mut DueContacts<'_, '_, N, 2>) -> bool {
+    fn update_lanes(solids: [&Solid<N, 2>; 2], due: &mut DirtyContacts<'_, '_, N, 2>) -> bool {
         update_lanes2(solids, due)
     }
 
@@ -405,7 +405,7 @@ impl<N: Real> ByDimension<N, 3> for Here {
         on_face3(pair, query, out)
     }
 
-    fn update_lanes(solids: [&Solid<N, 3>; 2], due: &mut DueContacts<'_, '_, N, 3>) -> bool {
+    fn update_lanes(solids: [&Solid<N, 3>; 2], due: &mut DirtyContacts<'_, '_, N, 3>) -> bool {
         update_lanes3(solids, due)
     }
 

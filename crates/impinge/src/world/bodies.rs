@@ -22,9 +22,9 @@ const FIXED: u32 = 1 << 30;
 const PREDICTED: u32 = 1 << 29;
 /// Mask of the object's index in the list of changes; all bits are set if the object is not in the
 /// list.
-const PLACE: u32 = PREDICTED - 1;
+const CHANGE_INDEX: u32 = PREDICTED - 1;
 /// Greatest number of entries in the list of changes, and so of objects.
-pub(super) const MAX_CHANGES: u32 = PLACE;
+pub(super) const MAX_CHANGES: u32 = CHANGE_INDEX;
 
 /// An object as the user last set it; the phases have copies as of the last update. 96 bytes for
 /// `f32` in 3D.
@@ -43,7 +43,7 @@ pub(crate) struct WorldBody<N: Space<D>, const D: usize> {
     solid: Compact<N, D>,
     pub(crate) proxy: ProxyHandle,
     /// [`SELF_PAIR`], [`FIXED`] and [`PREDICTED`] in the high bits, the index in the list of
-    /// changes ([`PLACE`]) in the low bits.
+    /// changes ([`CHANGE_INDEX`]) in the low bits.
     state: u32,
     pub(crate) handle: CollisionObjectHandle,
     pub(crate) groups: CollisionGroups,
@@ -80,28 +80,29 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
     pub(super) fn new(row: ObjectRow<N, D>, groups: CollisionGroups, proxy: ProxyHandle) -> Self {
         let ObjectRow { handle, isometry, shape, query } = row;
         let (solid, query) = (Compact::of(&shape), PackedQuery::new(query));
-        Self { shape, isometry, solid, proxy, state: PLACE, handle, groups, query }
+        Self { shape, isometry, solid, proxy, state: CHANGE_INDEX, handle, groups, query }
     }
 
     /// Returns the object's index in the list of changes; `None` if it is not in the list.
     #[inline]
-    pub(super) fn place(&self) -> Option<u32> {
-        let place = self.state & PLACE;
-        (place != PLACE).then_some(place)
+    pub(super) fn change_index(&self) -> Option<u32> {
+        let change_index = self.state & CHANGE_INDEX;
+        (change_index != CHANGE_INDEX).then_some(change_index)
     }
 
     /// Stores the object's index in the list of changes, and returns it.
     #[inline]
-    pub(super) fn set_place(&mut self, place: usize) -> u32 {
-        let small = u32::try_from(place).ok().filter(|&place| place < PLACE);
-        let place = small.expect("a world holds no more objects");
-        self.state = self.state & !PLACE | place;
-        place
+    pub(super) fn set_change_index(&mut self, change_index: usize) -> u32 {
+        let small =
+            u32::try_from(change_index).ok().filter(|&change_index| change_index < CHANGE_INDEX);
+        let change_index = small.expect("a world holds no more objects");
+        self.state = self.state & !CHANGE_INDEX | change_index;
+        change_index
     }
 
     /// Marks the object as not in the list of changes.
-    pub(super) const fn leave_place(&mut self) {
-        self.state |= PLACE;
+    pub(super) const fn clear_change_index(&mut self) {
+        self.state |= CHANGE_INDEX;
     }
 
     /// Toggles whether the narrow phase tests the object against itself.
@@ -162,13 +163,13 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
 
     /// Marks the object as fixed, as it was before it was saved.
     #[cfg(feature = "serde")]
-    pub(super) const fn fix_again(&mut self) {
+    pub(super) const fn restore_fixed(&mut self) {
         self.state |= FIXED;
     }
 
     /// Marks the pose of the object as predicted, as it was before it was saved.
     #[cfg(feature = "serde")]
-    pub(super) const fn predict_again(&mut self) {
+    pub(super) const fn restore_predicted(&mut self) {
         self.state |= PREDICTED;
     }
 
@@ -275,11 +276,11 @@ fn usable<N: Real, const D: usize>(aabb: Aabb<N, D>) -> Aabb<N, D> {
 /// the solids is at most the sum of both limits. The slack covers the rounding of the boxes, of the
 /// sum, and of the compared distance.
 pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aabb<N, D> {
-    let mut reach = limit;
+    let mut largest = limit;
     for axis in 0..D {
         for face in [aabb.mins()[axis].abs(), aabb.maxs()[axis].abs()] {
-            reach = if face < N::INFINITY { max(face, reach) } else { reach };
+            largest = if face < N::INFINITY { max(face, largest) } else { largest };
         }
     }
-    aabb.loosened(limit + slack_of(reach))
+    aabb.loosened(limit + slack_of(largest))
 }

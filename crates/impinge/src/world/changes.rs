@@ -67,7 +67,7 @@ clone_fields!([N: Space<D>, const D: usize] ChangeList<N, D> {
 });
 
 /// The parts that receive the changes at the start of an update.
-pub(crate) struct Readers<'a, N: Space<D>, const D: usize> {
+pub(crate) struct ChangeTargets<'a, N: Space<D>, const D: usize> {
     pub(crate) table: &'a mut ObjectTable<N, D>,
     pub(crate) broad_phase: &'a mut WorldBroadPhase<N, D>,
     /// Handle indices of the objects whose shape, query type or skin changed.
@@ -88,7 +88,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
 
     /// Creates the body of a new object. `proxy` registers the object's volume in the broad phase
     /// and returns its handle.
-    pub(crate) fn admit(
+    pub(crate) fn new_body(
         &mut self,
         row: ObjectRow<N, D>,
         groups: CollisionGroups,
@@ -154,41 +154,45 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         {
             entries::take_dirty::<N, D>(tree, id);
         }
-        if let Some(place) = body.place() {
-            self.entries[place as usize].index = GONE;
+        if let Some(change_index) = body.change_index() {
+            self.entries[change_index as usize].index = GONE;
         }
     }
 
     /// Returns `true` if the volume of the object in the broad phase is out of date.
     #[inline]
     pub(crate) fn is_dirty(&self, body: &WorldBody<N, D>) -> bool {
-        body.place().is_some_and(|place| self.entries[place as usize].changes.volume)
+        body.change_index()
+            .is_some_and(|change_index| self.entries[change_index as usize].changes.volume)
     }
 
     /// Returns the number of dirty objects.
     pub(crate) fn num_dirty(&self) -> usize {
-        self.dirty_places().count()
+        self.dirty_indices().count()
     }
 
     /// Iterates over the boxes of the dirty objects, each with its index in this list.
     pub(crate) fn dirty_boxes(&self) -> impl Iterator<Item = (u32, Aabb<N, D>)> {
-        self.dirty_places().map(|place| (place, self.box_at(place)))
+        self.dirty_indices().map(|change_index| (change_index, self.box_at(change_index)))
     }
 
     /// Returns the box of an object; `None` unless the object is dirty.
     pub(crate) fn dirty_box(&self, body: &WorldBody<N, D>) -> Option<Aabb<N, D>> {
-        let place = body.place().filter(|_| self.is_dirty(body))?;
-        Some(self.box_at(place))
+        let change_index = body.change_index().filter(|_| self.is_dirty(body))?;
+        Some(self.box_at(change_index))
     }
 
-    fn dirty_places(&self) -> impl Iterator<Item = u32> {
+    fn dirty_indices(&self) -> impl Iterator<Item = u32> {
         let is_dirty = |entry: &BodyEntry<N, D>| entry.changes.volume && entry.index != GONE;
-        (0..).zip(&self.entries).filter(move |(_, entry)| is_dirty(entry)).map(|(place, _)| place)
+        (0..)
+            .zip(&self.entries)
+            .filter(move |(_, entry)| is_dirty(entry))
+            .map(|(change_index, _)| change_index)
     }
 
-    /// Returns the box of the dirty object at index `place`, grown by the slack for rounding.
-    fn box_at(&self, place: u32) -> Aabb<N, D> {
-        grown(&self.entries[place as usize].aabb, N::ZERO)
+    /// Returns the box of the dirty object at index `change_index`, grown by the slack for rounding.
+    fn box_at(&self, change_index: u32) -> Aabb<N, D> {
+        grown(&self.entries[change_index as usize].aabb, N::ZERO)
     }
 
     /// Returns the tree that queries search in addition to the broad phase, or instead of it. The
@@ -197,7 +201,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         if self.entries.is_empty() {
             return None;
         }
-        if let Some(tree) = self.made_dirty_tree() {
+        if let Some(tree) = self.existing_dirty_tree() {
             return Some(tree);
         }
         // `make` runs without a lock: a thread that waits for others to sort their part of the
@@ -207,7 +211,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     }
 
     /// Returns the tree of dirty objects; `None` if no query has built it since the last update.
-    pub(crate) fn made_dirty_tree(&self) -> Option<&DirtyTree<D>> {
+    pub(crate) fn existing_dirty_tree(&self) -> Option<&DirtyTree<D>> {
         self.dirty.get()
     }
 
@@ -226,30 +230,34 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         order
     }
 
-    /// Writes the changes of an object to the readers, and marks the object as unchanged.
-    pub(crate) fn flush(&mut self, body: &mut WorldBody<N, D>, readers: &mut Readers<'_, N, D>) {
-        let Some(place) = body.place() else { return };
-        let BodyEntry { changes, aabb, .. } = self.entries[place as usize];
-        body.leave_place();
+    /// Writes the changes of an object to the targets, and marks the object as unchanged.
+    pub(crate) fn flush(
+        &mut self,
+        body: &mut WorldBody<N, D>,
+        targets: &mut ChangeTargets<'_, N, D>,
+    ) {
+        let Some(change_index) = body.change_index() else { return };
+        let BodyEntry { changes, aabb, .. } = self.entries[change_index as usize];
+        body.clear_change_index();
         if body.wants_self_pair() != body.has_self_pair() {
             body.toggle_self_pair();
             self.self_changed.push(body.index());
         }
         if changes.row {
-            readers.table.set_skin(body.index(), self.skin(body.index()));
-            readers.table.set(body.index(), || body.row());
+            targets.table.set_skin(body.index(), self.skin(body.index()));
+            targets.table.set(body.index(), || body.row());
         } else if changes.volume {
-            readers.table.set_position(body.index(), &body.isometry);
+            targets.table.set_position(body.index(), &body.isometry);
         }
         if changes.algorithm {
-            readers.algorithms.push(body.index());
+            targets.algorithms.push(body.index());
         }
         if changes.volume {
             let volume = self.volume_around(body, &aabb);
-            readers.broad_phase.deferred_set_bounding_volume(body.proxy, volume);
+            targets.broad_phase.deferred_set_bounding_volume(body.proxy, volume);
         }
         if changes.filter {
-            readers.broad_phase.deferred_recompute_all_proximities_with(body.proxy);
+            targets.broad_phase.deferred_recompute_all_proximities_with(body.proxy);
         }
     }
 
@@ -299,31 +307,31 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
 
     /// Records that the pairs of an object must be filtered again.
     pub(super) fn note_filter(&mut self, body: &mut WorldBody<N, D>) {
-        let place = self.note(body);
-        self.entries[place as usize].changes.filter = true;
+        let change_index = self.note(body);
+        self.entries[change_index as usize].changes.filter = true;
     }
 
     #[inline(always)]
     fn note_volume(&mut self, body: &mut WorldBody<N, D>, aabb: Aabb<N, D>) -> &mut BodyChanges {
-        let place = self.note(body);
-        let entry = &mut self.entries[place as usize];
+        let change_index = self.note(body);
+        let entry = &mut self.entries[change_index as usize];
         entry.aabb = aabb;
         entry.changes.volume = true;
         if self.dirty.get_mut().is_some() {
-            self.follow(body, place);
+            self.update_dirty_tree(body, change_index);
         }
-        &mut self.entries[place as usize].changes
+        &mut self.entries[change_index as usize].changes
     }
 
     /// Updates the box of an object in the dirty tree. Drops the tree if it has had too many
     /// changes.
     #[cold]
-    fn follow(&mut self, body: &WorldBody<N, D>, place: u32) {
-        let aabb = self.box_at(place);
+    fn update_dirty_tree(&mut self, body: &WorldBody<N, D>, change_index: u32) {
+        let aabb = self.box_at(change_index);
         let Some(tree) = self.dirty.get_mut() else { return };
-        let id = if tree.has_all() { body.index() } else { place };
+        let id = if tree.has_all() { body.index() } else { change_index };
         entries::put_dirty(tree, id, &aabb);
-        if tree.is_worn() {
+        if tree.needs_rebuild() {
             self.dirty.take();
         }
     }
@@ -331,11 +339,11 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     /// Adds an object to the list, unless it is already there; returns its index.
     #[inline]
     fn note(&mut self, body: &mut WorldBody<N, D>) -> u32 {
-        body.place().unwrap_or_else(|| {
-            let place = body.set_place(self.entries.len());
+        body.change_index().unwrap_or_else(|| {
+            let change_index = body.set_change_index(self.entries.len());
             let (index, changes) = (body.index(), BodyChanges::default());
             self.entries.push(BodyEntry { index, changes, aabb: Aabb::unbounded() });
-            place
+            change_index
         })
     }
 
@@ -368,23 +376,23 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     /// Returns the changes of an object since the last update.
     #[cfg(feature = "serde")]
     pub(super) fn of_body(&self, body: &WorldBody<N, D>) -> Option<BodyChanges> {
-        body.place().map(|place| self.entries[place as usize].changes)
+        body.change_index().map(|change_index| self.entries[change_index as usize].changes)
     }
 
     /// Restores the changes of an object since the last update.
     #[cfg(feature = "serde")]
-    pub(super) fn note_again(&mut self, body: &mut WorldBody<N, D>, changes: BodyChanges) {
-        let (place, aabb) = (self.note(body), body.aabb());
-        let entry = &mut self.entries[place as usize];
+    pub(super) fn restore_changes(&mut self, body: &mut WorldBody<N, D>, changes: BodyChanges) {
+        let (change_index, aabb) = (self.note(body), body.aabb());
+        let entry = &mut self.entries[change_index as usize];
         entry.changes = changes;
         if changes.volume {
             entry.aabb = aabb;
         }
     }
 
-    /// Checks that the entry at the place of an object is its own.
+    /// Checks that the entry at the index of an object is its own.
     pub(crate) fn validate(&self, body: &WorldBody<N, D>) -> Result<(), String> {
-        match body.place().map(|place| self.entries.get(place as usize)) {
+        match body.change_index().map(|change_index| self.entries.get(change_index as usize)) {
             Some(entry) if entry.map(|entry| entry.index) != Some(body.index()) => {
                 Err(format!("{:?} has the place of another among the changes", body.handle))
             }

@@ -182,7 +182,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn try_remove(&mut self, handles: &[CollisionObjectHandle]) -> Result<(), WorldError> {
         let mut proxies = Vec::with_capacity(handles.len());
         for &handle in handles {
-            proxies.push(self.objects.known(handle)?.proxy);
+            proxies.push(self.objects.checked_body(handle)?.proxy);
         }
         refuse_repeated(handles)?;
         let mut pairs = Vec::new();
@@ -194,7 +194,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         pairs.extend(alone.map(|body| (body.handle, body.handle)));
         for (first, second) in pairs {
             self.narrow_phase.handle_removal(&mut self.queued, &self.objects, first, second);
-            self.give_back((first, second));
+            self.release_rows((first, second));
         }
         self.removed.note(&self.events, &self.queued);
         for &handle in handles {
@@ -236,7 +236,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         position: N::Isometry,
     ) -> Result<(), WorldError> {
-        let (body, changes) = self.objects.fresh_to_move(handle)?;
+        let (body, changes) = self.objects.body_mut_to_move(handle)?;
         entries::set_isometry(body, changes, position)
     }
 
@@ -261,7 +261,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         positions: &[(CollisionObjectHandle, N::Isometry)],
     ) -> Result<(), WorldError> {
         for (handle, position) in positions {
-            self.objects.known(*handle)?;
+            self.objects.checked_body(*handle)?;
             usable_pose::<N, D>(position, Some(*handle))?;
         }
         for (handle, position) in positions {
@@ -289,7 +289,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         shape: ShapeHandle<N, D>,
     ) -> Result<(), WorldError> {
-        let (body, changes) = self.objects.fresh(handle)?;
+        let (body, changes) = self.objects.body_mut(handle)?;
         entries::set_shape(body, changes, shape);
         Ok(())
     }
@@ -313,7 +313,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         groups: CollisionGroups,
     ) -> Result<(), WorldError> {
-        let (body, changes) = self.objects.fresh(handle)?;
+        let (body, changes) = self.objects.body_mut(handle)?;
         body.set_groups(changes, groups);
         Ok(())
     }
@@ -343,7 +343,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         query_type: impl Into<GeometricQueryType<N>>,
     ) -> Result<(), WorldError> {
-        let (body, changes) = self.objects.fresh(handle)?;
+        let (body, changes) = self.objects.body_mut(handle)?;
         entries::set_query(body, changes, usable_query(query_type.into())?);
         Ok(())
     }

@@ -76,13 +76,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.validate_with(&|_, _| true)
     }
 
-    /// Checks the invariants of a world whose updates borrow the filter `lent`
+    /// Checks the invariants of a world whose updates borrow the filter `update_filter`
     /// ([`Self::update_with`]); see [`Self::validate`].
     ///
     /// # Errors
     /// Returns a sentence that names the violated invariant.
     #[doc(hidden)]
-    pub fn validate_with(&self, lent: &PairRule<'_, N, D, T>) -> Result<(), String> {
+    pub fn validate_with(&self, update_filter: &PairRule<'_, N, D, T>) -> Result<(), String> {
         self.objects.validate(&*self.broad_phase)?;
         let contacts = self.contact_pairs().map(|(a, b, _)| (a.handle(), b.handle()));
         let proximities = self.proximity_pairs().map(|(a, b, _)| (a.handle(), b.handle()));
@@ -91,12 +91,12 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         if known.windows(2).any(|two| two[0] == two[1]) {
             return Err("a pair is known twice".to_owned());
         }
-        for pair in self.expected_pairs(lent) {
+        for pair in self.expected_pairs(update_filter) {
             if known.binary_search(&pair).is_err() {
                 return Err(format!("the boxes of {pair:?} meet, but the pair is not known"));
             }
         }
-        match known.iter().find(|(a, b)| !self.is_allowed(*a, *b, lent)) {
+        match known.iter().find(|(a, b)| !self.is_allowed(*a, *b, update_filter)) {
             Some(pair) => Err(format!("{pair:?} is known, but groups or filters forbid it")),
             None => Ok(()),
         }
@@ -105,18 +105,18 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the pairs that groups and filters allow and whose loosened volumes overlap.
     fn expected_pairs(
         &self,
-        lent: &PairRule<'_, N, D, T>,
+        update_filter: &PairRule<'_, N, D, T>,
     ) -> Vec<(CollisionObjectHandle, CollisionObjectHandle)> {
         let bodies: Vec<_> = self.objects.bodies().collect();
         let alone = bodies.iter().filter(|body| body.has_self_pair());
         let mut pairs: Vec<_> = alone.map(|body| (body.handle, body.handle)).collect();
-        for (place, first) in bodies.iter().enumerate() {
+        for (index, first) in bodies.iter().enumerate() {
             let volume = self.objects.changes.volume(first);
-            let meets =
+            let overlaps =
                 |second: &&WorldBody<N, D>| volume.intersects(&self.objects.changes.volume(second));
-            let others = bodies[place + 1..].iter().copied().filter(meets);
+            let others = bodies[index + 1..].iter().copied().filter(overlaps);
             let allowed =
-                others.filter(|second| self.is_allowed(first.handle, second.handle, lent));
+                others.filter(|second| self.is_allowed(first.handle, second.handle, update_filter));
             pairs.extend(allowed.map(|second| (first.handle, second.handle)));
         }
         pairs
@@ -127,13 +127,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &self,
         handle1: CollisionObjectHandle,
         handle2: CollisionObjectHandle,
-        lent: &PairRule<'_, N, D, T>,
+        update_filter: &PairRule<'_, N, D, T>,
     ) -> bool {
         if handle1 == handle2 {
             return self.objects.body(handle1.index()).is_some_and(WorldBody::wants_self_pair);
         }
         let both = self.objects.get(handle1).zip(self.objects.get(handle2));
         self.objects.can_interact(handle1.index(), handle2.index())
-            && both.is_some_and(|(co1, co2)| self.filters.allow(co1, co2) && lent(co1, co2))
+            && both
+                .is_some_and(|(co1, co2)| self.filters.allow(co1, co2) && update_filter(co1, co2))
     }
 }

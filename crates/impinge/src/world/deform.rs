@@ -59,7 +59,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         change: impl FnOnce(&mut S) -> R,
     ) -> Result<R, WorldError> {
-        let body = self.objects.known(handle)?;
+        let body = self.objects.checked_body(handle)?;
         let shape = body.shape.as_shape::<S>().ok_or(WorldError::ShapeType(handle))?;
         let mut shape = shape.clone();
         let result = change(&mut shape);

@@ -16,9 +16,9 @@ use crate::math::{Real, Space};
 use crate::partitioning::{Search, Sweep, packed};
 
 /// Least number of changes after which a tree is dropped.
-const MIN_PATIENCE: usize = 32;
-/// A tree of `n` boxes is dropped after `n / PATIENCE` changes, if that is more than [`MIN_PATIENCE`].
-const PATIENCE: usize = 4;
+const MIN_CHANGES: usize = 32;
+/// A tree of `n` boxes is dropped after `n / CHANGES_DIVISOR` changes, if that is more than [`MIN_CHANGES`].
+const CHANGES_DIVISOR: usize = 4;
 
 /// Boxes with ids. The ids are handle indices if the tree has all objects, else indices in the list of changes.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ pub(crate) struct DirtyTree<const D: usize> {
     unbounded: Vec<u32>,
     lanes: Lanes,
     /// Number of changes until the tree should be dropped.
-    patience: usize,
+    changes_left: usize,
 }
 
 /// Receives a group of ids with lower bounds of their keys; returns the new limit of keys.
@@ -43,8 +43,8 @@ impl<const D: usize> DirtyTree<D> {
     ) -> Self {
         let lanes = Lanes::detect();
         let (tree, unbounded) = packed(lanes, boxes);
-        let patience = MIN_PATIENCE.max(tree.len() / PATIENCE);
-        Self { has_all, tree, unbounded, lanes, patience }
+        let changes_left = MIN_CHANGES.max(tree.len() / CHANGES_DIVISOR);
+        Self { has_all, tree, unbounded, lanes, changes_left }
     }
 
     /// Returns `true` if the tree also has the boxes of clean objects; its ids are then handle indices.
@@ -54,13 +54,13 @@ impl<const D: usize> DirtyTree<D> {
     }
 
     /// Returns `true` if the tree has had so many changes that it should be dropped.
-    pub(crate) const fn is_worn(&self) -> bool {
-        self.patience == 0
+    pub(crate) const fn needs_rebuild(&self) -> bool {
+        self.changes_left == 0
     }
 
     /// Returns the id under which the tree has the object, if at all; `None` if it cannot be in the tree.
     pub(crate) fn id_of<N: Space<D>>(&self, body: &WorldBody<N, D>) -> Option<u32> {
-        if self.has_all { Some(body.index()) } else { body.place() }
+        if self.has_all { Some(body.index()) } else { body.change_index() }
     }
 
     /// Sets the box with this id, which may be new.
@@ -74,7 +74,7 @@ impl<const D: usize> DirtyTree<D> {
         } else {
             self.unbounded.push(id);
         }
-        self.patience = self.patience.saturating_sub(1);
+        self.changes_left = self.changes_left.saturating_sub(1);
     }
 
     /// Removes the box with this id; does nothing if there is none.
@@ -155,10 +155,10 @@ mod tests {
     }
 
     fn square(state: &mut u64, side: u16) -> Box2 {
-        Aabb::from_half_extents(place(state, side).into(), Vector::repeat(0.5))
+        Aabb::from_half_extents(random_point(state, side).into(), Vector::repeat(0.5))
     }
 
-    fn place(state: &mut u64, side: u16) -> Vector<f32> {
+    fn random_point(state: &mut u64, side: u16) -> Vector<f32> {
         Vector::from([(); 2].map(|()| f32::from(below(state, side))))
     }
 
@@ -186,7 +186,7 @@ mod tests {
                 boxes.retain(|&(other, _)| other != id);
                 boxes.push((id, aabb));
                 dirty.put(id, &aabb);
-                if dirty.is_worn() {
+                if dirty.needs_rebuild() {
                     dirty = DirtyTree::new(false, &mut boxes.iter().copied());
                 }
                 all += opened(&dirty, &square(state, side));
@@ -221,7 +221,7 @@ mod tests {
         let floor = ShapeHandle::new(HalfSpace::new(Vector::y_axis()));
         let handles: Vec<_> = world.objects.iter().map(CollisionObject::handle).collect();
         let handle = handles[usize::from(below(state, 30_000)) % handles.len()];
-        let position = Isometry::from(place(state, 30));
+        let position = Isometry::from(random_point(state, 30));
         match below(state, 120) {
             0 => world.update(),
             1..20 => world.remove(&[handle]),
@@ -237,11 +237,11 @@ mod tests {
     fn the_tree_of_a_world_follows_every_change() {
         let (mut world, state) = (World::new(0.1), &mut 7);
         let ball = ShapeHandle::new(Ball::new(0.5));
-        (0..200).for_each(|_| add(&mut world, &ball, Isometry::from(place(state, 30))));
+        (0..200).for_each(|_| add(&mut world, &ball, Isometry::from(random_point(state, 30))));
         let (mut trees, mut made) = ([0, 0], 0);
         for change in 0..4000 {
             change_one(&mut world, state);
-            let kept = world.objects.changes.made_dirty_tree().map(DirtyTree::has_all);
+            let kept = world.objects.changes.existing_dirty_tree().map(DirtyTree::has_all);
             if change % 3 == 0 {
                 let ray = Ray::new(Point::origin(), Vector::repeat(1.0));
                 let _ = world.first_ray_hit(&ray, 0.0, true, &QueryFilter::new());

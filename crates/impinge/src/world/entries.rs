@@ -2,9 +2,9 @@
 //! crate.
 
 use super::bodies::WorldBody;
-use super::changes::{ChangeList, Readers};
+use super::changes::{ChangeList, ChangeTargets};
 use super::dirty::{DirtyTree, DirtyVisitor};
-use super::fork::UsualBroadPhase;
+use super::fork::DefaultBroadPhase;
 use super::objects::Slot;
 use super::queries::cast::Cast;
 use super::queries::shape;
@@ -59,7 +59,7 @@ compiled! {
     fn flush(
         changes: &mut ChangeList<N, D>,
         body: &mut WorldBody<N, D>,
-        readers: &mut Readers<'_, N, D>,
+        targets: &mut ChangeTargets<'_, N, D>,
     ) = ChangeList::flush;
 
     /// Creates a tree of dirty objects.
@@ -162,7 +162,7 @@ compiled! {
     inlined trait SmallWorldEntries;
 
     /// Returns `true` if the exact box of an object overlaps `aabb`.
-    fn meets(body: &WorldBody<N, D>, aabb: &Aabb<N, D>) -> bool = shape::meets;
+    fn overlaps_aabb(body: &WorldBody<N, D>, aabb: &Aabb<N, D>) -> bool = shape::overlaps_aabb;
 
     /// Returns a shape placed at a position.
     fn placed_at<'a>(
@@ -171,10 +171,10 @@ compiled! {
     ) -> Placed<'a, N, D> = Placed::of_isometry;
 
     /// Returns the box of a placed shape; `None` if the position is not finite.
-    fn around(
+    fn placed_aabb(
         position: &<N as Space<D>>::Isometry,
         shape: &dyn Shape<N, D>,
-    ) -> Option<Aabb<N, D>> = shape::around;
+    ) -> Option<Aabb<N, D>> = shape::placed_aabb;
 
     /// Returns `true` if a placed shape touches or overlaps an object.
     fn touches(placed: &Placed<'_, N, D>, body: &WorldBody<N, D>) -> bool = shape::touches;
@@ -205,5 +205,5 @@ compiled! {
 }
 
 fn boxed_broad_phase<N: Space<D>, const D: usize>(margin: N) -> Box<WorldBroadPhase<N, D>> {
-    Box::new(UsualBroadPhase::new(margin))
+    Box::new(DefaultBroadPhase::new(margin))
 }

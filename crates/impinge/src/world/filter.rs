@@ -34,11 +34,11 @@ pub trait BroadPhasePairFilter<N: Space<D>, const D: usize, T>: Send + Sync {
     -> bool;
 }
 
-type Named<N, const D: usize, T> = (String, Arc<dyn BroadPhasePairFilter<N, D, T>>);
+type NamedFilter<N, const D: usize, T> = (String, Arc<dyn BroadPhasePairFilter<N, D, T>>);
 
 /// The filters of a world, sorted by name.
 pub(super) struct Filters<N: Space<D>, const D: usize, T> {
-    filters: Vec<Named<N, D, T>>,
+    filters: Vec<NamedFilter<N, D, T>>,
     /// Whether a filter was registered or unregistered since the last update.
     have_changed: bool,
 }
@@ -54,19 +54,19 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
     pub(super) fn register(&mut self, name: &str, filter: Arc<dyn BroadPhasePairFilter<N, D, T>>) {
         self.have_changed = true;
         match self.position(name) {
-            Ok(place) => self.filters[place].1 = filter,
-            Err(place) => self.filters.insert(place, (name.to_owned(), filter)),
+            Ok(index) => self.filters[index].1 = filter,
+            Err(index) => self.filters.insert(index, (name.to_owned(), filter)),
         }
     }
 
     /// Removes the filter with this name; returns `false` if there is none.
     pub(super) fn unregister(&mut self, name: &str) -> bool {
-        let place = self.position(name);
-        if let Ok(place) = place {
-            self.filters.remove(place);
+        let index = self.position(name);
+        if let Ok(index) = index {
+            self.filters.remove(index);
             self.have_changed = true;
         }
-        place.is_ok()
+        index.is_ok()
     }
 
     fn position(&self, name: &str) -> Result<usize, usize> {
@@ -189,7 +189,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &mut self,
         handle: CollisionObjectHandle,
     ) -> Result<(), WorldError> {
-        let (body, changes) = self.objects.fresh(handle)?;
+        let (body, changes) = self.objects.body_mut(handle)?;
         body.refilter(changes);
         Ok(())
     }

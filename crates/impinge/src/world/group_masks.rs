@@ -106,9 +106,9 @@ impl CollisionGroups {
     /// # Errors
     /// If the mask has bit 30 or 31; the error has the lower one.
     pub fn try_with_membership_by_mask(self, mask: u32) -> Result<Self, GroupError> {
-        let named = Self::of_masks(checked(mask)?, 0, 0);
+        let source = Self::of_masks(checked(mask)?, 0, 0);
         let mut groups = self;
-        groups.copy_membership(&named);
+        groups.copy_membership(&source);
         Ok(groups)
     }
 
@@ -127,9 +127,9 @@ impl CollisionGroups {
     /// # Errors
     /// If the mask has bit 30 or 31; the error has the lower one.
     pub fn try_with_whitelist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
-        let named = Self::of_masks(0, checked(mask)?, 0);
+        let source = Self::of_masks(0, checked(mask)?, 0);
         let mut groups = self;
-        groups.copy_whitelist(&named);
+        groups.copy_whitelist(&source);
         Ok(groups)
     }
 
@@ -148,9 +148,9 @@ impl CollisionGroups {
     /// # Errors
     /// If the mask has bit 30 or 31; the error has the lower one.
     pub fn try_with_blacklist_by_mask(self, mask: u32) -> Result<Self, GroupError> {
-        let named = Self::of_masks(0, 0, checked(mask)?);
+        let source = Self::of_masks(0, 0, checked(mask)?);
         let mut groups = self;
-        groups.copy_blacklist(&named);
+        groups.copy_blacklist(&source);
         Ok(groups)
     }
 }
@@ -185,8 +185,8 @@ mod tests {
     #[test]
     fn bits_of_no_group_are_refused() {
         let groups = CollisionGroups::new();
-        for (mask, named) in [(1 << 30, 30), (1 << 31, 31), (u32::MAX, 30), (1 << 31 | 5, 31)] {
-            let refused = Err(GroupError(named));
+        for (mask, source) in [(1 << 30, 30), (1 << 31, 31), (u32::MAX, 30), (1 << 31 | 5, 31)] {
+            let refused = Err(GroupError(source));
             assert_eq!(groups.try_with_membership_by_mask(mask), refused, "{mask:x}");
             assert_eq!(groups.try_with_whitelist_by_mask(mask), refused, "{mask:x}");
             assert_eq!(groups.try_with_blacklist_by_mask(mask), refused, "{mask:x}");

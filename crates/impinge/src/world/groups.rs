@@ -26,7 +26,7 @@ pub(super) const ALL_GROUPS: u32 = (1 << (LAST_GROUP + 1)) - 1;
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(from = "Spelled", into = "Spelled"))]
+#[cfg_attr(feature = "serde", serde(from = "SerializedGroups", into = "SerializedGroups"))]
 pub struct CollisionGroups {
     /// Bits 0 to 29 are groups, as in the other masks; bit 31 is [`SELF_COLLISION`].
     membership: u32,
@@ -41,14 +41,14 @@ const SELF_COLLISION: u32 = 1 << 31;
 /// Groups with a field for each setting, for serialization and `Debug`.
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename = "CollisionGroups"))]
-struct Spelled {
+struct SerializedGroups {
     membership: u32,
     whitelist: u32,
     blacklist: u32,
     self_collision: bool,
 }
 
-impl From<CollisionGroups> for Spelled {
+impl From<CollisionGroups> for SerializedGroups {
     fn from(groups: CollisionGroups) -> Self {
         let CollisionGroups { membership, whitelist, blacklist } = groups;
         let self_collision = groups.can_interact_with_self();
@@ -57,14 +57,14 @@ impl From<CollisionGroups> for Spelled {
 }
 
 #[cfg(feature = "serde")]
-impl From<Spelled> for CollisionGroups {
-    fn from(spelled: Spelled) -> Self {
+impl From<SerializedGroups> for CollisionGroups {
+    fn from(serialized: SerializedGroups) -> Self {
         // Bits of groups that do not exist are dropped.
         let [membership, whitelist, blacklist] =
-            [spelled.membership, spelled.whitelist, spelled.blacklist]
+            [serialized.membership, serialized.whitelist, serialized.blacklist]
                 .map(|mask| mask & ALL_GROUPS);
         let mut groups = Self { membership, whitelist, blacklist };
-        if spelled.self_collision {
+        if serialized.self_collision {
             groups.enable_self_collision();
         }
         groups
@@ -73,7 +73,7 @@ impl From<Spelled> for CollisionGroups {
 
 impl fmt::Debug for CollisionGroups {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Spelled { membership, whitelist, blacklist, self_collision } = (*self).into();
+        let SerializedGroups { membership, whitelist, blacklist, self_collision } = (*self).into();
         f.debug_struct("CollisionGroups")
             .field("membership", &membership)
             .field("whitelist", &whitelist)

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! CollisionWorld
-//!   objects ── slots[index] -> records[slot.place]  { body: WorldBody, data: T }
+//!   objects ── slots[index] -> records[slot.record]  { body: WorldBody, data: T }
 //!      │          changes: dirty objects, until update()
 //!      ├── boxes ───────────> broad_phase    (as of the last update)
 //!      └── poses, shapes ───> ObjectTable ─> narrow_phase   (rows of objects with pairs only)
@@ -15,11 +15,12 @@
 
 mod bodies;
 mod changes;
+mod clear;
 mod collision_world;
 mod debug;
 mod deform;
+mod diagnostics;
 mod dirty;
-mod emptying;
 pub(crate) mod entries;
 mod error;
 mod filter;
@@ -29,11 +30,10 @@ mod groups;
 mod motion;
 mod narrow_phase;
 mod object;
+mod object_pairs;
 mod objects;
-mod of_object;
 mod pairs;
 mod queries;
-mod reasons;
 mod removed;
 #[cfg(feature = "serde")]
 mod saved;

@@ -58,7 +58,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         is_fixed: bool,
     ) -> Result<(), WorldError> {
-        let (body, changes) = self.objects.fresh(handle)?;
+        let (body, changes) = self.objects.body_mut(handle)?;
         body.set_fixed(changes, is_fixed);
         Ok(())
     }
@@ -121,7 +121,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         position: N::Isometry,
         predicted: N::Isometry,
     ) -> Result<(), WorldError> {
-        let (body, changes) = self.objects.fresh(handle)?;
+        let (body, changes) = self.objects.body_mut(handle)?;
         entries::set_predicted(body, changes, position, predicted)
     }
 

@@ -320,7 +320,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactPairs<'a, N, D> {
         let pairs = Self::contact_pairs(self, objects.table());
-        Box::new(pairs.map(named(objects.slots())))
+        Box::new(pairs.map(with_handles(objects.slots())))
     }
 
     fn contact_manifolds<'a>(
@@ -328,7 +328,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactManifolds<'a, N, D> {
         let manifolds = Self::contact_manifolds(self, objects.table());
-        Box::new(manifolds.map(named(objects.slots())))
+        Box::new(manifolds.map(with_handles(objects.slots())))
     }
 
     fn contact_views<'a>(
@@ -350,7 +350,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
     }
 
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a> {
-        Box::new(Self::proximity_pairs(self).map(named(objects.slots())))
+        Box::new(Self::proximity_pairs(self).map(with_handles(objects.slots())))
     }
 }
 
@@ -360,7 +360,7 @@ pub(super) fn views_of<'a, N: Space<D>, const D: usize>(
     table: &'a ObjectTable<N, D>,
     slots: &'a [Slot],
 ) -> ContactViews<'a, N, D> {
-    named_views(narrow_phase.contact_views(table), slots)
+    views_with_handles(narrow_phase.contact_views(table), slots)
 }
 
 /// Implements [`NarrowPhase::contact_view_pieces`].
@@ -371,24 +371,24 @@ pub(super) fn view_pieces_of<'a, N: Space<D>, const D: usize>(
     pieces: usize,
 ) -> Vec<ContactViewPiece<'a, N, D>> {
     let pieces = narrow_phase.contact_view_pieces(table, pieces);
-    pieces.map(|views| named_views(views, slots)).collect()
+    pieces.map(|views| views_with_handles(views, slots)).collect()
 }
 
 /// Returns views with the handles of their objects. Plain and particular views have separate
 /// iterators, since a chain of both is slower to read.
-fn named_views<'a, N: Space<D>, const D: usize>(
+fn views_with_handles<'a, N: Space<D>, const D: usize>(
     views: Views<'a, N, D>,
     slots: &'a [Slot],
 ) -> ContactViewPiece<'a, N, D> {
-    if views.is_plain {
-        Box::new(views.plain(named(slots)))
+    if views.reads_in_place {
+        Box::new(views.in_place(with_handles(slots)))
     } else {
-        Box::new(views.particular(named(slots)))
+        Box::new(views.with_built(with_handles(slots)))
     }
 }
 
 /// Returns a function that replaces the indices of two living objects by their handles.
-fn named<F>(
+fn with_handles<F>(
     slots: &[Slot],
 ) -> impl Fn((u32, u32, F)) -> (CollisionObjectHandle, CollisionObjectHandle, F) + Copy {
     |(first, second, found)| (handle_at(slots, first), handle_at(slots, second), found)

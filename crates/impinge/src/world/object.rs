@@ -20,11 +20,11 @@ use crate::shape::ShapeHandle;
 ///
 /// let mut world = CollisionWorld::new(0.02_f32);
 /// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
-/// let place = Isometry::translation(3.0, 0.0);
-/// let handle = world.add(place, ball, CollisionGroups::new(), query, String::from("coin"));
+/// let position = Isometry::translation(3.0, 0.0);
+/// let handle = world.add(position, ball, CollisionGroups::new(), query, String::from("coin"));
 /// let object = world.collision_object_mut(handle).expect("just added");
 /// object.data_mut().push('s');
-/// assert_eq!((object.data().as_str(), object.position()), ("coins", &place));
+/// assert_eq!((object.data().as_str(), object.position()), ("coins", &position));
 /// assert!(object.shape().is_shape::<Ball<f32>>());
 /// ```
 pub struct CollisionObject<N: Space<D>, const D: usize, T> {

@@ -1,7 +1,7 @@
 //! The objects of a world: handle slots, records, changes, and the table for the narrow phase.
 
 use super::bodies::{MAX_CHANGES, WorldBody, WorldBroadPhase};
-use super::changes::{BodyEntry, ChangeList, Readers};
+use super::changes::{BodyEntry, ChangeList, ChangeTargets};
 use super::dirty::DirtyTree;
 use super::entries;
 use super::fork::ObjectNote;
@@ -15,8 +15,8 @@ use crate::memory::{Look, clone_fields};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::ShapeHandle;
 
-/// If at least one object in `MANY` is dirty, the dirty tree holds the boxes of all objects.
-const MANY: usize = 4;
+/// If at least one object in `DIRTY_RATIO` is dirty, the dirty tree holds the boxes of all objects.
+const DIRTY_RATIO: usize = 4;
 
 /// The objects of a world, by handle.
 ///
@@ -60,15 +60,15 @@ type CloneObject<N, const D: usize, T> = fn(&CollisionObject<N, D, T>) -> Collis
 pub(crate) struct Slot {
     /// Generation of the object at this index, or of the next object if the slot is free.
     pub(super) generation: Generation,
-    /// Index of the object in `records`, or [`NOWHERE`].
-    pub(super) place: u32,
+    /// Index of the object in `records`, or [`NO_RECORD`].
+    pub(super) record: u32,
 }
 
 #[cfg(feature = "serde")]
 impl Slot {
     /// A slot whose next object has this generation.
     pub(super) const fn without_object(generation: Generation) -> Self {
-        Self { generation, place: NOWHERE }
+        Self { generation, record: NO_RECORD }
     }
 }
 
@@ -79,7 +79,7 @@ pub(super) fn handle_at(slots: &[Slot], index: u32) -> CollisionObjectHandle {
 }
 
 /// The record index of a free slot.
-const NOWHERE: u32 = u32::MAX;
+const NO_RECORD: u32 = u32::MAX;
 
 /// Arguments of [`CollisionWorld::add`](super::CollisionWorld::add).
 pub(super) struct Description<N: Space<D>, const D: usize, T> {
@@ -108,34 +108,34 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     #[inline]
     #[must_use]
     pub fn get(&self, handle: CollisionObjectHandle) -> Option<&CollisionObject<N, D, T>> {
-        self.records.get(self.place(handle)?)
+        self.records.get(self.record_index(handle)?)
     }
 
     pub(super) fn get_mut(
         &mut self,
         handle: CollisionObjectHandle,
     ) -> Option<&mut CollisionObject<N, D, T>> {
-        let place = self.place(handle)?;
-        self.note(place);
-        self.records.get_mut(place)
+        let record = self.record_index(handle)?;
+        self.note(record);
+        self.records.get_mut(record)
     }
 
     /// Returns the index in `records` of the object with this handle; `None` for a stale handle or
     /// a handle of another world.
     #[inline]
-    fn place(&self, handle: CollisionObjectHandle) -> Option<usize> {
+    fn record_index(&self, handle: CollisionObjectHandle) -> Option<usize> {
         let slot = self.slots.get(handle.uid())?;
-        (slot.generation == handle.generation()).then_some(slot.place as usize)
+        (slot.generation == handle.generation()).then_some(slot.record as usize)
     }
 
     /// Returns the object at an index; `None` if the index is free.
-    fn at(&self, index: u32) -> Option<&CollisionObject<N, D, T>> {
-        self.records.get(self.slots.get(index as usize)?.place as usize)
+    fn object_at(&self, index: u32) -> Option<&CollisionObject<N, D, T>> {
+        self.records.get(self.slots.get(index as usize)?.record as usize)
     }
 
     /// Returns the body of the object at an index; `None` if the index is free.
     pub(super) fn body(&self, index: u32) -> Option<&WorldBody<N, D>> {
-        self.at(index).map(|object| &object.body)
+        self.object_at(index).map(|object| &object.body)
     }
 
     /// Iterates over the bodies of all objects, in order of their indices.
@@ -148,7 +148,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     /// update.
     pub(super) fn dirty_tree(&self, broad_phase: &WorldBroadPhase<N, D>) -> Option<&DirtyTree<D>> {
         self.changes.dirty_tree(|| {
-            let has_all = self.changes.num_dirty() * MANY >= self.records.len();
+            let has_all = self.changes.num_dirty() * DIRTY_RATIO >= self.records.len();
             let boxes = &mut *self.boxes(has_all, broad_phase);
             entries::new_dirty_tree(has_all, boxes)
         })
@@ -165,30 +165,30 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             return Box::new(self.changes.dirty_boxes());
         }
         Box::new(self.records.iter().map(|CollisionObject { body, .. }| {
-            let known = || broad_phase.proxy(body.proxy).map(|(volume, _)| *volume);
-            let aabb = self.changes.dirty_box(body).or_else(known);
+            let stored = || broad_phase.proxy(body.proxy).map(|(volume, _)| *volume);
+            let aabb = self.changes.dirty_box(body).or_else(stored);
             (body.index(), aabb.unwrap_or_else(|| self.changes.volume(body)))
         }))
     }
 
     /// Returns the object that has the id `id` in the dirty tree.
     #[inline]
-    pub(super) fn of_dirty(
+    pub(super) fn dirty_object(
         &self,
         tree: &DirtyTree<D>,
         id: u32,
     ) -> Option<&CollisionObject<N, D, T>> {
-        self.at(self.changes.dirty_index(tree, id))
+        self.object_at(self.changes.dirty_index(tree, id))
     }
 
     /// Returns the object whose proxy has the uid `uid`; `None` if a direct look-up does not find
     /// it. While no object has been removed, records and proxies have the same order; afterwards
     /// the look-up by handle index succeeds where handle and proxy have the same index.
     #[inline]
-    pub(super) fn of_proxy(&self, uid: usize) -> Option<&CollisionObject<N, D, T>> {
-        let is_its = |object: &&CollisionObject<N, D, T>| object.body.proxy.uid() == uid;
-        let in_order = self.records.get(uid).filter(is_its);
-        in_order.or_else(|| self.at(u32::try_from(uid).ok()?).filter(is_its))
+    pub(super) fn object_of_proxy(&self, uid: usize) -> Option<&CollisionObject<N, D, T>> {
+        let has_proxy = |object: &&CollisionObject<N, D, T>| object.body.proxy.uid() == uid;
+        let in_order = self.records.get(uid).filter(has_proxy);
+        in_order.or_else(|| self.object_at(u32::try_from(uid).ok()?).filter(has_proxy))
     }
 
     /// Returns `true` unless both objects are fixed, the groups of one refuse the other, or an
@@ -206,7 +206,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// Iterates over the objects, in order of their handles.
     pub fn iter(&self) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
-        self.slots.iter().filter_map(|slot| self.records.get(slot.place as usize))
+        self.slots.iter().filter_map(|slot| self.records.get(slot.record as usize))
     }
 
     /// Returns the number of objects.
@@ -230,7 +230,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
 
     /// Returns the body of the object with this handle; [`WorldError::StaleHandle`] if there is
     /// none.
-    pub(super) fn known(
+    pub(super) fn checked_body(
         &self,
         handle: CollisionObjectHandle,
     ) -> Result<&WorldBody<N, D>, WorldError> {
@@ -241,25 +241,25 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     /// Returns the body of an object and the list of changes, for a change of the object, and
     /// records the old state if there are marks. [`WorldError::StaleHandle`] if there is no such
     /// object.
-    pub(super) fn fresh(
+    pub(super) fn body_mut(
         &mut self,
         handle: CollisionObjectHandle,
     ) -> Result<(&mut WorldBody<N, D>, &mut ChangeList<N, D>), WorldError> {
-        let place = self.place(handle).ok_or(WorldError::StaleHandle(handle))?;
-        self.note(place);
-        let object = self.records.get_mut(place).ok_or(WorldError::StaleHandle(handle))?;
+        let record = self.record_index(handle).ok_or(WorldError::StaleHandle(handle))?;
+        self.note(record);
+        let object = self.records.get_mut(record).ok_or(WorldError::StaleHandle(handle))?;
         Ok((&mut object.body, &mut self.changes))
     }
 
-    /// Returns what [`Self::fresh`] returns, but for a change of position only: less is recorded if
+    /// Returns what [`Self::body_mut`] returns, but for a change of position only: less is recorded if
     /// there are marks.
-    pub(super) fn fresh_to_move(
+    pub(super) fn body_mut_to_move(
         &mut self,
         handle: CollisionObjectHandle,
     ) -> Result<(&mut WorldBody<N, D>, &mut ChangeList<N, D>), WorldError> {
-        let place = self.place(handle).ok_or(WorldError::StaleHandle(handle))?;
-        self.note_motion(place);
-        let object = self.records.get_mut(place).ok_or(WorldError::StaleHandle(handle))?;
+        let record = self.record_index(handle).ok_or(WorldError::StaleHandle(handle))?;
+        self.note_motion(record);
+        let object = self.records.get_mut(record).ok_or(WorldError::StaleHandle(handle))?;
         Ok((&mut object.body, &mut self.changes))
     }
 
@@ -281,9 +281,9 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     ) {
         let Description { position, shape, groups, query_type, data } = new;
         let row = ObjectRow { handle, isometry: position, shape, query: query_type };
-        let body = self.changes.admit(row, groups, proxy);
-        let place = u32::try_from(self.records.len()).expect("no more objects than handles");
-        let slot = Slot { generation: handle.generation(), place };
+        let body = self.changes.new_body(row, groups, proxy);
+        let record = u32::try_from(self.records.len()).expect("no more objects than handles");
+        let slot = Slot { generation: handle.generation(), record };
         self.records.push(CollisionObject { body, data });
         self.journal.note(ObjectNote::Added(handle));
         if self.free.pop().is_some() {
@@ -312,10 +312,10 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         &mut self,
         handle: CollisionObjectHandle,
     ) -> CollisionObject<N, D, T> {
-        let place = core::mem::replace(&mut self.slots[handle.uid()].place, NOWHERE);
-        let object = self.records.swap_remove(place as usize);
-        if let Some(moved) = self.records.get(place as usize) {
-            self.slots[moved.body.handle.uid()].place = place;
+        let record = core::mem::replace(&mut self.slots[handle.uid()].record, NO_RECORD);
+        let object = self.records.swap_remove(record as usize);
+        if let Some(moved) = self.records.get(record as usize) {
+            self.slots[moved.body.handle.uid()].record = record;
         }
         object
     }
@@ -333,21 +333,21 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         let Self { slots, records, changes, table, .. } = self;
         table.begin_update();
         algorithms.clear();
-        let mut readers = Readers { table, broad_phase, algorithms };
+        let mut targets = ChangeTargets { table, broad_phase, algorithms };
         for &index in &order {
-            if let Some(object) = records.get_mut(slots[index as usize].place as usize) {
-                entries::flush(changes, &mut object.body, &mut readers);
+            if let Some(object) = records.get_mut(slots[index as usize].record as usize) {
+                entries::flush(changes, &mut object.body, &mut targets);
             }
         }
         changes.clear(order);
     }
 
     /// Writes the row of an object to the table; does nothing if it has one.
-    pub(super) fn lend(&mut self, index: u32) {
+    pub(super) fn acquire_row(&mut self, index: u32) {
         let Self { slots, records, table, .. } = self;
         let slot = slots.get(index as usize);
-        if let Some(object) = slot.and_then(|slot| records.get(slot.place as usize)) {
-            table.lend(index, || object.body.row());
+        if let Some(object) = slot.and_then(|slot| records.get(slot.record as usize)) {
+            table.acquire(index, || object.body.row());
         }
     }
 
@@ -365,7 +365,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// Returns the number of indices that have ever been used.
-    pub(super) const fn reach(&self) -> usize {
+    pub(super) const fn num_slots(&self) -> usize {
         self.slots.len()
     }
 
@@ -381,7 +381,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             return Err(format!("{} objects do not all have slots", self.records.len()));
         }
         for (index, slot) in (0..).zip(&self.slots) {
-            let Some(CollisionObject { body, .. }) = self.at(index) else { continue };
+            let Some(CollisionObject { body, .. }) = self.object_at(index) else { continue };
             if body.handle.generation() != slot.generation {
                 return Err(format!("slot {index} has another generation than {:?}", body.handle));
             }
@@ -393,7 +393,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
                 return Err(format!("the row of {:?} is out of date", body.handle));
             }
         }
-        if let Some(tree) = self.changes.made_dirty_tree() {
+        if let Some(tree) = self.changes.existing_dirty_tree() {
             tree.validate(&mut *self.boxes(tree.has_all(), broad_phase))?;
         }
         self.table.validate()?;

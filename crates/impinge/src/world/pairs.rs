@@ -22,12 +22,12 @@ struct PairViews<'a, N: Space<D>, const D: usize, T, I> {
 }
 
 /// Two handles and a manifold.
-type NamedPair<'a, N, const D: usize> =
+type HandleView<'a, N, const D: usize> =
     (CollisionObjectHandle, CollisionObjectHandle, ManifoldView<'a, N, D>);
 
 impl<'a, N: Space<D>, const D: usize, T, I> Iterator for PairViews<'a, N, D, T, I>
 where
-    I: Iterator<Item = NamedPair<'a, N, D>>,
+    I: Iterator<Item = HandleView<'a, N, D>>,
 {
     type Item = PairView<'a, N, D, T>;
 
@@ -167,8 +167,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let ball = ShapeHandle::new(Ball::new(0.6));
     /// let contacts = GeometricQueryType::Contacts(0.0, 0.0);
     /// for n in 0..1000 {
-    ///     let place = Isometry3::translation(n as f32, 0.0, 0.0);
-    ///     world.add(place, ball.clone(), CollisionGroups::new(), contacts, ());
+    ///     let position = Isometry3::translation(n as f32, 0.0, 0.0);
+    ///     world.add(position, ball.clone(), CollisionGroups::new(), contacts, ());
     /// }
     /// world.update();
     /// let pieces = world.contact_view_pieces(4);

@@ -13,43 +13,43 @@ use crate::narrow_phase::{CollisionObjectHandle, Events};
 pub(super) struct RemovedObjects<N: Space<D>, const D: usize, T> {
     pub(super) objects: BTreeMap<CollisionObjectHandle, CollisionObject<N, D, T>>,
     /// Handles named by the events that [`Self::note`] has read since the update.
-    named: BTreeSet<CollisionObjectHandle>,
+    referenced: BTreeSet<CollisionObjectHandle>,
     /// Numbers of contact and of proximity events that have been read: of the last update, and
     /// queued since.
-    noted: [(usize, usize); 2],
+    num_read: [(usize, usize); 2],
 }
 
-clone_fields!([N: Space<D>, const D: usize, T: Clone] RemovedObjects<N, D, T> { objects, named, noted });
+clone_fields!([N: Space<D>, const D: usize, T: Clone] RemovedObjects<N, D, T> { objects, referenced, num_read });
 
 impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
     pub(super) const fn new() -> Self {
-        Self { objects: BTreeMap::new(), named: BTreeSet::new(), noted: [(0, 0); 2] }
+        Self { objects: BTreeMap::new(), referenced: BTreeSet::new(), num_read: [(0, 0); 2] }
     }
 
     /// Reads the events that were added since the last call, and stores the handles in them.
     pub(super) fn note(&mut self, events: &Events, queued: &Events) {
-        for (noted, events) in self.noted.iter_mut().zip([events, queued]) {
-            self.named.extend(events.named_from(*noted));
-            *noted = events.counts();
+        for (num_read, events) in self.num_read.iter_mut().zip([events, queued]) {
+            self.referenced.extend(events.handles_since(*num_read));
+            *num_read = events.counts();
         }
     }
 
     /// Keeps a removed object if an event has its handle; else drops it.
     pub(super) fn keep(&mut self, object: CollisionObject<N, D, T>) {
         let handle = object.handle();
-        if self.named.contains(&handle) {
+        if self.referenced.contains(&handle) {
             self.objects.insert(handle, object);
         }
     }
 
     /// Drops the objects whose handle is in no event of the new batch.
-    pub(super) fn keep_named(&mut self, events: &Events) {
-        self.named.clear();
-        self.noted = [(0, 0); 2];
+    pub(super) fn keep_referenced(&mut self, events: &Events) {
+        self.referenced.clear();
+        self.num_read = [(0, 0); 2];
         if !self.objects.is_empty() {
-            let is_here = |handle: &CollisionObjectHandle| self.objects.contains_key(handle);
-            let named: BTreeSet<_> = events.named_from((0, 0)).filter(is_here).collect();
-            self.objects.retain(|handle, _| named.contains(handle));
+            let is_kept = |handle: &CollisionObjectHandle| self.objects.contains_key(handle);
+            let referenced: BTreeSet<_> = events.handles_since((0, 0)).filter(is_kept).collect();
+            self.objects.retain(|handle, _| referenced.contains(handle));
         }
     }
 }

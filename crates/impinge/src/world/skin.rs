@@ -35,8 +35,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let (cube, groups) =
     ///     (ShapeHandle::new(Cuboid::new(Vector::new(1.0, 1.0, 1.0))), CollisionGroups::new());
     /// let [a, b] = [0.0, 2.25].map(|y| {
-    ///     let place = Isometry::translation(0.0, y, 0.0);
-    ///     world.add(place, cube.clone(), groups, ContactQuery::default(), ())
+    ///     let position = Isometry::translation(0.0, y, 0.0);
+    ///     world.add(position, cube.clone(), groups, ContactQuery::default(), ())
     /// });
     /// world.set_skin(a, 0.25);
     /// world.set_skin(b, 0.125);
@@ -66,7 +66,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         skin: N,
     ) -> Result<(), WorldError> {
-        let (body, changes) = self.objects.fresh(handle)?;
+        let (body, changes) = self.objects.body_mut(handle)?;
         if skin < N::ZERO || !skin.is_finite_number() {
             return Err(WorldError::Skin { handle, value: skin.as_f64() });
         }

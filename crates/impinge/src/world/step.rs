@@ -9,12 +9,12 @@ use crate::query::Proximity;
 
 /// Number of pairs passed to the narrow phase at once: few enough that the rows of their objects
 /// are still in the cache when they are released.
-const AT_ONCE: usize = 512;
+const BATCH: usize = 512;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
 
 /// A pair filter of the caller, borrowed for one update.
-type LentFilter<'a, N, const D: usize, T> =
+type UpdateFilter<'a, N, const D: usize, T> =
     &'a mut dyn FnMut(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
@@ -52,8 +52,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let mut world = CollisionWorld::<f32, u8>::new(0.02);
     /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
     /// let links = [0, 1, 2].map(|link| {
-    ///     let place = Isometry::translation(0.5 * f32::from(link), 0.0);
-    ///     world.add(place, ball.clone(), groups, ContactQuery::default(), link)
+    ///     let position = Isometry::translation(0.5 * f32::from(link), 0.0);
+    ///     world.add(position, ball.clone(), groups, ContactQuery::default(), link)
     /// });
     /// let mut joints = vec![(0, 1), (1, 2)];
     /// world.update_with(&mut |a, b| !joints.contains(&(*a.data(), *b.data())));
@@ -73,7 +73,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.update_filtered(Some(filter));
     }
 
-    fn update_filtered(&mut self, filter: Option<LentFilter<'_, N, D, T>>) {
+    fn update_filtered(&mut self, filter: Option<UpdateFilter<'_, N, D, T>>) {
         self.recent.note(self.objects.changes.len());
         self.begin_events();
         if self.next_broad_phase.is_some() || self.next_narrow_phase.is_some() {
@@ -86,7 +86,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.filters.note_update();
         self.events.sort();
         self.recent.note(self.interactions.len().max(self.events.len()));
-        if let Some(look) = self.recent.end_update(self.objects.reach()) {
+        if let Some(look) = self.recent.end_update(self.objects.num_slots()) {
             self.objects.give_back(look);
             self.events.give_back(look);
             look.trim(&mut self.interactions);
@@ -101,7 +101,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.events.clear();
         }
         self.events.begin_batch(&mut self.queued);
-        self.removed.keep_named(&self.events);
+        self.removed.keep_referenced(&self.events);
     }
 
     /// Makes the next update keep the events of the last one and append its own. So a program that
@@ -120,8 +120,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let mut world = CollisionWorld::<f32, ()>::new(0.02);
     /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
     /// let [a, b] = [0.0, 1.5].map(|x| {
-    ///     let place = Isometry::translation(x, 0.0);
-    ///     world.add(place, ball.clone(), groups, ContactQuery::default(), ())
+    ///     let position = Isometry::translation(x, 0.0);
+    ///     world.add(position, ball.clone(), groups, ContactQuery::default(), ())
     /// });
     /// world.update();
     /// world.set_position(b, Isometry::translation(9.0, 0.0));
@@ -140,7 +140,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         for index in self.objects.changes.take_self_changed() {
             let body = self.objects.body(index).expect("what changed in the update is there");
             let (handle, started) = (body.handle, body.has_self_pair());
-            self.tell((handle, handle), started);
+            self.begin_or_end_pair((handle, handle), started);
         }
         for &index in &self.algorithms {
             let body = self.objects.body(index).expect("what changed in the update is there");
@@ -150,19 +150,20 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// Updates the broad phase, collects the pairs that started and stopped in `interactions`, and
     /// passes them to the narrow phase.
-    fn update_broad_phase(&mut self, mut lent: Option<LentFilter<'_, N, D, T>>) {
+    fn update_broad_phase(&mut self, mut update_filter: Option<UpdateFilter<'_, N, D, T>>) {
         let Self { objects, filters, broad_phase, interactions, .. } = self;
         let mut filter = |handle1: &CollisionObjectHandle, handle2: &CollisionObjectHandle| {
             if !objects.can_interact(handle1.index(), handle2.index()) {
                 return false;
             }
-            if filters.is_empty() && lent.is_none() {
+            if filters.is_empty() && update_filter.is_none() {
                 return true;
             }
             let (first, second) = in_order(*handle1, *handle2);
             let both = objects.get(first).zip(objects.get(second));
             both.is_some_and(|(co1, co2)| {
-                filters.allow(co1, co2) && lent.as_mut().is_none_or(|lent| lent(co1, co2))
+                filters.allow(co1, co2)
+                    && update_filter.as_mut().is_none_or(|update_filter| update_filter(co1, co2))
             })
         };
         interactions.clear();
@@ -170,38 +171,38 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             interactions.push((in_order(handle1, handle2), has_started));
         });
         let interactions = core::mem::take(&mut self.interactions);
-        self.tell_all(&interactions);
+        self.begin_and_end_pairs(&interactions);
         self.interactions = interactions;
-        self.objects.table.tidy();
+        self.objects.table.compact();
     }
 
     /// Passes a started or stopped pair to the narrow phase.
-    fn tell(&mut self, pair: HandlePair, has_started: bool) {
-        self.tell_all(&[(pair, has_started)]);
+    fn begin_or_end_pair(&mut self, pair: HandlePair, has_started: bool) {
+        self.begin_and_end_pairs(&[(pair, has_started)]);
     }
 
-    /// Passes started and stopped pairs to the narrow phase, in chunks of [`AT_ONCE`]. The object
+    /// Passes started and stopped pairs to the narrow phase, in chunks of [`BATCH`]. The object
     /// table has rows only for objects with pairs in the narrow phase, and for objects of the
     /// chunk.
-    fn tell_all(&mut self, interactions: &[Interaction]) {
-        interactions.chunks(AT_ONCE).for_each(|some| self.tell_some(some));
+    fn begin_and_end_pairs(&mut self, interactions: &[Interaction]) {
+        interactions.chunks(BATCH).for_each(|some| self.begin_and_end_batch(some));
     }
 
-    fn tell_some(&mut self, interactions: &[Interaction]) {
+    fn begin_and_end_batch(&mut self, interactions: &[Interaction]) {
         for ((first, second), _) in interactions.iter().filter(|(_, has_started)| *has_started) {
-            self.objects.lend(first.index());
-            self.objects.lend(second.index());
+            self.objects.acquire_row(first.index());
+            self.objects.acquire_row(second.index());
         }
         let (events, objects) = (&mut self.events, &self.objects);
         self.narrow_phase.handle_interactions(events, objects, interactions);
         for (pair, _) in interactions.iter().filter(|(_, has_started)| !has_started) {
-            self.give_back(*pair);
+            self.release_rows(*pair);
         }
     }
 
     /// Releases the table rows of a stopped pair's objects, unless the narrow phase has other pairs
     /// of an object.
-    pub(super) fn give_back(&mut self, pair: HandlePair) {
+    pub(super) fn release_rows(&mut self, pair: HandlePair) {
         for handle in [pair.0, pair.1] {
             if !self.narrow_phase.has_pairs_of(handle) {
                 self.objects.table.release(handle.index());
@@ -254,7 +255,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// reports every pair as started. A narrow phase that stays already has most of these; its
     /// pairs that the broad phase did not report are stopped. A new narrow phase starts without
     /// pairs; its events are the differences between the old statuses and the new ones.
-    fn update_with_other_phases(&mut self, filter: Option<LentFilter<'_, N, D, T>>) {
+    fn update_with_other_phases(&mut self, filter: Option<UpdateFilter<'_, N, D, T>>) {
         self.end_marks();
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
             let before = self.renew_proxies();
@@ -273,10 +274,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let alone = self.objects.bodies().filter(|body| body.has_self_pair());
         for handle in alone.map(|body| body.handle).collect::<Vec<_>>() {
             // Has no effect for a self-pair that began in this update.
-            self.tell((handle, handle), true);
+            self.begin_or_end_pair((handle, handle), true);
         }
         self.started_pairs(filter);
-        pairs.into_iter().for_each(|pair| self.give_back(pair));
+        pairs.into_iter().for_each(|pair| self.release_rows(pair));
         self.narrow_phase.update(&self.objects, &mut Events::default());
         push_differences(&before, &self.statuses(), &mut self.events);
     }
@@ -303,7 +304,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Updates the broad phase and returns the pairs that started, sorted.
-    fn started_pairs(&mut self, filter: Option<LentFilter<'_, N, D, T>>) -> Vec<HandlePair> {
+    fn started_pairs(&mut self, filter: Option<UpdateFilter<'_, N, D, T>>) -> Vec<HandlePair> {
         self.update_broad_phase(filter);
         let started = self.interactions.iter().filter(|(_, has_started)| *has_started);
         let mut pairs: Vec<_> = started.map(|&(pair, _)| pair).collect();
@@ -315,7 +316,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     fn stop_all_but(&mut self, now: &[HandlePair], before: Vec<HandlePair>) {
         for pair in before {
             if now.binary_search(&pair).is_err() {
-                self.tell(pair, false);
+                self.begin_or_end_pair(pair, false);
             }
         }
     }
@@ -342,7 +343,7 @@ fn push_differences(
 ) {
     let find = |list: &[(HandlePair, StepStatus)], pair| {
         let found = list.binary_search_by_key(&pair, |&(other, _)| other);
-        found.ok().map(|place| list[place].1)
+        found.ok().map(|index| list[index].1)
     };
     for &(pair, status) in before {
         push_change(pair, Some(status), find(after, pair), events);

@@ -36,8 +36,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// let mut world = CollisionWorld::<f64, ()>::new(0.02);
     /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
     /// let [post, bullet] = [0.0, -8.0].map(|x| {
-    ///     let place = Isometry::translation(x, 0.0);
-    ///     world.add(place, ball.clone(), groups, ContactQuery::default(), ())
+    ///     let position = Isometry::translation(x, 0.0);
+    ///     world.add(position, ball.clone(), groups, ContactQuery::default(), ())
     /// });
     /// let at = |x| Isometry::translation(x, 0.0);
     /// world.set_position_with_prediction(bullet, at(-8.0), at(8.0));
@@ -77,7 +77,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle2: CollisionObjectHandle,
     ) -> Result<bool, WorldError> {
         for handle in [handle1, handle2] {
-            self.objects.known(handle)?;
+            self.objects.checked_body(handle)?;
         }
         let (first, second) = in_order(handle1, handle2);
         let key = [first.index(), second.index()];

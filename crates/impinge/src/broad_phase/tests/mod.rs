@@ -2,7 +2,7 @@
 //! that large scenes have the pairs of a brute-force search.
 
 use super::PairFinder;
-use super::finder::Home;
+use super::finder::Container;
 use crate::bounding_volume::Aabb;
 use crate::bvh::Lanes;
 use crate::bvh::tests::take_placed;
@@ -57,7 +57,7 @@ fn play<N: Real, const D: usize>(lanes: Lanes, count: u32, side: u32) -> Outcome
             finder.insert(id, random_box(&mut state, side));
         }
         if step == 75 {
-            finder.ask_all_again();
+            finder.refilter_all();
         }
         finder.update(&mut |a, b| (a ^ b) % 16 != 3, &mut |a, b, started| {
             events.push((step, a, b, started));
@@ -89,7 +89,10 @@ fn compare_pairs<N: Real, const D: usize>(
     let mut pairs: Vec<u64> = finder.pairs().iter().map(|&(a, b)| pack(a, b)).collect();
     pairs.sort_unstable();
     assert_eq!(pairs, expected, "all pairs");
-    assert!(finder.homes.iter().all(|&home| home != Home::Nowhere), "all take part");
+    assert!(
+        finder.containers.iter().all(|&container| container != Container::Nowhere),
+        "all take part"
+    );
 }
 
 /// Asserts that objects came to rest, and that there were enough events and pairs for a meaningful
@@ -121,14 +124,14 @@ fn a_deep_tree() {
 #[cfg(feature = "parallel")]
 #[test]
 fn any_number_of_threads_gives_the_same_events() {
-    let run = |threads: usize| {
+    let write = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("a pool").install(|| play::<f32, 3>(Lanes::detect(), 6000, 22))
     };
-    let expected = run(1);
+    let expected = write(1);
     check_reached(&expected, 6000);
     for threads in [2, 4] {
-        assert!(run(threads) == expected, "{threads} threads");
+        assert!(write(threads) == expected, "{threads} threads");
     }
 }
 

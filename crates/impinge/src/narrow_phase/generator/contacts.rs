@@ -59,8 +59,8 @@ pub(super) fn pose21<N: Real, const D: usize>(
     [one, other]: &[Pose<N, D>; 2],
     is_swapped: bool,
 ) -> Pose<N, D> {
-    let [home, away] = in_kept_order([one, other], is_swapped);
-    Pose::relative(away, home)
+    let [first, second] = in_kept_order([one, other], is_swapped);
+    Pose::relative(second, first)
 }
 
 /// Combines each pose with its shape.

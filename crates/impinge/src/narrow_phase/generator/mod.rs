@@ -191,7 +191,7 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
         }
         self.view.expire();
         if !are_kept {
-            self.meet(given, shapes);
+            self.replace_shapes(given, shapes);
         }
         if let Some(reuse) = self.reuse.as_mut().filter(|_| !is_as_before) {
             reuse.reference = Reference::default();
@@ -266,7 +266,7 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
     }
 
     /// Replaces the kept shapes, and prepares the state for their kinds.
-    fn meet(&mut self, given: [&dyn Shape<N, D>; 2], shapes: [Geometry<'_, N, D>; 2]) {
+    fn replace_shapes(&mut self, given: [&dyn Shape<N, D>; 2], shapes: [Geometry<'_, N, D>; 2]) {
         let has_composite = shapes.iter().any(|shape| shape.as_composite().is_some());
         match &mut self.contacts {
             PairContacts::Convex(_) if !has_composite => {}
@@ -278,9 +278,10 @@ impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
             }
         }
         self.shapes = shapes.map(KeptShape::of);
-        let is_quick = self.has_closed_form();
+        let has_closed_form = self.has_closed_form();
         if let Some(reuse) = &mut self.reuse {
-            let reach = |shape| if is_quick { N::INFINITY } else { ReachBounds::of(shape).reach() };
+            let reach =
+                |shape| if has_closed_form { N::INFINITY } else { ReachBounds::of(shape).reach() };
             reuse.reaches = given.mapped(reach);
         }
     }

@@ -8,12 +8,12 @@ use crate::shape::{
     Ball, Capsule, ConvexPolygon, Cuboid, HeightField, Polyline, Rounded, Triangle,
 };
 
-struct Asker {
+struct PairFixture {
     generator: PairManifoldGenerator<f64, 2>,
     ids: IdAllocator,
 }
 
-impl Asker {
+impl PairFixture {
     fn new() -> Self {
         Self { generator: PairManifoldGenerator::default(), ids: IdAllocator::new() }
     }
@@ -78,10 +78,10 @@ fn an_update_without_motion_keeps_contacts_and_ids() {
     let wall = Polyline::new(wall.to_vec(), vec![[0, 1], [1, 2]]);
     let others: [&dyn Shape<f64, 2>; 4] = [&cuboid, &ball, &square, &wall];
     for (index, other) in others.into_iter().enumerate() {
-        let mut asker = Asker::new();
-        let before = asker.manifolds(&cuboid, other, 1.5);
+        let mut fixture = PairFixture::new();
+        let before = fixture.manifolds(&cuboid, other, 1.5);
         assert!(!before.is_empty(), "shape {index} overlaps the cuboid");
-        assert_eq!(asker.manifolds(&cuboid, other, 1.5), before, "shape {index}");
+        assert_eq!(fixture.manifolds(&cuboid, other, 1.5), before, "shape {index}");
     }
 }
 
@@ -92,7 +92,7 @@ fn wall(x: f64) -> Polyline<f64, 2> {
 
 #[test]
 fn contacts_are_read_when_the_solids_are_gone() {
-    let mut asker = Asker::new();
+    let mut fixture = PairFixture::new();
     let shapes: [Box<dyn Shape<f64, 2>>; 7] = [
         Box::new(Ball::new(1.0)),
         Box::new(Cuboid::new(Vector::<f64, 2>::new(1.0, 1.0))),
@@ -104,14 +104,14 @@ fn contacts_are_read_when_the_solids_are_gone() {
     ];
     for shape in shapes {
         let name = format!("{shape:?}");
-        let place = Isometry2::translation(1.5, 0.0);
+        let pose = Isometry2::translation(1.5, 0.0);
         let prediction = ContactPrediction::new(0.25, 0.0, 0.0);
         let ball = Ball::new(1.0);
         let once =
-            contact_manifolds(&Isometry2::identity(), &ball, &place, &*shape, &prediction, None);
-        asker.update(&ball, &*shape, 1.5);
+            contact_manifolds(&Isometry2::identity(), &ball, &pose, &*shape, &prediction, None);
+        fixture.update(&ball, &*shape, 1.5);
         drop(shape);
-        let read = asker.read();
+        let read = fixture.read();
         let contacts = |manifolds: &[ContactManifold<f64, 2>]| -> Vec<_> {
             let all = manifolds.iter().flat_map(ContactManifold::contacts);
             all.map(|tracked| (tracked.contact, tracked.kinematic)).collect()
@@ -123,15 +123,15 @@ fn contacts_are_read_when_the_solids_are_gone() {
 
 #[test]
 fn what_changes_in_place_is_noticed() {
-    let (mut asker, ball, mut line) = (Asker::new(), Ball::new(1.0), wall(-0.75));
-    assert_eq!(asker.depths(&ball, &line, 1.5), [0.25]);
+    let (mut fixture, ball, mut line) = (PairFixture::new(), Ball::new(1.0), wall(-0.75));
+    assert_eq!(fixture.depths(&ball, &line, 1.5), [0.25]);
     line.set_vertices(wall(-1.0).vertices());
-    assert_eq!(asker.depths(&ball, &line, 1.5), [0.5], "the line was moved");
+    assert_eq!(fixture.depths(&ball, &line, 1.5), [0.5], "the line was moved");
     let mut field = HeightField::<f64, 2>::new(vec![0.0; 3], Vector::<f64, 2>::new(4.0, 1.0));
     let mut rise = |field: &_| {
         let near = ContactPrediction::new(0.25, 0.0, 0.0);
         let (here, there) = (Isometry2::translation(0.0, 1.125), Isometry2::identity());
-        let (generator, ids) = (&mut asker.generator, &mut asker.ids);
+        let (generator, ids) = (&mut fixture.generator, &mut fixture.ids);
         let dispatcher = DefaultContactDispatcher::<2>::new();
         generator.update(&dispatcher, &here, &ball, &there, field, &near, ids);
         let depths = generator.manifolds().iter().filter_map(ContactManifold::deepest_contact);
@@ -147,49 +147,49 @@ fn what_changes_in_place_is_noticed() {
 
 #[test]
 fn a_copy_goes_on_by_itself() {
-    let (mut asker, ball, line) = (Asker::new(), Ball::new(1.0), wall(-0.75));
-    let before = asker.manifolds(&ball, &line, 1.5);
-    let copy = asker.generator.clone();
-    assert_ne!(asker.manifolds(&ball, &line, 1.25), before);
-    asker.generator = copy;
-    assert_eq!(asker.read(), before, "what was read of the original");
-    assert_eq!(asker.manifolds(&ball, &line, 1.5), before, "and computed again");
+    let (mut fixture, ball, line) = (PairFixture::new(), Ball::new(1.0), wall(-0.75));
+    let before = fixture.manifolds(&ball, &line, 1.5);
+    let copy = fixture.generator.clone();
+    assert_ne!(fixture.manifolds(&ball, &line, 1.25), before);
+    fixture.generator = copy;
+    assert_eq!(fixture.read(), before, "what was read of the original");
+    assert_eq!(fixture.manifolds(&ball, &line, 1.5), before, "and computed again");
 }
 
 #[test]
 fn a_composite_leaves_nothing_to_solids_that_are_far_apart() {
-    let (mut asker, ball, line) = (Asker::new(), Ball::new(1.0), wall(-0.75));
-    assert_eq!(asker.depths(&ball, &line, 1.5), [0.25]);
-    assert!(asker.depths(&ball, &ball, 9.0).is_empty(), "two balls instead");
-    assert_eq!(asker.generator.num_contacts(), 0);
-    assert_eq!(asker.depths(&ball, &line, 1.5), [0.25], "the line again");
+    let (mut fixture, ball, line) = (PairFixture::new(), Ball::new(1.0), wall(-0.75));
+    assert_eq!(fixture.depths(&ball, &line, 1.5), [0.25]);
+    assert!(fixture.depths(&ball, &ball, 9.0).is_empty(), "two balls instead");
+    assert_eq!(fixture.generator.num_contacts(), 0);
+    assert_eq!(fixture.depths(&ball, &line, 1.5), [0.25], "the line again");
 }
 
 #[test]
 fn no_two_contacts_share_an_id_whatever_the_shapes_were() {
-    let (mut asker, ball, line) = (Asker::new(), Ball::new(1.0), wall(-0.75));
-    let ids = |asker: &mut Asker, shape: &dyn Shape<f64, 2>| -> Vec<_> {
-        let manifolds = asker.manifolds(&ball, shape, 1.5);
+    let (mut fixture, ball, line) = (PairFixture::new(), Ball::new(1.0), wall(-0.75));
+    let ids = |fixture: &mut PairFixture, shape: &dyn Shape<f64, 2>| -> Vec<_> {
+        let manifolds = fixture.manifolds(&ball, shape, 1.5);
         let contacts = manifolds.iter().flat_map(ContactManifold::contacts);
         contacts.map(|tracked| tracked.id).collect()
     };
-    let (of_ball, of_line) = (ids(&mut asker, &ball), ids(&mut asker, &line));
-    let again = ids(&mut asker, &ball);
+    let (of_ball, of_line) = (ids(&mut fixture, &ball), ids(&mut fixture, &line));
+    let again = ids(&mut fixture, &ball);
     assert!(of_ball != of_line && of_line != again && again != of_ball, "three contacts");
 }
 
 #[test]
 fn each_update_may_be_given_other_solids() {
-    let mut asker = Asker::new();
+    let mut fixture = PairFixture::new();
     let cuboid = Cuboid::new(Vector::<f64, 2>::new(1.0, 1.0));
     let mut ball = Ball::new(1.0);
-    assert_eq!(asker.depths(&cuboid, &ball, 1.5), [0.5]);
+    assert_eq!(fixture.depths(&cuboid, &ball, 1.5), [0.5]);
     ball = Ball::new(0.75);
-    assert_eq!(asker.depths(&cuboid, &ball, 1.5), [0.25], "another ball at its address");
-    assert!(asker.depths(&cuboid, &ball, 9.0).is_empty(), "far away");
-    assert_eq!(asker.depths(&cuboid, &ball, 1.5), [0.25], "back again");
+    assert_eq!(fixture.depths(&cuboid, &ball, 1.5), [0.25], "another ball at its address");
+    assert!(fixture.depths(&cuboid, &ball, 9.0).is_empty(), "far away");
+    assert_eq!(fixture.depths(&cuboid, &ball, 1.5), [0.25], "back again");
     for (size, depth) in [(1.0, 0.5), (0.75, 0.25)] {
-        let found = asker.depths(&cuboid, &square(size), 1.5);
+        let found = fixture.depths(&cuboid, &square(size), 1.5);
         assert_eq!(found, [depth; 2], "a square of {size}");
     }
 }

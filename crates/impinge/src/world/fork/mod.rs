@@ -16,7 +16,7 @@ pub(super) use rewind::History;
 pub use rewind::WorldMark;
 
 /// The broad phase of a new world, as a concrete type.
-pub(super) type UsualBroadPhase<N, const D: usize> =
+pub(super) type DefaultBroadPhase<N, const D: usize> =
     DBVTBroadPhase<N, Aabb<N, D>, CollisionObjectHandle>;
 
 /// A broad phase that a world can use: any type that is `Clone`, `Send` and `Sync`. A blanket
@@ -171,11 +171,11 @@ impl<N: Space<D>, const D: usize, T: Clone> Clone for CollisionWorld<N, D, T> {
 
     fn clone_from(&mut self, source: &Self) {
         self.objects.clone_from(&source.objects);
-        match (self.usual_broad_phase(), (*source.broad_phase).as_any().downcast_ref()) {
+        match (self.default_broad_phase(), (*source.broad_phase).as_any().downcast_ref()) {
             (Some(known), Some(other)) => known.clone_from(other),
             _ => self.broad_phase = source.broad_phase.clone(),
         }
-        match (self.usual_narrow_phase(), (*source.narrow_phase).as_any().downcast_ref()) {
+        match (self.default_narrow_phase(), (*source.narrow_phase).as_any().downcast_ref()) {
             (Some(known), Some(other)) => known.clone_from(other),
             _ => self.narrow_phase = source.narrow_phase.clone(),
         }
@@ -193,12 +193,12 @@ impl<N: Space<D>, const D: usize, T: Clone> Clone for CollisionWorld<N, D, T> {
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the broad phase if it is the library's own; else `None`.
-    pub(super) fn usual_broad_phase(&mut self) -> Option<&mut UsualBroadPhase<N, D>> {
+    pub(super) fn default_broad_phase(&mut self) -> Option<&mut DefaultBroadPhase<N, D>> {
         (*self.broad_phase).as_any_mut().downcast_mut()
     }
 
     /// Returns the narrow phase if it is the library's own; else `None`.
-    pub(super) fn usual_narrow_phase(&mut self) -> Option<&mut DefaultNarrowPhase<N, D>> {
+    pub(super) fn default_narrow_phase(&mut self) -> Option<&mut DefaultNarrowPhase<N, D>> {
         (*self.narrow_phase).as_any_mut().downcast_mut()
     }
 }

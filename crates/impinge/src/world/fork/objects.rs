@@ -47,11 +47,11 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
                 ObjectNote::Added(handle) => self.unadd(handle),
                 ObjectNote::Removed(kept) => self.unremove(*kept),
                 ObjectNote::Changed(kept) => {
-                    let place = self.slots[kept.object.handle().uid()].place as usize;
+                    let place = self.slots[kept.object.handle().uid()].record as usize;
                     self.records[place] = self.unpack(*kept);
                 }
                 ObjectNote::Moved(index, motion) => {
-                    let place = self.slots[index as usize].place as usize;
+                    let place = self.slots[index as usize].record as usize;
                     self.records[place].body.set_motion(motion);
                 }
             }
@@ -76,7 +76,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         let (handle, object) = (kept.object.handle(), self.unpack(kept));
         let generation = handle.generation();
         let place = u32::try_from(self.records.len()).expect("no more objects than handles");
-        self.slots[handle.uid()] = Slot { generation, place };
+        self.slots[handle.uid()] = Slot { generation, record: place };
         if generation.next().is_some() {
             self.free.pop();
         }
@@ -123,14 +123,14 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     pub(in crate::world) fn note_all(&mut self, indices: &[u32]) {
         if self.journal.is_on() {
             for &index in indices {
-                self.note_motion(self.slots[index as usize].place as usize);
+                self.note_motion(self.slots[index as usize].record as usize);
             }
         }
     }
 
     /// Records an object before it is removed, if there are marks.
     pub(in crate::world) fn note_removed(&mut self, handle: CollisionObjectHandle) {
-        if let Some(kept) = self.kept(self.slots[handle.uid()].place as usize) {
+        if let Some(kept) = self.kept(self.slots[handle.uid()].record as usize) {
             self.journal.note(ObjectNote::Removed(kept));
         }
     }

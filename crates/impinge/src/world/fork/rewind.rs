@@ -6,10 +6,10 @@
 //!
 //! | state | who notes | how it comes back |
 //! |---|---|---|
-//! | objects, with data, skins and predictions | `fresh`, `fresh_to_move`, `get_mut`, `insert`, `remove` and `flush` of `CollisionObjects` | record by record |
-//! | rows of objects with pairs | `set`, `set_position`, `lend`, `release` and `set_skin` of `ObjectTable` | they are written again |
+//! | objects, with data, skins and predictions | `body_mut`, `body_mut_to_move`, `get_mut`, `insert`, `remove` and `flush` of `CollisionObjects` | record by record |
+//! | rows of objects with pairs | `set`, `set_position`, `acquire`, `release` and `set_skin` of `ObjectTable` | they are written again |
 //! | boxes, proxies and their pairs | `apply_waiting` and `remove` of `PairFinder`; `PairTable`; `DBVTBroadPhase` | boxes are set in the trees, whose order affects time alone |
-//! | contacts and proximities | `Group`; before an update `PairLanes::note` and `note_due` | to their former positions, since `contact_views` reads in that order |
+//! | contacts and proximities | `Group`; before an update `PairGroups::note` and `note_due` | to their former positions, since `contact_views` reads in that order |
 //!
 //! The order of partners in a `PairTable` is not restored, so no result may depend on it.
 //! `Run::play_again` of the tests replays every golden scene with steps taken back;
@@ -26,7 +26,7 @@ use crate::world::removed::RemovedObjects;
 use crate::world::{CollisionWorld, WorldBroadPhase, WorldError, WorldsNarrowPhase};
 
 /// Number of marks that a world keeps unless the user sets another.
-const USUAL_MARKS: usize = 8;
+const DEFAULT_MARKS: usize = 8;
 
 /// A state in the history of a world, to which the world can return: see [`CollisionWorld::mark`].
 ///
@@ -77,7 +77,7 @@ pub(in crate::world) struct History<N: Space<D>, const D: usize, T> {
 impl<N: Space<D>, const D: usize, T> History<N, D, T> {
     /// Creates a history without marks.
     pub(in crate::world) const fn new() -> Self {
-        Self { name: None, next: 0, most: USUAL_MARKS, heads: VecDeque::new() }
+        Self { name: None, next: 0, most: DEFAULT_MARKS, heads: VecDeque::new() }
     }
 
     /// Creates a history without marks that keeps at most `most`.
@@ -148,10 +148,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         self.history.next += 1;
         let head = self.head(number);
         self.objects.mark(number);
-        if let Some(phase) = self.usual_broad_phase() {
+        if let Some(phase) = self.default_broad_phase() {
             phase.mark(number);
         }
-        if let Some(phase) = self.usual_narrow_phase() {
+        if let Some(phase) = self.default_narrow_phase() {
             phase.mark(number);
         }
         self.history.heads.push_back(head);
@@ -202,10 +202,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let place = place.filter(|_| is_own).ok_or(WorldError::MarkGone(mark))?;
         self.history.heads.truncate(place + 1);
         self.objects.rewind(number);
-        if let Some(phase) = self.usual_broad_phase() {
+        if let Some(phase) = self.default_broad_phase() {
             phase.rewind(number);
         }
-        if let Some(phase) = self.usual_narrow_phase() {
+        if let Some(phase) = self.default_narrow_phase() {
             phase.rewind(number);
         }
         if let Some(head) = self.history.heads.pop_back() {
@@ -232,10 +232,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         heads.drain(..surplus);
         let first = heads.front().map_or(u64::MAX, |head| head.number);
         self.objects.forget_before(first);
-        if let Some(phase) = self.usual_broad_phase() {
+        if let Some(phase) = self.default_broad_phase() {
             phase.forget_before(first);
         }
-        if let Some(phase) = self.usual_narrow_phase() {
+        if let Some(phase) = self.default_narrow_phase() {
             phase.forget_before(first);
         }
     }
@@ -244,7 +244,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     where
         T: Clone,
     {
-        let is_usual = [self.usual_broad_phase().is_some(), self.usual_narrow_phase().is_some()];
+        let is_default =
+            [self.default_broad_phase().is_some(), self.default_narrow_phase().is_some()];
         WorldHead {
             number,
             events: self.events.clone(),
@@ -252,8 +253,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             keeps_events: self.keeps_events,
             removed: self.removed.clone(),
             filters: self.filters.clone(),
-            broad_phase: (!is_usual[0]).then(|| self.broad_phase.clone()),
-            narrow_phase: (!is_usual[1]).then(|| self.narrow_phase.clone()),
+            broad_phase: (!is_default[0]).then(|| self.broad_phase.clone()),
+            narrow_phase: (!is_default[1]).then(|| self.narrow_phase.clone()),
             next_broad_phase: self.next_broad_phase.clone(),
             next_narrow_phase: self.next_narrow_phase.clone(),
         }

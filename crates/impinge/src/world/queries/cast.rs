@@ -3,7 +3,7 @@
 use super::QueryFilter;
 use super::ranking::RankRange;
 use super::search::WorldProbe;
-use super::shape::around;
+use super::shape::placed_aabb;
 use crate::collide::Placed;
 use crate::math::{Space, Vector, max};
 use crate::query::{Impact, ImpactOptions, Moving, impact};
@@ -91,10 +91,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     fn ranked_impacts(
         &self,
         cast: &Cast<'_, N, D>,
-        room: RankRange<N>,
+        range: RankRange<N>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
-        let found = self.rank(&cast.probe, room, filter, &|body, latest| {
+        let found = self.rank(&cast.probe, range, filter, &|body, latest| {
             entries::cast_impact(cast, body, latest)
         });
         found.into_iter().map(|(object, _, impact)| (object, impact)).collect()
@@ -116,12 +116,12 @@ impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
         shape: &'a dyn Shape<N, D>,
         options: &ImpactOptions<N>,
     ) -> Option<Self> {
-        let aabb = around(position, shape)?;
-        let reach = grown(&aabb, max(options.target_distance, N::ZERO));
+        let aabb = placed_aabb(position, shape)?;
+        let grown_aabb = grown(&aabb, max(options.target_distance, N::ZERO));
         let placed = Placed::of_isometry(position, shape.geometry());
         let is_finite = velocity.iter().all(|x| x.is_finite_number());
         is_finite.then_some(Self {
-            probe: WorldProbe::Cast(reach, *velocity),
+            probe: WorldProbe::Cast(grown_aabb, *velocity),
             moving: Moving { placed, velocity: *velocity },
             options: *options,
         })

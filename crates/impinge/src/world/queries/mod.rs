@@ -6,12 +6,12 @@
 
 pub(super) mod cast;
 mod filter;
-mod one;
 mod point;
 mod ranking;
 mod ray;
 mod search;
 pub(super) mod shape;
+mod single_object;
 
 use core::fmt;
 
@@ -25,7 +25,7 @@ use crate::math::Space;
 use crate::query::ClosestPoints;
 
 /// Number of objects that a query collects without allocating.
-const FEW: usize = 16;
+const INLINE: usize = 16;
 
 /// An object near the point or solid of a query.
 ///
@@ -74,14 +74,14 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns the objects that the filter allows and whose boxes have a key of at most `limit`,
     /// each once, in order of their handles. A few others may be among them, so the caller must
     /// test each object exactly.
-    fn met<'a>(
+    fn matching<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
         limit: N,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
-        let mut objects: SmallVec<[&'a CollisionObject<N, D, T>; FEW]> = SmallVec::new();
-        self.any_met(probe, limit, |object| {
+        let mut objects: SmallVec<[&'a CollisionObject<N, D, T>; INLINE]> = SmallVec::new();
+        self.any_matching(probe, limit, |object| {
             objects.push(object);
             false
         });
@@ -93,7 +93,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Returns `true` if `passes` accepts one of the objects whose boxes have a key of at most
     /// `limit`. `passes` may also be called for a few other objects. It is called at most once for
     /// each object, and not again after it has returned `true`.
-    fn any_met<'a>(
+    fn any_matching<'a>(
         &'a self,
         probe: &WorldProbe<N, D>,
         limit: N,
@@ -113,11 +113,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
     /// Returns the objects that the filter allows and whose boxes may overlap `aabb`, in order of
     /// their handles; the caller must test each exactly.
-    fn meeting<'a>(
+    fn overlapping_aabb<'a>(
         &'a self,
         aabb: &Aabb<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
-        self.met(&WorldProbe::Near(*aabb), N::ZERO, filter)
+        self.matching(&WorldProbe::Near(*aabb), N::ZERO, filter)
     }
 }

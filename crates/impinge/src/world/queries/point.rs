@@ -30,7 +30,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let point = *point;
-        let near = near(&point).map(|_| self.meeting(&Aabb::at(point), filter));
+        let near = near(&point).map(|_| self.overlapping_aabb(&Aabb::at(point), filter));
         near.into_iter().flatten().filter(move |object| entries::holds(&object.body, &point))
     }
 
@@ -95,10 +95,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         max_distance: N,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<NearObject<'_, N, D, T>> {
-        let room = RankRange { count, limit: max_distance };
+        let range = RankRange { count, limit: max_distance };
         let Some(probe) = near(point) else { return Vec::new() };
         let found = self
-            .rank(&probe, room, filter, &|body, farthest| projection(body, point, true, farthest));
+            .rank(&probe, range, filter, &|body, farthest| projection(body, point, true, farthest));
         let neighbor = |(object, distance, nearest): (_, _, PointProjection<N, D>)| {
             let apart = ClosestPoints::WithinMargin(*point, nearest.point);
             let points = if nearest.is_inside { ClosestPoints::Intersecting } else { apart };

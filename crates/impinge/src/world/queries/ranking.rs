@@ -65,8 +65,8 @@ impl<N: Real, A> Ranking<N, A> {
     /// Creates a ranking of up to `count` results with keys of at most `limit`; `None` if `count`
     /// is zero, or `limit` is negative or NaN.
     pub(super) fn new(count: usize, limit: N) -> Option<Self> {
-        let has_room = count > 0 && limit >= N::ZERO;
-        has_room.then(|| Self { count, limit, heap: BinaryHeap::new() })
+        let is_satisfiable = count > 0 && limit >= N::ZERO;
+        is_satisfiable.then(|| Self { count, limit, heap: BinaryHeap::new() })
     }
 
     /// Returns the results, best first.

@@ -25,7 +25,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = (&'a CollisionObject<N, D, T>, RayIntersection<N, D>)> + use<'a, N, D, T>
     {
         let ray = *ray;
-        self.met(&WorldProbe::Ray(ray), N::INFINITY, &groups.into())
+        self.matching(&WorldProbe::Ray(ray), N::INFINITY, &groups.into())
             .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
 
@@ -153,11 +153,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     fn ranked_hits(
         &self,
         ray: &Ray<N, D>,
-        room: RankRange<N>,
+        range: RankRange<N>,
         solid: bool,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, RayIntersection<N, D>)> {
-        let found = self.rank(&WorldProbe::Ray(*ray), room, filter, &|body, latest| {
+        let found = self.rank(&WorldProbe::Ray(*ray), range, filter, &|body, latest| {
             let hit = cast(body, ray, latest, solid)?;
             Some((hit.toi, hit))
         });

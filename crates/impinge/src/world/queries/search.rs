@@ -78,11 +78,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub(super) fn rank<A>(
         &self,
         probe: &WorldProbe<N, D>,
-        room: RankRange<N>,
+        range: RankRange<N>,
         filter: &QueryFilter<'_, N, D, T>,
         measure: &Measure<'_, N, D, A>,
     ) -> Vec<QueryAnswer<'_, N, D, T, A>> {
-        let Some(mut ranking) = Ranking::new(room.count, room.limit) else { return Vec::new() };
+        let Some(mut ranking) = Ranking::new(range.count, range.limit) else { return Vec::new() };
         self.rank_into(&mut ranking, probe, filter, measure);
         ranking.into_sorted().into_iter().map(answer).collect()
     }
@@ -140,8 +140,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             limit.get()
         };
         if let Some(tree) = self.objects.dirty_tree(&*self.broad_phase) {
-            let of_dirty = |&(id, key): &(u32, N)| Some((self.objects.of_dirty(tree, id)?, key));
-            probe.visit_dirty(tree, limit.get(), &mut |found| visit_all(gathered(found, of_dirty)));
+            let dirty_object =
+                |&(id, key): &(u32, N)| Some((self.objects.dirty_object(tree, id)?, key));
+            probe.visit_dirty(tree, limit.get(), &mut |found| {
+                visit_all(gathered(found, dirty_object))
+            });
             if tree.has_all() {
                 return;
             }
@@ -163,7 +166,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &self,
         proposal: &Proposal<'_, N, CollisionObjectHandle>,
     ) -> Option<&CollisionObject<N, D, T>> {
-        let expected = proposal.uid().and_then(|uid| self.objects.of_proxy(uid));
+        let expected = proposal.uid().and_then(|uid| self.objects.object_of_proxy(uid));
         let object = expected.or_else(|| self.objects.get(*proposal.data()))?;
         (!self.objects.changes.is_dirty(&object.body)).then_some(object)
     }

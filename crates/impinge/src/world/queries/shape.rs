@@ -41,7 +41,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let aabb = *aabb;
-        self.meeting(&aabb, filter).filter(move |object| entries::meets(&object.body, &aabb))
+        self.overlapping_aabb(&aabb, filter)
+            .filter(move |object| entries::overlaps_aabb(&object.body, &aabb))
     }
 
     /// Returns the objects that touch or overlap a solid, in order of their handles.
@@ -76,7 +77,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, 's, N, D, T> {
         let placed = entries::placed_at(position, shape.geometry());
-        let near = entries::around(position, shape).map(|aabb| self.meeting(&aabb, filter));
+        let near =
+            entries::placed_aabb(position, shape).map(|aabb| self.overlapping_aabb(&aabb, filter));
         near.into_iter().flatten().filter(move |object| entries::touches(&placed, &object.body))
     }
 
@@ -109,8 +111,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> bool {
         let placed = entries::placed_at(position, shape.geometry());
-        entries::around(position, shape).is_some_and(|aabb| {
-            self.any_met(&WorldProbe::Near(aabb), N::ZERO, |object| {
+        entries::placed_aabb(position, shape).is_some_and(|aabb| {
+            self.any_matching(&WorldProbe::Near(aabb), N::ZERO, |object| {
                 self.allows(object, filter) && entries::touches(&placed, &object.body)
             })
         })
@@ -193,10 +195,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         max_distance: N,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<NearObject<'_, N, D, T>> {
-        let Some(aabb) = entries::around(position, shape) else { return Vec::new() };
+        let Some(aabb) = entries::placed_aabb(position, shape) else { return Vec::new() };
         let placed = entries::placed_at(position, shape.geometry());
-        let room = RankRange { count, limit: max_distance };
-        let found = self.rank(&WorldProbe::Near(aabb), room, filter, &|body, farthest| {
+        let range = RankRange { count, limit: max_distance };
+        let found = self.rank(&WorldProbe::Near(aabb), range, filter, &|body, farthest| {
             let found = entries::separation_from(&placed, body, farthest)?;
             Some((max(found.distance, N::ZERO), found))
         });
@@ -211,7 +213,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
 /// Returns the box of a placed solid, grown by its rounding errors; `None` if the position is not
 /// finite.
-pub(crate) fn around<N: Space<D>, const D: usize>(
+pub(crate) fn placed_aabb<N: Space<D>, const D: usize>(
     position: &N::Isometry,
     shape: &dyn Shape<N, D>,
 ) -> Option<Aabb<N, D>> {
@@ -244,7 +246,7 @@ pub(crate) fn separation_from<N: Space<D>, const D: usize>(
 
 /// Returns `true` if the exact box of an object overlaps or touches `aabb`.
 #[inline]
-pub(crate) fn meets<N: Space<D>, const D: usize>(
+pub(crate) fn overlaps_aabb<N: Space<D>, const D: usize>(
     body: &WorldBody<N, D>,
     aabb: &Aabb<N, D>,
 ) -> bool {

@@ -26,7 +26,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 pub use self::error::{RestoreError, SaveError};
 use self::objects::{ObjectRecord, RemovedRecord};
 pub use self::registry::Registry;
-use super::fork::{History, UsualBroadPhase};
+use super::fork::{DefaultBroadPhase, History};
 use super::{CollisionObjects, CollisionWorld, WorldBroadPhase, WorldsNarrowPhase};
 use crate::broad_phase::saved::BroadRecord;
 use crate::broad_phase::{DBVTBroadPhase, ProxyHandle};
@@ -248,18 +248,18 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     fn record(&self) -> Result<WorldRecord<N, &T>, SaveError> {
-        let broad_phase = usual_broad_phase(&*self.broad_phase)?;
-        let narrow_phase = usual_narrow_phase(&*self.narrow_phase)?;
+        let broad_phase = default_broad_phase(&*self.broad_phase)?;
+        let narrow_phase = default_narrow_phase(&*self.narrow_phase)?;
         let next_broad_phase = match &self.next_broad_phase {
             Some(next) => {
-                let margin = usual_broad_phase(&**next)?.unused_margin();
+                let margin = default_broad_phase(&**next)?.unused_margin();
                 Some(margin.ok_or(SaveError::BroadPhase)?)
             }
             None => None,
         };
         let next_narrow_phase = match &self.next_narrow_phase {
             Some(next) => {
-                let phase = usual_narrow_phase(&**next)?.phase_record();
+                let phase = default_narrow_phase(&**next)?.phase_record();
                 Some(phase.ok_or(SaveError::NarrowPhase)?)
             }
             None => None,
@@ -288,13 +288,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 }
 
-fn usual_broad_phase<N: Space<D>, const D: usize>(
+fn default_broad_phase<N: Space<D>, const D: usize>(
     phase: &WorldBroadPhase<N, D>,
-) -> Result<&UsualBroadPhase<N, D>, SaveError> {
+) -> Result<&DefaultBroadPhase<N, D>, SaveError> {
     phase.as_any().downcast_ref().ok_or(SaveError::BroadPhase)
 }
 
-fn usual_narrow_phase<N: Space<D>, const D: usize, T>(
+fn default_narrow_phase<N: Space<D>, const D: usize, T>(
     phase: &dyn WorldsNarrowPhase<N, D, T>,
 ) -> Result<&DefaultNarrowPhase<N, D>, SaveError> {
     phase.as_any().downcast_ref().ok_or(SaveError::NarrowPhase)

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::super::bodies::{MAX_CHANGES, WorldBody};
 use super::super::changes::BodyChanges;
 use super::super::error::{usable_pose, usable_query};
-use super::super::fork::UsualBroadPhase;
+use super::super::fork::DefaultBroadPhase;
 use super::super::objects::Slot;
 use super::super::removed::RemovedObjects;
 use super::super::{CollisionGroups, CollisionObject, CollisionObjects};
@@ -198,7 +198,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         let (mut object, skin) = record.restore(handle, NOT_YET, shapes)?;
         let body = &mut object.body;
         if let Some(predicted) = predicted {
-            body.predict_again();
+            body.restore_predicted();
             self.changes.predict(handle.index(), predicted);
         }
         if skin > N::ZERO {
@@ -206,10 +206,10 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             self.table.set_skin(handle.index(), skin);
         }
         if let Some(changes) = changes {
-            self.changes.note_again(body, changes);
+            self.changes.restore_changes(body, changes);
         }
         let place = u32::try_from(self.records.len()).map_err(|_| Damage("many objects".into()))?;
-        self.slots[handle.uid()].place = place;
+        self.slots[handle.uid()].record = place;
         self.records.push(object);
         Ok(())
     }
@@ -220,7 +220,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         index: u32,
         proxy: ProxyHandle,
     ) -> Result<CollisionObjectHandle, Damage> {
-        let place = self.slots.get(index as usize).map(|slot| slot.place as usize);
+        let place = self.slots.get(index as usize).map(|slot| slot.record as usize);
         let object = place.and_then(|place| self.records.get_mut(place));
         let body = &mut object.ok_or(Damage("a proxy has no object".into()))?.body;
         ensure(body.proxy == NOT_YET, "an object has two proxies")?;
@@ -241,7 +241,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             }
             if first == second
                 && let Some(object) =
-                    self.records.get_mut(self.slots[first as usize].place as usize)
+                    self.records.get_mut(self.slots[first as usize].record as usize)
             {
                 object.body.toggle_self_pair();
             }
@@ -254,15 +254,15 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         match rows[index as usize].take() {
             Some((row, skin)) => {
                 self.table.set_skin(index, skin);
-                self.table.lend(index, || row);
+                self.table.acquire(index, || row);
             }
-            None => self.lend(index),
+            None => self.acquire_row(index),
         }
         Ok(())
     }
 
     /// The boxes of the broad phase are those of objects that have not changed.
-    pub(super) fn check_boxes(&self, broad_phase: &UsualBroadPhase<N, D>) -> Result<(), Damage> {
+    pub(super) fn check_boxes(&self, broad_phase: &DefaultBroadPhase<N, D>) -> Result<(), Damage> {
         let is_right = |body: &WorldBody<N, D>| {
             let is_dirty = self.changes.is_dirty(body);
             is_dirty || *broad_phase.given_volume(body.proxy) == self.changes.volume(body)
@@ -325,7 +325,7 @@ impl<N: Real, T> ObjectRecord<N, T> {
         let (row, skin) = self.row.restore(handle, shapes)?;
         let mut body = WorldBody::new(row, self.groups, proxy);
         if self.is_fixed {
-            body.fix_again();
+            body.restore_fixed();
         }
         Ok((CollisionObject { body, data: self.data }, skin))
     }

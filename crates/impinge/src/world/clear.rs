@@ -5,13 +5,13 @@ use super::object::CollisionObject;
 use crate::math::Space;
 
 /// The default margin of a world.
-const USUAL_MARGIN: f64 = 0.02;
+const DEFAULT_MARGIN: f64 = 0.02;
 
 /// Creates an empty world with margin 0.02, which suits objects of size 1. The margin never affects
 /// exact results; [`CollisionWorld::new`] takes another one.
 impl<N: Space<D>, const D: usize, T> Default for CollisionWorld<N, D, T> {
     fn default() -> Self {
-        Self::new(N::lit(USUAL_MARGIN))
+        Self::new(N::lit(DEFAULT_MARGIN))
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
-use super::group::{Chosen, Rows};
+use super::group::{RowSet, Rows};
 use super::reuse::Reference;
 use super::state::CompositeState;
 use crate::math::{Mapped, Real, Space, max};
@@ -25,23 +25,23 @@ pub(super) type CompositeRows<'a, N, const D: usize> = Rows<
     Reference<N, D>,
 >;
 
-/// Updates the pairs `due` of a chunk one by one, in blocks of [`PAIRS`] that are prefetched.
-pub(super) fn update_due<N: Space<D>, const D: usize>(
+/// Updates the pairs `dirty` of a chunk one by one, in blocks of [`PAIRS`] that are prefetched.
+pub(super) fn update_prefetched<N: Space<D>, const D: usize>(
     rows: &mut CompositeRows<'_, N, D>,
     table: &ObjectTable<N, D>,
-    due: Chosen,
+    dirty: RowSet,
     mut update: impl FnMut(&mut CompositeRows<'_, N, D>, usize),
 ) {
-    let mut due = due.indices();
+    let mut dirty = dirty.indices();
     let mut next = [0; PAIRS];
     loop {
         let mut count = 0;
-        for (slot, place) in next.iter_mut().zip(due.by_ref()) {
-            *slot = place;
+        for (slot, row) in next.iter_mut().zip(dirty.by_ref()) {
+            *slot = row;
             count += 1;
         }
         prefetch(rows, table, &next[..count]);
-        next[..count].iter().for_each(|&place| update(rows, place));
+        next[..count].iter().for_each(|&row| update(rows, row));
         if count < PAIRS {
             return;
         }
@@ -52,14 +52,14 @@ pub(super) fn update_due<N: Space<D>, const D: usize>(
 fn prefetch<N: Space<D>, const D: usize>(
     rows: &CompositeRows<'_, N, D>,
     table: &ObjectTable<N, D>,
-    places: &[usize],
+    indices: &[usize],
 ) {
-    let mut seen = N::ZERO;
-    for &place in places {
-        let [one, other] = rows.keys[place].mapped(|index| solid(table.shape(index).geometry()));
-        seen = max(seen, max(rows.states[place].state.prefetch(), max(one, other)));
+    let mut loaded = N::ZERO;
+    for &row in indices {
+        let [one, other] = rows.keys[row].mapped(|index| solid(table.shape(index).geometry()));
+        loaded = max(loaded, max(rows.states[row].state.prefetch(), max(one, other)));
     }
-    core::hint::black_box(seen);
+    core::hint::black_box(loaded);
 }
 
 /// Reads a cache line of a small solid; the returned value is meaningless, and only keeps the load

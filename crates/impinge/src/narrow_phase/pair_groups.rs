@@ -4,7 +4,7 @@ use super::entry::{
     Change, ContactEntry, ContactView, CustomContactEntry, CustomProximityEntry, ProximityEntry,
     Status,
 };
-use super::group::{Group, PairKey, Taken};
+use super::group::{Group, PairKey, RemovedRow};
 use super::reuse::Reference;
 use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
@@ -18,7 +18,7 @@ const KIND_PAIRS: usize = ShapeKind::COUNT * ShapeKind::COUNT;
 
 /// The group of a pair, which defines the algorithm that serves it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Lane {
+pub(crate) enum GroupId {
     /// Built-in contacts of two convex solids; the value is the index of their kinds
     /// ([`kind_pair`]).
     Contacts(u8),
@@ -32,11 +32,11 @@ pub(crate) enum Lane {
     Nothing,
 }
 
-/// A group and the index of a pair in it.
+/// A group and the row of a pair in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Location {
-    pub(crate) lane: Lane,
-    pub(crate) place: u32,
+    pub(crate) group: GroupId,
+    pub(crate) row: u32,
 }
 
 /// The status of a pair while its algorithm is replaced, from which events follow.
@@ -91,7 +91,7 @@ pub(crate) type CompositeGroup<N, const D: usize> = Group<
 
 /// The states of all pairs, grouped by algorithm in dense arrays.
 #[derive(Debug)]
-pub(crate) struct PairLanes<N: Space<D>, const D: usize> {
+pub(crate) struct PairGroups<N: Space<D>, const D: usize> {
     pub(crate) contacts: Vec<ContactGroup<N, D>>,
     pub(crate) composites: CompositeGroup<N, D>,
     pub(crate) proximity: Vec<Group<ProximityEntry<N>>>,
@@ -99,11 +99,11 @@ pub(crate) struct PairLanes<N: Space<D>, const D: usize> {
     pub(crate) custom_proximity: Group<CustomProximityEntry<N, D>>,
 }
 
-clone_fields!([N: Space<D>, const D: usize] PairLanes<N, D> {
+clone_fields!([N: Space<D>, const D: usize] PairGroups<N, D> {
     contacts, composites, proximity, custom_contacts, custom_proximity,
 });
 
-impl<N: Space<D>, const D: usize> Default for PairLanes<N, D> {
+impl<N: Space<D>, const D: usize> Default for PairGroups<N, D> {
     fn default() -> Self {
         Self {
             contacts: (0..KIND_PAIRS).map(|_| Group::default()).collect(),
@@ -127,52 +127,52 @@ pub(crate) fn kind_pair<N: Real, const D: usize>(
 }
 
 /// Returns the group of the built-in contacts of two shapes.
-pub(crate) fn contact_lane<N: Real, const D: usize>(
+pub(crate) fn contact_group<N: Real, const D: usize>(
     shape1: &dyn Shape<N, D>,
     shape2: &dyn Shape<N, D>,
-) -> Lane {
+) -> GroupId {
     if has_composite(shape1, shape2) {
-        return Lane::Composites;
+        return GroupId::Composites;
     }
-    Lane::Contacts(kind_pair(shape1, shape2))
+    GroupId::Contacts(kind_pair(shape1, shape2))
 }
 
-impl<N: Space<D>, const D: usize> PairLanes<N, D> {
+impl<N: Space<D>, const D: usize> PairGroups<N, D> {
     /// Creates groups without pairs that store references, for contact reuse.
     pub(crate) fn with_references() -> Self {
         let contacts = (0..KIND_PAIRS).map(|_| Group::with_references()).collect();
         Self { contacts, composites: Group::with_references(), ..Self::default() }
     }
 
-    /// Removes the state of a pair. Returns its status, and the pair that moved to its index.
+    /// Removes the state of a pair. Returns its status, and the pair that moved to its row.
     pub(crate) fn take(&mut self, location: Location) -> (Carried, Option<PairKey>) {
-        let place = location.place;
-        match location.lane {
-            Lane::Contacts(lane) => {
-                contacts_of(self.contacts[usize::from(lane)].swap_remove(place))
+        let row = location.row;
+        match location.group {
+            GroupId::Contacts(kinds) => {
+                removed_contacts(self.contacts[usize::from(kinds)].swap_remove(row))
             }
-            Lane::Composites => contacts_of(self.composites.swap_remove(place)),
-            Lane::Proximity(lane) => {
-                let Taken { state, moved, .. } =
-                    self.proximity[usize::from(lane)].swap_remove(place);
+            GroupId::Composites => removed_contacts(self.composites.swap_remove(row)),
+            GroupId::Proximity(kinds) => {
+                let RemovedRow { state, moved, .. } =
+                    self.proximity[usize::from(kinds)].swap_remove(row);
                 (Carried::Proximity(state.status), moved)
             }
-            Lane::CustomContacts => contacts_of(self.custom_contacts.swap_remove(place)),
-            Lane::CustomProximity => {
-                let Taken { state, moved, .. } = self.custom_proximity.swap_remove(place);
+            GroupId::CustomContacts => removed_contacts(self.custom_contacts.swap_remove(row)),
+            GroupId::CustomProximity => {
+                let RemovedRow { state, moved, .. } = self.custom_proximity.swap_remove(row);
                 (Carried::Proximity(state.status), moved)
             }
-            Lane::Nothing => (Carried::Nothing, None),
+            GroupId::Nothing => (Carried::Nothing, None),
         }
     }
 
     /// Returns `true` if the pair has contact points.
-    pub(crate) fn is_touching(&self, Location { lane, place }: Location) -> bool {
-        match lane {
-            Lane::Contacts(lane) => self.contacts[usize::from(lane)].is_touching(place),
-            Lane::Composites => self.composites.is_touching(place),
-            Lane::CustomContacts => self.custom_contacts.is_touching(place),
-            Lane::Proximity(_) | Lane::CustomProximity | Lane::Nothing => false,
+    pub(crate) fn is_touching(&self, Location { group, row }: Location) -> bool {
+        match group {
+            GroupId::Contacts(kinds) => self.contacts[usize::from(kinds)].is_touching(row),
+            GroupId::Composites => self.composites.is_touching(row),
+            GroupId::CustomContacts => self.custom_contacts.is_touching(row),
+            GroupId::Proximity(_) | GroupId::CustomProximity | GroupId::Nothing => false,
         }
     }
 
@@ -183,22 +183,22 @@ impl<N: Space<D>, const D: usize> PairLanes<N, D> {
         self.proximity.iter_mut().for_each(|group| group.fit(look));
     }
 
-    /// Marks a pair as due even if neither object moves.
-    pub(crate) fn make_due(&mut self, location: Location) {
-        let place = location.place;
-        match location.lane {
-            Lane::Contacts(lane) => self.contacts[usize::from(lane)].make_due(place),
-            Lane::Composites => self.composites.make_due(place),
-            Lane::Proximity(lane) => self.proximity[usize::from(lane)].make_due(place),
-            Lane::CustomContacts => self.custom_contacts.make_due(place),
-            Lane::CustomProximity => self.custom_proximity.make_due(place),
-            Lane::Nothing => {}
+    /// Marks a pair as dirty even if neither object moves.
+    pub(crate) fn mark_dirty(&mut self, location: Location) {
+        let row = location.row;
+        match location.group {
+            GroupId::Contacts(kinds) => self.contacts[usize::from(kinds)].mark_dirty(row),
+            GroupId::Composites => self.composites.mark_dirty(row),
+            GroupId::Proximity(kinds) => self.proximity[usize::from(kinds)].mark_dirty(row),
+            GroupId::CustomContacts => self.custom_contacts.mark_dirty(row),
+            GroupId::CustomProximity => self.custom_proximity.mark_dirty(row),
+            GroupId::Nothing => {}
         }
     }
 }
 
-/// Returns the status of a removed pair, and the pair that moved to its index; `None` if there is
+/// Returns the status of a removed pair, and the pair that moved to its row; `None` if there is
 /// none.
-fn contacts_of<S>(taken: Taken<S>) -> (Carried, Option<PairKey>) {
-    (Carried::Contacts { is_touching: taken.is_touching }, taken.moved)
+fn removed_contacts<S>(removed: RemovedRow<S>) -> (Carried, Option<PairKey>) {
+    (Carried::Contacts { is_touching: removed.is_touching }, removed.moved)
 }

@@ -1,50 +1,50 @@
-//! A hash table of the places of links, for objects with very many links.
+//! A hash table of the indices of links, for objects with very many links.
 //!
 //! Open addressing with linear probing and deletion without tombstones (Knuth 1973, vol. 3, § 6.4).
 //! The table is never iterated, so the order of entries affects nothing.
 
 use crate::memory::clone_fields;
 
-/// The `place` of an entry without a key.
+/// The `index` of an entry without a key.
 const FREE: u32 = u32::MAX;
 /// Least number of slots of a table that is not empty.
-const LEAST: usize = 256;
+const MIN_LENGTH: usize = 256;
 
-/// A link, by its key ([`directed`](super::lines)), and its place.
+/// A link, by its key ([`link_key`](super::adjacency)), and its index.
 #[derive(Clone, Copy, Debug)]
-struct PlaceEntry {
+struct IndexEntry {
     key: u64,
-    place: u32,
+    index: u32,
 }
 
-/// A map from links to places. The key of a link is its two objects, packed.
+/// A map from links to indices. The key of a link is its two objects, packed.
 #[derive(Debug, Default)]
-pub(super) struct Places {
+pub(super) struct LinkIndices {
     /// Empty, or a power of two of slots, of which at most half are in use.
-    entries: Vec<PlaceEntry>,
+    entries: Vec<IndexEntry>,
     used: usize,
 }
 
-clone_fields!([] Places { entries, used });
+clone_fields!([] LinkIndices { entries, used });
 
-impl Places {
-    /// Returns the place of the link; `None` if it is not in the table.
+impl LinkIndices {
+    /// Returns the index of the link; `None` if it is not in the table.
     pub(super) fn get(&self, key: u64) -> Option<u32> {
         if self.entries.is_empty() {
             return None;
         }
-        let entry = self.entries[self.place_of(key)];
-        (entry.place != FREE).then_some(entry.place)
+        let entry = self.entries[self.slot_of(key)];
+        (entry.index != FREE).then_some(entry.index)
     }
 
-    /// Inserts the link, or changes its place.
+    /// Inserts the link, or changes its index.
     pub(super) fn set(&mut self, key: u64, value: u32) {
         if (self.used + 1) * 2 > self.entries.len() {
             self.grow();
         }
-        let place = self.place_of(key);
-        self.used += usize::from(self.entries[place].place == FREE);
-        self.entries[place] = PlaceEntry { key, place: value };
+        let slot = self.slot_of(key);
+        self.used += usize::from(self.entries[slot].index == FREE);
+        self.entries[slot] = IndexEntry { key, index: value };
     }
 
     /// Removes the link; does nothing if it is not in the table. Later entries of the probe
@@ -54,23 +54,23 @@ impl Places {
             return;
         }
         let mask = self.entries.len() - 1;
-        let mut gap = self.place_of(key);
-        if self.entries[gap].place == FREE {
+        let mut gap = self.slot_of(key);
+        if self.entries[gap].index == FREE {
             return;
         }
         self.used -= 1;
         let mut next = (gap + 1) & mask;
-        while self.entries[next].place != FREE {
+        while self.entries[next].index != FREE {
             // Compares distances from the entry's home slot: the entry may move into the gap if its
             // probe sequence passes the gap.
-            let from_home = next.wrapping_sub(self.home(self.entries[next].key)) & mask;
+            let from_home = next.wrapping_sub(self.home_slot(self.entries[next].key)) & mask;
             if from_home >= next.wrapping_sub(gap) & mask {
                 self.entries[gap] = self.entries[next];
                 gap = next;
             }
             next = (next + 1) & mask;
         }
-        self.entries[gap].place = FREE;
+        self.entries[gap].index = FREE;
     }
 
     /// Returns the number of links in the table.
@@ -80,17 +80,17 @@ impl Places {
 
     /// Returns the slot of the key, or the free slot where it belongs. At most half of the slots
     /// are in use, so the loop ends. There must be slots.
-    fn place_of(&self, key: u64) -> usize {
+    fn slot_of(&self, key: u64) -> usize {
         let mask = self.entries.len() - 1;
-        let mut place = self.home(key);
-        while self.entries[place].place != FREE && self.entries[place].key != key {
-            place = (place + 1) & mask;
+        let mut slot = self.home_slot(key);
+        while self.entries[slot].index != FREE && self.entries[slot].key != key {
+            slot = (slot + 1) & mask;
         }
-        place
+        slot
     }
 
     /// Returns the home slot of the key: the first one of its probe sequence.
-    fn home(&self, key: u64) -> usize {
+    fn home_slot(&self, key: u64) -> usize {
         // Constants from the golden ratio and from SplitMix64 (Steele et al. 2014).
         let mixed = (key ^ key >> 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mixed = (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -99,12 +99,12 @@ impl Places {
 
     /// Doubles the number of slots, and inserts all keys again.
     fn grow(&mut self) {
-        let length = (2 * self.entries.len()).max(LEAST);
-        let free = PlaceEntry { key: 0, place: FREE };
+        let length = (2 * self.entries.len()).max(MIN_LENGTH);
+        let free = IndexEntry { key: 0, index: FREE };
         let old = core::mem::replace(&mut self.entries, vec![free; length]);
-        for entry in old.iter().filter(|entry| entry.place != FREE) {
-            let place = self.place_of(entry.key);
-            self.entries[place] = *entry;
+        for entry in old.iter().filter(|entry| entry.index != FREE) {
+            let slot = self.slot_of(entry.key);
+            self.entries[slot] = *entry;
         }
     }
 }
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn random_calls_agree_with_a_sorted_map() {
-        let (mut state, mut table, mut map) = (5_u64, Places::default(), BTreeMap::new());
+        let (mut state, mut table, mut map) = (5_u64, LinkIndices::default(), BTreeMap::new());
         let mut next = |bound: u64| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(99);
             (state >> 33) % bound

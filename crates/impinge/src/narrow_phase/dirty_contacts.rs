@@ -1,4 +1,4 @@
-//! The due pairs of a group, as input of the kernels that compute several pairs in SIMD lanes.
+//! The dirty pairs of a group, as input of the kernels that compute several pairs in SIMD lanes.
 
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
@@ -19,10 +19,10 @@ pub(super) type ContactRows<'a, N, const D: usize> = Rows<
 >;
 
 /// The pairs of a chunk that must be computed, all of which have copies of their solids.
-pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
+pub(crate) struct DirtyContacts<'r, 't, N: Space<D>, const D: usize> {
     pub(super) rows: ContactRows<'r, N, D>,
-    /// Indices of the due pairs in `rows`.
-    pub(super) places: &'t [usize],
+    /// Rows of the dirty pairs in `rows`.
+    pub(super) indices: &'t [usize],
     pub(super) table: &'t ObjectTable<N, D>,
     pub(super) changes: &'t mut PairChanges,
 }
@@ -31,50 +31,53 @@ pub(crate) struct DueContacts<'r, 't, N: Space<D>, const D: usize> {
 /// kernel.
 pub(crate) fn update_lanes2<N: Space<2>>(
     solids: [&Solid<N, 2>; 2],
-    due: &mut DueContacts<'_, '_, N, 2>,
+    dirty: &mut DirtyContacts<'_, '_, N, 2>,
 ) -> bool {
-    update_pairs2(solids, due)
+    update_pairs2(solids, dirty)
 }
 
 /// Computes pairs of the narrow phase in 3D by [`update_pairs3`]; `false` if the kinds have no
 /// kernel.
 pub(crate) fn update_lanes3<N: Space<3>>(
     solids: [&Solid<N, 3>; 2],
-    due: &mut DueContacts<'_, '_, N, 3>,
+    dirty: &mut DirtyContacts<'_, '_, N, 3>,
 ) -> bool {
-    update_pairs3(solids, due)
+    update_pairs3(solids, dirty)
 }
 
-impl<N: Space<D>, const D: usize> KeptPairs<N, D> for DueContacts<'_, '_, N, D> {
+impl<N: Space<D>, const D: usize> KeptPairs<N, D> for DirtyContacts<'_, '_, N, D> {
     #[inline(always)]
     fn len(&self) -> usize {
-        self.places.len()
+        self.indices.len()
     }
 
     #[inline(always)]
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D> {
-        ContactView::expire_any(self.rows.views.get_mut(self.places[index]));
+        ContactView::expire_any(self.rows.views.get_mut(self.indices[index]));
         self.parts(index).0
     }
 
     #[inline(always)]
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
-        let place = self.places[index];
-        let [first, second] = self.rows.keys[place];
+        let row = self.indices[index];
+        let [first, second] = self.rows.keys[row];
         let poses = [self.table.pose(first), self.table.pose(second)];
-        let entry = &mut self.rows.states[place];
-        entry.state.turned(poses, &entry.request).expect("all pairs of a group have their solids")
+        let entry = &mut self.rows.states[row];
+        entry
+            .state
+            .canonical_question(poses, &entry.request)
+            .expect("all pairs of a group have their solids")
     }
 
     #[inline(always)]
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D> {
-        self.rows.states[self.places[index]].state.raw_mut()
+        self.rows.states[self.indices[index]].state.raw_mut()
     }
 
     #[inline(always)]
     fn end(&mut self, index: usize) {
-        let place = self.places[index];
-        let is_touching = self.rows.states[place].is_touching();
-        note_touching(&mut self.rows, place, is_touching, self.changes);
+        let row = self.indices[index];
+        let is_touching = self.rows.states[row].is_touching();
+        note_touching(&mut self.rows, row, is_touching, self.changes);
     }
 }

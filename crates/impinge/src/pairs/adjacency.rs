@@ -2,13 +2,13 @@
 //! objects with many links.
 //!
 //! ```text
-//! object   owned ──> head (64 bytes): link 0 … link 6 | start | count and class
+//! object   index ──> head (64 bytes): link 0 … link 6 | start | count and class
 //!                                                        │
 //! pool     line, line, ... <─── run of 2^class lines, 8 links each
-//! places   (object, partner) -> place of the link, for heavy objects (class >= 5)
+//! indices  (object, partner) -> index of the link, for heavy objects (class >= 5)
 //! ```
 
-use super::places::Places;
+use super::link_indices::LinkIndices;
 use crate::memory::{Look, clone_fields};
 
 /// Number of links in a line.
@@ -17,7 +17,7 @@ const PER_LINE: usize = 8;
 const INLINE: usize = PER_LINE - 1;
 /// Idle heads are dropped when they exceed half of all heads by more than `MAX_IDLE`.
 const MAX_IDLE: usize = 256;
-/// Entry in `owned` of an object without links.
+/// Entry in `head_indices` of an object without links.
 const NO_HEAD: u32 = u32::MAX;
 /// The class of a head without a run.
 const NO_RUN: u32 = 31;
@@ -92,9 +92,9 @@ struct Line {
 
 /// The links of all objects.
 #[derive(Debug, Default)]
-pub(super) struct Lines {
+pub(super) struct Adjacency {
     /// By object: index of its head, or [`NO_HEAD`].
-    owned: Vec<u32>,
+    head_indices: Vec<u32>,
     heads: Vec<Head>,
     /// Indices of heads without an owner. They have no links and no runs.
     idle: Vec<u32>,
@@ -102,26 +102,26 @@ pub(super) struct Lines {
     pool: Vec<Line>,
     /// By class: the first lines of released runs.
     free: Vec<Vec<u32>>,
-    /// The places of the links of heavy objects. The place of a link is its index among the links
+    /// The indices of the links of heavy objects. The index of a link is its position among the links
     /// of its object.
-    places: Places,
+    link_indices: LinkIndices,
 }
 
-clone_fields!([] Lines { owned, heads, idle, pool, free, places });
+clone_fields!([] Adjacency { head_indices, heads, idle, pool, free, link_indices });
 
 /// Returns the index of the link to `partner` among the first `count` of `links`; `None` if there
 /// is none. Compares all links, since the branch predictor cannot predict where a search ends.
 #[inline]
-fn place_in(links: &[Link], count: usize, partner: u32) -> Option<u32> {
+fn position_of(links: &[Link], count: usize, partner: u32) -> Option<u32> {
     let hit = |at: usize| u32::from(links[at].partner == partner) << at;
     let hits = (0..links.len()).fold(0, |hits, at| hits | hit(at));
-    let place = hits.trailing_zeros();
-    ((place as usize) < count.min(links.len())).then_some(place)
+    let index = hits.trailing_zeros();
+    ((index as usize) < count.min(links.len())).then_some(index)
 }
 
 /// Returns the key of the link from an object to a partner.
 #[inline]
-fn directed(object: u32, partner: u32) -> u64 {
+fn link_key(object: u32, partner: u32) -> u64 {
     u64::from(object) << 32 | u64::from(partner)
 }
 
@@ -130,31 +130,31 @@ pub(super) fn small(value: usize) -> u32 {
     u32::try_from(value).expect("a pair table holds fewer than 2^32 entries")
 }
 
-impl Lines {
-    /// Extends `owned` to contain the object.
-    pub(super) fn reach(&mut self, object: u32) {
+impl Adjacency {
+    /// Extends `head_indices` to contain the object.
+    pub(super) fn extend_to(&mut self, object: u32) {
         let needed = object as usize + 1;
-        if self.owned.len() < needed {
-            self.owned.resize(needed, NO_HEAD);
+        if self.head_indices.len() < needed {
+            self.head_indices.resize(needed, NO_HEAD);
         }
     }
 
     /// Returns one more than the largest object index that has had a link.
-    pub(super) fn objects(&self) -> usize {
-        self.owned.len()
+    pub(super) fn num_objects(&self) -> usize {
+        self.head_indices.len()
     }
 
     /// Returns the index of the object's head; `None` if the object has no links.
     #[inline]
-    fn at(&self, object: u32) -> Option<usize> {
-        let at = *self.owned.get(object as usize)? as usize;
+    fn head_index(&self, object: u32) -> Option<usize> {
+        let at = *self.head_indices.get(object as usize)? as usize;
         (at < self.heads.len()).then_some(at)
     }
 
     /// Returns the head of the object; [`Head::EMPTY`] if it has no links.
     #[inline]
     fn head(&self, object: u32) -> &Head {
-        self.at(object).map_or(&Head::EMPTY, |at| &self.heads[at])
+        self.head_index(object).map_or(&Head::EMPTY, |at| &self.heads[at])
     }
 
     /// Returns the number of links of the object; 0 for an object that has never had any.
@@ -163,7 +163,7 @@ impl Lines {
         self.head(object).count() as usize
     }
 
-    /// Iterates over the links of the object, in order of their places.
+    /// Iterates over the links of the object, in order of their indices.
     pub(super) fn links(&self, object: u32) -> impl Iterator<Item = Link> + '_ {
         let head = self.head(object);
         let count = head.count() as usize;
@@ -175,59 +175,59 @@ impl Lines {
 
     /// Returns the last link of the object; `None` if it has no links.
     pub(super) fn last_link(&self, object: u32) -> Option<Link> {
-        let at = self.at(object)?;
+        let at = self.head_index(object)?;
         Some(self.link(at, self.heads[at].count() - 1))
     }
 
-    /// Returns link `place` of the object with head `at`; `place` must be less than its count.
+    /// Returns link `index` of the object with head `at`; `index` must be less than its count.
     #[inline]
-    fn link(&self, at: usize, place: u32) -> Link {
+    fn link(&self, at: usize, index: u32) -> Link {
         let head = &self.heads[at];
-        if let Some(link) = head.links.get(place as usize) {
+        if let Some(link) = head.links.get(index as usize) {
             return *link;
         }
-        let beyond = place as usize - INLINE;
+        let beyond = index as usize - INLINE;
         self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// Returns link `place` of the object with head `at`, for writing; `place` must be within its
+    /// Returns link `index` of the object with head `at`, for writing; `index` must be within its
     /// capacity.
     #[inline]
-    fn link_mut(&mut self, at: usize, place: u32) -> &mut Link {
+    fn link_mut(&mut self, at: usize, index: u32) -> &mut Link {
         let head = &mut self.heads[at];
-        let place = place as usize;
-        if place < INLINE {
-            return &mut head.links[place];
+        let index = index as usize;
+        if index < INLINE {
+            return &mut head.links[index];
         }
-        let beyond = place - INLINE;
+        let beyond = index - INLINE;
         &mut self.pool[head.start as usize + beyond / PER_LINE].links[beyond % PER_LINE]
     }
 
-    /// Returns `true` if the object with head `at` is heavy, so that its links are in `places`.
+    /// Returns `true` if the object with head `at` is heavy, so that its links are in `link_indices`.
     #[inline]
     fn is_heavy(&self, at: usize) -> bool {
         (HEAVY..NO_RUN).contains(&self.heads[at].class())
     }
 
-    /// Returns the index of the object's head and the place of its link to the partner; `None` if
+    /// Returns the index of the head of the object and that of its link to the partner; `None` if
     /// there is no such link.
     #[inline]
     fn find(&self, object: u32, partner: u32) -> Option<(usize, u32)> {
-        let at = self.at(object)?;
+        let at = self.head_index(object)?;
         let head = &self.heads[at];
         let count = head.count() as usize;
-        let place = place_in(&head.links, count, partner);
-        if place.is_some() || head.class() == NO_RUN {
-            return Some((at, place?));
+        let index = position_of(&head.links, count, partner);
+        if index.is_some() || head.class() == NO_RUN {
+            return Some((at, index?));
         }
         if head.class() >= HEAVY {
-            return Some((at, self.places.get(directed(object, partner))?));
+            return Some((at, self.link_indices.get(link_key(object, partner))?));
         }
         let (start, beyond) = (head.start as usize, count.saturating_sub(INLINE));
         let lines = self.pool[start..start + beyond.div_ceil(PER_LINE)].iter();
         lines.enumerate().find_map(|(line_at, line)| {
-            let place = place_in(&line.links, beyond - line_at * PER_LINE, partner)?;
-            Some((at, small(INLINE + line_at * PER_LINE) + place))
+            let index = position_of(&line.links, beyond - line_at * PER_LINE, partner)?;
+            Some((at, small(INLINE + line_at * PER_LINE) + index))
         })
     }
 
@@ -237,22 +237,22 @@ impl Lines {
     pub(super) fn pair_of(&self, a: u32, b: u32) -> Option<usize> {
         let a_is_lighter = self.count(a) <= self.count(b);
         let (from, to) = if a_is_lighter { (a, b) } else { (b, a) };
-        let (at, place) = self.find(from, to)?;
-        Some(self.link(at, place).pair as usize)
+        let (at, index) = self.find(from, to)?;
+        Some(self.link(at, index).pair as usize)
     }
 
     /// Replaces the link of the object to `link.partner`, which must exist.
     #[inline]
     pub(super) fn set_pair(&mut self, object: u32, link: Link) {
         let found = self.find(object, link.partner);
-        let (at, place) = found.expect("both ends of a pair have links");
-        *self.link_mut(at, place) = link;
+        let (at, index) = found.expect("both ends of a pair have links");
+        *self.link_mut(at, index) = link;
     }
 
     /// Adds a link to the object. Its partner must be new to the object.
     #[inline]
     pub(super) fn push(&mut self, object: u32, link: Link) {
-        let at = self.at(object).unwrap_or_else(|| self.take_head(object));
+        let at = self.head_index(object).unwrap_or_else(|| self.take_head(object));
         let head = &mut self.heads[at];
         let count = head.count();
         if count as usize == head.capacity() {
@@ -261,7 +261,7 @@ impl Lines {
         self.heads[at].set_count(count + 1);
         *self.link_mut(at, count) = link;
         if self.is_heavy(at) {
-            self.places.set(directed(object, link.partner), count);
+            self.link_indices.set(link_key(object, link.partner), count);
         }
     }
 
@@ -271,27 +271,27 @@ impl Lines {
             self.heads.push(Head::EMPTY);
             small(self.heads.len() - 1)
         });
-        self.owned[object as usize] = at;
+        self.head_indices[object as usize] = at;
         at as usize
     }
 
     /// Removes the link to the partner and returns the index of the pair; `None` if there is no
-    /// such link. The last link of the object moves to the place of the removed one.
+    /// such link. The last link of the object takes the index of the removed one.
     #[inline]
     pub(super) fn remove(&mut self, object: u32, partner: u32) -> Option<usize> {
-        let (at, place) = self.find(object, partner)?;
+        let (at, index) = self.find(object, partner)?;
         let last = self.heads[at].count() - 1;
-        let (taken, moved) = (self.link(at, place), self.link(at, last));
-        *self.link_mut(at, place) = moved;
+        let (taken, moved) = (self.link(at, index), self.link(at, last));
+        *self.link_mut(at, index) = moved;
         self.heads[at].set_count(last);
         if self.is_heavy(at) {
-            self.places.set(directed(object, moved.partner), place);
-            self.places.remove(directed(object, partner));
+            self.link_indices.set(link_key(object, moved.partner), index);
+            self.link_indices.remove(link_key(object, partner));
         }
         if last as usize == INLINE {
             self.release(object, at);
         } else if last == 0 {
-            self.owned[object as usize] = NO_HEAD;
+            self.head_indices[object as usize] = NO_HEAD;
             self.idle.push(small(at));
         }
         Some(taken.pair as usize)
@@ -310,16 +310,16 @@ impl Lines {
         self.free[old_class as usize].push(old_start);
         self.heads[at].set_run(start, old_class + 1);
         if old_class + 1 == HEAVY {
-            self.enter_places(object, at);
+            self.index_links(object, at);
         }
     }
 
-    /// Enters the links of an object that has become heavy into `places`.
+    /// Adds the links of an object that has become heavy to `link_indices`.
     #[cold]
-    fn enter_places(&mut self, object: u32, at: usize) {
-        for place in 0..self.heads[at].count() {
-            let partner = self.link(at, place).partner;
-            self.places.set(directed(object, partner), place);
+    fn index_links(&mut self, object: u32, at: usize) {
+        for index in 0..self.heads[at].count() {
+            let partner = self.link(at, index).partner;
+            self.link_indices.set(link_key(object, partner), index);
         }
     }
 
@@ -348,7 +348,7 @@ impl Lines {
         let (start, class) = self.run(at);
         if class >= HEAVY {
             let links = self.heads[at].links;
-            links.iter().for_each(|link| self.places.remove(directed(object, link.partner)));
+            links.iter().for_each(|link| self.link_indices.remove(link_key(object, link.partner)));
         }
         self.free[class as usize].push(start);
         self.heads[at].set_run(0, NO_RUN);
@@ -359,7 +359,7 @@ impl Lines {
         if self.idle.len() > self.heads.len() / 2 + MAX_IDLE {
             self.drop_idle();
         }
-        look.fit(&mut self.owned);
+        look.fit(&mut self.head_indices);
         look.fit(&mut self.heads);
         look.fit(&mut self.pool);
     }
@@ -368,7 +368,7 @@ impl Lines {
     fn drop_idle(&mut self) {
         let used = self.heads.len() - self.idle.len();
         let mut heads = Vec::with_capacity(used + used / 8);
-        for at in self.owned.iter_mut().filter(|at| **at != NO_HEAD) {
+        for at in self.head_indices.iter_mut().filter(|at| **at != NO_HEAD) {
             heads.push(self.heads[*at as usize]);
             *at = small(heads.len() - 1);
         }
@@ -395,13 +395,14 @@ impl Lines {
         }
         let fits = |head: &Head| head.count() as usize <= head.capacity();
         self.heads.iter().all(fits).then_some(()).ok_or("a run is overfull".to_owned())?;
-        self.validate_places()
+        self.validate_link_indices()
     }
 
     /// Checks that every head either belongs to one object and has links, or is idle and has none.
     fn validate_heads(&self) -> Result<(), String> {
         let mut owners = vec![0_u8; self.heads.len()];
-        for (object, &at) in self.owned.iter().enumerate().filter(|(_, at)| **at != NO_HEAD) {
+        for (object, &at) in self.head_indices.iter().enumerate().filter(|(_, at)| **at != NO_HEAD)
+        {
             let head = self.heads.get(at as usize).filter(|head| head.count() > 0);
             head.ok_or(format!("object {object} has the head {at}, which has no links"))?;
             owners[at as usize] += 1;
@@ -417,19 +418,19 @@ impl Lines {
         }
     }
 
-    /// Checks that `places` has exactly the links of the heavy objects.
-    fn validate_places(&self) -> Result<(), String> {
+    /// Checks that `link_indices` has exactly the links of the heavy objects.
+    fn validate_link_indices(&self) -> Result<(), String> {
         let mut heavy = 0;
-        let is_heavy = |object: &u32| self.at(*object).is_some_and(|at| self.is_heavy(at));
-        for object in (0..small(self.owned.len())).filter(is_heavy) {
-            for (place, link) in (0..).zip(self.links(object)) {
-                if self.places.get(directed(object, link.partner)) != Some(place) {
-                    return Err(format!("link {place} of the heavy {object} is lost"));
+        let is_heavy = |object: &u32| self.head_index(*object).is_some_and(|at| self.is_heavy(at));
+        for object in (0..small(self.head_indices.len())).filter(is_heavy) {
+            for (index, link) in (0..).zip(self.links(object)) {
+                if self.link_indices.get(link_key(object, link.partner)) != Some(index) {
+                    return Err(format!("link {index} of the heavy {object} is lost"));
                 }
             }
             heavy += self.count(object);
         }
-        let listed = self.places.len();
+        let listed = self.link_indices.len();
         (heavy == listed)
             .then_some(())
             .ok_or(format!("{heavy} links of heavy ones, {listed} listed"))
