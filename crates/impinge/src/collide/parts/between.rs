@@ -65,7 +65,8 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
 
-    /// Returns whether one of the composites has ghost neighbours in addition to its parts.
+    /// Returns whether one of the composites has ghosts: parts that continue its surface across
+    /// seams, but that no query finds.
     #[inline]
     pub(crate) fn has_ghosts(&self) -> bool {
         self.composites().iter().flatten().any(|composite| composite.has_ghosts())
