@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class Scene:
     """Immutable shapes at poses, which compare, hash and pickle by their bytes.
 
-    shapes, poses: as of `impinge.distance`; at least one object. ValueError names the row of an invalid pose.
+    shapes, poses: as in `impinge.distance`; at least one object. ValueError names the row of an invalid pose.
 
     The bytes are a recording of the calls that add the objects (the format of `impinge-record`): versioned, with a checksum,
     equal on every machine. Poses are stored as unit quaternions: the matrices of `poses` may differ from the arguments in the
